@@ -146,7 +146,7 @@ fn frames_that_move_are_counted_with_their_set_up() {
     let color = |technique: &str| first(technique).and_then(|row| row.wrong_color);
     assert!(color("z-fail") == Some(0) && color("none") > Some(0));
     // Where nothing moves the first frame's set-up serves all; else each has its own.
-    let total = |moves: &str| {
+    let of_none = |moves: &str| {
         let words = [&words[..], &["--time", "0.5..1:3", "--moves", moves]].concat();
         assert_eq!(run(folder.path(), &words).status.code(), Some(0));
         let json = fs::read_to_string(folder.path().join("m.json")).expect("rows");
@@ -155,10 +155,11 @@ fn frames_that_move_are_counted_with_their_set_up() {
         (row.moving.expect("it moves").setup_ms > 0.0, row.compared, row.missing_shadow)
     };
     let of_first = still_at_0(folder.path(), &words);
-    assert_eq!(total("nothing"), (false, 3 * of_first[0], 3 * of_first[1]));
-    let [light, eye] = ["light", "eye"].map(total);
+    assert_eq!(of_none("nothing"), (false, 3 * of_first[0], 3 * of_first[1]));
+    let [light, eye] = ["light", "eye"].map(of_none);
     assert!(light.0 && eye.0, "{light:?} {eye:?}");
-    assert!(light.2 != 3 * of_first[1] && eye.1 != 3 * of_first[0] && light != eye, "{light:?} {eye:?}");
+    // Shadows go elsewhere, and are seen from elsewhere.
+    assert!(light.2 != 3 * of_first[1] && eye.2 != 3 * of_first[1] && light != eye, "{light:?} {eye:?}");
     assert_fails(&["report", "tetrahedron", "--time", "0..1", "--moves", "lihgt"], 2, &["light"]);
     assert_fails(&["report", "tetrahedron", "--moves", "light"], 2, &["--time A..B"]);
     let table = run(folder.path(), &[&words[..8], &["--time", "0..1:2"]].concat());
