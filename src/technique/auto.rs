@@ -200,7 +200,7 @@ impl Decides for Questions {
     }
 
     fn may_overflow(&self, casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {
-        layers::may_exceed(&casting.collect::<Vec<_>>(), self.position, MOST_IN_STENCIL)
+        layers::may_exceed(casting.collect(), self.position, MOST_IN_STENCIL)
     }
 }
 
