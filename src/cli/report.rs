@@ -8,7 +8,7 @@ use super::{CliError, results};
 use crate::progress::Progress;
 use crate::report::{Report, Row};
 use crate::scene::builtin::Builtin;
-use crate::scene::{Scene, suggestion};
+use crate::scene::{Scene, is_scene_file, suggestion};
 use crate::session::{Block, Measurement, Moments, Moves, Session, Sweep, report_rows};
 use crate::shards::{Part, Shard};
 use crate::technique::{Choice, Technique};
@@ -20,7 +20,7 @@ use std::path::Path;
 pub struct ReportArguments {
     #[command(subcommand)]
     merge: Option<Merge>,
-    /// Built-in scenes, scene files (.toml) or models (.obj)
+    /// Built-in scenes, scene files (.toml) or models (.obj, .gltf, .glb)
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     #[command(flatten)]
@@ -197,9 +197,7 @@ fn distinct_names(scenes: &[Scene]) -> Vec<String> {
 /// No result may replace a scene: an option takes the word after it for its file.
 fn check_no_scene(files: &[&str], scenes: &[String]) -> Result<(), CliError> {
     let is_scene = |file: &&&str| {
-        let ending = Path::new(file).extension().map(|ending| ending.to_ascii_lowercase());
-        let is_input = ending.is_some_and(|ending| ending == "obj" || ending == "toml");
-        is_input || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == **file)
+        is_scene_file(Path::new(file)) || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == **file)
     };
     files.iter().find(is_scene).map_or(Ok(()), |file| {
         let what = "names a scene: put the option last, or give its file as `--json=FILE`";

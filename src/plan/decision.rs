@@ -74,6 +74,8 @@ named_enum! {
         BlendOnce = "blend-once",
         /// What a model's materials ask for and no shader does.
         Material = "material",
+        /// What a scene's file holds and no frame shows.
+        SceneFile = "scene-file",
         /// Drawing again what is there from the frame before.
         Kept = "kept",
         /// A draw of which no sample showed in the frame before.
@@ -110,7 +112,7 @@ impl Decision {
             Decision::UnlitTriangles => return format!("{of} triangles that face away"),
             Decision::Stencil => "stencil buffer",
             Decision::Clear => "stencil clear",
-            Decision::MapFaces | Decision::Unseen | Decision::Material => name,
+            Decision::MapFaces | Decision::Unseen | Decision::Material | Decision::SceneFile => name,
             Decision::Scissor => "pixels out of reach",
             Decision::VolumePass => "volume pass",
             Decision::InnerDarkCap => "inner triangles of the dark cap",

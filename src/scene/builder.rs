@@ -1,6 +1,7 @@
 //! A scene in code, piece by piece. What is not said is placed as for a scene file: without a camera all
 //! is in view from the front and a little above, and without lights a lamp stands above and in front.
 
+use super::names::Names;
 use super::placement::Surroundings;
 use super::{Camera, Light, Object, Scene};
 use glam::DVec3;
@@ -33,13 +34,21 @@ pub struct SceneBuilder {
     camera: Option<Camera>,
     lights: Option<Vec<Light>>,
     objects: Vec<Object>,
+    names: Names,
 }
 
 impl SceneBuilder {
     /// A scene of that name, without anything in it.
     #[must_use]
     pub fn new(name: impl Into<String>) -> SceneBuilder {
-        SceneBuilder { name: name.into(), ambient: AMBIENT, camera: None, lights: None, objects: Vec::new() }
+        SceneBuilder {
+            name: name.into(),
+            ambient: AMBIENT,
+            camera: None,
+            lights: None,
+            objects: Vec::new(),
+            names: Names::default(),
+        }
     }
 
     /// Linear RGB light that reaches every surface.
@@ -76,11 +85,7 @@ impl SceneBuilder {
     /// One more object. Where another has its name already, it gets a number.
     #[must_use]
     pub fn object(mut self, mut object: Object) -> SceneBuilder {
-        let is_taken = |name: &str| self.objects.iter().any(|other| other.name == name);
-        if is_taken(&object.name) {
-            let mut numbered = (2..).map(|number| format!("{} {number}", object.name));
-            object.name = numbered.find(|name| !is_taken(name)).unwrap_or(object.name);
-        }
+        object.name = self.names.take_like(&object.name);
         self.objects.push(object);
         self
     }
@@ -94,7 +99,7 @@ impl SceneBuilder {
     /// The scene, at time 0.
     #[must_use]
     pub fn build(self) -> Scene {
-        let SceneBuilder { name, ambient, camera, lights, objects } = self;
+        let SceneBuilder { name, ambient, camera, lights, objects, .. } = self;
         let points: Vec<DVec3> = match (&camera, &lights) {
             (Some(_), Some(_)) => Vec::new(),
             _ => objects.iter().flat_map(Object::world_positions).collect(),
@@ -107,6 +112,7 @@ impl SceneBuilder {
             lights: lights.unwrap_or_else(|| vec![surroundings.light()]),
             objects,
             technique: None,
+            not_taken: Vec::new(),
         }
     }
 }

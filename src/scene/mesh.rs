@@ -7,7 +7,7 @@
 //! Normals and places in a picture belong to the corners of triangles, so welding cannot blur a crease, and a seam of a
 //! picture opens no mesh.
 
-use super::{Material, Texture};
+use super::{Material, NotTaken, Texture};
 use foldhash::{fast::RandomState, quality::FixedState};
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashMap;
@@ -25,15 +25,6 @@ pub struct Mesh {
     not_taken: Vec<NotTaken>,
     dropped: usize,
     hash: u64,
-}
-
-/// What a model's file asks for and nothing here does.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NotTaken {
-    /// In the file's words: `map_Kd of brick`.
-    pub what: String,
-    /// Why not.
-    pub because: String,
 }
 
 /// A named run of a mesh's triangles, as a model file groups them.

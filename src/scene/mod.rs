@@ -1,6 +1,6 @@
 //! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
 //!
-//! A scene comes from a scene file ([`mod@file`]), a model ([`obj`], completed by [`model_scene`]) or
+//! A scene comes from a scene file ([`mod@file`]), a glTF file, a model ([`obj`], completed by [`model_scene`]) or
 //! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
@@ -11,10 +11,13 @@ mod camera;
 mod collision;
 mod error;
 pub mod file;
+pub(crate) mod gltf;
 mod light;
 mod material;
 mod mesh;
 mod model_scene;
+mod names;
+mod not_taken;
 pub mod obj;
 mod object;
 mod open;
@@ -34,10 +37,11 @@ pub use collision::{WallCache, Walls};
 pub use error::SceneError;
 pub use light::Light;
 pub use material::{Material, Shading};
-pub use mesh::{Group, Mesh, MeshBuilder, MeshError, NotTaken};
+pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::{UpAxis, model_scene};
+pub use not_taken::NotTaken;
 pub use object::{Motion, Object, Orbit, Pose, Swing};
-pub use open::{OpenSpec, files_of, is_model, open};
+pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
 pub use picture::{Level, Picture, PictureError, Texture};
 pub use placement::Surroundings;
 pub use suggestion::{nearest, suggestion};
@@ -60,6 +64,8 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The technique that the scene file asks for, if any.
     pub technique: Option<TechniqueRequest>,
+    /// What its file holds beside all this and nothing here shows; what a mesh's file does, the mesh knows.
+    pub not_taken: Vec<NotTaken>,
 }
 
 /// A technique and its settings by name, as written in a scene file or on the command line.

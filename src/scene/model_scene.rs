@@ -1,5 +1,7 @@
 //! A scene around a bare model: floor, light and camera from its bounds.
 
+use super::gltf;
+use super::names::Names;
 use super::placement::Surroundings;
 use super::{Material, Mesh, MeshBuilder, Object, Scene, SceneError, Shading};
 use glam::DVec3;
@@ -34,14 +36,35 @@ pub enum UpAxis {
 /// # Errors
 /// A mesh without triangles, or one so large or small that single precision can't show it.
 pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
-    let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
     let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
     let material = Material { color: TERRACOTTA, specular: 0.12, shininess: 24.0, shading, ..Material::default() };
     let mut model = Object::new(name, Arc::new(mesh), material);
     if up == UpAxis::Z {
         model.pose = model.pose.with_z_up();
     }
-    let positions = model.world_positions();
+    completed(name, vec![model], floor)
+}
+
+/// The scene of a glTF file. One without lights or a camera gets them, and one that has neither is a bare model.
+///
+/// # Errors
+/// As [`model_scene`].
+pub(super) fn gltf_scene(name: &str, loaded: gltf::Loaded, floor: bool) -> Result<Scene, SceneError> {
+    let gltf::Loaded { objects, lights, camera, not_taken, .. } = loaded;
+    let is_bare = lights.is_empty() && camera.is_none();
+    let scene = completed(name, objects, floor && is_bare)?;
+    Ok(Scene {
+        camera: camera.unwrap_or(scene.camera),
+        lights: if lights.is_empty() { scene.lights } else { lights },
+        not_taken,
+        ..scene
+    })
+}
+
+/// These objects with a light, a camera and, with `floor`, a floor.
+fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene, SceneError> {
+    let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
+    let positions: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
     let surroundings = Surroundings::of(&positions)
         .ok_or_else(|| unusable("has no surface whose size can be told: give a model with triangles"))?;
     if surroundings.extent() > MOST_EXTENT {
@@ -50,18 +73,21 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
     if surroundings.extent() < LEAST_EXTENT {
         return Err(unusable("is too small: scale it up"));
     }
-    let camera = surroundings.camera(&positions);
-    let mut objects = vec![model];
     if floor {
-        objects.push(floor_under(&surroundings)?);
+        let mut names = Names::default();
+        for object in &objects {
+            names.take(&object.name);
+        }
+        objects.push(Object { name: names.take_like("floor"), ..floor_under(&surroundings)? });
     }
     Ok(Scene {
         name: name.to_owned(),
         ambient: AMBIENT,
-        camera,
+        camera: surroundings.camera(&positions),
         lights: vec![surroundings.light()],
         objects,
         technique: None,
+        not_taken: Vec::new(),
     })
 }
 

@@ -74,7 +74,7 @@ fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, ObjP
     // A library that can't be read costs colours only.
     let (libraries, mut known) = (libraries.unwrap_or_default(), known.into_inner());
     let mesh = assemble(&models, &libraries, &cleaned, &mut known).build();
-    let mesh = mesh.map_err(|error| ObjProblem::File(error.to_string()))?.without(known.not_taken);
+    let mesh = mesh.map_err(|error| ObjProblem::File(error.to_string()))?.without(known.refusals.into_list());
     if mesh.triangles().is_empty() {
         return Err(ObjProblem::File("has no triangle with three different corners: export its surface".to_owned()));
     }
@@ -131,7 +131,7 @@ fn assemble(
         let is_unplaced = map.is_some() && !is_placed;
         if let Some(from) = from.filter(|_| is_unplaced) {
             let what = format!("map_Kd of {}", quoted(&from.name));
-            known.refuse(what, "faces have no texture coordinates (vt) that can be used: export them too");
+            known.refusals.refuse(what, "faces have no texture coordinates (vt) that can be used: export them too");
         }
         builder.groups.push(Group {
             name,

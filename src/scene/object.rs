@@ -134,6 +134,13 @@ impl Pose {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
     }
 
+    /// Of a scale, a turn and a place.
+    pub(super) fn of(scale: DVec3, rotation: DQuat, translate: DVec3) -> Pose {
+        // About fixed x, then y, then z is the same as about moving z, then y, then x.
+        let (z, y, x) = rotation.to_euler(EulerRot::ZYX);
+        Pose { translate, rotate_degrees: DVec3::new(x, y, z).map(f64::to_degrees), scale }
+    }
+
     /// In the same place, turned so that what was its z axis is up.
     #[must_use]
     pub fn with_z_up(&self) -> Pose {
@@ -147,13 +154,7 @@ impl Pose {
 
     /// The same scale, turned and moved as one rigid thing about a point.
     fn turned_about(&self, pivot: DVec3, turn: DQuat) -> Pose {
-        // About fixed x, then y, then z is the same as about moving z, then y, then x.
-        let (z, y, x) = (turn * self.rotation()).to_euler(EulerRot::ZYX);
-        Pose {
-            translate: pivot + turn * (self.translate - pivot),
-            rotate_degrees: DVec3::new(x, y, z).map(f64::to_degrees),
-            scale: self.scale,
-        }
+        Pose::of(self.scale, turn * self.rotation(), pivot + turn * (self.translate - pivot))
     }
 }
 

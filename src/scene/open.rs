@@ -1,17 +1,19 @@
 //! A scene by whatever names it: a built-in name, a scene file or a model.
 
 use super::builtin::{self, Builtin};
+use super::model_scene::gltf_scene;
 use super::read_text::stem;
 use super::suggestion::nearest;
-use super::{Scene, SceneError, UpAxis, file, model_scene, obj};
+use super::{Scene, SceneError, UpAxis, file, gltf, model_scene, obj};
 use std::path::{Path, PathBuf};
 
 /// What to open, and how a bare model is completed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenSpec {
-    /// A built-in name, or the path of a scene file (`.toml`) or a model (`.obj`).
+    /// A built-in name, or the path of a scene file (`.toml`), a glTF file (`.gltf`, `.glb`) or a model (`.obj`).
     pub name: String,
-    /// Puts a floor under a bare model; scene files and built-in scenes are taken as they are.
+    /// Puts a floor under a bare model, and under what a glTF file shows without camera and lights; other scenes are taken as
+    /// they are.
     pub floor: bool,
     /// Which axis of a bare model is up; the others say so themselves.
     pub up: UpAxis,
@@ -33,19 +35,43 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
         return Vec::new();
     }
     let path = PathBuf::from(&spec.name);
-    let is_scene_file = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    let named = if is_scene_file { file::models_of(&path) } else { Vec::new() };
+    let named = if Kind::of(&path) == Some(Kind::SceneFile) { file::models_of(&path) } else { Vec::new() };
     let files: Vec<PathBuf> = std::iter::once(path).chain(named).collect();
-    let is_model = |file: &&PathBuf| file.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("obj"));
-    let of_models: Vec<PathBuf> = files.iter().filter(is_model).flat_map(|model| obj::files_of(model)).collect();
+    let of_model = |model: &PathBuf| match Kind::of(model) {
+        Some(Kind::Model) => obj::files_of(model),
+        Some(Kind::Gltf) => gltf::files_of(model),
+        _ => Vec::new(),
+    };
+    let of_models: Vec<PathBuf> = files.iter().flat_map(of_model).collect();
     files.into_iter().chain(of_models).collect()
 }
 
-/// Does this name a bare model?
+/// What kind of file a scene is in, by its name's ending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    SceneFile,
+    Model,
+    Gltf,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Option<Kind> {
+        let is = |ending: &str| path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case(ending));
+        let others = || is("toml").then_some(Kind::SceneFile).or(is("obj").then_some(Kind::Model));
+        if gltf::is_gltf(path) { Some(Kind::Gltf) } else { others() }
+    }
+}
+
+/// Does this path end as those of files that scenes are read from?
+#[must_use]
+pub fn is_scene_file(path: &Path) -> bool {
+    Kind::of(path).is_some()
+}
+
+/// Does this name a bare model, whose up axis is anybody's guess? A glTF file's is y.
 #[must_use]
 pub fn is_model(name: &str) -> bool {
-    let extension = Path::new(name).extension();
-    Builtin::named(name).is_none() && extension.is_some_and(|kind| kind.eq_ignore_ascii_case("obj"))
+    Builtin::named(name).is_none() && Kind::of(Path::new(name)) == Some(Kind::Model)
 }
 
 /// Opens a scene. The result is at time 0.
@@ -58,13 +84,13 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
         return builtin.scene();
     }
     let path = Path::new(&spec.name);
-    let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-    match extension.as_deref().and_then(|extension| extension.to_str()) {
-        Some("toml") => file::load(path),
-        Some("obj") => {
+    match Kind::of(path) {
+        Some(Kind::SceneFile) => file::load(path),
+        Some(Kind::Model) => {
             model_scene(&stem(path), obj::load(path)?, spec.floor, spec.up).map_err(|error| error.in_file(path))
         }
-        _ => Err(unknown(&spec.name)),
+        Some(Kind::Gltf) => gltf_scene(&stem(path), gltf::load(path)?, spec.floor).map_err(|error| error.in_file(path)),
+        None => Err(unknown(&spec.name)),
     }
 }
 
@@ -73,17 +99,18 @@ fn unknown(name: &str) -> SceneError {
     if path.is_dir() {
         return SceneError::Read {
             file: path.to_owned(),
-            reason: "is a folder: name a scene file (.toml) or a model (.obj) in it".to_owned(),
+            reason: "is a folder: name a scene file (.toml) or a model (.obj, .gltf, .glb) in it".to_owned(),
         };
     }
     if path.is_file() {
-        let reason = "is of no kind that can be opened: give a scene file (.toml) or a model (.obj)".to_owned();
+        let reason =
+            "is of no kind that can be opened: give a scene file (.toml) or a model (.obj, .gltf, .glb)".to_owned();
         return SceneError::Read { file: path.to_owned(), reason };
     }
     let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
     let hint = match nearest(name, &names) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => format!("choose one of {}, a scene file (.toml) or a model (.obj)", names.join(", ")),
+        None => format!("choose one of {}, a scene file (.toml) or a model (.obj, .gltf, .glb)", names.join(", ")),
     };
     SceneError::Unknown { name: name.escape_debug().to_string(), hint }
 }

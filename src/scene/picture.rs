@@ -6,6 +6,7 @@
 //! (Williams 1983): what lies aslant far away blurs, and does not flicker. The GPU does the same with the same levels, and
 //! [`Picture::linear_at`] tells what it finds.
 
+use super::read_text::quoted;
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -115,13 +116,16 @@ impl Picture {
     /// # Errors
     /// As [`Picture::load`].
     pub fn load_within(path: &Path, most: u64) -> Result<Picture, PictureError> {
-        let bytes = read_plain(path, MOST_FILE)?;
-        let (size, texels) = match bytes.as_slice() {
-            [0x89, b'P', b'N', b'G', ..] => png(&bytes, most)?,
-            [0xff, 0xd8, 0xff, ..] => jpeg(&bytes, most)?,
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Picture::decode(name, &read_plain(path, MOST_FILE)?, most)
+    }
+
+    fn decode(name: String, bytes: &[u8], most: u64) -> Result<Picture, PictureError> {
+        let (size, texels) = match bytes {
+            [0x89, b'P', b'N', b'G', ..] => png(bytes, most)?,
+            [0xff, 0xd8, 0xff, ..] => jpeg(bytes, most)?,
             _ => return Err(PictureError::Kind),
         };
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Picture::new(name, size, texels).ok_or_else(|| PictureError::Broken("texels are missing".to_owned()))
     }
 
@@ -270,10 +274,38 @@ impl Pictures {
                 self.broken.insert(path.to_owned(), why.clone());
             }
         })?;
+        Ok(self.add(path, picture))
+    }
+
+    /// The picture in these bytes, which are asked for once; `path` tells it from others.
+    ///
+    /// # Errors
+    /// As [`Pictures::load`], or why there are no bytes; in a few words.
+    pub fn load_bytes(
+        &mut self,
+        path: &Path,
+        name: &str,
+        bytes: impl FnOnce() -> Result<Vec<u8>, String>,
+    ) -> Result<Arc<Picture>, String> {
+        if let Some(known) = self.known.get(path) {
+            return Ok(Arc::clone(known));
+        }
+        if let Some(why) = self.broken.get(path) {
+            return Err(why.clone());
+        }
+        let told = |error: PictureError| format!("{} {error}", quoted(name));
+        let picture = bytes().and_then(|bytes| Picture::decode(name.to_owned(), &bytes, self.left).map_err(told));
+        let picture = picture.inspect_err(|why| {
+            self.broken.insert(path.to_owned(), why.clone());
+        })?;
+        Ok(self.add(path, picture))
+    }
+
+    fn add(&mut self, path: &Path, picture: Picture) -> Arc<Picture> {
         let picture = Arc::new(picture);
         self.left -= picture.texels.len() as u64;
         self.known.insert(path.to_owned(), Arc::clone(&picture));
-        Ok(picture)
+        picture
     }
 }
 

@@ -6,17 +6,18 @@ use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, SwingTable,
     TechniqueTable, Text, Triple,
 };
+use crate::scene::names::Names;
 use crate::scene::picture::Pictures;
 use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
     Camera, Group, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing,
-    TechniqueRequest, Texture, obj,
+    TechniqueRequest, Texture, gltf, obj,
     read_text::{quoted, stem},
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use toml::Spanned;
 
@@ -35,8 +36,13 @@ const DEFAULT_NEAR: f64 = 0.01;
 /// # Errors
 /// The first value that can't be used.
 pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Problem> {
-    let mut builder =
-        ObjectBuilder { folder, models: BTreeMap::new(), pictures: Pictures::default(), objects: Vec::new() };
+    let mut builder = ObjectBuilder {
+        folder,
+        models: BTreeMap::new(),
+        pictures: Pictures::default(),
+        objects: Vec::new(),
+        names: Names::default(),
+    };
     for object in &table.objects {
         builder.add(object)?;
     }
@@ -59,6 +65,7 @@ pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Prob
         lights: if lights.is_empty() { vec![surroundings()?.light()] } else { lights },
         objects,
         technique: table.technique.as_ref().map(technique).transpose()?,
+        not_taken: Vec::new(),
     })
 }
 
@@ -238,9 +245,10 @@ fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
 /// Makes objects; models are loaded once.
 struct ObjectBuilder<'a> {
     folder: &'a Path,
-    models: BTreeMap<PathBuf, Arc<Mesh>>,
+    models: BTreeMap<String, Arc<Mesh>>,
     pictures: Pictures,
     objects: Vec<Object>,
+    names: Names,
 }
 
 impl ObjectBuilder<'_> {
@@ -275,17 +283,21 @@ impl ObjectBuilder<'_> {
     }
 
     fn mesh(&mut self, source: &Spanned<MeshSource>) -> Result<Arc<Mesh>, Problem> {
-        let path = match source.get_ref() {
+        let name = match source.get_ref() {
             MeshSource::Shape(table) => return shape::mesh(table).map(Arc::new),
-            MeshSource::File(path) => self.folder.join(path),
+            MeshSource::File(name) => name,
         };
-        if let Some(model) = self.models.get(&path) {
+        if let Some(model) = self.models.get(name) {
             return Ok(Arc::clone(model));
         }
-        let model = obj::load_among(&path, &mut self.pictures)
-            .map_err(|error| Problem::new(source.span(), error.to_string()))?;
-        let model = Arc::new(model);
-        self.models.insert(path, Arc::clone(&model));
+        let (file, pointer) = gltf::split(name);
+        let path = self.folder.join(file);
+        let model = match gltf::is_gltf(&path) {
+            true => gltf::load_mesh(&path, pointer, &mut self.pictures),
+            false => obj::load_among(&path, &mut self.pictures),
+        };
+        let model = Arc::new(model.map_err(|error| Problem::new(source.span(), error.to_string()))?);
+        self.models.insert(name.clone(), Arc::clone(&model));
         Ok(model)
     }
 
@@ -321,10 +333,9 @@ impl ObjectBuilder<'_> {
     }
 
     /// As given, else after the mesh, with a number where that is taken.
-    fn name(&self, table: &ObjectTable) -> Result<String, Problem> {
-        let is_taken = |name: &str| self.objects.iter().any(|object| object.name == name);
+    fn name(&mut self, table: &ObjectTable) -> Result<String, Problem> {
         if let Some(name) = &table.name {
-            if is_taken(name.get_ref()) {
+            if !self.names.take(name.get_ref()) {
                 let reason = format!(
                     "another object is called `{}` already: choose another name",
                     name.get_ref().escape_debug()
@@ -333,13 +344,10 @@ impl ObjectBuilder<'_> {
             }
             return Ok(name.get_ref().clone());
         }
-        let base = match table.mesh.get_ref() {
+        Ok(self.names.take_like(&match table.mesh.get_ref() {
             MeshSource::Shape(shape) => shape.shape.get_ref().clone(),
-            MeshSource::File(path) => stem(Path::new(path)),
-        };
-        let numbered = (2..).map(|number| format!("{base} {number}"));
-        let mut candidates = std::iter::once(base.clone()).chain(numbered);
-        Ok(candidates.find(|name| !is_taken(name)).unwrap_or(base))
+            MeshSource::File(path) => stem(Path::new(gltf::split(path).0)),
+        }))
     }
 }
 

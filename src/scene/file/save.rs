@@ -34,13 +34,13 @@ pub enum SaveError {
     Picture(#[from] png::EncodingError),
 }
 
-/// Writes a scene. New models are called `stem-object.obj`; meshes that are there as files already are named by
-/// `known`, by their content's hash.
+/// Writes a scene. New models are called `stem-object.obj`; meshes that are there as files already are `known`, each with
+/// its file's name.
 ///
 /// # Errors
 /// What the serialiser refuses; nothing here is known to be refused.
-pub fn save(scene: &Scene, stem: &str, known: &BTreeMap<u64, String>) -> Result<SavedScene, SaveError> {
-    let mut beside = Beside { stem, known, files: Vec::new(), meshes: Vec::new(), pictures: Vec::new() };
+pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Result<SavedScene, SaveError> {
+    let mut beside = Beside { stem, files: Vec::new(), meshes: known, pictures: Vec::new() };
     let mut objects = Vec::with_capacity(scene.objects.len());
     for object in &scene.objects {
         let mesh = beside.mesh(object)?;
@@ -240,9 +240,8 @@ fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> O
 /// The files beside a scene file.
 struct Beside<'a> {
     stem: &'a str,
-    /// Meshes that are files already, by their content's hash.
-    known: &'a BTreeMap<u64, String>,
     files: Vec<(String, Vec<u8>)>,
+    /// Those that are files, known ones first.
     meshes: Vec<(Arc<Mesh>, String)>,
     pictures: Vec<(Arc<Picture>, String)>,
 }
@@ -251,9 +250,6 @@ impl Beside<'_> {
     /// The file of a mesh, which is made unless an earlier object has it; or its triangles.
     fn mesh(&mut self, object: &Object) -> Result<MeshSource, SaveError> {
         let mesh = &object.mesh;
-        if let Some(name) = self.known.get(&mesh.content_hash()) {
-            return Ok(MeshSource::File(name.clone()));
-        }
         if let Some((_, name)) = self.meshes.iter().find(|(other, _)| other == mesh) {
             return Ok(MeshSource::File(name.clone()));
         }
@@ -342,8 +338,11 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
             let name = if group.name.is_empty() { "unnamed_object" } else { &group.name };
             line(format_args!("g {name}"));
         }
-        if group.material.is_some() {
-            line(format_args!("usemtl {}", material_name(index)));
+        // Without a word, the last group's material would go on.
+        match group.material {
+            Some(_) => line(format_args!("usemtl {}", material_name(index))),
+            None if groups[..index].iter().any(|other| other.material.is_some()) => line(format_args!("usemtl none")),
+            None => {}
         }
         for triangle in group.triangles.clone() {
             let Some(corners) = mesh.triangles().get(triangle) else { continue };
@@ -369,7 +368,8 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
 fn library(mesh: &Mesh, pictures: &[Option<String>]) -> String {
     let mut out = String::new();
     for (index, (group, picture)) in mesh.groups().iter().zip(pictures).enumerate() {
-        let Some(Material { color: [red, green, blue], specular, shininess, opacity, .. }) = group.material else {
+        let Some(Material { color: [red, green, blue], specular, shininess, opacity, emission, .. }) = group.material
+        else {
             continue;
         };
         // Writing to a string can't fail.
@@ -378,6 +378,11 @@ fn library(mesh: &Mesh, pictures: &[Option<String>]) -> String {
             "newmtl {}\nKd {red} {green} {blue}\nKs {specular} {specular} {specular}\nNs {shininess}\nd {opacity}",
             material_name(index)
         );
+        if let [red, green, blue] = emission
+            && emission != [0.0; 3]
+        {
+            let _ = writeln!(out, "Ke {red} {green} {blue}");
+        }
         if let (Some(file), Some(Texture { clamps, .. })) = (picture, &group.texture) {
             let _ = writeln!(out, "map_Kd {}{file}", if *clamps { "-clamp on " } else { "" });
         }
@@ -402,9 +407,9 @@ mod tests {
     use std::path::Path;
 
     /// The scene as it is read again.
-    fn again(scene: &Scene, known: &BTreeMap<u64, String>) -> (Scene, SavedScene) {
+    fn again(scene: &Scene) -> (Scene, SavedScene) {
         let folder = tempfile::tempdir().expect("a folder");
-        let saved = save(scene, "fixed", known).expect("saved");
+        let saved = save(scene, "fixed", Vec::new()).expect("saved");
         let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("written");
         saved.files.iter().for_each(|(name, bytes)| put(name, bytes));
         put("fixed.toml", saved.toml.as_bytes());
@@ -428,7 +433,7 @@ mod tests {
     fn every_built_in_scene_reads_back_as_it_was() {
         for builtin in builtin::ALL {
             let scene = builtin.scene().expect("a scene");
-            assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
+            assert_same(&scene, &again(&scene).0);
         }
     }
 
@@ -437,7 +442,7 @@ mod tests {
         let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes");
         for file in ["knot.toml", "shade.toml", "pattern.toml"] {
             let scene = load(&scenes.join(file)).expect("a scene");
-            assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
+            assert_same(&scene, &again(&scene).0);
         }
         let mut scene = builtin::ALL[0].scene().expect("a scene");
         scene.technique = Some(crate::scene::TechniqueRequest {
@@ -446,7 +451,7 @@ mod tests {
         });
         (scene.objects[0].casts, scene.objects[0].receives, scene.objects[1].visible) = (false, false, false);
         (scene.lights[0].intensity, scene.lights[0].is_on) = (0.1, false);
-        assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
+        assert_same(&scene, &again(&scene).0);
     }
 
     #[test]
@@ -461,7 +466,7 @@ mod tests {
         put("scene.toml", "[[objects]]\nmesh = \"two.obj\"\n");
         let scene = load(&folder.path().join("scene.toml")).expect("a scene");
         assert!(scene.objects[0].mesh.groups().iter().all(|group| group.material.is_some()));
-        let (same, saved) = again(&scene, &BTreeMap::new());
+        let (same, saved) = again(&scene);
         assert_same(&scene, &same);
         assert_eq!(same.objects[0].mesh.groups(), scene.objects[0].mesh.groups());
         assert_eq!(
@@ -473,8 +478,8 @@ mod tests {
     #[test]
     fn a_mesh_that_is_a_file_already_is_named() {
         let scene = builtin::ALL[0].scene().expect("a scene");
-        let known = BTreeMap::from([(scene.objects[0].mesh.content_hash(), "../model.obj".to_owned())]);
-        let saved = save(&scene, "fixed", &known).expect("saved");
+        let known = vec![(scene.objects[0].mesh.clone(), "../model.obj".to_owned())];
+        let saved = save(&scene, "fixed", known).expect("saved");
         assert!(saved.toml.contains("mesh = \"../model.obj\""), "{}", saved.toml);
     }
 }

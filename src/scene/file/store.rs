@@ -3,10 +3,10 @@
 use super::save::{SaveError, SavedScene, save};
 use crate::files::{from_beside, read_plain, write_whole};
 use crate::scene::read_text::stem;
-use crate::scene::{Scene, obj};
-use std::collections::BTreeMap;
+use crate::scene::{Scene, gltf, obj};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Why a scene is not in its file.
 #[derive(Debug, thiserror::Error)]
@@ -38,17 +38,18 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
     if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("toml")) {
         return Err(StoreError::NoSceneFile(file.display().to_string().escape_debug().to_string()));
     }
-    let mut known = BTreeMap::new();
-    let model = source.filter(|path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")));
-    // The model comes first, the floor after it. A mesh that was changed is another, and not named.
-    if let (Some(path), Some(object)) = (model, scene.objects.first())
-        && let Ok(original) = obj::load(path)
-        && original == *object.mesh
-    {
-        known.insert(original.content_hash(), from_beside(file, path));
-    }
-    let stem = stem(file);
-    write_files(&save(scene, &stem, &known)?, file)
+    // A mesh that was changed is another, and not named.
+    let known = match source {
+        Some(path) if gltf::is_gltf(path) => {
+            let model = from_beside(file, path);
+            gltf::named_meshes(path).into_iter().map(|(mesh, pointer)| (mesh, format!("{model}#{pointer}"))).collect()
+        }
+        Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) => {
+            obj::load(path).ok().map(|model| (Arc::new(model), from_beside(file, path))).into_iter().collect()
+        }
+        _ => Vec::new(),
+    };
+    write_files(&save(scene, &stem(file), known)?, file)
 }
 
 /// The models first, so that the scene file is never there without them; what was not there before goes again

@@ -96,7 +96,7 @@ fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
     let folder = tempfile::tempdir().expect("a folder");
     let with = |keys: &str| {
         let scene = parsed(&SCENE.replace("near = 0.05", &format!("near = 0.05\n{keys}"))).expect(keys);
-        let saved = save(&scene, "saved", &BTreeMap::new()).expect("saved");
+        let saved = save(&scene, "saved", Vec::new()).expect("saved");
         for (name, contents) in &saved.files {
             std::fs::write(folder.path().join(name), contents).expect("a file");
         }

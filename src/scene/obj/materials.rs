@@ -2,20 +2,19 @@
 //!
 //! Only the lines that a [`Material`] can hold are read, and broken ones are passed over: a model
 //! is worth seeing without its colours. Of pictures, `map_Kd` is shown; what else the library asks for is named
-//! ([`NotTaken`]).
+//! ([`Refusals`]).
 
 use crate::files::{ReadError, read_plain};
+use crate::scene::not_taken::Refusals;
 use crate::scene::picture::Pictures;
 use crate::scene::read_text::{decoded, quoted};
-use crate::scene::{Material, NotTaken, Shading, Texture};
+use crate::scene::{Material, Shading, Texture};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Bytes of the largest library.
 const MOST_BYTES: u64 = 64 << 20;
-/// Things that are named, of a library that asks for more than anybody reads.
-const MOST_NAMED: usize = 32;
 
 /// What a model's libraries say beside the numbers of materials.
 #[derive(Debug)]
@@ -23,7 +22,7 @@ pub struct Libraries<'a> {
     /// By the material's name.
     maps: BTreeMap<String, Map>,
     /// What is asked for and not done.
-    pub not_taken: Vec<NotTaken>,
+    pub refusals: Refusals,
     pictures: &'a mut Pictures,
 }
 
@@ -46,24 +45,12 @@ impl Map {
 impl<'a> Libraries<'a> {
     /// Nothing yet.
     pub fn new(pictures: &'a mut Pictures) -> Libraries<'a> {
-        Libraries { maps: BTreeMap::new(), not_taken: Vec::new(), pictures }
+        Libraries { maps: BTreeMap::new(), refusals: Refusals::default(), pictures }
     }
 
     /// The picture of a material.
     pub fn map(&self, material: &str) -> Option<&Map> {
         self.maps.get(material)
-    }
-
-    /// Names something that is not done.
-    pub fn refuse(&mut self, what: String, because: impl Into<String>) {
-        let refused = NotTaken { what, because: because.into() };
-        let named = self.not_taken.len();
-        if named < MOST_NAMED && !self.not_taken.contains(&refused) {
-            self.not_taken.push(refused);
-        } else if named == MOST_NAMED {
-            let what = "what else its libraries ask for".to_owned();
-            self.not_taken.push(NotTaken { what, because: format!("{MOST_NAMED} things of it are named") });
-        }
     }
 
     /// Reads a library; pictures are looked for beside it.
@@ -72,7 +59,7 @@ impl<'a> Libraries<'a> {
     /// A file that can't be read, which is named.
     pub fn load(&mut self, file: &Path, name: &str) -> tobj::MTLLoadResult {
         let bytes = read_plain(file, MOST_BYTES).map_err(|error: ReadError| {
-            self.refuse(format!("the materials of {}", quoted(name)), error.to_string());
+            self.refusals.refuse(format!("the materials of {}", quoted(name)), error.to_string());
             tobj::LoadError::OpenFileFailed
         })?;
         let text = decoded(bytes);
@@ -86,7 +73,7 @@ impl<'a> Libraries<'a> {
                 "map_Kd" => self.add_map(material, rest, folder),
                 keyword if is_map(keyword) => {
                     let of = format!("{} of {}", quoted(keyword).replace('`', ""), quoted(material));
-                    self.refuse(of, "of pictures, only that of the diffuse colour (map_Kd) is shown");
+                    self.refusals.refuse(of, "of pictures, only that of the diffuse colour (map_Kd) is shown");
                 }
                 _ => {}
             }
@@ -99,21 +86,21 @@ impl<'a> Libraries<'a> {
         let what = format!("map_Kd of {}", quoted(material));
         let line = MapLine::parse(rest);
         for option in &line.passed_over {
-            self.refuse(format!("{option} of map_Kd of {}", quoted(material)), "nothing here does it");
+            self.refusals.refuse(format!("{option} of map_Kd of {}", quoted(material)), "nothing here does it");
         }
         if line.file.is_empty() {
-            return self.refuse(what, "it names no file");
+            return self.refusals.refuse(what, "it names no file");
         }
         let name = line.path();
         match self.pictures.load(&folder.join(&name)) {
             Ok(picture) => {
                 if picture.has_alpha() {
-                    self.refuse(format!("the alpha of {}", quoted(&name)), "opacity is the material's (d)");
+                    self.refusals.refuse(format!("the alpha of {}", quoted(&name)), "opacity is the material's (d)");
                 }
                 let texture = Texture { picture, side: None, clamps: line.clamps };
                 self.maps.insert(material.to_owned(), Map { texture, scale: line.scale, offset: line.offset });
             }
-            Err(error) => self.refuse(what, format!("{} {error}", quoted(&name))),
+            Err(error) => self.refusals.refuse(what, format!("{} {error}", quoted(&name))),
         }
     }
 }
@@ -230,11 +217,17 @@ pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Mater
     let within = |low: f32, value: f64, high: f32| (value as f32).clamp(low, high);
     let specular = from.specular.map_or(0.0, |[r, g, b]| (r + g + b) / 3.0);
     let plain = if has_map { [1.0; 3] } else { default.color };
+    let emitted = |words: &String| {
+        let numbers: Vec<f64> = words.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+        <[f64; 3]>::try_from(numbers).ok().map(|rgb| rgb.map(|c| within(0.0, c, 1000.0)))
+    };
+    let emission = from.unknown_param.get("Ke").and_then(emitted);
     Material {
         color: from.diffuse.map_or(plain, |rgb| rgb.map(|c| within(0.0, c, 1.0))),
         specular: within(0.0, specular, 1.0),
         shininess: from.shininess.map_or(default.shininess, |exponent| within(1.0, exponent, 1000.0)),
         opacity: from.dissolve.map_or(1.0, |opacity| within(0.0, opacity, 1.0)),
+        emission: emission.unwrap_or(default.emission),
         shading,
         ..default
     }
@@ -245,7 +238,7 @@ fn usable_line(line: &str) -> Option<String> {
     let (keyword, rest) = line.trim().split_once(char::is_whitespace)?;
     let count = match keyword {
         "newmtl" => return Some(format!("newmtl {}\n", rest.trim())),
-        "Kd" | "Ks" => 3,
+        "Kd" | "Ks" | "Ke" => 3,
         "Ns" | "d" => 1,
         _ => return None,
     };

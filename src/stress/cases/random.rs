@@ -91,6 +91,7 @@ fn scene(seed: f64) -> Result<Scene, MeshError> {
         lights: vec![light],
         objects,
         technique: None,
+        not_taken: Vec::new(),
     })
 }
 

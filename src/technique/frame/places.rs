@@ -4,7 +4,7 @@ use super::{Frame, Piece, Placed};
 use crate::geometry::{ViewVolume, relative};
 use crate::math::depth::DepthCurve;
 use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, MeshId, PlanLight, PlanView};
-use crate::scene::{Group, Material, Object, Scene};
+use crate::scene::{Group, Material, NotTaken, Object, Scene};
 use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec3, DVec4};
 use wgpu::TextureFormat;
@@ -68,6 +68,8 @@ impl Frame<'_> {
     }
 
     pub(super) fn place_objects(&mut self) -> Result<(), PlanError> {
+        let scene = self.job.scene;
+        self.name_not_taken(Decision::SceneFile, &scene.name, &scene.not_taken);
         for object in &self.job.scene.objects {
             let world = object.world_positions();
             let is_usable = |position: &DVec3| (*position - self.eye()).abs().max_element() <= MOST_DISTANCE;
@@ -79,11 +81,7 @@ impl Frame<'_> {
             let (scene, shading) = (self.job.scene, self.common.shading);
             let mesh = drawn.then(|| surfaces::draw_mesh(object, &world, scene, shading, self.job.cache));
             let surface = mesh.map(|mesh| self.add_mesh(mesh));
-            for not_taken in object.mesh.not_taken() {
-                let left_out =
-                    LeftOut::named(Decision::Material, &not_taken.what, &object.name, not_taken.because.as_str());
-                self.plan.left_out.push(left_out);
-            }
+            self.name_not_taken(Decision::Material, &object.name, object.mesh.not_taken());
             if let Some(mesh) = surface {
                 let pieces = self.pieces_of(object, mesh);
                 self.pieces.extend(pieces);
@@ -91,6 +89,12 @@ impl Frame<'_> {
             self.placed.push(Placed { object, world, surface });
         }
         Ok(())
+    }
+
+    /// What a file of this name holds and nothing here shows.
+    fn name_not_taken(&mut self, decision: Decision, name: &str, list: &[NotTaken]) {
+        let named = |one: &NotTaken| LeftOut::named(decision, &one.what, name, one.because.as_str());
+        self.plan.left_out.extend(list.iter().map(named));
     }
 
     /// One piece a group of the object that is placed next.

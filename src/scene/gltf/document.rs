@@ -1,0 +1,208 @@
+//! A glTF file, checked, with its buffers: JSON beside files (`.gltf`), or both in one (`.glb`).
+
+use crate::files::read_plain;
+use crate::scene::SceneError;
+use crate::scene::read_text::quoted;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use gltf::json::validation::{Error, Validate};
+use gltf::json::{Index, Path as JsonPath, Root, buffer};
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+
+/// Bytes of the largest file, buffers and pictures alike.
+const MOST_BYTES: u64 = 1 << 30;
+/// Items of accessors that any file may have read; beyond, one more for each byte of its buffers. More means that one
+/// buffer is told of over and over.
+const FREE_ITEMS: u64 = 1 << 22;
+/// The shortest binary file: its head.
+const GLB_HEAD: usize = 12;
+/// What a file may require: all that changes no geometry or is read here.
+const KNOWN_EXTENSIONS: [&str; 5] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Why a file can't be shown, with the mend; in one line, without its name.
+pub type Told<T> = Result<T, String>;
+
+/// A file that keeps the format's rules.
+#[derive(Debug)]
+pub struct Document {
+    /// Its JSON.
+    pub root: Root,
+    buffers: Vec<Vec<u8>>,
+    folder: PathBuf,
+    /// Items that may still be read.
+    left: Cell<u64>,
+}
+
+impl Document {
+    /// Reads a file and its buffers.
+    ///
+    /// # Errors
+    /// A file that can't be read, that breaks the format's rules or that needs what is not done.
+    pub fn open(file: &Path) -> Result<Document, SceneError> {
+        let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
+        let bytes = read_plain(file, MOST_BYTES).map_err(|error| told(error.to_string()))?;
+        let (root, blob) = parse(&bytes, file)?;
+        checked(&root).map_err(told)?;
+        let folder = file.parent().unwrap_or(Path::new("")).to_owned();
+        let mut document = Document { root, buffers: Vec::new(), folder, left: Cell::new(FREE_ITEMS) };
+        document.read_buffers(blob).map_err(told)?;
+        Ok(document)
+    }
+
+    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>) -> Told<()> {
+        let mut total = 0;
+        for (index, buffer) in self.root.buffers.iter().enumerate() {
+            let mut bytes = match &buffer.uri {
+                Some(uri) => self.resource(uri, MOST_BYTES.saturating_sub(total))?,
+                None => blob.take().filter(|_| index == 0).ok_or_else(|| {
+                    format!(
+                        "buffer {index} has no data: it names no file, and only the first may be in the .glb itself"
+                    )
+                })?,
+            };
+            let length = buffer.byte_length.0;
+            if (bytes.len() as u64) < length {
+                return Err(format!(
+                    "buffer {index} has {} bytes where {length} are told of: export the file again",
+                    bytes.len()
+                ));
+            }
+            bytes.truncate(length as usize);
+            total += length;
+            self.buffers.push(bytes);
+        }
+        self.left.set(FREE_ITEMS + total);
+        Ok(())
+    }
+
+    /// The bytes of a buffer's or a picture's URI: a file beside this one, or data in the URI itself.
+    pub fn resource(&self, uri: &str, most: u64) -> Told<Vec<u8>> {
+        if let Some(data) = uri.strip_prefix("data:") {
+            let broken = || "a data URI can't be read: export the file again".to_owned();
+            let (head, data) = data.split_once(',').ok_or_else(broken)?;
+            return match head.ends_with(";base64") {
+                true => STANDARD.decode(data).map_err(|_| broken()),
+                false => Ok(percent_encoding::percent_decode_str(data).collect()),
+            };
+        }
+        let path = path_of(uri).ok_or_else(|| format!("{} is no file beside this one: put it there", quoted(uri)))?;
+        read_plain(&self.folder.join(path), most).map_err(|error| format!("{} {error}", quoted(uri)))
+    }
+
+    /// Where a picture's file would be.
+    pub fn beside(&self, uri: &str) -> Option<PathBuf> {
+        path_of(uri).map(|path| self.folder.join(path))
+    }
+
+    /// The bytes of a buffer's part.
+    pub fn view(&self, index: Index<buffer::View>) -> Told<&[u8]> {
+        let missing = || format!("buffer view {} is beyond its buffer: export the file again", index.value());
+        let view = self.root.get(index).ok_or_else(missing)?;
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        let end = start.checked_add(view.byte_length.0).ok_or_else(missing)?;
+        let buffer = self.buffers.get(view.buffer.value()).ok_or_else(missing)?;
+        buffer
+            .get(usize::try_from(start).unwrap_or(usize::MAX)..usize::try_from(end).unwrap_or(usize::MAX))
+            .ok_or_else(missing)
+    }
+
+    /// Takes from the number of items that may still be read or made.
+    pub fn take(&self, items: u64) -> Told<()> {
+        let left = self.left.get().checked_sub(items);
+        self.left.set(left.ok_or("tells of more vertices and triangles than its buffers have bytes: split the model")?);
+        Ok(())
+    }
+}
+
+/// The files that a file names; none of what can't be read, which loading tells.
+pub fn files_of(file: &Path) -> Vec<PathBuf> {
+    let Ok(bytes) = read_plain(file, MOST_BYTES) else { return Vec::new() };
+    let Ok((root, _)) = parse(&bytes, file) else { return Vec::new() };
+    let buffers = root.buffers.iter().map(|buffer| buffer.uri.as_deref());
+    let images = root.images.iter().map(|image| image.uri.as_deref());
+    let named = buffers.chain(images).flatten().filter(|uri| !uri.starts_with("data:"));
+    let mut files: Vec<PathBuf> = named.filter_map(path_of).map(|path| file.with_file_name(path)).collect();
+    files.sort();
+    files.dedup();
+    files
+}
+
+/// The path in a relative URI (RFC 3986); `None` of one that is elsewhere.
+fn path_of(uri: &str) -> Option<PathBuf> {
+    let is_elsewhere = uri.starts_with("data:") || uri.contains("://") || uri.is_empty();
+    let path = percent_encoding::percent_decode_str(uri).decode_utf8().ok()?;
+    (!is_elsewhere).then(|| PathBuf::from(path.into_owned()))
+}
+
+fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneError> {
+    let told = |reason: &str| SceneError::Read { file: file.to_owned(), reason: reason.to_owned() };
+    if bytes.is_empty() {
+        return Err(told("is empty: give a glTF file with content"));
+    }
+    let is_binary = bytes.starts_with(b"glTF");
+    // The crate subtracts the head's length unchecked.
+    let length = bytes.get(8..GLB_HEAD).and_then(|length| length.try_into().ok()).map_or(0, u32::from_le_bytes);
+    if is_binary && (length as usize) < GLB_HEAD {
+        return Err(told("is a broken .glb (its head is too short): export it again"));
+    }
+    match gltf::Gltf::from_slice_without_validation(bytes) {
+        Ok(gltf::Gltf { document, blob }) => Ok((document.into_json(), blob)),
+        Err(gltf::Error::Deserialize(error)) if !is_binary && error.line() > 0 => Err(SceneError::Line {
+            file: file.to_owned(),
+            line: error.line(),
+            reason: format!("is no glTF 2.0 ({}): export the file again", in_a_line(&error.to_string())),
+        }),
+        Err(error) => Err(told(&format!("is no glTF 2.0 file ({}): export it again", in_a_line(&error.to_string())))),
+    }
+}
+
+/// Other people's words as one short line.
+fn in_a_line(words: &str) -> String {
+    const MOST: usize = 120;
+    words.chars().take(MOST).flat_map(char::escape_debug).collect()
+}
+
+/// Does the file keep the rules that reading relies on?
+fn checked(root: &Root) -> Told<()> {
+    if root.asset.version.split('.').next() != Some("2") {
+        let version = quoted(&root.asset.version);
+        return Err(format!("is of glTF version {version}, and 2.0 is read: convert it"));
+    }
+    if let Some(other) = root.extensions_required.iter().find(|name| !is_known(name)) {
+        let name = quoted(other);
+        return Err(format!("needs the extension {name}, which is not done here: export it without (uncompressed)"));
+    }
+    let mut first: Option<(String, Error)> = None;
+    root.validate(root, JsonPath::new, &mut |path, error| {
+        let path = path();
+        // Bounds of positions are computed here, and extensions were looked at above.
+        let is_needless =
+            [".min", ".max"].iter().any(|end| path.as_str().ends_with(end)) && path.as_str().contains("POSITION");
+        if first.is_none() && error != Error::Unsupported && !is_needless {
+            first = Some((path.as_str().to_owned(), error));
+        }
+    });
+    match first {
+        Some((path, error)) => {
+            Err(format!("breaks a rule of glTF 2.0 at {} ({error}): export it again", quoted(&path)))
+        }
+        None => Ok(()),
+    }
+}
+
+/// May a file require it?
+pub fn is_known(extension: &str) -> bool {
+    KNOWN_EXTENSIONS.contains(&extension) || extension.starts_with("KHR_materials_")
+}
+
+/// Is all of it read?
+pub fn is_done(extension: &str) -> bool {
+    KNOWN_EXTENSIONS.contains(&extension)
+}

@@ -1,0 +1,116 @@
+//! Lights (`KHR_lights_punctual`) and cameras.
+//!
+//! Intensities are candela and lux there, and nothing here is exposed: of all lights the brightest, in the middle of
+//! what is seen, is made 1, and the others keep their share. Light does not fade here but towards its range.
+
+use super::document::Told;
+use super::named;
+use super::nodes::Nodes;
+use crate::scene::not_taken::Refusals;
+use crate::scene::placement::Surroundings;
+use crate::scene::read_text::quoted;
+use crate::scene::{Camera, Light, Projection};
+use glam::DVec3;
+use gltf::json::Root;
+use gltf::json::camera::Type as CameraType;
+use gltf::json::extensions::scene::khr_lights_punctual::Type;
+use gltf::json::validation::Checked;
+
+/// Of the distance from an orthographic camera to its far plane, how near its near plane may be.
+const NEAREST: f64 = 1e-6;
+
+/// A light, and the node that it hangs on.
+#[derive(Debug, Clone)]
+pub struct Placed<T> {
+    pub node: usize,
+    pub it: T,
+}
+
+/// The lights of the scene that is shown.
+pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut Refusals) -> Vec<Placed<Light>> {
+    let mut found = Vec::new();
+    for node in nodes.shown.iter().copied() {
+        let extension = root.nodes[node].extensions.as_ref().and_then(|known| known.khr_lights_punctual.as_ref());
+        let Some(given) = extension.and_then(|of| root.get(of.light)) else { continue };
+        let name = named(given.name.as_deref().or(root.nodes[node].name.as_deref()), || format!("node {node}"));
+        let world = &nodes.world[node];
+        let at = world.transform_point3(DVec3::ZERO);
+        // It shines along its −z axis.
+        let towards = world.transform_vector3(DVec3::Z);
+        let mut light = match given.type_ {
+            Checked::Valid(Type::Directional) => Light::directional(towards.normalize_or_zero()),
+            Checked::Valid(Type::Spot) => {
+                refusals.refuse(
+                    format!("the cone of {}", quoted(&name)),
+                    "a spot shines to all sides here, as a point does",
+                );
+                Light::point(at)
+            }
+            _ => Light::point(at),
+        };
+        light.color = given.color.map(|channel| if channel.is_finite() { channel.max(0.0) } else { 0.0 });
+        if !light.is_directional() {
+            light.range = given.range.map(f64::from).filter(|range| *range > 0.0);
+        }
+        let away = if light.is_directional() { 1.0 } else { at.distance(around.middle()).max(0.01 * around.extent()) };
+        let bright = f64::from(given.intensity.max(0.0)) / (away * away);
+        light.intensity = if bright.is_finite() { bright as f32 } else { 0.0 };
+        match light.check() {
+            Ok(()) => found.push(Placed { node, it: light }),
+            Err(why) => refusals.refuse(format!("the light {}", quoted(&name)), why),
+        }
+    }
+    let brightest = found.iter().map(|light| light.it.intensity).fold(0.0, f32::max);
+    if brightest > 0.0 {
+        found.iter_mut().for_each(|light| light.it.intensity /= brightest);
+    }
+    found
+}
+
+/// The first camera of the scene that is shown.
+pub fn camera(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut Refusals) -> Option<Camera> {
+    let mut seen: Option<Camera> = None;
+    for node in nodes.shown.iter().copied() {
+        let Some(given) = root.nodes[node].camera.and_then(|camera| root.get(camera)) else { continue };
+        let name = named(given.name.as_deref().or(root.nodes[node].name.as_deref()), || format!("node {node}"));
+        let what = format!("the camera {}", quoted(&name));
+        if seen.is_some() {
+            refusals.refuse(what, "the first one of the scene is the eye");
+            continue;
+        }
+        match placed(given, nodes, node, around) {
+            Ok(camera) => seen = Some(camera),
+            Err(why) => refusals.refuse(what, why),
+        }
+    }
+    seen
+}
+
+fn placed(given: &gltf::json::Camera, nodes: &Nodes, node: usize, around: &Surroundings) -> Told<Camera> {
+    let world = &nodes.world[node];
+    let eye = world.transform_point3(DVec3::ZERO);
+    let ahead = world.transform_vector3(DVec3::NEG_Z).normalize_or_zero();
+    let up = world.transform_vector3(DVec3::Y).normalize_or_zero();
+    // It is turned about what it looks at: as far off as the middle of the scene.
+    let distance = (around.middle() - eye).dot(ahead);
+    let distance = if distance > 0.01 * around.extent() { distance } else { around.extent() };
+    let base = Camera { up, ..Camera::looking(eye, eye + ahead * distance) };
+    let camera = match (given.type_, &given.perspective, &given.orthographic) {
+        (Checked::Valid(CameraType::Perspective), Some(of), _) => Camera {
+            fov_y_degrees: f64::from(of.yfov).to_degrees(),
+            near: f64::from(of.znear),
+            far: of.zfar.map(f64::from),
+            ..base
+        },
+        (Checked::Valid(CameraType::Orthographic), _, Some(of)) => Camera {
+            projection: Projection::Orthographic { half_height: f64::from(of.ymag.abs()) },
+            // Its plane may be at the eye, and ours may not.
+            near: f64::from(of.znear).max(NEAREST * f64::from(of.zfar)),
+            far: Some(f64::from(of.zfar)),
+            ..base
+        },
+        _ => return Err("it has no projection".to_owned()),
+    };
+    camera.check().map_err(str::to_owned)?;
+    Ok(camera)
+}

@@ -1,0 +1,255 @@
+//! Meshes: the primitives of one become the parts of one, so that what is closed stays closed.
+
+use super::document::{Document, Told};
+use super::materials::{Look, Map, Materials};
+use super::named;
+use crate::scene::not_taken::Refusals;
+use crate::scene::read_text::quoted;
+use crate::scene::{Group, Mesh, MeshBuilder, Shading};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, accessor::Accessor, mesh};
+
+/// Joints that may pull at a vertex, four a set.
+const MOST_JOINT_SETS: u32 = 4;
+
+/// Where the vertices of a mesh go.
+#[derive(Debug, Clone, Copy)]
+pub enum Form<'a> {
+    /// Nowhere: its object says where it is.
+    AsFile,
+    /// Into world space.
+    Placed(&'a DMat4),
+    /// Into world space with the joints that they hang on: the matrix of each.
+    Skinned(&'a [DMat4]),
+}
+
+/// Reads meshes of a file.
+#[derive(Debug)]
+pub struct Meshes<'a> {
+    document: &'a Document,
+    materials: Materials<'a>,
+}
+
+impl<'a> Meshes<'a> {
+    /// Of this file.
+    pub fn new(document: &'a Document, materials: Materials<'a>) -> Meshes<'a> {
+        Meshes { document, materials }
+    }
+
+    /// A mesh of the file, which may have no triangle.
+    ///
+    /// # Errors
+    /// Accessors that don't fit; an index beyond the vertices; a place that is no number.
+    pub fn mesh(&mut self, index: Index<mesh::Mesh>, form: Form) -> Told<Mesh> {
+        let given = self.document.root.get(index).ok_or_else(|| format!("mesh {} is missing", index.value()))?;
+        let name = named(given.name.as_deref(), || format!("mesh {}", index.value()));
+        let mut refusals = Refusals::default();
+        let mut parts = Vec::new();
+        for (at, primitive) in given.primitives.iter().enumerate() {
+            let of = format!("{} (primitive {at})", quoted(&name));
+            let Checked::Valid(mode) = primitive.mode else { continue };
+            if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+                refusals.refuse(format!("points or lines of {of}"), "only triangles are drawn");
+                continue;
+            }
+            if primitive.targets.is_some() {
+                refusals.refuse(format!("morph targets of {of}"), "the base shape is shown");
+            }
+            let look = self.materials.look(primitive.material, &mut refusals);
+            let part = Part::read(self.document, primitive, mode, &look, form);
+            parts.push((part.map_err(|why| format!("{of}: {why}"))?, look));
+        }
+        let mesh = assemble(&parts, &name, &mut refusals).build();
+        Ok(mesh.map_err(|error| format!("{}: {error}", quoted(&name)))?.without(refusals.into_list()))
+    }
+}
+
+/// A primitive's vertices and triangles.
+struct Part {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// By vertex.
+    normals: Option<Vec<Vec3>>,
+    /// By vertex, in the picture of its material.
+    uvs: Option<Vec<Vec2>>,
+    has_colors: bool,
+}
+
+impl Part {
+    fn read(document: &Document, primitive: &Primitive, mode: Mode, look: &Look, form: Form) -> Told<Part> {
+        let accessor = |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+        let vectors = |semantic: Semantic| -> Told<Option<Vec<DVec3>>> {
+            accessor(semantic).map(|index| Ok(vectors(document.numbers(index)?))).transpose()
+        };
+        let mut positions = vectors(Semantic::Positions)?.ok_or("has no positions: export the file again")?;
+        let mut normals = vectors(Semantic::Normals)?;
+        let count = positions.len();
+        if normals.as_ref().is_some_and(|normals| normals.len() != count) {
+            return Err("has another number of normals than of vertices: export the file again".to_owned());
+        }
+        let is_mirrored = match form {
+            Form::AsFile => false,
+            Form::Placed(world) => {
+                let turn = DMat3::from_mat4(*world);
+                let of_normals = turn.inverse().transpose();
+                positions.iter_mut().for_each(|position| *position = world.transform_point3(*position));
+                normals.iter_mut().flatten().for_each(|normal| *normal = (of_normals * *normal).normalize_or_zero());
+                turn.determinant() < 0.0
+            }
+            Form::Skinned(joints) => {
+                let matrices = skin(document, &accessor, joints, count)?;
+                for (position, matrix) in positions.iter_mut().zip(&matrices) {
+                    *position = matrix.transform_point3(*position);
+                }
+                for (normal, matrix) in normals.iter_mut().flatten().zip(&matrices) {
+                    let of_normals = DMat3::from_mat4(*matrix).inverse().transpose();
+                    let turned = (of_normals * *normal).normalize_or_zero();
+                    *normal = if turned.is_finite() { turned } else { DVec3::ZERO };
+                }
+                false
+            }
+        };
+        let indices = match primitive.indices {
+            Some(index) => document.indices(index)?,
+            None => (0..u32::try_from(count).map_err(|_| "has too many vertices: split it")?).collect(),
+        };
+        document.take(indices.len() as u64)?;
+        let mut triangles = triangles(mode, &indices);
+        if let Some(index) = triangles.iter().flatten().find(|index| **index as usize >= count) {
+            return Err(format!("uses vertex {index} of {count}: export the file again"));
+        }
+        if is_mirrored {
+            triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        let uvs = look.map.as_ref().and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, count));
+        Ok(Part {
+            positions,
+            triangles,
+            normals: normals.map(|normals| normals.iter().map(|normal| normal.as_vec3()).collect()),
+            uvs,
+            has_colors: accessor(Semantic::Colors(0)).is_some(),
+        })
+    }
+}
+
+fn vectors(numbers: Vec<[f64; 3]>) -> Vec<DVec3> {
+    numbers.into_iter().map(DVec3::from_array).collect()
+}
+
+/// Where vertices lie in a picture; `None` where they can't be placed.
+fn uvs(document: &Document, index: Index<Accessor>, map: &Map, count: usize) -> Option<Vec<Vec2>> {
+    let placed = |[u, v]: [f64; 2]| map.place(Vec2::new(u as f32, v as f32));
+    let uvs: Vec<Vec2> = document.numbers(index).ok()?.into_iter().map(placed).collect();
+    // As far out, neighbouring texels are one number.
+    let is_usable = |uv: &Vec2| uv.abs().max_element() <= 1e6;
+    (uvs.len() == count && uvs.iter().all(is_usable)).then_some(uvs)
+}
+
+/// Of each vertex, the matrix that its joints move it by.
+fn skin(
+    document: &Document,
+    accessor: &dyn Fn(Semantic) -> Option<Index<Accessor>>,
+    joints: &[DMat4],
+    count: usize,
+) -> Told<Vec<DMat4>> {
+    let mut matrices = vec![DMat4::ZERO; count];
+    let mut sums = vec![0.0; count];
+    document.take(4 * count as u64)?;
+    for set in 0..MOST_JOINT_SETS {
+        let (Some(of), Some(weights)) = (accessor(Semantic::Joints(set)), accessor(Semantic::Weights(set))) else {
+            break;
+        };
+        let (of, weights) = (document.numbers::<4>(of)?, document.numbers::<4>(weights)?);
+        if of.len() != count || weights.len() != count {
+            return Err("has another number of joints than of vertices: export the file again".to_owned());
+        }
+        for (vertex, (of, weights)) in of.iter().zip(&weights).enumerate() {
+            for (joint, weight) in of.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+                let joint =
+                    joints.get(*joint as usize).ok_or("hangs on a joint that its skin lacks: export the file again")?;
+                matrices[vertex] += *joint * *weight;
+                sums[vertex] += weight;
+            }
+        }
+    }
+    // Weights of bytes add up to nearly one.
+    for (matrix, sum) in matrices.iter_mut().zip(sums) {
+        *matrix = if sum > 0.0 { *matrix * (1.0 / sum) } else { DMat4::IDENTITY };
+    }
+    Ok(matrices)
+}
+
+/// Corners of triangles, all turned the same way.
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::TriangleStrip => {
+            let in_order =
+                |(at, of): (usize, &[u32])| if at % 2 == 0 { [of[0], of[1], of[2]] } else { [of[0], of[2], of[1]] };
+            indices.windows(3).enumerate().map(in_order).collect()
+        }
+        Mode::TriangleFan => {
+            let first = indices.first().copied().unwrap_or(0);
+            indices.get(1..).unwrap_or_default().windows(2).map(|of| [of[0], of[1], first]).collect()
+        }
+        _ => indices.as_chunks::<3>().0.to_vec(),
+    }
+}
+
+/// One mesh of all parts.
+fn assemble(parts: &[(Part, Look)], name: &str, refusals: &mut Refusals) -> MeshBuilder {
+    let is_smooth = parts.iter().any(|(part, _)| part.normals.is_some());
+    let has_uvs = parts.iter().any(|(part, _)| part.uvs.is_some());
+    let mut builder = MeshBuilder::default();
+    for (part, look) in parts {
+        let (start, first) = (builder.triangles.len(), builder.positions.len() as u32);
+        builder.triangles.extend(part.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+        if is_smooth {
+            let normals = part.triangles.iter().map(|corners| match &part.normals {
+                Some(normals) => corners.map(|corner| normals[corner as usize]),
+                None => {
+                    let [a, b, c] = corners.map(|corner| part.positions[corner as usize]);
+                    [(b - a).cross(c - a).normalize_or_zero().as_vec3(); 3]
+                }
+            });
+            builder.corner_normals.extend(normals);
+        }
+        if has_uvs {
+            let of = |corners: &[u32; 3]| part.uvs.as_ref().map(|uvs| corners.map(|corner| uvs[corner as usize]));
+            builder.corner_uvs.extend(part.triangles.iter().map(of));
+        }
+        builder.positions.extend(&part.positions);
+        if part.has_colors {
+            refusals.refuse(format!("vertex colours of {}", quoted(name)), "a surface has its material's colour");
+        }
+        let map = look.map.as_ref().filter(|_| part.uvs.is_some());
+        if look.map.is_some() && map.is_none() {
+            let what = format!("baseColorTexture of {}", quoted(&look.name));
+            refusals.refuse(what, "vertices have no texture coordinates that can be used: export them too");
+        }
+        let shading = if part.normals.is_some() { Shading::Phong } else { Shading::Flat };
+        builder.groups.push(Group {
+            name: look.name.clone(),
+            triangles: start..builder.triangles.len(),
+            material: look.material.map(|material| crate::scene::Material { shading, ..material }),
+            texture: map.map(|map| map.texture.clone()),
+        });
+    }
+    builder
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_and_fans_keep_one_winding() {
+        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 3, 4]), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(triangles(Mode::TriangleFan, &[0, 1, 2, 3]), [[1, 2, 0], [2, 3, 0]]);
+        assert_eq!(triangles(Mode::Triangles, &[0, 1, 2, 2, 1, 3, 4]), [[0, 1, 2], [2, 1, 3]]);
+        for mode in [Mode::TriangleStrip, Mode::TriangleFan, Mode::Triangles] {
+            assert!(triangles(mode, &[]).is_empty() && triangles(mode, &[7]).is_empty());
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Animations as motions.
+//!
+//! What fits is a node that turns at one speed, whole turns, about one axis, alone among the nodes that its children
+//! hang on: what hangs on it runs along a circle and turns with it. Everything else is named and stands still.
+
+use super::document::{Document, Told};
+use super::named;
+use super::nodes::{Nodes, pose_of, unit};
+use crate::scene::not_taken::Refusals;
+use crate::scene::read_text::quoted;
+use crate::scene::{Motion, Orbit, Pose};
+use glam::{DQuat, DVec3};
+use gltf::json::animation::{Animation, Channel, Interpolation, Property};
+use gltf::json::validation::Checked;
+
+/// Turns may differ from what is said of them by so much, radians.
+const BESIDE: f64 = 1e-3;
+/// Moments at which a motion is held against the turn that it stands for.
+const MOMENTS: usize = 7;
+
+/// How a node turns, and what hangs on it with it.
+#[derive(Debug, Clone, Copy)]
+pub struct Turn {
+    node: usize,
+    pivot: DVec3,
+    /// World space, of length 1.
+    axis: DVec3,
+    degrees_per_second: f64,
+}
+
+/// The turns that a file's first animation is made of; names what they leave out.
+pub fn turns(document: &Document, nodes: &Nodes, refusals: &mut Refusals) -> Vec<Turn> {
+    let mut found: Vec<Turn> = Vec::new();
+    for (index, animation) in document.root.animations.iter().enumerate() {
+        let name = named(animation.name.as_deref(), || format!("animation {index}"));
+        if index > 0 {
+            refusals.refuse(format!("the animation {}", quoted(&name)), "the first one is shown");
+            continue;
+        }
+        for channel in &animation.channels {
+            let node = channel.target.node.value();
+            let Some(known) = document.root.nodes.get(node) else { continue };
+            let of = named(known.name.as_deref(), || format!("node {node}"));
+            match turn(document, nodes, animation, channel) {
+                Ok(turn) if found.iter().all(|other| other.node != node) => found.push(turn),
+                Ok(_) => refusals.refuse(format!("a second turn of {}", quoted(&of)), "one is shown"),
+                Err(why) => refusals.refuse(format!("{} of {} over time", property(channel), quoted(&of)), why),
+            }
+        }
+    }
+    found
+}
+
+fn property(channel: &Channel) -> &'static str {
+    match channel.target.path {
+        Checked::Valid(Property::Translation) => "the place",
+        Checked::Valid(Property::Rotation) => "the turn",
+        Checked::Valid(Property::Scale) => "the size",
+        _ => "the shape",
+    }
+}
+
+fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Channel) -> Told<Turn> {
+    const ONLY: &str = "only whole turns at one speed about one axis are shown: it stands as at the start";
+    let only = || ONLY.to_owned();
+    let node = channel.target.node.value();
+    if channel.target.path != Checked::Valid(Property::Rotation) {
+        return Err(only());
+    }
+    let sampler = animation.samplers.get(channel.sampler.value()).ok_or_else(only)?;
+    if sampler.interpolation != Checked::Valid(Interpolation::Linear) {
+        return Err(only());
+    }
+    let times = document.numbers::<1>(sampler.input)?;
+    let keys: Vec<DQuat> = document.numbers::<4>(sampler.output)?.into_iter().map(unit).collect();
+    let (Some([start]), Some([end])) = (times.first(), times.last()) else { return Err(only()) };
+    if times.len() != keys.len() || !(end - start).is_normal() || end <= start {
+        return Err(only());
+    }
+    // From key to key it turns the shorter way round.
+    let steps: Vec<DVec3> = keys
+        .windows(2)
+        .map(|pair| {
+            let step = pair[1] * pair[0].inverse();
+            let step = if step.w < 0.0 { -step } else { step };
+            step.to_scaled_axis()
+        })
+        .collect();
+    let whole: DVec3 = steps.iter().sum();
+    let speed = whole / (end - start);
+    let turned = whole.length();
+    let is_steady = steps
+        .iter()
+        .zip(times.windows(2))
+        .all(|(step, time)| (*step - speed * (time[1][0] - time[0][0])).length() <= BESIDE);
+    let turns = turned / std::f64::consts::TAU;
+    if !(is_steady && turns > 0.5 && (turned - turns.round() * std::f64::consts::TAU).abs() <= BESIDE) {
+        return Err(only());
+    }
+    // Its first key stands for the node's own turn: both are the same, or the start would jump.
+    let rest = super::nodes::rotation_of(&document.root.nodes[node]);
+    if keys[0].angle_between(rest).min(keys[0].angle_between(-rest)) > BESIDE {
+        return Err("it begins elsewhere than its node says: it stands as the node says".to_owned());
+    }
+    let above = nodes.parents[node].map_or(glam::DMat4::IDENTITY, |parent| nodes.world[parent]);
+    let axis = above.transform_vector3(speed).normalize_or_zero();
+    // Sheared or mirrored, a turn is none.
+    if axis == DVec3::ZERO
+        || nodes.parents[node].is_some_and(|parent| pose_of(&nodes.world[parent]).is_none_or(is_uneven))
+    {
+        return Err(only());
+    }
+    let pivot = nodes.world[node].transform_point3(DVec3::ZERO);
+    Ok(Turn { node, pivot, axis, degrees_per_second: speed.length().to_degrees() })
+}
+
+/// Stretched more along one axis than along another?
+fn is_uneven(pose: Pose) -> bool {
+    let DVec3 { x, y, z } = pose.scale;
+    (x - y).abs().max((x - z).abs()) > BESIDE * x.abs()
+}
+
+/// The one turn that moves a node.
+fn above(turns: &[Turn], nodes: &Nodes, node: usize) -> Told<Option<Turn>> {
+    let mut at = Some(node);
+    let mut found: Option<Turn> = None;
+    while let Some(node) = at {
+        if let Some(turn) = turns.iter().find(|turn| turn.node == node)
+            && found.replace(*turn).is_some()
+        {
+            return Err("it hangs on two nodes that turn: it stands as at the start".to_owned());
+        }
+        at = nodes.parents[node];
+    }
+    Ok(found)
+}
+
+/// How what hangs on a node moves. `pose`: of an object, which also turns.
+pub fn motion_of(turns: &[Turn], nodes: &Nodes, node: usize, pose: Option<&Pose>) -> Told<Motion> {
+    let Some(turn) = above(turns, nodes, node)? else { return Ok(Motion::default()) };
+    let at = nodes.world[node].transform_point3(DVec3::ZERO);
+    let is_on_axis =
+        (at - turn.pivot).cross(turn.axis).length() <= 1e-9 * at.distance(turn.pivot).max(1e-300) || at == turn.pivot;
+    let orbit = (!is_on_axis).then_some(Orbit {
+        center: turn.pivot,
+        axis: turn.axis,
+        degrees_per_second: turn.degrees_per_second,
+    });
+    let still = Motion { orbit, ..Motion::default() };
+    let Some(pose) = pose else { return Ok(still) };
+    // A spin adds to one of three angles: which of them is this turn?
+    let spins = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    let fits = |motion: &Motion| {
+        (1..=MOMENTS).all(|moment| {
+            let degrees = 360.0 * moment as f64 / (MOMENTS + 1) as f64;
+            let seconds = degrees / turn.degrees_per_second;
+            let wanted = DQuat::from_axis_angle(turn.axis, degrees.to_radians())
+                * DQuat::from_mat4(&Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose }.world_from_object());
+            let moved = motion.apply(&Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose }, seconds);
+            let found = DQuat::from_mat4(&Pose { translate: DVec3::ZERO, ..moved }.world_from_object());
+            wanted.angle_between(found).min(wanted.angle_between(-found)) <= BESIDE
+        })
+    };
+    let found = spins
+        .map(|spin| Motion { spin_degrees_per_second: spin * turn.degrees_per_second, orbit: None, swing: None })
+        .find(fits);
+    let spin = found.ok_or("its turn is about none of its own axes nor the vertical: it stands as at the start")?;
+    Ok(Motion { orbit, ..spin })
+}

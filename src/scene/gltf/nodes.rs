@@ -1,0 +1,116 @@
+//! The tree of a file's nodes, and where each of them is.
+
+use super::document::Told;
+use crate::scene::Pose;
+use glam::{DMat4, DQuat, DVec3};
+use gltf::json::{Index, Root, scene};
+
+/// How far a pose may lie beside the matrix that it is made from, in parts of its longest axis: what single precision
+/// leaves open.
+const BESIDE: f64 = 1e-6;
+
+/// All nodes of a file.
+#[derive(Debug)]
+pub struct Nodes {
+    /// World space from the node's own, by node.
+    pub world: Vec<DMat4>,
+    /// By node.
+    pub parents: Vec<Option<usize>>,
+    /// Those of the scene that is shown, each before its children.
+    pub shown: Vec<usize>,
+}
+
+impl Nodes {
+    /// Of the file's scene: the one it says is to be shown, the first, or all there is.
+    ///
+    /// # Errors
+    /// Nodes that form no tree; numbers that are none.
+    pub fn new(root: &Root) -> Told<Nodes> {
+        let count = root.nodes.len();
+        let mut parents = vec![None; count];
+        for (parent, node) in root.nodes.iter().enumerate() {
+            for child in node.children.iter().flatten() {
+                let place = parents
+                    .get_mut(child.value())
+                    .ok_or("a node has a child that is missing: export the file again")?;
+                if place.replace(parent).is_some() {
+                    return Err(format!("node {} is a child of two nodes: export the file again", child.value()));
+                }
+            }
+        }
+        let roots: Vec<usize> = (0..count).filter(|node| parents[*node].is_none()).collect();
+        let all = below(root, &roots);
+        if all.len() < count {
+            return Err("its nodes form a circle: export the file again".to_owned());
+        }
+        let mut world = vec![DMat4::IDENTITY; count];
+        for node in all.iter().copied() {
+            let above = parents[node].map_or(DMat4::IDENTITY, |parent| world[parent]);
+            world[node] = above * local(&root.nodes[node]);
+            if !world[node].is_finite() {
+                return Err(format!("node {node} is at no place that numbers tell: export the file again"));
+            }
+        }
+        let scene = root.scene.or((!root.scenes.is_empty()).then(|| Index::new(0)));
+        let shown = match scene.and_then(|scene| root.get(scene)) {
+            Some(scene) => below(root, &scene.nodes.iter().map(Index::value).collect::<Vec<_>>()),
+            None => all,
+        };
+        Ok(Nodes { world, parents, shown })
+    }
+}
+
+/// These nodes and all below them, each once, and after the node that it hangs on.
+fn below(root: &Root, from: &[usize]) -> Vec<usize> {
+    let mut is_met = vec![false; root.nodes.len()];
+    let mut waiting: Vec<usize> = from.iter().rev().copied().collect();
+    let mut found = Vec::new();
+    while let Some(node) = waiting.pop() {
+        let Some(known) = root.nodes.get(node).filter(|_| !std::mem::replace(&mut is_met[node], true)) else {
+            continue;
+        };
+        found.push(node);
+        waiting.extend(known.children.iter().flatten().rev().map(Index::value));
+    }
+    found
+}
+
+/// The parent's space from the node's own.
+fn local(node: &scene::Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let triple =
+        |given: Option<[f32; 3]>, default: DVec3| given.map_or(default, |of| DVec3::from_array(of.map(f64::from)));
+    let rotation = rotation_of(node);
+    DMat4::from_scale_rotation_translation(
+        triple(node.scale, DVec3::ONE),
+        rotation,
+        triple(node.translation, DVec3::ZERO),
+    )
+}
+
+/// The node's turn, of unit length however it is written.
+pub fn rotation_of(node: &scene::Node) -> DQuat {
+    node.rotation.map_or(DQuat::IDENTITY, |given| unit(given.0.map(f64::from)))
+}
+
+/// A quaternion of unit length; none at all turns nothing.
+pub fn unit(given: [f64; 4]) -> DQuat {
+    let turn = DQuat::from_array(given);
+    let length = turn.length();
+    if length.is_normal() { turn / length } else { DQuat::IDENTITY }
+}
+
+/// The pose that a node's place is, where there is one: no mirror, no shear.
+pub fn pose_of(world: &DMat4) -> Option<Pose> {
+    if world.determinant() <= 0.0 {
+        return None;
+    }
+    let (scale, rotation, translate) = world.to_scale_rotation_translation();
+    let pose = Pose::of(scale, rotation, translate);
+    let again = pose.world_from_object();
+    let longest = scale.abs().max_element();
+    let is_near = (0..3).all(|axis| (again.col(axis) - world.col(axis)).abs().max_element() <= BESIDE * longest);
+    (is_near && pose.check().is_ok()).then_some(pose)
+}
