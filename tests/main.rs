@@ -13,6 +13,9 @@ mod diff;
 mod draws;
 mod explain;
 mod extruded;
+#[cfg(target_os = "linux")]
+mod fuzz;
+mod gltf;
 mod help;
 mod history;
 mod import;

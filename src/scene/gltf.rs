@@ -225,6 +225,3 @@ pub fn named_meshes(file: &Path) -> Vec<(Arc<Mesh>, String)> {
     let all = loaded.pointers.into_iter().zip(loaded.objects.into_iter().map(|object| object.mesh));
     all.collect::<BTreeMap<String, Arc<Mesh>>>().into_iter().map(|(pointer, mesh)| (mesh, pointer)).collect()
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,7 +1,6 @@
 use super::*;
 use crate::scene::{Light, Motion, Projection, Shading, Swing};
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 const SCENE: &str = r#"name = "two shapes"
 ambient = [0.1, 0.2, 0.3]

@@ -179,6 +179,11 @@ fn checked(root: &Root) -> Told<()> {
         let name = quoted(other);
         return Err(format!("needs the extension {name}, which is not done here: export it without (uncompressed)"));
     }
+    // The crate's own check of these looks without asking whether there is anything.
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    if let Some(beyond) = primitives.flat_map(|one| one.attributes.values()).find(|index| root.get(**index).is_none()) {
+        return Err(format!("has vertices in accessor {}, which is missing: export it again", beyond.value()));
+    }
     let mut first: Option<(String, Error)> = None;
     root.validate(root, JsonPath::new, &mut |path, error| {
         let path = path();

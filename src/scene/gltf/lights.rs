@@ -16,6 +16,8 @@ use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::Type;
 use gltf::json::validation::Checked;
 
+/// As many as a frame has: `technique` knows why.
+const MOST_LIGHTS: usize = 31;
 /// Of the distance from an orthographic camera to its far plane, how near its near plane may be.
 const NEAREST: f64 = 1e-6;
 
@@ -59,6 +61,10 @@ pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
             Ok(()) => found.push(Placed { node, it: light }),
             Err(why) => refusals.refuse(format!("the light {}", quoted(&name)), why),
         }
+    }
+    if found.len() > MOST_LIGHTS {
+        refusals.refuse(format!("{} more lights", found.len() - MOST_LIGHTS), format!("at most {MOST_LIGHTS} fit"));
+        found.truncate(MOST_LIGHTS);
     }
     let brightest = found.iter().map(|light| light.it.intensity).fold(0.0, f32::max);
     if brightest > 0.0 {
