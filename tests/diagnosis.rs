@@ -14,7 +14,9 @@ use stencilscope::session::{CaptureRequest, Fault, Session};
 const SMALL: [u32; 2] = [160, 120];
 
 fn diagnose(session: &mut Session, provoked: &Provocation) -> Diagnosis {
-    let request = CaptureRequest::new(provoked.choice.clone(), SMALL);
+    // A pixel in 37 million is of one picture alone.
+    let size = if provoked.cause == Cause::SubpixelEdges { [320, 240] } else { SMALL };
+    let request = CaptureRequest::new(provoked.choice.clone(), size);
     let fault = provoked.fault.as_deref().map_or(Fault::None, |change| Fault::Plan(change));
     session.diagnose(&provoked.scene, &request, fault, &Progress::default()).expect("a diagnosis")
 }

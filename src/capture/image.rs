@@ -180,6 +180,16 @@ impl Image {
         self.strips[(y / self.strip_rows) as usize].row(y % self.strip_rows, self.row_bytes())
     }
 
+    /// Of each so many by so many texels the one in their middle.
+    #[must_use]
+    pub fn every(&self, times: u32) -> Image {
+        let size = self.size.map(|side| side / times.max(1));
+        let middle = |at: u32| at * times + times / 2;
+        let texel = |x: u32, y: u32| self.texel([middle(x), middle(y)]).unwrap_or_default().to_vec();
+        let bytes: Vec<u8> = (0..size[1]).flat_map(|y| (0..size[0]).flat_map(move |x| texel(x, y))).collect();
+        Image::packed(self.format, size, bytes)
+    }
+
     /// All rows, top first.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[u8]> {
         (0..self.size[1]).map(|y| self.row(y))

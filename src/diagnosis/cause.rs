@@ -76,6 +76,8 @@ named_enum! {
         SelfShadow = "self-shadow",
         /// Single precision cannot tell the two sides apart.
         F32Limit = "f32-limit",
+        /// Edges of the caster are shorter than a pixel, and corners of volumes snap to parts of one.
+        SubpixelEdges = "subpixel-edges",
         /// The scene says that an object receives no shadows.
         NotReceiving = "not-receiving",
         /// The scene says that an object casts no shadow.
@@ -226,6 +228,10 @@ impl Cause {
             Cause::F32Limit => {
                 "The light lies so nearly in the triangle's plane that single precision cannot tell on which side. \
                  No setting mends it: move the light or the triangle."
+            }
+            Cause::SubpixelEdges => {
+                "The caster's edges are a fraction of a pixel long. The GPU moves corners to the nearest 1/256 of a pixel, \
+                 which tilts a side as narrow as that, and it meets the surface beside its place. Draw a larger picture."
             }
             Cause::NotReceiving => "The scene says that this object receives no shadows. Set `receives` if it should.",
             Cause::NotCasting => "The scene says that this object casts no shadow. Set `casts` if it should.",

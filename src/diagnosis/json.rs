@@ -92,6 +92,9 @@ fn mend(mend: &Mend) -> Value {
     if !mend.plan.is_empty() {
         table.insert("plan".to_owned(), mend.plan.iter().map(|edit| edit.name()).collect::<Vec<_>>().into());
     }
+    if let Some(times) = mend.larger {
+        table.insert("times_as_large".to_owned(), times.into());
+    }
     table.insert("words".to_owned(), mend.describe().into());
     Value::Object(table)
 }

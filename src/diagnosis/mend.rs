@@ -18,6 +18,8 @@ pub struct Mend {
     pub scene: Vec<SceneEdit>,
     /// Changes of the plan: what no setting of ours could make wrong.
     pub plan: Vec<PlanEdit>,
+    /// Draws a picture so many times as large along each side. An odd number: each pixel's middle stays one.
+    pub larger: Option<u32>,
 }
 
 /// Why a mend can't be made.
@@ -120,6 +122,12 @@ impl Mend {
         Mend { plan: vec![edit], ..Mend::default() }
     }
 
+    /// Draws a larger picture.
+    #[must_use]
+    pub fn larger(times: u32) -> Mend {
+        Mend { larger: Some(times), ..Mend::default() }
+    }
+
     /// Nothing is changed.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -131,6 +139,7 @@ impl Mend {
     pub fn and(&self, other: &Mend) -> Mend {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
+        both.larger = other.larger.or(self.larger);
         both.settings.extend(other.settings.clone());
         both.scene.extend(other.scene.iter().cloned());
         both.plan.extend(&other.plan);
@@ -184,6 +193,12 @@ impl Mend {
         Ok(())
     }
 
+    /// The size of the picture that it draws.
+    #[must_use]
+    pub fn size(&self, size: [u32; 2]) -> [u32; 2] {
+        size.map(|side| side.saturating_mul(self.larger.unwrap_or(1)))
+    }
+
     /// Makes its changes of a plan; `fresh` is the technique's own plan of the same scene and settings.
     pub fn edit(&self, plan: &mut FramePlan, fresh: &FramePlan) {
         for edit in &self.plan {
@@ -203,13 +218,14 @@ impl Mend {
     /// Does it change nothing but technique and settings, which the window can change?
     #[must_use]
     pub fn is_a_choice(&self) -> bool {
-        self.scene.is_empty() && self.plan.is_empty() && !self.is_empty()
+        self.scene.is_empty() && self.plan.is_empty() && self.larger.is_none() && !self.is_empty()
     }
 
     /// How much it changes: a setting less than an object, an object less than a technique.
     #[must_use]
     pub fn weight(&self) -> usize {
-        self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * usize::from(self.technique.is_some())
+        let [technique, larger] = [self.technique.is_some(), self.larger.is_some()].map(usize::from);
+        self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * technique + 20 * larger
     }
 
     /// In words: `use z-fail`, `set casters = all`.
@@ -233,6 +249,7 @@ impl Mend {
             }
             .to_owned()
         }));
+        words.extend(self.larger.map(|times| format!("draw the picture {times} times as large")));
         if words.is_empty() { "nothing mends it".to_owned() } else { words.join(", ") }
     }
 }

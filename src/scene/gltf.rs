@@ -48,19 +48,6 @@ pub struct Loaded {
     pub not_taken: Vec<NotTaken>,
 }
 
-/// Does a path name a glTF file?
-pub fn is_gltf(path: &Path) -> bool {
-    path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("gltf") || kind.eq_ignore_ascii_case("glb"))
-}
-
-/// The file and the pointer of `model.glb#/meshes/2`; no pointer of anything else.
-pub fn split(name: &str) -> (&str, Option<&str>) {
-    match name.rsplit_once('#') {
-        Some((file, pointer)) if is_gltf(Path::new(file)) => (file, Some(pointer)),
-        _ => (name, None),
-    }
-}
-
 /// A name of the file as people and other files can have it: in one line, and not too long.
 fn named(given: Option<&str>, otherwise: impl FnOnce() -> String) -> String {
     const MOST: usize = 80;

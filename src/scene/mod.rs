@@ -11,7 +11,8 @@ mod camera;
 mod collision;
 mod error;
 pub mod file;
-pub(crate) mod gltf;
+#[cfg_attr(not(feature = "program"), path = "gltf_left_out.rs")]
+mod gltf;
 mod light;
 mod material;
 mod mesh;
@@ -23,6 +24,7 @@ mod object;
 mod open;
 mod picture;
 mod placement;
+mod pointer;
 mod read_text;
 mod refine;
 pub mod shapes;

@@ -32,6 +32,7 @@ impl Refusals {
     }
 
     /// Names what another list does.
+    #[cfg(feature = "program")]
     pub fn add(&mut self, other: &Refusals) {
         other.named.iter().for_each(|one| self.refuse(one.what.clone(), one.because.clone()));
     }

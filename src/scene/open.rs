@@ -4,7 +4,7 @@ use super::builtin::{self, Builtin};
 use super::model_scene::gltf_scene;
 use super::read_text::stem;
 use super::suggestion::nearest;
-use super::{Scene, SceneError, UpAxis, file, gltf, model_scene, obj};
+use super::{Scene, SceneError, UpAxis, file, gltf, model_scene, obj, pointer};
 use std::path::{Path, PathBuf};
 
 /// What to open, and how a bare model is completed.
@@ -58,7 +58,7 @@ impl Kind {
     fn of(path: &Path) -> Option<Kind> {
         let is = |ending: &str| path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case(ending));
         let others = || is("toml").then_some(Kind::SceneFile).or(is("obj").then_some(Kind::Model));
-        if gltf::is_gltf(path) { Some(Kind::Gltf) } else { others() }
+        if pointer::is_gltf(path) { Some(Kind::Gltf) } else { others() }
     }
 }
 

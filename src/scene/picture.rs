@@ -6,7 +6,6 @@
 //! (Williams 1983): what lies aslant far away blurs, and does not flicker. The GPU does the same with the same levels, and
 //! [`Picture::linear_at`] tells what it finds.
 
-use super::read_text::quoted;
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -281,6 +280,7 @@ impl Pictures {
     ///
     /// # Errors
     /// As [`Pictures::load`], or why there are no bytes; in a few words.
+    #[cfg(feature = "program")]
     pub fn load_bytes(
         &mut self,
         path: &Path,
@@ -293,7 +293,7 @@ impl Pictures {
         if let Some(why) = self.broken.get(path) {
             return Err(why.clone());
         }
-        let told = |error: PictureError| format!("{} {error}", quoted(name));
+        let told = |error: PictureError| format!("{} {error}", super::read_text::quoted(name));
         let picture = bytes().and_then(|bytes| Picture::decode(name.to_owned(), &bytes, self.left).map_err(told));
         let picture = picture.inspect_err(|why| {
             self.broken.insert(path.to_owned(), why.clone());

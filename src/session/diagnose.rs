@@ -131,7 +131,7 @@ impl Session {
         let (given, mut choice) = fault.applied(scene, &request.choice);
         let mut given = given.into_owned();
         mend.apply(&mut given, &mut choice)?;
-        let job = Job { scene: &given, size: request.size, choice: &choice, cache: &mut self.geometry };
+        let job = Job { scene: &given, size: mend.size(request.size), choice: &choice, cache: &mut self.geometry };
         let fresh = technique::plan(job)?;
         let mut plan = fresh.clone();
         if let Fault::Plan(change) = fault {

@@ -44,12 +44,16 @@ impl Session {
     fn run_mended(&mut self, runs: &Runs, mend: &Mend) -> Result<Wrong, SessionError> {
         let (scene, _, plan) = self.plan_mended(runs.scene, runs.request, runs.fault, mend)?;
         self.check_room(&plan)?;
-        if planar::darkens_in_the_picture(&plan) {
+        if planar::darkens_in_the_picture(&plan) && mend.larger.is_none() {
             let capture = self.capture_plan(&scene, &plan)?;
             return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
         }
         let ready = self.executor.prepare_once(&plan)?;
-        let labels = self.executor.labels(ready)?;
+        let mut labels = self.executor.labels(ready)?;
+        if let Some(times) = mend.larger {
+            // What the middles of the picture's own pixels show.
+            labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
+        }
         Ok(judged(&plan, runs.traced, &labels, None).wrong)
     }
 
@@ -229,7 +233,7 @@ pub(super) fn judged(
     labels: &[Option<Arc<Image>>],
     capture: Option<&Capture>,
 ) -> Judged {
-    let pixels = plan.size[0] as usize * plan.size[1] as usize;
+    let pixels = traced.truth.size.iter().map(|side| *side as usize).product();
     let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     let mut error = ErrorCounts::default();
     for (light, labels) in labels.iter().enumerate() {

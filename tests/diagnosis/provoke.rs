@@ -7,6 +7,7 @@ use std::sync::Arc;
 use stencilscope::diagnosis::Cause;
 use stencilscope::plan::{FramePlan, Part};
 use stencilscope::scene::{Light, Mesh, MeshBuilder, Object, Scene, SceneBuilder, builtin, shapes};
+use stencilscope::stress::{Case, Drives};
 use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::Tracer;
 
@@ -22,8 +23,8 @@ pub struct Provocation {
 }
 
 /// The causes of wrong pixels that can be provoked.
-pub const CAUSES: [Cause; 35] = {
-    let mut causes = [Cause::EyeInVolume; 35];
+pub const CAUSES: [Cause; 36] = {
+    let mut causes = [Cause::EyeInVolume; 36];
     let mut index = 0;
     while index < causes.len() {
         causes[index] = Cause::ALL[index];
@@ -234,6 +235,7 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::ReverseProjection => (wall_behind_lamp(dice), set(Technique::Projective, &[("reverse", "on")]), None),
         Cause::Between => (shelf_between(dice), set(Technique::Projective, &[("size", "2048")]), None),
         Cause::SelfShadow => (ring_alone(dice), set(Technique::Projective, &[("size", "2048")]), None),
+        Cause::SubpixelEdges => (far_mesh(), set(Technique::ZFail, &[]), None),
         _ => (low_sun(dice), set(Technique::ZFail, &[]), None),
     };
     let mut scene = scene;
@@ -475,4 +477,11 @@ fn low_sun(dice: &mut Dice) -> Scene {
     let sun = Light::directional(DVec3::new(dice.between(-0.1, 0.1), slope, 1.0));
     let objects = vec![floor(), board.unseen()];
     scene([dice.between(-0.3, 0.3), 2.0, 4.0], [0.0; 3], sun, objects)
+}
+
+/// The one view of hundreds in which a mesh of 48 000 triangles, some thirty pixels wide, has a wrong pixel.
+fn far_mesh() -> Scene {
+    let case = Case::named("subpixel-edges").expect("a case");
+    let Drives::Scene(scene) = case.drives else { panic!("it drives a scene") };
+    scene(30.0).expect("a scene")
 }

@@ -12,7 +12,7 @@ use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
     Camera, Group, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing,
-    TechniqueRequest, Texture, gltf, obj,
+    TechniqueRequest, Texture, gltf, obj, pointer,
     read_text::{quoted, stem},
 };
 use glam::DVec3;
@@ -290,9 +290,9 @@ impl ObjectBuilder<'_> {
         if let Some(model) = self.models.get(name) {
             return Ok(Arc::clone(model));
         }
-        let (file, pointer) = gltf::split(name);
+        let (file, pointer) = pointer::split(name);
         let path = self.folder.join(file);
-        let model = match gltf::is_gltf(&path) {
+        let model = match pointer::is_gltf(&path) {
             true => gltf::load_mesh(&path, pointer, &mut self.pictures),
             false => obj::load_among(&path, &mut self.pictures),
         };
@@ -346,7 +346,7 @@ impl ObjectBuilder<'_> {
         }
         Ok(self.names.take_like(&match table.mesh.get_ref() {
             MeshSource::Shape(shape) => shape.shape.get_ref().clone(),
-            MeshSource::File(path) => stem(Path::new(gltf::split(path).0)),
+            MeshSource::File(path) => stem(Path::new(pointer::split(path).0)),
         }))
     }
 }

@@ -3,7 +3,7 @@
 use super::save::{SaveError, SavedScene, save};
 use crate::files::{from_beside, read_plain, write_whole};
 use crate::scene::read_text::stem;
-use crate::scene::{Scene, gltf, obj};
+use crate::scene::{Scene, gltf, obj, pointer};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -40,7 +40,7 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
     }
     // A mesh that was changed is another, and not named.
     let known = match source {
-        Some(path) if gltf::is_gltf(path) => {
+        Some(path) if pointer::is_gltf(path) => {
             let model = from_beside(file, path);
             gltf::named_meshes(path).into_iter().map(|(mesh, pointer)| (mesh, format!("{model}#{pointer}"))).collect()
         }

@@ -24,6 +24,7 @@ pub const ALL: &[Case] = &[
     NESTED,
     THIN_GAP,
     FINE_GRID,
+    SUBPIXEL_EDGES,
     TRIANGLE_COUNT,
     MAP_SIZE,
     near::NEAR_PLANE,
@@ -332,6 +333,52 @@ const FINE_GRID: Case = Case {
         THINNER_THAN_EDGES.of(TEXTURE),
         THINNER_THAN_EDGES.of(SILHOUETTE),
         fails(SILHOUETTE, "aliasing", "a bar is a few texels wide").at_most(0.02).perhaps(),
+    ],
+    ..PLAIN
+};
+
+/// A pixel or two of a picture, in one view of hundreds.
+const SNAPPED: Failure = fails(
+    Z_FAIL,
+    "subpixel-edges",
+    "corners snap to 1/256 of a pixel: a side of the volume that is hardly wider tilts, and meets the floor beside its place",
+)
+.at_most(0.0001)
+.perhaps();
+
+const SUBPIXEL_EDGES: Case = Case {
+    name: "subpixel-edges",
+    lesson: "a mesh of 48 000 triangles goes away from the eye until its edges are fractions of a pixel: parts of a pixel, \
+             to which corners snap, are all that its volume's sides are wide",
+    parameter: "pixels across",
+    values: &[240.0, 120.0, 60.0, 30.0, 15.0],
+    drives: Drives::Scene(|pixels| {
+        let smooth = shapes::sphere(1.0, 220, 110)?;
+        let bump = |p: &DVec3| {
+            (*p * (1.0 + 0.35 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).sin() * (6.0 * p.z).cos())).to_array()
+        };
+        let points: Vec<[f64; 3]> = smooth.positions().iter().map(bump).collect();
+        let ball = Object::of("ball", shapes::triangles(&points, smooth.triangles())?).at([0.0, 1.3, 0.0]);
+        // Two metres are so many of 240 rows. One of some five hundred views from around, which shows it at 30.
+        let distance = 240.0 / (pixels * 22.5_f64.to_radians().tan());
+        let (sin, cos) = (12.0 * 137.50776_f64).to_radians().sin_cos();
+        let towards = DVec3::new(0.3 * cos + 0.8 * sin, 0.45, 0.8 * cos - 0.3 * sin).normalize();
+        let target = DVec3::new(0.0, 0.8, 0.0);
+        let light = Light::point([1.5, 4.5, 1.0]);
+        Ok(scene((target + towards * distance).into(), target.into(), light, vec![floor(8.0)?, ball]))
+    }),
+    without: &[
+        (Technique::ShadowMap, "a map has fewer texels than the ball has triangles: `map-size` shows that"),
+        (Technique::PlanarTexture, "a texture of the floor has fewer texels than the ball has triangles"),
+        (Technique::Planar, "the ball is no plane: `sliver` and others show that"),
+        (Technique::Projective, "the ball shadows itself, which no silhouette does"),
+    ],
+    heavy_above: Some(0.0),
+    failures: &[
+        SNAPPED.at(|pixels| pixels <= 60.0),
+        SNAPPED.at(|pixels| pixels <= 60.0).of(AUTO),
+        SNAPPED.at(|pixels| pixels <= 60.0).of(Z_PASS),
+        SNAPPED.at(|pixels| pixels <= 60.0).of(Z_PASS_PLUS),
     ],
     ..PLAIN
 };
