@@ -24,13 +24,16 @@ const LONGEST: Duration = Duration::from_secs(5);
 /// Files of each kind that CI reads.
 const FILES: u64 = 6000;
 
+/// A folder with everything that a file needs beside it, and which of them is broken.
+type Whole = (PathBuf, String);
+/// Reads a file. Could it be read?
+type Read = fn(&Path) -> bool;
+
 /// A kind of file: what whole ones look like, and how they are read.
 struct Kind {
     name: &'static str,
-    /// Folders with everything that a file needs beside it, and which of them is broken.
-    whole: Vec<(PathBuf, String)>,
-    /// Could it be read?
-    read: fn(&Path) -> bool,
+    whole: Vec<Whole>,
+    read: Read,
 }
 
 #[test]
@@ -103,7 +106,7 @@ fn kind(part: &str, made: &Path) -> Kind {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let scene = |file: &Path| open(&OpenSpec::new(file.to_string_lossy())).is_ok();
     let recording = |name: &str, file: &str| (assets.join("recordings").join(name), file.to_owned());
-    let (whole, read): (Vec<(PathBuf, String)>, fn(&Path) -> bool) = match part {
+    let (whole, read): (Vec<Whole>, Read) = match part {
         "obj" | "mtl" => {
             let ending = if part == "obj" { "obj" } else { "mtl" };
             let files = ["crate", "knot"].map(|name| (assets.join("models"), format!("{name}.{ending}")));

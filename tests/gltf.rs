@@ -35,7 +35,7 @@ const SAMPLES: [(&str, usize, usize, bool, &[&str]); 14] = [
         5,
         1,
         true,
-        &["`line`", "the cone of `spot`", "points or lines", "the alpha mask", "vertex colours", "KHR_materials_unlit"],
+        &["`line`", "the cone of `spot`", "the alpha mask", "vertex colours", "KHR_materials_unlit"],
     ),
     ("quantized.glb", 2, 1, false, &[]),
     ("skin.glb", 2, 1, true, &["the bones of `arm`"]),
@@ -63,7 +63,7 @@ fn samples_open_with_their_objects_lights_and_cameras_and_what_is_not_shown_is_n
             let is_expected = words.iter().any(|words| one.what.starts_with(words));
             assert!(is_expected && !one.because.contains('\n'), "{name}: {one:?}");
         }
-        let is_told = |words: &&str| told.iter().any(|one| one.what.starts_with(words)) || words.starts_with("points");
+        let is_told = |words: &&str| told.iter().any(|one| one.what.starts_with(words));
         assert!(words.iter().all(is_told), "{name}: {told:?}");
     }
     let names = fs::read_dir(sample("")).expect("samples").map(|entry| entry.expect("a file").file_name());
@@ -329,7 +329,7 @@ fn a_scene_file_s_pointer_names_a_mesh_or_is_a_line() {
         (format!("{file}#/meshes/9"), "has 2 meshes and 6 nodes, and `/meshes/9` names none"),
         (format!("{file}#/cameras/0"), "and `/cameras/0` names none"),
         (file.clone(), "and a bare name names none"),
-        (format!("{file}#/nodes/4"), "`/nodes/4` names none"),
+        (format!("{file}#/nodes/4"), "has no mesh at node 4: name another"),
     ];
     for (mesh, words) in cases {
         fs::write(folder.path().join("a.toml"), text(&mesh)).expect("written");
@@ -352,4 +352,191 @@ fn commands_take_gltf_and_say_what_is_not_shown() {
     // A glTF file's up is y, and no result is written over one.
     assert_fails(&["capture", &file, "--z-up", "-o", "b"], 2, &["turns a bare model"]);
     assert_fails(&["report", "tori", "--json", "a.glb"], 2, &["names a scene"]);
+}
+
+/// A file of one triangle whose corners are shared by `count` primitives, under nodes; `more` are further members.
+fn shared(nodes: &str, count: usize, more: &str) -> String {
+    let primitives = vec![r#"{"attributes":{"POSITION":0,"NORMAL":0}}"#; count].join(",");
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":36,"uri":"{CORNERS}"}}],
+"bufferViews":[{{"buffer":0,"byteLength":36}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],
+"meshes":[{{"primitives":[{primitives}]}}],"nodes":[{nodes}]{more}}}"#
+    )
+}
+
+fn put(folder: &Path, name: &str, text: &str) -> PathBuf {
+    fs::write(folder.join(name), text).expect("written");
+    folder.join(name)
+}
+
+#[test]
+fn what_primitives_share_is_read_once_and_what_many_nodes_show_is_limited() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = put(folder.path(), "shared.gltf", &shared(r#"{"mesh":0}"#, 5000, ""));
+    let scene = opened(&file).expect("a scene");
+    assert_eq!((scene.objects[0].mesh.triangles().len(), scene.objects[0].mesh.positions().len()), (5000, 3));
+    // Mirrored, each node has vertices of its own.
+    let mirrored = vec![r#"{"mesh":0,"scale":[-1,1,1]}"#; 400].join(",");
+    let file = put(folder.path(), "mirrored.gltf", &shared(&mirrored, 100, ""));
+    assert_eq!(opened(&file).expect("a scene").objects.len(), 401);
+    let corners = 9_000;
+    let zeros = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{0},"uri":"many.bin"}}],
+"bufferViews":[{{"buffer":0,"byteLength":{0}}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":{corners},"type":"VEC3"}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"nodes":[{1}]}}"#,
+        12 * corners,
+        vec![r#"{"mesh":0}"#; 1000].join(",")
+    );
+    let bytes: Vec<u8> = (0..3 * corners).flat_map(|index| (index as f32).to_le_bytes()).collect();
+    fs::write(folder.path().join("many.bin"), bytes).expect("written");
+    let error = opened(&put(folder.path(), "many.gltf", &zeros)).expect_err("nine million").to_string();
+    assert!(error.contains("has more than 8388608 vertices, those of all its instances"), "{error}");
+}
+
+/// Pictures within files are told apart by file.
+#[test]
+fn two_files_in_one_scene_show_their_own_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let textures = sample("").with_file_name("textures");
+    for name in ["crate", "tiles"] {
+        let png = fs::read(textures.join(format!("{name}.png"))).expect("a picture");
+        let uri: String = png.iter().map(|byte| format!("%{byte:02x}")).collect();
+        let more = format!(
+            r#","images":[{{"uri":"data:image/png,{uri}"}}],"textures":[{{"source":0}}],
+"materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}]"#
+        );
+        let text = shared(r#"{"mesh":0}"#, 1, &more);
+        let text = text.replace(r#""NORMAL":0}"#, r#""TEXCOORD_0":1},"material":0"#);
+        let uvs = r#"},{"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"}],"#;
+        put(
+            folder.path(),
+            &format!("{name}.gltf"),
+            &text.replacen("}],\n\"meshes\"", &format!("{uvs}\n\"meshes\""), 1),
+        );
+    }
+    let text = "[[objects]]\nmesh = \"crate.gltf#/meshes/0\"\n[[objects]]\nmesh = \"tiles.gltf\"\n";
+    let scene = opened(&put(folder.path(), "two.toml", text)).expect("a scene");
+    let sizes = [0, 1].map(|index: usize| {
+        let texture = scene.objects[index].mesh.groups()[0].texture.as_ref().expect("a picture");
+        texture.picture.texels().to_vec()
+    });
+    assert_ne!(sizes[0], sizes[1]);
+}
+
+#[test]
+fn what_turns_and_can_t_is_named_and_a_sun_on_its_own_node_turns() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // Times 0, 1 to 4 and quarter turns about y.
+    let numbers: Vec<f32> = (0..5).map(|step| step as f32).collect();
+    let turns = (0..5).flat_map(|step| {
+        let (sin, cos) = (step as f32 * std::f32::consts::FRAC_PI_4).sin_cos();
+        [0.0, sin, 0.0, cos]
+    });
+    let bytes: Vec<u8> = numbers.into_iter().chain(turns).flat_map(f32::to_le_bytes).collect();
+    fs::write(folder.path().join("turns.bin"), bytes).expect("written");
+    let turning = |nodes: &str, targets: &[usize]| {
+        let channels =
+            targets.iter().map(|node| format!(r#"{{"sampler":0,"target":{{"node":{node},"path":"rotation"}}}}"#));
+        let more = format!(
+            r#","animations":[{{"channels":[{}],"samplers":[{{"input":1,"output":2}}]}}],
+"cameras":[{{"type":"perspective","perspective":{{"yfov":0.7,"znear":0.1}}}}],
+"extensionsUsed":["KHR_lights_punctual"],"extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"directional"}}]}}}}"#,
+            channels.collect::<Vec<_>>().join(",")
+        );
+        let text = shared(nodes, 1, &more);
+        let text = text.replacen("}],\n\"bufferViews\":[", "},{\"byteLength\":100,\"uri\":\"turns.bin\"}],\n\"bufferViews\":[{\"buffer\":1,\"byteLength\":20},{\"buffer\":1,\"byteOffset\":20,\"byteLength\":80},", 1);
+        let text = text.replacen("[{\"bufferView\":0,", "[{\"bufferView\":2,", 1);
+        text.replacen(
+            "}],\n\"meshes\"",
+            "},{\"bufferView\":0,\"componentType\":5126,\"count\":5,\"type\":\"SCALAR\"},{\"bufferView\":1,\"componentType\":5126,\"count\":5,\"type\":\"VEC4\"}],\n\"meshes\"",
+            1,
+        )
+    };
+    let sun = r#"{"mesh":0},{"children":[2]},{"rotation":[-0.5,0,0,0.866025],"extensions":{"KHR_lights_punctual":{"light":0}}}"#;
+    let scene = opened(&put(folder.path(), "sun.gltf", &turning(sun, &[1]))).expect("a scene");
+    let [before, after] = [&scene, &scene.at(1.0)].map(|scene| scene.lights[0].position.truncate());
+    let quarter = DQuat::from_rotation_y(90_f64.to_radians());
+    assert!(after.distance(quarter * before) < 1e-6 && after.distance(before) > 0.5, "{before} {after}");
+    let cases = [
+        (r#"{"mesh":0,"scale":[-1,1,1]}"#, 0, "the turn of `node 0`: it is skinned, sheared or mirrored"),
+        (
+            r#"{"mesh":0},{"children":[2]},{"camera":0,"translation":[0,0,9]}"#,
+            1,
+            "the turn of the camera on node 2: the eye",
+        ),
+        (
+            r#"{"children":[1]},{"mesh":0,"rotation":[0.270598,0.270598,0.653281,0.653281]}"#,
+            0,
+            "the turn of `node 1`: no spin about x, y or z turns a thing that leans so",
+        ),
+        (
+            r#"{"children":[1],"scale":[1,2,1]},{"mesh":0}"#,
+            1,
+            "the turn of `node 1` over time: what it hangs on is mirrored",
+        ),
+    ];
+    for (nodes, target, words) in cases {
+        let scene = opened(&put(folder.path(), "turn.gltf", &turning(nodes, &[target]))).expect("a scene");
+        let told: Vec<String> = scene.not_taken.iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
+        assert!(told.iter().any(|told| told.starts_with(words)) && !scene.is_animated(), "{words}: {told:?}");
+    }
+}
+
+/// Names and normals that an OBJ file can't have don't keep a scene from being saved and read again.
+#[test]
+fn odd_names_and_normals_survive_being_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let nan = CORNERS.replace("AACAPw", "AADAfw");
+    let text = shared(r#"{"mesh":0}"#, 2, r#","materials":[{"name":"wood\\","emissiveFactor":[0.5,0,0]}]"#);
+    let text = text.replacen(r#""NORMAL":0}"#, r#""NORMAL":1},"material":0"#, 1);
+    let text = text.replacen(
+        "}],\n\"bufferViews\":[",
+        &format!("}},{{\"byteLength\":36,\"uri\":\"{nan}\"}}],\n\"bufferViews\":[{{\"buffer\":1,\"byteLength\":36}},"),
+        1,
+    );
+    let text = text.replacen("[{\"bufferView\":0,", "[{\"bufferView\":1,", 1);
+    let text = text.replacen(
+        "}],\n\"meshes\"",
+        "},{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\n\"meshes\"",
+        1,
+    );
+    let scene = opened(&put(folder.path(), "odd.gltf", &text)).expect("a scene");
+    let file = folder.path().join("saved.toml");
+    // Without its source, every mesh becomes a model of its own.
+    stencilscope::scene::file::store(&scene, None, &file).expect("stored");
+    let again = opened(&file).unwrap_or_else(|error| panic!("{error}"));
+    let looks = |scene: &Scene| {
+        let groups = scene.objects[0].mesh.groups().iter();
+        groups.map(|group| group.material.map(|material| material.emission)).collect::<Vec<_>>()
+    };
+    assert_eq!(looks(&scene), [Some([0.5, 0.0, 0.0]), None]);
+    assert_eq!(looks(&again), looks(&scene));
+}
+
+/// An armature that mirrors turns the triangles round, and nothing is inside out.
+#[test]
+fn a_skin_below_a_mirror_is_right_side_out() {
+    let bytes = fs::read(sample("skin.glb")).expect("a sample");
+    let plain = scene("skin.glb");
+    let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
+    let json = String::from_utf8(bytes[20..20 + length].to_vec()).expect("JSON");
+    let (from, to) = ("\"scale\":[0.8,0.8,0.8]", "\"scale\":[-.8,0.8,0.8]");
+    let json = json.replace(": ", ":").replace(", ", ",");
+    assert!(json.contains(from), "{json}");
+    let json = json.replace(from, &to.replace("-.8", "-0.8"));
+    let json = format!("{json}{}", " ".repeat((4 - json.len() % 4) % 4));
+    let rest = &bytes[20 + length..];
+    let mut mirrored = b"glTF\x02\0\0\0".to_vec();
+    mirrored.extend((20 + json.len() as u32 + rest.len() as u32).to_le_bytes());
+    mirrored.extend((json.len() as u32).to_le_bytes());
+    mirrored.extend(b"JSON");
+    mirrored.extend(json.as_bytes());
+    mirrored.extend(rest);
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("mirrored.glb"), mirrored).expect("written");
+    let mirrored = opened(&folder.path().join("mirrored.glb")).unwrap_or_else(|error| panic!("{error}"));
+    let [one, other] = [&plain, &mirrored].map(|scene| volume(scene, "arm"));
+    assert!(one > 0.1 && (one - other).abs() < 1e-6 * one, "{one} {other}");
 }

@@ -166,7 +166,8 @@ fn files(
     };
     let png = |picture: &Picture| picture.to_png().map_err(|error| broken(std::io::Error::other(error.to_string())));
     let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Mend::default())?))?)];
-    if let Some(advice) = &diagnosis.advice {
+    // A larger picture is another: nothing in it stands beside the first.
+    if let Some(advice) = diagnosis.advice.as_ref().filter(|advice| advice.mend.larger.is_none()) {
         files.push(("mended.png", png(&wrong_pixels(&pictured(&advice.mend)?))?));
     }
     files.push(("diagnosis.txt", text.as_bytes().to_vec()));

@@ -22,16 +22,21 @@ use super::not_taken::{NotTaken, Refusals};
 use super::picture::Pictures;
 use super::placement::Surroundings;
 use super::read_text::{quoted, stem};
-use super::{Camera, Light, Material, Mesh, Object, SceneError, Shading};
+use super::{Camera, Light, Material, Mesh, Motion, Object, SceneError, Shading};
 use document::{Document, Told};
 use glam::{DMat4, DVec3};
 use gltf::json::{Index, mesh};
 use materials::Materials;
 use meshes::{Form, Meshes};
+use motion::Turns;
 use nodes::Nodes;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
+
+/// Vertices of all objects together, each instance counted: each has its own place in every frame.
+const MOST_VERTICES: usize = 1 << 23;
 
 /// What a file says.
 #[derive(Debug)]
@@ -65,42 +70,72 @@ pub fn load(file: &Path) -> Result<Loaded, SceneError> {
     read(&document, file).map_err(|reason| SceneError::Read { file: file.to_owned(), reason })
 }
 
-/// One mesh of a file among others, which share what room pictures have; the file's only one without a pointer.
+/// A file that was opened for one of its meshes, and may be asked for another.
+#[derive(Debug)]
+pub(in crate::scene) struct Opened {
+    document: Document,
+    nodes: Nodes,
+}
+
+/// One mesh of a file among others, which share what room pictures have; the file's only one without a pointer. `last`
+/// is the file that was opened last.
 ///
 /// # Errors
-/// As [`load`]; a pointer to nothing.
+/// As [`load`]; a pointer to nothing, or to what has no surface.
 pub(in crate::scene) fn load_mesh(
     file: &Path,
     pointer: Option<&str>,
     pictures: &mut Pictures,
+    last: &mut Option<Opened>,
 ) -> Result<Mesh, SceneError> {
-    let document = Document::open(file)?;
     let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
+    let opened = match last.take().filter(|opened| opened.document.file == file) {
+        Some(opened) => opened,
+        None => {
+            let document = Document::open(file)?;
+            let nodes = Nodes::new(&document.root).map_err(told)?;
+            Opened { document, nodes }
+        }
+    };
+    let Opened { document, nodes } = last.insert(opened);
+    mesh_at(document, nodes, pointer, pictures).map_err(told)
+}
+
+fn mesh_at(document: &Document, nodes: &Nodes, pointer: Option<&str>, pictures: &mut Pictures) -> Told<Mesh> {
     let root = &document.root;
     let no_such = || {
         let (meshes, nodes) = (root.meshes.len(), root.nodes.len());
         let pointer = pointer.map_or_else(|| "a bare name".to_owned(), quoted);
-        told(format!(
-            "has {meshes} meshes and {nodes} nodes, and {pointer} names none: write #/meshes/0 or #/nodes/0 behind the file"
-        ))
+        format!("has {meshes} meshes and {nodes} nodes, and {pointer} names none: write #/meshes/0 behind the file")
     };
     let number = |pointer: &str, kind: &str| pointer.strip_prefix(kind)?.parse::<u32>().ok();
-    let mut meshes = Meshes::new(&document, Materials::new(&document, pictures));
-    match pointer {
-        None if root.meshes.len() == 1 => meshes.mesh(Index::new(0), Form::AsFile).map_err(told),
-        None => Err(no_such()),
+    let mut meshes = Meshes::new(document, Materials::new(document, pictures));
+    let mesh = match pointer {
+        None if root.meshes.len() == 1 => meshes.mesh(Index::new(0), Form::AsFile)?,
+        None => return Err(no_such()),
         Some(pointer) => match (number(pointer, "/meshes/"), number(pointer, "/nodes/")) {
-            (Some(mesh), _) if (mesh as usize) < root.meshes.len() => {
-                meshes.mesh(Index::new(mesh), Form::AsFile).map_err(told)
-            }
+            (Some(mesh), _) if (mesh as usize) < root.meshes.len() => meshes.mesh(Index::new(mesh), Form::AsFile)?,
             (_, Some(node)) if (node as usize) < root.nodes.len() => {
-                let nodes = Nodes::new(root).map_err(told)?;
-                let mesh = root.nodes[node as usize].mesh.ok_or_else(no_such)?;
-                in_world(&document, &nodes, &mut meshes, node as usize, mesh).map_err(told)
+                let node = node as usize;
+                let mesh = root.nodes[node].mesh.ok_or_else(|| format!("has no mesh at node {node}: name another"))?;
+                if is_flat(document, nodes, node) {
+                    return Err(format!("has a scale of zero at node {node}: it is flat"));
+                }
+                in_world(document, nodes, &mut meshes, node, mesh)?
             }
-            _ => Err(no_such()),
+            _ => return Err(no_such()),
         },
+    };
+    match (mesh.triangles().is_empty(), mesh.not_taken().first()) {
+        (false, _) => Ok(mesh),
+        (true, Some(NotTaken { what, because })) => Err(format!("has no triangles there ({what}: {because})")),
+        (true, None) => Err("has no triangle with three different corners there: name another mesh".to_owned()),
     }
+}
+
+/// Without a skin, is a node without volume?
+fn is_flat(document: &Document, nodes: &Nodes, node: usize) -> bool {
+    document.root.nodes[node].skin.is_none() && nodes.world[node].determinant() == 0.0
 }
 
 fn read(document: &Document, file: &Path) -> Told<Loaded> {
@@ -109,20 +144,20 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
     let mut refusals = Refusals::default();
     let mut pictures = Pictures::default();
     let mut meshes = Meshes::new(document, Materials::new(document, &mut pictures));
-    let turns = motion::turns(document, &nodes, &mut refusals);
+    let turns = Turns::new(document, &nodes, &mut refusals);
     let mut known: BTreeMap<usize, Arc<Mesh>> = BTreeMap::new();
+    let mut vertices = 0;
     let (mut names, mut objects, mut pointers) = (Names::default(), Vec::new(), Vec::new());
     for node in nodes.shown.iter().copied() {
         let given = &root.nodes[node];
         let Some(index) = given.mesh else { continue };
         let of_mesh = root.get(index).and_then(|mesh| mesh.name.as_deref());
         let name = named(given.name.as_deref().or(of_mesh), || format!("node {node}"));
-        let world = &nodes.world[node];
-        if given.skin.is_none() && world.determinant() == 0.0 {
+        if is_flat(document, &nodes, node) {
             refusals.refuse(quoted(&name), "its scale is zero: it is flat");
             continue;
         }
-        let pose = if given.skin.is_none() { nodes::pose_of(world) } else { None };
+        let pose = if given.skin.is_none() { nodes::pose_of(&nodes.world[node]) } else { None };
         let (mesh, pointer) = match (pose, known.get(&index.value())) {
             (Some(_), Some(mesh)) => (Arc::clone(mesh), format!("/meshes/{}", index.value())),
             (Some(_), None) => {
@@ -133,8 +168,14 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
             (None, _) => (Arc::new(in_world(document, &nodes, &mut meshes, node, index)?), format!("/nodes/{node}")),
         };
         if mesh.triangles().is_empty() {
-            refusals.refuse(quoted(&name), "it has no triangle with three different corners");
+            let told = mesh.not_taken().first().map(|one| format!("{}: {}", one.what, one.because));
+            let because = told.unwrap_or_else(|| "it has no triangle with three different corners".to_owned());
+            refusals.refuse(quoted(&name), because);
             continue;
+        }
+        vertices += mesh.positions().len();
+        if vertices > MOST_VERTICES {
+            return Err(format!("has more than {MOST_VERTICES} vertices, those of all its instances: leave some out"));
         }
         if given.skin.is_some() {
             refusals.refuse(format!("the bones of {}", quoted(&name)), "it stands as they do at rest");
@@ -143,13 +184,16 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
         let material = Material { shading, ..Material::default() };
         let mut object = Object::new(names.take_like(&name), mesh, material);
         object.pose = pose.unwrap_or_default();
-        match motion::motion_of(&turns, &nodes, node, pose.as_ref()) {
+        let motion = match &pose {
+            Some(pose) => turns.of_object(&nodes, node, pose),
             // What stands in world space can't be turned by its pose.
-            Ok(motion) if pose.is_some() || motion.is_still() => object.motion = motion,
-            Ok(_) => refusals.refuse(
-                format!("the turn of {}", quoted(&name)),
-                "it is skinned, sheared or mirrored: it stands as at the start",
-            ),
+            None if turns.moves(node) => {
+                Err("it is skinned, sheared or mirrored: it stands as at the start".to_owned())
+            }
+            None => Ok(Motion::default()),
+        };
+        match motion {
+            Ok(motion) => object.motion = motion,
             Err(why) => refusals.refuse(format!("the turn of {}", quoted(&name)), why),
         }
         objects.push(object);
@@ -161,9 +205,12 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
         return Err("has corners where numbers end: scale it down".to_owned());
     }
     let camera = lights::camera(root, &nodes, &around, &mut refusals);
+    if let Some(eye) = camera.as_ref().filter(|eye| turns.moves(eye.node)) {
+        refusals.refuse(format!("the turn of the camera on node {}", eye.node), "the eye stands as at the start");
+    }
     let mut lights = lights::lights(root, &nodes, &around, &mut refusals);
     for light in &mut lights {
-        match motion::motion_of(&turns, &nodes, light.node, None) {
+        match turns.of_light(light.node) {
             Ok(motion) => light.it.motion = motion,
             Err(why) => refusals.refuse(format!("the turn of the light on node {}", light.node), why),
         }
@@ -176,7 +223,7 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
         refusals.refuse(quoted(extension), "this extension is not done");
     }
     let lights = lights.into_iter().map(|light| light.it).collect();
-    Ok(Loaded { objects, pointers, lights, camera, not_taken: refusals.into_list() })
+    Ok(Loaded { objects, pointers, lights, camera: camera.map(|eye| eye.it), not_taken: refusals.into_list() })
 }
 
 /// The mesh of a node in world space: with its skin, or where the node is.
@@ -193,8 +240,9 @@ fn in_world(
     };
     let inverse = match skin.inverse_bind_matrices {
         Some(index) => document.numbers::<16>(index)?,
-        None => Vec::new(),
+        None => Rc::default(),
     };
+    let inverse = inverse.as_chunks::<16>().0;
     if skin.inverse_bind_matrices.is_some() && inverse.len() < skin.joints.len() {
         return Err("a skin has fewer matrices than joints: export the file again".to_owned());
     }

@@ -14,6 +14,10 @@ pub struct Loaded {
     pub not_taken: Vec<NotTaken>,
 }
 
+/// A file that was opened: never made.
+#[derive(Debug)]
+pub(in crate::scene) struct Opened;
+
 fn left_out(file: &Path) -> SceneError {
     let reason = "is glTF, which is read with the feature `program`: switch that on, or convert it to OBJ".to_owned();
     SceneError::Read { file: file.to_owned(), reason }
@@ -31,7 +35,12 @@ pub fn load(file: &Path) -> Result<Loaded, SceneError> {
 ///
 /// # Errors
 /// Always.
-pub(in crate::scene) fn load_mesh(file: &Path, _: Option<&str>, _: &mut Pictures) -> Result<Mesh, SceneError> {
+pub(in crate::scene) fn load_mesh(
+    file: &Path,
+    _: Option<&str>,
+    _: &mut Pictures,
+    _: &mut Option<Opened>,
+) -> Result<Mesh, SceneError> {
     Err(left_out(file))
 }
 

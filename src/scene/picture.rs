@@ -276,7 +276,7 @@ impl Pictures {
         Ok(self.add(path, picture))
     }
 
-    /// The picture in these bytes, which are asked for once; `path` tells it from others.
+    /// The picture in these bytes, which are asked for once; `path` tells it from others, and `told` names it in an error.
     ///
     /// # Errors
     /// As [`Pictures::load`], or why there are no bytes; in a few words.
@@ -284,7 +284,7 @@ impl Pictures {
     pub fn load_bytes(
         &mut self,
         path: &Path,
-        name: &str,
+        [name, told]: [&str; 2],
         bytes: impl FnOnce() -> Result<Vec<u8>, String>,
     ) -> Result<Arc<Picture>, String> {
         if let Some(known) = self.known.get(path) {
@@ -293,7 +293,7 @@ impl Pictures {
         if let Some(why) = self.broken.get(path) {
             return Err(why.clone());
         }
-        let told = |error: PictureError| format!("{} {error}", super::read_text::quoted(name));
+        let told = |error: PictureError| format!("{} {error}", told);
         let picture = bytes().and_then(|bytes| Picture::decode(name.to_owned(), &bytes, self.left).map_err(told));
         let picture = picture.inspect_err(|why| {
             self.broken.insert(path.to_owned(), why.clone());

@@ -44,7 +44,11 @@ impl Session {
     fn run_mended(&mut self, runs: &Runs, mend: &Mend) -> Result<Wrong, SessionError> {
         let (scene, _, plan) = self.plan_mended(runs.scene, runs.request, runs.fault, mend)?;
         self.check_room(&plan)?;
-        if planar::darkens_in_the_picture(&plan) && mend.larger.is_none() {
+        if planar::darkens_in_the_picture(&plan) {
+            // What is too dark is not told from a larger picture.
+            if mend.larger.is_some() {
+                return self.run_mended(runs, &Mend { larger: None, ..mend.clone() });
+            }
             let capture = self.capture_plan(&scene, &plan)?;
             return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
         }

@@ -40,6 +40,7 @@ pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Prob
         folder,
         models: BTreeMap::new(),
         pictures: Pictures::default(),
+        gltf: None,
         objects: Vec::new(),
         names: Names::default(),
     };
@@ -247,6 +248,7 @@ struct ObjectBuilder<'a> {
     folder: &'a Path,
     models: BTreeMap<String, Arc<Mesh>>,
     pictures: Pictures,
+    gltf: Option<gltf::Opened>,
     objects: Vec<Object>,
     names: Names,
 }
@@ -293,7 +295,7 @@ impl ObjectBuilder<'_> {
         let (file, pointer) = pointer::split(name);
         let path = self.folder.join(file);
         let model = match pointer::is_gltf(&path) {
-            true => gltf::load_mesh(&path, pointer, &mut self.pictures),
+            true => gltf::load_mesh(&path, pointer, &mut self.pictures, &mut self.gltf),
             false => obj::load_among(&path, &mut self.pictures),
         };
         let model = Arc::new(model.map_err(|error| Problem::new(source.span(), error.to_string()))?);

@@ -335,7 +335,10 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     let mut next_uv = 1;
     for (index, group) in groups.iter().enumerate() {
         if groups.len() > 1 || !group.name.is_empty() {
+            // A backslash would join the next line.
+            let plain = |c: char| if c == '\\' || c.is_control() { '-' } else { c };
             let name = if group.name.is_empty() { "unnamed_object" } else { &group.name };
+            let name: String = name.chars().map(plain).collect();
             line(format_args!("g {name}"));
         }
         // Without a word, the last group's material would go on.

@@ -4,13 +4,27 @@ use super::document::{Document, Told};
 use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, IndexComponentType};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
+use std::rc::Rc;
 
 impl Document {
-    /// The items of an accessor, `N` numbers each; normalized integers as fractions.
+    /// The items of an accessor one after the other, `N` numbers each; normalized integers as fractions. Read once, however
+    /// many ask for them.
     ///
     /// # Errors
     /// Another number of components; bytes beyond a buffer; more items than any model has.
-    pub fn numbers<const N: usize>(&self, index: Index<Accessor>) -> Told<Vec<[f64; N]>> {
+    pub fn numbers<const N: usize>(&self, index: Index<Accessor>) -> Told<Rc<Vec<f64>>> {
+        let shape = self.root.get(index).map(|accessor| accessor.type_);
+        if let Some(known) = self.numbers.borrow().get(&index.value())
+            && matches!(shape, Some(Checked::Valid(shape)) if shape.multiplicity() == N)
+        {
+            return Ok(Rc::clone(known));
+        }
+        let numbers = Rc::new(self.items::<N>(index)?.into_flattened());
+        self.numbers.borrow_mut().insert(index.value(), Rc::clone(&numbers));
+        Ok(numbers)
+    }
+
+    fn items<const N: usize>(&self, index: Index<Accessor>) -> Told<Vec<[f64; N]>> {
         let broken = |why: &str| format!("accessor {} {why}: export the file again", index.value());
         let accessor = self.root.get(index).ok_or_else(|| broken("is missing"))?;
         let (Checked::Valid(GenericComponentType(kind)), Checked::Valid(shape)) =
@@ -55,7 +69,7 @@ impl Document {
     /// # Errors
     /// As [`Document::numbers`].
     pub fn indices(&self, index: Index<Accessor>) -> Told<Vec<u32>> {
-        Ok(self.numbers::<1>(index)?.into_iter().map(|[number]| number as u32).collect())
+        Ok(self.numbers::<1>(index)?.iter().map(|number| *number as u32).collect())
     }
 
     /// `count` items of `size` bytes, which lie in the view one after the other or at its stride.

@@ -7,8 +7,10 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf::json::validation::{Error, Validate};
 use gltf::json::{Index, Path as JsonPath, Root, buffer};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// Bytes of the largest file, buffers and pictures alike.
 const MOST_BYTES: u64 = 1 << 30;
@@ -35,7 +37,10 @@ pub struct Document {
     /// Its JSON.
     pub root: Root,
     buffers: Vec<Vec<u8>>,
-    folder: PathBuf,
+    /// Where it was read from.
+    pub file: PathBuf,
+    /// What was read of accessors already, by index.
+    pub(super) numbers: RefCell<HashMap<usize, Rc<Vec<f64>>>>,
     /// Items that may still be read.
     left: Cell<u64>,
 }
@@ -50,17 +55,17 @@ impl Document {
         let bytes = read_plain(file, MOST_BYTES).map_err(|error| told(error.to_string()))?;
         let (root, blob) = parse(&bytes, file)?;
         checked(&root).map_err(told)?;
-        let folder = file.parent().unwrap_or(Path::new("")).to_owned();
-        let mut document = Document { root, buffers: Vec::new(), folder, left: Cell::new(FREE_ITEMS) };
+        let (numbers, left) = (RefCell::default(), Cell::new(FREE_ITEMS));
+        let mut document = Document { root, buffers: Vec::new(), file: file.to_owned(), numbers, left };
         document.read_buffers(blob).map_err(told)?;
         Ok(document)
     }
 
     fn read_buffers(&mut self, mut blob: Option<Vec<u8>>) -> Told<()> {
-        let mut total = 0;
+        let (mut total, mut read) = (0, 0);
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let mut bytes = match &buffer.uri {
-                Some(uri) => self.resource(uri, MOST_BYTES.saturating_sub(total))?,
+                Some(uri) => self.resource(uri, MOST_BYTES.saturating_sub(read))?,
                 None => blob.take().filter(|_| index == 0).ok_or_else(|| {
                     format!(
                         "buffer {index} has no data: it names no file, and only the first may be in the .glb itself"
@@ -74,8 +79,10 @@ impl Document {
                     bytes.len()
                 ));
             }
-            bytes.truncate(length as usize);
+            read += bytes.len() as u64;
             total += length;
+            bytes.truncate(length as usize);
+            bytes.shrink_to_fit();
             self.buffers.push(bytes);
         }
         self.left.set(FREE_ITEMS + total);
@@ -93,12 +100,12 @@ impl Document {
             };
         }
         let path = path_of(uri).ok_or_else(|| format!("{} is no file beside this one: put it there", quoted(uri)))?;
-        read_plain(&self.folder.join(path), most).map_err(|error| format!("{} {error}", quoted(uri)))
+        read_plain(&self.file.with_file_name(path), most).map_err(|error| format!("{} {error}", quoted(uri)))
     }
 
     /// Where a picture's file would be.
     pub fn beside(&self, uri: &str) -> Option<PathBuf> {
-        path_of(uri).map(|path| self.folder.join(path))
+        path_of(uri).map(|path| self.file.with_file_name(path))
     }
 
     /// The bytes of a buffer's part.

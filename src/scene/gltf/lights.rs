@@ -21,7 +21,7 @@ const MOST_LIGHTS: usize = 31;
 /// Of the distance from an orthographic camera to its far plane, how near its near plane may be.
 const NEAREST: f64 = 1e-6;
 
-/// A light, and the node that it hangs on.
+/// A light or a camera, and the node that it hangs on.
 #[derive(Debug, Clone)]
 pub struct Placed<T> {
     pub node: usize,
@@ -74,8 +74,8 @@ pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
 }
 
 /// The first camera of the scene that is shown.
-pub fn camera(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut Refusals) -> Option<Camera> {
-    let mut seen: Option<Camera> = None;
+pub fn camera(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut Refusals) -> Option<Placed<Camera>> {
+    let mut seen: Option<Placed<Camera>> = None;
     for node in nodes.shown.iter().copied() {
         let Some(given) = root.nodes[node].camera.and_then(|camera| root.get(camera)) else { continue };
         let name = named(given.name.as_deref().or(root.nodes[node].name.as_deref()), || format!("node {node}"));
@@ -85,7 +85,7 @@ pub fn camera(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
             continue;
         }
         match placed(given, nodes, node, around) {
-            Ok(camera) => seen = Some(camera),
+            Ok(it) => seen = Some(Placed { node, it }),
             Err(why) => refusals.refuse(what, why),
         }
     }

@@ -15,7 +15,6 @@ use gltf::json::material::AlphaMode;
 use gltf::json::texture::{Info, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, material};
-use std::path::PathBuf;
 
 /// Share of light that a surface of no metal reflects straight on.
 const PLAIN_REFLECTANCE: f32 = 0.04;
@@ -140,14 +139,14 @@ impl<'a> Materials<'a> {
         let name = named(given.name.as_deref().or(of_file), || format!("image-{}", image.value() + 1));
         // Data within the file stands for a file whose name no other has.
         let key = of_file.and_then(|uri| self.document.beside(uri));
-        let key = key.unwrap_or_else(|| PathBuf::from(format!("\0{}", image.value())));
+        let key = key.unwrap_or_else(|| self.document.file.join(format!("\0{}", image.value())));
         let document = self.document;
         let bytes = || match (&given.uri, given.buffer_view) {
             (Some(uri), _) => document.resource(uri, MOST_PICTURE),
             (None, Some(view)) => document.view(view).map(<[u8]>::to_vec),
             (None, None) => Err("it names no picture".to_owned()),
         };
-        let picture = self.pictures.load_bytes(&key, &name, bytes)?;
+        let picture = self.pictures.load_bytes(&key, [&name, &quoted(&name)], bytes)?;
         if picture.has_alpha() {
             refusals.refuse(format!("the alpha of {}", quoted(&name)), "opacity is the material's (baseColorFactor)");
         }

@@ -6,10 +6,12 @@ use super::named;
 use crate::scene::not_taken::Refusals;
 use crate::scene::read_text::quoted;
 use crate::scene::{Group, Mesh, MeshBuilder, Shading};
+use foldhash::fast::RandomState;
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, accessor::Accessor, mesh};
+use std::collections::HashMap;
 
 /// Joints that may pull at a vertex, four a set.
 const MOST_JOINT_SETS: u32 = 4;
@@ -78,17 +80,34 @@ struct Part {
 }
 
 impl Part {
+    /// Of the vertices that its triangles use; others of the same numbers may be another part's.
     fn read(document: &Document, primitive: &Primitive, mode: Mode, look: &Look, form: Form) -> Told<Part> {
         let accessor = |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
-        let vectors = |semantic: Semantic| -> Told<Option<Vec<DVec3>>> {
-            accessor(semantic).map(|index| Ok(vectors(document.numbers(index)?))).transpose()
-        };
-        let mut positions = vectors(Semantic::Positions)?.ok_or("has no positions: export the file again")?;
-        let mut normals = vectors(Semantic::Normals)?;
-        let count = positions.len();
-        if normals.as_ref().is_some_and(|normals| normals.len() != count) {
+        let vectors = |semantic: Semantic| accessor(semantic).map(|index| document.numbers::<3>(index)).transpose();
+        let all = vectors(Semantic::Positions)?.ok_or("has no positions: export the file again")?;
+        let all = all.as_chunks::<3>().0;
+        let all_normals = vectors(Semantic::Normals)?;
+        let all_normals = all_normals.as_ref().map(|normals| normals.as_chunks::<3>().0);
+        if all_normals.is_some_and(|normals| normals.len() != all.len()) {
             return Err("has another number of normals than of vertices: export the file again".to_owned());
         }
+        let indices = match primitive.indices {
+            Some(index) => document.indices(index)?,
+            None => (0..u32::try_from(all.len()).map_err(|_| "has too many vertices: split it")?).collect(),
+        };
+        // What is placed in world space counts as a part of the scene.
+        if matches!(form, Form::AsFile) {
+            document.take(indices.len() as u64)?;
+        }
+        let mut triangles = triangles(mode, &indices);
+        let used = used(&mut triangles);
+        if let Some(index) = used.iter().find(|index| **index >= all.len()) {
+            return Err(format!("uses vertex {index} of {}: export the file again", all.len()));
+        }
+        let vector = |numbers: &[[f64; 3]], index: &usize| DVec3::from_array(numbers[*index]);
+        let mut positions: Vec<DVec3> = used.iter().map(|index| vector(all, index)).collect();
+        let mut normals: Option<Vec<DVec3>> =
+            all_normals.map(|normals| used.iter().map(|index| vector(normals, index)).collect());
         let is_mirrored = match form {
             Form::AsFile => false,
             Form::Placed(world) => {
@@ -99,78 +118,87 @@ impl Part {
                 turn.determinant() < 0.0
             }
             Form::Skinned(joints) => {
-                let matrices = skin(document, &accessor, joints, count)?;
+                let matrices = skin(document, &accessor, joints, &used, all.len())?;
                 for (position, matrix) in positions.iter_mut().zip(&matrices) {
                     *position = matrix.transform_point3(*position);
                 }
                 for (normal, matrix) in normals.iter_mut().flatten().zip(&matrices) {
                     let of_normals = DMat3::from_mat4(*matrix).inverse().transpose();
-                    let turned = (of_normals * *normal).normalize_or_zero();
-                    *normal = if turned.is_finite() { turned } else { DVec3::ZERO };
+                    *normal = (of_normals * *normal).normalize_or_zero();
                 }
-                false
+                let is_mirror = |matrix: &&DMat4| DMat3::from_mat4(**matrix).determinant() < 0.0;
+                2 * matrices.iter().filter(is_mirror).count() > matrices.len()
             }
         };
-        let indices = match primitive.indices {
-            Some(index) => document.indices(index)?,
-            None => (0..u32::try_from(count).map_err(|_| "has too many vertices: split it")?).collect(),
-        };
-        document.take(indices.len() as u64)?;
-        let mut triangles = triangles(mode, &indices);
-        if let Some(index) = triangles.iter().flatten().find(|index| **index as usize >= count) {
-            return Err(format!("uses vertex {index} of {count}: export the file again"));
-        }
         if is_mirrored {
             triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
         }
-        let uvs = look.map.as_ref().and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, count));
+        let map = look.map.as_ref();
+        let uvs = map.and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, &used));
+        // A normal that is none is the triangle's own.
+        let told = |normal: &DVec3| if normal.is_finite() { normal.as_vec3() } else { Vec3::ZERO };
         Ok(Part {
             positions,
             triangles,
-            normals: normals.map(|normals| normals.iter().map(|normal| normal.as_vec3()).collect()),
+            normals: normals.map(|normals| normals.iter().map(told).collect()),
             uvs,
             has_colors: accessor(Semantic::Colors(0)).is_some(),
         })
     }
 }
 
-fn vectors(numbers: Vec<[f64; 3]>) -> Vec<DVec3> {
-    numbers.into_iter().map(DVec3::from_array).collect()
+/// The vertices that triangles use, in the order of first use; the triangles are made to count these.
+fn used(triangles: &mut [[u32; 3]]) -> Vec<usize> {
+    let mut places: HashMap<u32, u32, RandomState> = HashMap::default();
+    let mut used = Vec::new();
+    for corner in triangles.iter_mut().flatten() {
+        let next = used.len() as u32;
+        let place = *places.entry(*corner).or_insert(next);
+        if place == next {
+            used.push(*corner as usize);
+        }
+        *corner = place;
+    }
+    used
 }
 
 /// Where vertices lie in a picture; `None` where they can't be placed.
-fn uvs(document: &Document, index: Index<Accessor>, map: &Map, count: usize) -> Option<Vec<Vec2>> {
-    let placed = |[u, v]: [f64; 2]| map.place(Vec2::new(u as f32, v as f32));
-    let uvs: Vec<Vec2> = document.numbers(index).ok()?.into_iter().map(placed).collect();
+fn uvs(document: &Document, index: Index<Accessor>, map: &Map, used: &[usize]) -> Option<Vec<Vec2>> {
+    let numbers = document.numbers::<2>(index).ok()?;
+    let all = numbers.as_chunks::<2>().0;
+    let placed = |index: &usize| all.get(*index).map(|[u, v]| map.place(Vec2::new(*u as f32, *v as f32)));
+    let uvs: Vec<Vec2> = used.iter().map(placed).collect::<Option<_>>()?;
     // As far out, neighbouring texels are one number.
     let is_usable = |uv: &Vec2| uv.abs().max_element() <= 1e6;
-    (uvs.len() == count && uvs.iter().all(is_usable)).then_some(uvs)
+    uvs.iter().all(is_usable).then_some(uvs)
 }
 
-/// Of each vertex, the matrix that its joints move it by.
+/// Of each vertex that is used, the matrix that its joints move it by.
 fn skin(
     document: &Document,
     accessor: &dyn Fn(Semantic) -> Option<Index<Accessor>>,
     joints: &[DMat4],
+    used: &[usize],
     count: usize,
 ) -> Told<Vec<DMat4>> {
-    let mut matrices = vec![DMat4::ZERO; count];
-    let mut sums = vec![0.0; count];
-    document.take(4 * count as u64)?;
+    let mut matrices = vec![DMat4::ZERO; used.len()];
+    let mut sums = vec![0.0; used.len()];
     for set in 0..MOST_JOINT_SETS {
         let (Some(of), Some(weights)) = (accessor(Semantic::Joints(set)), accessor(Semantic::Weights(set))) else {
             break;
         };
         let (of, weights) = (document.numbers::<4>(of)?, document.numbers::<4>(weights)?);
+        let (of, weights) = (of.as_chunks::<4>().0, weights.as_chunks::<4>().0);
         if of.len() != count || weights.len() != count {
             return Err("has another number of joints than of vertices: export the file again".to_owned());
         }
-        for (vertex, (of, weights)) in of.iter().zip(&weights).enumerate() {
-            for (joint, weight) in of.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        for (at, vertex) in used.iter().enumerate() {
+            let pairs = of[*vertex].iter().zip(&weights[*vertex]);
+            for (joint, weight) in pairs.filter(|(_, weight)| **weight != 0.0) {
                 let joint =
                     joints.get(*joint as usize).ok_or("hangs on a joint that its skin lacks: export the file again")?;
-                matrices[vertex] += *joint * *weight;
-                sums[vertex] += weight;
+                matrices[at] += *joint * *weight;
+                sums[at] += weight;
             }
         }
     }

@@ -21,34 +21,115 @@ const MOMENTS: usize = 7;
 /// How a node turns, and what hangs on it with it.
 #[derive(Debug, Clone, Copy)]
 pub struct Turn {
-    node: usize,
     pivot: DVec3,
     /// World space, of length 1.
     axis: DVec3,
     degrees_per_second: f64,
 }
 
-/// The turns that a file's first animation is made of; names what they leave out.
-pub fn turns(document: &Document, nodes: &Nodes, refusals: &mut Refusals) -> Vec<Turn> {
-    let mut found: Vec<Turn> = Vec::new();
-    for (index, animation) in document.root.animations.iter().enumerate() {
-        let name = named(animation.name.as_deref(), || format!("animation {index}"));
-        if index > 0 {
-            refusals.refuse(format!("the animation {}", quoted(&name)), "the first one is shown");
-            continue;
-        }
-        for channel in &animation.channels {
-            let node = channel.target.node.value();
-            let Some(known) = document.root.nodes.get(node) else { continue };
-            let of = named(known.name.as_deref(), || format!("node {node}"));
-            match turn(document, nodes, animation, channel) {
-                Ok(turn) if found.iter().all(|other| other.node != node) => found.push(turn),
-                Ok(_) => refusals.refuse(format!("a second turn of {}", quoted(&of)), "one is shown"),
-                Err(why) => refusals.refuse(format!("{} of {} over time", property(channel), quoted(&of)), why),
+/// The turns of a file's first animation.
+#[derive(Debug)]
+pub struct Turns {
+    /// By node: what moves it.
+    above: Vec<Above>,
+}
+
+/// What moves a node.
+#[derive(Debug, Clone, Copy)]
+enum Above {
+    Nothing,
+    One(Turn),
+    /// One that hangs on another.
+    Several,
+}
+
+impl Turns {
+    /// Names what they leave out.
+    pub fn new(document: &Document, nodes: &Nodes, refusals: &mut Refusals) -> Turns {
+        let mut own: Vec<Option<Turn>> = vec![None; document.root.nodes.len()];
+        for (index, animation) in document.root.animations.iter().enumerate() {
+            let name = named(animation.name.as_deref(), || format!("animation {index}"));
+            if index > 0 {
+                refusals.refuse(format!("the animation {}", quoted(&name)), "the first one is shown");
+                continue;
+            }
+            for channel in &animation.channels {
+                let node = channel.target.node.value();
+                let Some(known) = document.root.nodes.get(node) else { continue };
+                let of = named(known.name.as_deref(), || format!("node {node}"));
+                match turn(document, nodes, animation, channel) {
+                    Ok(turn) if own[node].is_none() => own[node] = Some(turn),
+                    Ok(_) => refusals.refuse(format!("a second turn of {}", quoted(&of)), "one is shown"),
+                    Err(why) => refusals.refuse(format!("{} of {} over time", property(channel), quoted(&of)), why),
+                }
             }
         }
+        let mut above = vec![Above::Nothing; own.len()];
+        for node in nodes.all.iter().copied() {
+            let inherited = nodes.parents[node].map_or(Above::Nothing, |parent| above[parent]);
+            above[node] = match (inherited, own[node]) {
+                (inherited, None) => inherited,
+                (Above::Nothing, Some(turn)) => Above::One(turn),
+                (Above::One(_) | Above::Several, Some(_)) => Above::Several,
+            };
+        }
+        Turns { above }
     }
-    found
+
+    /// Does anything move a node?
+    pub fn moves(&self, node: usize) -> bool {
+        !matches!(self.above[node], Above::Nothing)
+    }
+
+    /// How what hangs on a node moves, and turns, as an object of this pose.
+    ///
+    /// # Errors
+    /// A turn that no motion of ours is.
+    pub fn of_object(&self, nodes: &Nodes, node: usize, pose: &Pose) -> Told<Motion> {
+        let Some(turn) = self.of(node)? else { return Ok(Motion::default()) };
+        let at = nodes.world[node].transform_point3(DVec3::ZERO);
+        let is_on_axis = (at - turn.pivot).cross(turn.axis).length() <= 1e-9 * at.distance(turn.pivot);
+        let orbit = (!is_on_axis).then(|| turn.orbit());
+        // A spin adds to one of three angles: which of them is this turn?
+        let still = Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose };
+        let rotation = |pose: &Pose| DQuat::from_mat4(&pose.world_from_object());
+        let fits = |motion: &Motion| {
+            (1..=MOMENTS).all(|moment| {
+                let degrees = 360.0 * moment as f64 / (MOMENTS + 1) as f64;
+                let wanted = DQuat::from_axis_angle(turn.axis, degrees.to_radians()) * rotation(&still);
+                let found = rotation(&motion.apply(&still, degrees / turn.degrees_per_second));
+                wanted.angle_between(found).min(wanted.angle_between(-found)) <= BESIDE
+            })
+        };
+        let spins = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+        let found = spins
+            .map(|spin| Motion { spin_degrees_per_second: spin * turn.degrees_per_second, orbit: None, swing: None })
+            .find(fits);
+        let spin = found.ok_or("no spin about x, y or z turns a thing that leans so: it stands as at the start")?;
+        Ok(Motion { orbit, ..spin })
+    }
+
+    /// How a light that hangs on a node moves; one that is nowhere turns too.
+    ///
+    /// # Errors
+    /// As [`Turns::of_object`].
+    pub fn of_light(&self, node: usize) -> Told<Motion> {
+        Ok(Motion { orbit: self.of(node)?.map(|turn| turn.orbit()), ..Motion::default() })
+    }
+
+    fn of(&self, node: usize) -> Told<Option<Turn>> {
+        match self.above[node] {
+            Above::Nothing => Ok(None),
+            Above::One(turn) => Ok(Some(turn)),
+            Above::Several => Err("it hangs on two nodes that turn: it stands as at the start".to_owned()),
+        }
+    }
+}
+
+impl Turn {
+    fn orbit(&self) -> Orbit {
+        Orbit { center: self.pivot, axis: self.axis, degrees_per_second: self.degrees_per_second }
+    }
 }
 
 fn property(channel: &Channel) -> &'static str {
@@ -72,8 +153,11 @@ fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Cha
         return Err(only());
     }
     let times = document.numbers::<1>(sampler.input)?;
-    let keys: Vec<DQuat> = document.numbers::<4>(sampler.output)?.into_iter().map(unit).collect();
-    let (Some([start]), Some([end])) = (times.first(), times.last()) else { return Err(only()) };
+    let keys = document.numbers::<4>(sampler.output)?;
+    // Many channels may ask for the same.
+    document.take(keys.len() as u64 / 4)?;
+    let keys: Vec<DQuat> = keys.as_chunks::<4>().0.iter().copied().map(unit).collect();
+    let (Some(start), Some(end)) = (times.first(), times.last()) else { return Err(only()) };
     if times.len() != keys.len() || !(end - start).is_normal() || end <= start {
         return Err(only());
     }
@@ -89,10 +173,8 @@ fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Cha
     let whole: DVec3 = steps.iter().sum();
     let speed = whole / (end - start);
     let turned = whole.length();
-    let is_steady = steps
-        .iter()
-        .zip(times.windows(2))
-        .all(|(step, time)| (*step - speed * (time[1][0] - time[0][0])).length() <= BESIDE);
+    let is_steady =
+        steps.iter().zip(times.windows(2)).all(|(step, time)| (*step - speed * (time[1] - time[0])).length() <= BESIDE);
     let turns = turned / std::f64::consts::TAU;
     if !(is_steady && turns > 0.5 && (turned - turns.round() * std::f64::consts::TAU).abs() <= BESIDE) {
         return Err(only());
@@ -111,59 +193,11 @@ fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Cha
         return Err(only());
     }
     let pivot = nodes.world[node].transform_point3(DVec3::ZERO);
-    Ok(Turn { node, pivot, axis, degrees_per_second: speed.length().to_degrees() })
+    Ok(Turn { pivot, axis, degrees_per_second: speed.length().to_degrees() })
 }
 
 /// Stretched more along one axis than along another?
 fn is_uneven(pose: Pose) -> bool {
     let DVec3 { x, y, z } = pose.scale;
     (x - y).abs().max((x - z).abs()) > BESIDE * x.abs()
-}
-
-/// The one turn that moves a node.
-fn above(turns: &[Turn], nodes: &Nodes, node: usize) -> Told<Option<Turn>> {
-    let mut at = Some(node);
-    let mut found: Option<Turn> = None;
-    while let Some(node) = at {
-        if let Some(turn) = turns.iter().find(|turn| turn.node == node)
-            && found.replace(*turn).is_some()
-        {
-            return Err("it hangs on two nodes that turn: it stands as at the start".to_owned());
-        }
-        at = nodes.parents[node];
-    }
-    Ok(found)
-}
-
-/// How what hangs on a node moves. `pose`: of an object, which also turns.
-pub fn motion_of(turns: &[Turn], nodes: &Nodes, node: usize, pose: Option<&Pose>) -> Told<Motion> {
-    let Some(turn) = above(turns, nodes, node)? else { return Ok(Motion::default()) };
-    let at = nodes.world[node].transform_point3(DVec3::ZERO);
-    let is_on_axis =
-        (at - turn.pivot).cross(turn.axis).length() <= 1e-9 * at.distance(turn.pivot).max(1e-300) || at == turn.pivot;
-    let orbit = (!is_on_axis).then_some(Orbit {
-        center: turn.pivot,
-        axis: turn.axis,
-        degrees_per_second: turn.degrees_per_second,
-    });
-    let still = Motion { orbit, ..Motion::default() };
-    let Some(pose) = pose else { return Ok(still) };
-    // A spin adds to one of three angles: which of them is this turn?
-    let spins = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
-    let fits = |motion: &Motion| {
-        (1..=MOMENTS).all(|moment| {
-            let degrees = 360.0 * moment as f64 / (MOMENTS + 1) as f64;
-            let seconds = degrees / turn.degrees_per_second;
-            let wanted = DQuat::from_axis_angle(turn.axis, degrees.to_radians())
-                * DQuat::from_mat4(&Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose }.world_from_object());
-            let moved = motion.apply(&Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose }, seconds);
-            let found = DQuat::from_mat4(&Pose { translate: DVec3::ZERO, ..moved }.world_from_object());
-            wanted.angle_between(found).min(wanted.angle_between(-found)) <= BESIDE
-        })
-    };
-    let found = spins
-        .map(|spin| Motion { spin_degrees_per_second: spin * turn.degrees_per_second, orbit: None, swing: None })
-        .find(fits);
-    let spin = found.ok_or("its turn is about none of its own axes nor the vertical: it stands as at the start")?;
-    Ok(Motion { orbit, ..spin })
 }

@@ -16,6 +16,8 @@ pub struct Nodes {
     pub world: Vec<DMat4>,
     /// By node.
     pub parents: Vec<Option<usize>>,
+    /// Each before its children.
+    pub all: Vec<usize>,
     /// Those of the scene that is shown, each before its children.
     pub shown: Vec<usize>,
 }
@@ -54,9 +56,9 @@ impl Nodes {
         let scene = root.scene.or((!root.scenes.is_empty()).then(|| Index::new(0)));
         let shown = match scene.and_then(|scene| root.get(scene)) {
             Some(scene) => below(root, &scene.nodes.iter().map(Index::value).collect::<Vec<_>>()),
-            None => all,
+            None => all.clone(),
         };
-        Ok(Nodes { world, parents, shown })
+        Ok(Nodes { world, parents, all, shown })
     }
 }
 
