@@ -467,7 +467,7 @@ fn what_turns_and_can_t_is_named_and_a_sun_on_its_own_node_turns() {
             "the turn of the camera on node 2: the eye",
         ),
         (
-            r#"{"children":[1]},{"mesh":0,"rotation":[0.270598,0.270598,0.653281,0.653281]}"#,
+            r#"{"children":[1]},{"mesh":0,"rotation":[0.182574,0.365148,0.547723,0.730297]}"#,
             0,
             "the turn of `node 1`: no spin about x, y or z turns a thing that leans so",
         ),

@@ -217,17 +217,12 @@ pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Mater
     let within = |low: f32, value: f64, high: f32| (value as f32).clamp(low, high);
     let specular = from.specular.map_or(0.0, |[r, g, b]| (r + g + b) / 3.0);
     let plain = if has_map { [1.0; 3] } else { default.color };
-    let emitted = |words: &String| {
-        let numbers: Vec<f64> = words.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-        <[f64; 3]>::try_from(numbers).ok().map(|rgb| rgb.map(|c| within(0.0, c, 1000.0)))
-    };
-    let emission = from.unknown_param.get("Ke").and_then(emitted);
     Material {
         color: from.diffuse.map_or(plain, |rgb| rgb.map(|c| within(0.0, c, 1.0))),
         specular: within(0.0, specular, 1.0),
         shininess: from.shininess.map_or(default.shininess, |exponent| within(1.0, exponent, 1000.0)),
         opacity: from.dissolve.map_or(1.0, |opacity| within(0.0, opacity, 1.0)),
-        emission: emission.unwrap_or(default.emission),
+        emission: from.emissive.map_or(default.emission, |rgb| rgb.map(|c| within(0.0, c, 1000.0))),
         shading,
         ..default
     }
