@@ -53,7 +53,7 @@ fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
     }
     let many: String = (0..99).map(|index| format!("newmtl m{index}\nmap_Ks none.png\n")).collect();
     let (_, told) = model(&many, face);
-    assert_eq!((told.len(), told[32].as_str()), (33, "what else its libraries ask for: 32 things of it are named"));
+    assert_eq!((told.len(), told[32].as_str()), (33, "what else the file asks for: 32 things of it are named"));
     // What is not taken is in the plan, by name.
     let folder = folder();
     std::fs::write(folder.path().join("m.obj"), format!("mtllib /dev/zero\n{BOX}{face}")).expect("written");

@@ -186,11 +186,9 @@ fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Cha
     }
     let above = nodes.parents[node].map_or(glam::DMat4::IDENTITY, |parent| nodes.world[parent]);
     let axis = above.transform_vector3(speed).normalize_or_zero();
-    // Sheared or mirrored, a turn is none.
-    if axis == DVec3::ZERO
-        || nodes.parents[node].is_some_and(|parent| pose_of(&nodes.world[parent]).is_none_or(is_uneven))
-    {
-        return Err(only());
+    let is_bent = |parent: usize| pose_of(&nodes.world[parent]).is_none_or(is_uneven);
+    if axis == DVec3::ZERO || nodes.parents[node].is_some_and(is_bent) {
+        return Err("what it hangs on is mirrored or stretched unevenly: it stands as at the start".to_owned());
     }
     let pivot = nodes.world[node].transform_point3(DVec3::ZERO);
     Ok(Turn { pivot, axis, degrees_per_second: speed.length().to_degrees() })
