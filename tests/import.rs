@@ -398,3 +398,20 @@ fn broken_recordings_make_an_error_or_a_frame() {
     }
     assert!(frames > 20 && errors > 100, "{frames} frames, {errors} errors");
 }
+
+/// Nobody waits for a writer.
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_place_of_a_file_is_refused_by_name() {
+    for name in ["frame.json", "data.bin"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        for file in ["frame.json", "data.bin"] {
+            fs::copy(recording("own").join(file), folder.path().join(file)).expect("copied");
+        }
+        fs::remove_file(folder.path().join(name)).expect("removed");
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join(name)).status().expect("mkfifo");
+        assert!(made.success());
+        let error = import::read(folder.path()).expect_err("a pipe").to_string();
+        assert!(error.contains(&format!("{name}: is a pipe: only plain files are read")), "{error}");
+    }
+}

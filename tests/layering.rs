@@ -23,7 +23,7 @@ const MAY_USE: [(&str, &[&str]); 37] = [
     ("capture", &["math", "scene", "plan", "accuracy", "truth", "files"]),
     ("stencil_machine", &["plan"]),
     ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
-    ("import", &["math", "scene", "plan", "capture", "recorded", "progress"]),
+    ("import", &["math", "scene", "plan", "capture", "recorded", "progress", "files"]),
     ("wrap", &[]),
     ("gpu", &["math", "scene", "plan", "capture", "wrap"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),

@@ -13,8 +13,8 @@ use super::raw::{
     RawTopology,
 };
 use super::{geometry, shader, states};
+use crate::files::open_plain;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
 use std::io::{Read, Seek};
 use std::path::Path;
 
@@ -32,7 +32,7 @@ const MOST_TEXTURES: usize = 100_000;
 /// # Errors
 /// A file that is missing, broken or larger than what is read.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
-    let open = |name: &str| File::open(folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
+    let open = |name: &str| open_plain(&folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
     read_from(open("frame.json")?, open("data.bin")?)
 }
 
