@@ -3,6 +3,9 @@
 use super::Motion;
 use glam::{DVec3, DVec4};
 
+/// Lights are bits of one word a triangle; the last bit is taken.
+pub const MOST_LIGHTS: usize = 31;
+
 /// A light. Its colour is linear RGB; without a `range` it does not fall off with distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light {

@@ -37,7 +37,7 @@ pub use builder::SceneBuilder;
 pub use camera::{Camera, Projection, Sight, Sights};
 pub use collision::{WallCache, Walls};
 pub use error::SceneError;
-pub use light::Light;
+pub use light::{Light, MOST_LIGHTS};
 pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::{UpAxis, model_scene};

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// Bytes of the largest file.
-const MOST_FILE: u64 = 64 << 20;
+pub(super) const MOST_FILE: u64 = 64 << 20;
 /// Texels along a side of the largest picture: what every GPU takes.
 const MOST_SIDE: u32 = 8192;
 /// Texels of all pictures of a model or a scene file.

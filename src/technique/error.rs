@@ -1,7 +1,6 @@
 //! Why a scene can't be planned.
 
-/// Lights are bits of one word a triangle; the last bit is taken.
-pub const MOST_LIGHTS: usize = 31;
+pub use crate::scene::MOST_LIGHTS;
 
 /// Why a scene can't be planned.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -9,15 +9,13 @@ use super::nodes::Nodes;
 use crate::scene::not_taken::Refusals;
 use crate::scene::placement::Surroundings;
 use crate::scene::read_text::quoted;
-use crate::scene::{Camera, Light, Projection};
+use crate::scene::{Camera, Light, MOST_LIGHTS, Projection};
 use glam::DVec3;
 use gltf::json::Root;
 use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::Type;
 use gltf::json::validation::Checked;
 
-/// As many as a frame has: `technique` knows why.
-const MOST_LIGHTS: usize = 31;
 /// Of the distance from an orthographic camera to its far plane, how near its near plane may be.
 const NEAREST: f64 = 1e-6;
 

@@ -7,7 +7,7 @@
 use super::document::{Document, Told};
 use super::named;
 use crate::scene::not_taken::Refusals;
-use crate::scene::picture::Pictures;
+use crate::scene::picture::{MOST_FILE, Pictures};
 use crate::scene::read_text::quoted;
 use crate::scene::{Material, Texture};
 use glam::{Vec2, Vec3};
@@ -18,8 +18,6 @@ use gltf::json::{Index, material};
 
 /// Share of light that a surface of no metal reflects straight on.
 const PLAIN_REFLECTANCE: f32 = 0.04;
-/// Bytes of the largest picture's file.
-const MOST_PICTURE: u64 = 64 << 20;
 
 /// What a primitive looks like.
 #[derive(Debug, Clone, Default)]
@@ -142,7 +140,7 @@ impl<'a> Materials<'a> {
         let key = key.unwrap_or_else(|| self.document.file.join(format!("\0{}", image.value())));
         let document = self.document;
         let bytes = || match (&given.uri, given.buffer_view) {
-            (Some(uri), _) => document.resource(uri, MOST_PICTURE),
+            (Some(uri), _) => document.resource(uri, MOST_FILE),
             (None, Some(view)) => document.view(view).map(<[u8]>::to_vec),
             (None, None) => Err("it names no picture".to_owned()),
         };
