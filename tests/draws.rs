@@ -195,14 +195,53 @@ fn a_pass_takes_as_long_as_its_draws_together_or_nobody_knows() {
     }
 }
 
-/// 66 objects in 4096 × 4096: one snapshot a pass fits, one a draw takes more than 8 GiB.
+/// 66 objects, each over the one before, whose copies take more memory than what each of them changes.
+fn many_sheets(half: f64) -> Scene {
+    let sheets = (0..65).map(|index| square(&format!("sheet {index}"), half, 0.1 + 0.001 * f64::from(index)));
+    from_above(sheets.collect())
+}
+
 #[test]
-fn a_frame_of_too_many_draws_is_refused_with_a_mend() {
-    let sheets = (0..65).map(|index| square(&format!("sheet {index}"), 0.5, 0.1));
-    let scene = from_above(sheets.collect());
-    let request = CaptureRequest { size: [4096, 4096], ..by_draw(Technique::None) };
-    let error = session().capture(&scene, &request).expect_err("too large").to_string();
-    assert!(error.contains("MiB") && error.contains("--every pass") && !error.contains('\n'), "{error}");
+fn what_draws_leave_alone_takes_no_room() {
+    let request = CaptureRequest { size: [640, 480], ..by_draw(Technique::None) };
+    let mut session = session();
+    let draws = |capture: &Capture| capture.steps.iter().map(|step| step.draws.len() as u64).sum::<u64>();
+    session.hold_at_most(u64::MAX);
+    let whole = session.capture(&many_sheets(0.05), &request).expect("a capture");
+    // Colour and depth after each.
+    let copies = draws(&whole) * 640 * 480 * 8;
+    session.hold_at_most(copies / 2);
+    let capture = session.capture(&many_sheets(0.05), &request).expect("it fits");
+    assert!(capture == Capture { timing: capture.timing.clone(), ..whole } && draws(&capture) >= 65);
+    assert!(capture.bytes() < copies / 2, "{} of {copies}", capture.bytes());
+}
+
+#[test]
+fn a_frame_whose_draws_change_too_much_is_refused_with_a_mend() {
+    let mut session = session();
+    session.hold_at_most(32 << 20);
+    let request = CaptureRequest { size: [640, 480], ..by_draw(Technique::None) };
+    let error = session.capture(&many_sheets(4.0), &request).expect_err("too large").to_string();
+    assert!(error.contains("at least 3") && error.contains("32 MiB fit"), "{error}");
+    assert!(error.contains("--every pass") && !error.contains('\n'), "{error}");
+    // The same, pass by pass, does.
+    let request = CaptureRequest { every: Every::Pass, ..request };
+    assert!(session.capture(&many_sheets(4.0), &request).is_ok());
+}
+
+/// No copy is held by a frame that is only timed, nor asked about: it is not refused for those it could make.
+#[test]
+fn a_frame_whose_snapshots_do_not_fit_at_once_is_timed_without_them() {
+    let mut session = session();
+    let request = request(Technique::ZFail, [640, 480]);
+    let scene = many_sheets(0.5);
+    let cost = session.capture_cost(&scene, &request, 1).expect("timed");
+    assert!(cost.captured.len() == 1 && cost.snapshot_bytes > 0);
+    let attachments = session.plan(&scene, &request).expect("a plan").attachments.len() as u64 * 640 * 480 * 8;
+    session.hold_at_most(attachments + cost.snapshot_bytes / 2);
+    let less = session.capture_cost(&scene, &request, 1).expect("timed");
+    assert!(less.captured.is_empty() && less.frames.len() == 1);
+    assert_eq!(less.snapshot_bytes, cost.snapshot_bytes);
 }
 
 fn manifest(folder: &Path) -> serde_json::Value {

@@ -170,6 +170,13 @@ impl Image {
         self.strips.iter().map(place)
     }
 
+    /// Bytes that it has and `other` has not.
+    #[must_use]
+    pub fn bytes_beside(&self, other: Option<&Image>) -> u64 {
+        let others: Vec<Range<usize>> = other.into_iter().flat_map(Image::memory).collect();
+        covered(self.memory().chain(others.iter().cloned()).collect()) - covered(others)
+    }
+
     /// The texels of row `y` (0 at the top), without padding.
     ///
     /// # Panics

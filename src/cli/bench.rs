@@ -300,6 +300,12 @@ fn bumpy_mesh(around: u32, up: u32) -> Result<Mesh, SceneError> {
 /// Times, what snapshots add, and how long copying as many bytes takes in plain memory.
 fn capture_lines(title: &str, cost: &CaptureCost) -> String {
     let frame = median_ms(&cost.frames).unwrap_or(f64::NAN);
+    if cost.captured.is_empty() {
+        return format!(
+            "{title}\n  frame_ms {frame:.2}\n  not all {} bytes of snapshots fit into memory at once\n",
+            cost.snapshot_bytes
+        );
+    }
     let captured = median_ms(&cost.captured).unwrap_or(f64::NAN);
     let copy = median_ms(&memory_copies(cost.snapshot_bytes)).unwrap_or(f64::NAN);
     let megabytes = cost.snapshot_bytes as f64 / 1e6;

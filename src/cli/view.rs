@@ -84,6 +84,8 @@ pub mod window {
 
     /// Everything that can be wrong with the arguments is found before a window is made.
     fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
+        let why = "a window draws many frames, and the debugger's own key records one";
+        arguments.frame.refuse_external_capture(why)?;
         let folder = Path::new(&arguments.scene);
         let shipped = Shipped::named(&arguments.scene).filter(|_| !folder.is_dir());
         if !folder.is_dir() && shipped.is_none() {

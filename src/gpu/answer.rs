@@ -1,7 +1,7 @@
 //! What a frame is judged by, of a run that has kept no more: the labels of its lights, and the finished picture.
 
 use super::GpuError;
-use super::collect::{Memory, after, keep};
+use super::collect::{Held, Memory, after};
 use super::prepared::Prepared;
 use super::readback::{Change, color_change};
 use crate::capture::{Image, PixelFormat};
@@ -37,12 +37,13 @@ pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
 /// The labels of each light.
 pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
     let plan = prepared.plan;
+    let mut held = Held { memory: Memory::Mapped, room: prepared.room };
     let mut labels = vec![None; plan.lights.len()];
     for (index, pass) in plan.passes.iter().enumerate() {
         if let Some(light) = labelled(plan, pass) {
             let staged = prepared.staged(index)?;
             let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-            keep(&mut labels[light.0], left, Memory::Mapped);
+            held.keep(&mut labels[light.0], left)?;
         }
     }
     Ok(labels)

@@ -3,6 +3,7 @@
 use super::GpuError;
 use super::prepared::Prepared;
 use super::readback::{Change, Staging, color_change, depth_change, stencil_change};
+use super::room::Room;
 use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass};
 use std::sync::Arc;
@@ -30,7 +31,13 @@ pub(super) struct Collector {
     depth: Arc<Image>,
     stencil: Arc<Image>,
     output: Output,
-    memory: Memory,
+    held: Held,
+}
+
+/// How pictures are held, and in what room.
+pub(super) struct Held {
+    pub memory: Memory,
+    pub room: Room,
 }
 
 /// Where captured pictures lie.
@@ -44,7 +51,7 @@ pub enum Memory {
 
 impl Collector {
     /// Before the first pass. `kept` are the passes that will not run.
-    pub fn new(plan: &FramePlan, kept: Vec<bool>, memory: Memory) -> Collector {
+    pub fn new(plan: &FramePlan, kept: Vec<bool>, held: Held) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
         let none = vec![None; plan.lights.len()];
@@ -55,7 +62,7 @@ impl Collector {
             depth: zero(PixelFormat::Depth32F),
             stencil: zero(PixelFormat::U8),
             output: Output { steps, targets, labels: none.clone(), counts: none, maps, kept },
-            memory,
+            held,
         }
     }
 
@@ -64,7 +71,7 @@ impl Collector {
         let plan = prepared.plan;
         let pass = &plan.passes[index];
         let staged = prepared.staged(index)?;
-        let (output, memory) = (&mut self.output, self.memory);
+        let (output, held) = (&mut self.output, &mut self.held);
         let role = |target| plan.attachment(target).role;
         let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
         let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
@@ -74,7 +81,7 @@ impl Collector {
                 let known = output.maps[light.0].as_mut().and_then(|faces| faces.get_mut(face));
                 let image = match (known, staged.color.as_ref().or(staged.depth.as_ref())) {
                     (Some(known), Some(staging)) => {
-                        move_on(known, staging.image()?, memory);
+                        held.move_on(known, staging.image()?)?;
                         Some(known.clone())
                     }
                     (known, _) => known.cloned(),
@@ -87,13 +94,13 @@ impl Collector {
                 let target = match color_role.map(|(role, _)| role) {
                     Some(AttachmentRole::Labels(light)) => {
                         let labels = after(&change, &staged.color, PixelFormat::U8, plan.size)?;
-                        keep(&mut output.labels[light.0], labels, memory);
+                        held.keep(&mut output.labels[light.0], labels)?;
                         own.clone_from(&output.labels[light.0]);
                         FrameTarget::Labels
                     }
                     Some(AttachmentRole::Count(light)) => {
                         let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
-                        keep(&mut output.counts[light.0], count, memory);
+                        held.keep(&mut output.counts[light.0], count)?;
                         own.clone_from(&output.counts[light.0]);
                         FrameTarget::Count
                     }
@@ -105,11 +112,12 @@ impl Collector {
                 let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
                 let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
                 let frame = FrameSnapshot {
-                    color: step_aspect(&mut self.color, color_after, memory),
-                    depth: step_aspect(&mut self.depth, depth_after, memory),
+                    color: held.step_aspect(&mut self.color, color_after)?,
+                    depth: held.step_aspect(&mut self.depth, depth_after)?,
                     stencil: prepared.passes[index]
                         .has_stencil
-                        .then(|| step_aspect(&mut self.stencil, stencil_after, memory)),
+                        .then(|| held.step_aspect(&mut self.stencil, stencil_after))
+                        .transpose()?,
                     target,
                 };
                 (Snapshot::Frame(frame), own)
@@ -157,29 +165,40 @@ pub(super) fn after(
     }
 }
 
-/// A pass that changes nothing leaves what was there.
-pub(super) fn keep(known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>, memory: Memory) {
-    let Some(after) = after else { return };
-    match known {
-        Some(known) => _ = move_on(known, after, memory),
-        None => *known = Some(after),
+impl Held {
+    /// A pass that changes nothing leaves what was there.
+    pub fn keep(&mut self, known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) -> Result<(), GpuError> {
+        match (known, after) {
+            (_, None) => {}
+            (Some(known), Some(after)) => _ = self.move_on(known, after)?,
+            (known, Some(after)) => {
+                self.room.take(after.bytes_beside(None))?;
+                *known = Some(after);
+            }
+        }
+        Ok(())
     }
-}
 
-/// Moves an aspect on by one step. A clear to what was there already changes nothing.
-fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>, memory: Memory) -> Aspect {
-    let changed = next.is_some_and(|next| move_on(current, next, memory));
-    Aspect { image: current.clone(), unchanged: !changed }
-}
-
-/// Goes on to the next picture, and says whether it is another: one that is equal is let go.
-fn move_on(current: &mut Arc<Image>, next: Arc<Image>, memory: Memory) -> bool {
-    let is_another = next != *current;
-    if is_another {
-        let sharing = if memory == Memory::Shared { next.sharing(current) } else { None };
-        *current = sharing.map_or(next, Arc::new);
+    /// Moves an aspect on by one step. A clear to what was there already changes nothing.
+    fn step_aspect(&mut self, current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Result<Aspect, GpuError> {
+        let changed = match next {
+            Some(next) => self.move_on(current, next)?,
+            None => false,
+        };
+        Ok(Aspect { image: current.clone(), unchanged: !changed })
     }
-    is_another
+
+    /// Goes on to the next picture, and says whether it is another: one that is equal is let go.
+    fn move_on(&mut self, current: &mut Arc<Image>, next: Arc<Image>) -> Result<bool, GpuError> {
+        let is_another = next != *current;
+        if is_another {
+            let sharing = if self.memory == Memory::Shared { next.sharing(current) } else { None };
+            let next = sharing.map_or(next, Arc::new);
+            self.room.take(next.bytes_beside(Some(current)))?;
+            *current = next;
+        }
+        Ok(is_another)
+    }
 }
 
 /// Its time is not known yet.

@@ -1,11 +1,5 @@
 //! What can go wrong on a GPU.
 
-impl GpuError {
-    /// Attachments and copies together may take this much memory, if all copies were held at once; a frame of
-    /// 8192 × 8192 fits.
-    pub const MOST_BYTES: u64 = 8 << 30;
-}
-
 /// Why a plan did not run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {

@@ -3,7 +3,7 @@
 
 use super::answer::{self, Answer};
 use super::buffers::Buffers;
-use super::collect::{Collector, Memory, Output};
+use super::collect::{Collector, Held, Memory, Output};
 use super::fragment_log::LogKeeper;
 use super::maps::Maps;
 use super::pictures::Pictures;
@@ -11,6 +11,7 @@ use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
 use super::readback::{StagedPass, Staging};
+use super::room::Room;
 use super::{Context, GpuError, features, start};
 use crate::capture::Image;
 use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
@@ -22,6 +23,9 @@ use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
 /// Bytes of copies after which a captured frame is looked at before it goes on: enough for the passes of most.
 const PART_BYTES: u64 = 1 << 26;
 
+/// Attachments, pictures and the copies that are held may together take so much memory.
+const MOST_BYTES: u64 = 8 << 30;
+
 /// Runs plans; keeps pipelines and buffers between them.
 #[derive(Debug)]
 pub struct Executor {
@@ -31,6 +35,7 @@ pub struct Executor {
     pictures: Pictures,
     maps: Maps,
     pub(super) log: LogKeeper,
+    most_bytes: u64,
 }
 
 /// Which passes run, and what is kept.
@@ -59,7 +64,13 @@ impl Executor {
             maps: Maps::default(),
             log: LogKeeper::default(),
             context: Arc::new(context),
+            most_bytes: MOST_BYTES,
         }
+    }
+
+    /// Lets attachments, pictures and the copies that are held take no more than so many bytes.
+    pub fn hold_at_most(&mut self, bytes: u64) {
+        self.most_bytes = bytes;
     }
 
     /// Where it runs.
@@ -89,8 +100,9 @@ impl Executor {
     /// A plan that breaks a rule, pictures or meshes that are too large, a driver that refuses.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
+        let room = Room::of(self.most_bytes);
         let Executor { context, pipelines, buffers, pictures, maps, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, maps, plan))
+        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, maps, plan, room))
     }
 
     /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan
@@ -100,8 +112,9 @@ impl Executor {
     /// As [`Executor::prepare`].
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
+        let room = Room::of(self.most_bytes);
         let Executor { context, pipelines, buffers, pictures, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, &mut Maps::default(), plan))
+        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, &mut Maps::default(), plan, room))
     }
 
     /// The same for a plan between frames that are timed: nothing that it uploads is there for the next one, and what is
@@ -111,9 +124,10 @@ impl Executor {
     /// As [`Executor::prepare`].
     pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
+        let room = Room::of(self.most_bytes);
         let Executor { context, pipelines, .. } = self;
         let (mut buffers, mut pictures, mut maps) = (Buffers::default(), Pictures::default(), Maps::default());
-        context.guarded(|| Prepared::new(context, pipelines, &mut buffers, &mut pictures, &mut maps, plan))
+        context.guarded(|| Prepared::new(context, pipelines, &mut buffers, &mut pictures, &mut maps, plan, room))
     }
 
     /// Finds what can't be run, and a device for what can.
@@ -140,9 +154,13 @@ impl Executor {
     /// of many before it makes the next.
     ///
     /// # Errors
-    /// A driver that fails.
+    /// A driver that fails; snapshots that [can't be held at once](Prepared::holds_all_snapshots).
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { Mode::Snapshots } else { Mode::Frame };
+        if snapshots {
+            let mut room = prepared.room;
+            room.take(prepared.snapshot_bytes())?;
+        }
         let start = Instant::now();
         run(prepared, mode, &Notes::default())?;
         let took = start.elapsed();
@@ -191,7 +209,7 @@ impl Executor {
     /// graphics debugger records the frame.
     ///
     /// # Errors
-    /// A driver that fails.
+    /// A driver that fails; pictures that differ so much that they can't be held.
     pub fn capture(&self, mut prepared: Prepared, memory: Memory, bracket: bool) -> Result<Output, GpuError> {
         let (plan, context) = (prepared.plan, prepared.context.clone());
         let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
@@ -289,7 +307,7 @@ fn run_in_parts(prepared: &mut Prepared, notes: &Notes, memory: Memory) -> Resul
     let plan = prepared.plan;
     let context = prepared.context.clone();
     let kept = plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
-    let mut collector = Collector::new(plan, kept, memory);
+    let mut collector = Collector::new(plan, kept, Held { memory, room: prepared.room });
     let mut start = 0;
     while start < plan.passes.len() {
         let part = context.guarded(|| {

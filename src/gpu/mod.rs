@@ -12,6 +12,7 @@
 //! queries      times of passes, samples of draws
 //! start        what depth and stencil hold as a pass begins
 //! readback     snapshots: copies recorded between passes, mapped
+//! room         how much memory a frame may hold
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
 
@@ -29,6 +30,7 @@ mod pipelines;
 mod prepared;
 mod queries;
 mod readback;
+mod room;
 mod shaders;
 mod specialization;
 mod start;

@@ -6,6 +6,7 @@ use super::maps::{KeptMap, Maps};
 use super::pictures::Pictures;
 use super::pipelines::{Layouts, PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
+use super::room::Room;
 use super::shaders::{Form, Shader};
 use super::specialization::Specialization;
 use super::uniforms::{self, UniformArray};
@@ -37,6 +38,8 @@ pub struct Prepared<'a> {
     pub(super) lights: UniformArray,
     /// By attachment: the texture that stays from frame to frame.
     pub(super) kept: Vec<Option<Arc<KeptMap>>>,
+    /// What attachments and pictures leave for copies.
+    pub(super) room: Room,
 }
 
 #[derive(Debug)]
@@ -72,9 +75,10 @@ impl<'a> Prepared<'a> {
         pictures: &mut Pictures,
         maps: &mut Maps,
         plan: &'a FramePlan,
+        mut room: Room,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
-        check_size(device, plan)?;
+        check_size(device, plan, &mut room)?;
         buffers.next_plan();
         pictures.next_plan();
         maps.next_plan();
@@ -152,7 +156,20 @@ impl<'a> Prepared<'a> {
         let view_group = views.bind_group(device, &pipelines.layouts.view);
         let draw_group = draws.bind_group(device, &pipelines.layouts.draw);
         let context = context.clone();
-        Ok(Prepared { plan, context, passes, textures, staged, views, view_group, draws, draw_group, lights, kept })
+        Ok(Prepared {
+            plan,
+            context,
+            passes,
+            textures,
+            staged,
+            views,
+            view_group,
+            draws,
+            draw_group,
+            lights,
+            kept,
+            room,
+        })
     }
 
     /// What this pass draws stays for the next frame.
@@ -199,17 +216,25 @@ impl<'a> Prepared<'a> {
     }
 
     /// Bytes that snapshots of the timed passes copy.
-    ///
-    /// # Errors
-    /// A picture whose copy is too large.
-    pub fn snapshot_bytes(&self) -> Result<u64, GpuError> {
-        let timed = self.plan.passes.iter().enumerate().filter(|(_, pass)| pass.timed);
-        let bytes = |index| Ok(self.staged(index)?.iter().map(Staging::byte_len).sum::<u64>());
-        timed.map(|(index, _)| bytes(index)).sum()
+    #[must_use]
+    pub fn snapshot_bytes(&self) -> u64 {
+        let bytes = |[color, depth, stencil]: [Option<Copied>; 3]| {
+            let copied = color.into_iter().chain(depth).chain(stencil);
+            copied.map(|copied| copied.bytes(&self.textures)).sum::<u64>()
+        };
+        self.plan.passes.iter().filter(|pass| pass.timed).map(|pass| bytes(copied(self.plan, pass))).sum()
+    }
+
+    /// Can the snapshots of all timed passes be held at once?
+    #[must_use]
+    pub fn holds_all_snapshots(&self) -> bool {
+        let mut room = self.room;
+        room.take(self.snapshot_bytes()).is_ok()
     }
 }
 
-fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
+/// Takes room for attachments and pictures.
+fn check_size(device: &Device, plan: &FramePlan, room: &mut Room) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;
     for (index, attachment) in plan.attachments.iter().enumerate() {
@@ -223,11 +248,6 @@ fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
         }
         bytes += plan.held_texels(AttachmentId(index)) * 8;
     }
-    for pass in &plan.passes {
-        let targets = pass.color.iter().map(|target| target.attachment);
-        let targets = targets.chain(pass.depth_stencil.iter().map(|target| target.attachment));
-        bytes += targets.map(|id| plan.held_texels(id) / u64::from(plan.held_layers(id)) * 4).sum::<u64>();
-    }
     bytes += plan.textures.iter().map(PlanTexture::bytes).sum::<u64>();
     for texture in &plan.textures {
         let [width, height] = texture.picture.size();
@@ -239,11 +259,7 @@ fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
             });
         }
     }
-    if bytes > GpuError::MOST_BYTES {
-        let [needed, most] = [bytes, GpuError::MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
-        return Err(GpuError::TooLarge { what: "the frame".to_owned(), needed, most });
-    }
-    Ok(())
+    room.take(bytes)
 }
 
 fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
@@ -373,21 +389,41 @@ fn light_group(
     device.create_bind_group(&BindGroupDescriptor { label: Some("light with texture"), layout, entries })
 }
 
+/// One aspect of a layer of an attachment, which is copied after a pass.
+#[derive(Debug, Clone, Copy)]
+struct Copied {
+    attachment: AttachmentId,
+    layer: u32,
+    aspect: TextureAspect,
+}
+
+impl Copied {
+    fn bytes(self, textures: &[Texture]) -> u64 {
+        Staging::bytes_of(&textures[self.attachment.0], self.aspect)
+    }
+
+    fn staging(self, device: &Device, textures: &[Texture]) -> Result<Staging, GpuError> {
+        Staging::new(device, &textures[self.attachment.0], self.layer, self.aspect)
+    }
+}
+
+/// What is copied after a pass: colour, depth, stencil.
+fn copied(plan: &FramePlan, pass: &Pass) -> [Option<Copied>; 3] {
+    let copied = |target: Option<(AttachmentId, u32)>, change: Change, aspect| {
+        let (attachment, layer) = target.filter(|_| change == Change::Drawn)?;
+        Some(Copied { attachment, layer: held_layer(plan, attachment, layer), aspect })
+    };
+    let color = pass.color.as_ref().map(|target| (target.attachment, target.layer));
+    let depth_stencil = pass.depth_stencil.as_ref().map(|target| (target.attachment, target.layer));
+    [
+        copied(color, color_change(plan, pass), TextureAspect::All),
+        copied(depth_stencil, depth_change(pass), TextureAspect::DepthOnly),
+        copied(depth_stencil, stencil_change(pass), TextureAspect::StencilOnly),
+    ]
+}
+
 fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Result<StagedPass, GpuError> {
-    let mut staged = StagedPass::default();
-    if let (Some(target), Change::Drawn) = (&pass.color, color_change(plan, pass)) {
-        let layer = held_layer(plan, target.attachment, target.layer);
-        staged.color = Some(Staging::new(device, &textures[target.attachment.0], layer, TextureAspect::All)?);
-    }
-    if let Some(target) = &pass.depth_stencil {
-        let texture = &textures[target.attachment.0];
-        let layer = held_layer(plan, target.attachment, target.layer);
-        if depth_change(pass) == Change::Drawn {
-            staged.depth = Some(Staging::new(device, texture, layer, TextureAspect::DepthOnly)?);
-        }
-        if stencil_change(pass) == Change::Drawn {
-            staged.stencil = Some(Staging::new(device, texture, layer, TextureAspect::StencilOnly)?);
-        }
-    }
-    Ok(staged)
+    let staging = |copied: Option<Copied>| copied.map(|copied| copied.staging(device, textures)).transpose();
+    let [color, depth, stencil] = copied(plan, pass);
+    Ok(StagedPass { color: staging(color)?, depth: staging(depth)?, stencil: staging(stencil)? })
 }

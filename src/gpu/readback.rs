@@ -83,15 +83,8 @@ pub(super) struct Staging {
 
 impl Staging {
     pub fn new(device: &Device, texture: &Texture, layer: u32, aspect: TextureAspect) -> Result<Staging, GpuError> {
-        let format = match (texture.format(), aspect) {
-            (wgpu::TextureFormat::Rgba8UnormSrgb, _) => PixelFormat::Rgba8Srgb,
-            (wgpu::TextureFormat::Rgba8Unorm, _) => PixelFormat::Rgba8,
-            (wgpu::TextureFormat::R32Float, _) => PixelFormat::Count32F,
-            (wgpu::TextureFormat::R8Uint, _) | (_, TextureAspect::StencilOnly) => PixelFormat::U8,
-            _ => PixelFormat::Depth32F,
-        };
-        let row_stride = (texture.width() as usize * format.texel_bytes()).next_multiple_of(ROW_ALIGNMENT);
-        let size = (row_stride * texture.height() as usize) as u64;
+        let format = format_of(texture, aspect);
+        let (row_stride, size) = (row_stride(texture, format), Staging::bytes_of(texture, aspect));
         let most = device.limits().max_buffer_size;
         if size > most {
             let [needed, most] = [size, most].map(|bytes| format!("{bytes} bytes"));
@@ -101,6 +94,11 @@ impl Staging {
         let descriptor = wgpu::BufferDescriptor { label: Some("snapshot"), size, usage, mapped_at_creation: false };
         let buffer = device.create_buffer(&descriptor);
         Ok(Staging { texture: texture.clone(), layer, aspect, format, row_stride, buffer })
+    }
+
+    /// Bytes of such a copy, padding included.
+    pub fn bytes_of(texture: &Texture, aspect: TextureAspect) -> u64 {
+        (row_stride(texture, format_of(texture, aspect)) * texture.height() as usize) as u64
     }
 
     /// Bytes of the copy, padding included.
@@ -143,6 +141,22 @@ impl Staging {
         let size = [self.texture.width(), self.texture.height()];
         Ok(Arc::new(Image::from_rows(self.format, size, self.row_stride, mapped_bytes(&self.buffer)?)))
     }
+}
+
+/// What a copy of a texture's aspect holds.
+fn format_of(texture: &Texture, aspect: TextureAspect) -> PixelFormat {
+    match (texture.format(), aspect) {
+        (wgpu::TextureFormat::Rgba8UnormSrgb, _) => PixelFormat::Rgba8Srgb,
+        (wgpu::TextureFormat::Rgba8Unorm, _) => PixelFormat::Rgba8,
+        (wgpu::TextureFormat::R32Float, _) => PixelFormat::Count32F,
+        (wgpu::TextureFormat::R8Uint, _) | (_, TextureAspect::StencilOnly) => PixelFormat::U8,
+        _ => PixelFormat::Depth32F,
+    }
+}
+
+/// From a row of a copy to the next, bytes.
+fn row_stride(texture: &Texture, format: PixelFormat) -> usize {
+    (texture.width() as usize * format.texel_bytes()).next_multiple_of(ROW_ALIGNMENT)
 }
 
 /// The memory of a mapped buffer, which stays mapped as long as the bytes live.

@@ -53,8 +53,10 @@ impl Session {
         let capture = self.capture_plan(&given, &plan)?;
         let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture));
         let run = Run { scene: given, choice, plan, capture, judged };
-        let meshes = self.mesh_facts(&run.scene);
+        let meshes = self.mesh_facts(&run.scene, progress)?;
         let casting = self.casting(&run.scene, &run.choice);
+        let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
+        let darkening = darkening(&run.scene, &lights, progress)?;
         let size = request.size;
         let facts = Facts {
             scene: &run.scene,
@@ -84,7 +86,6 @@ impl Session {
             progress.advance();
         }
         let advice = self.advice(&mut runs, &told, &run.judged.wrong, run.choice.technique())?;
-        let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
         Ok(Diagnosis {
             scene: scene.name.clone(),
             technique: request.choice.technique(),
@@ -92,7 +93,7 @@ impl Session {
             size,
             error: run.judged.error,
             // How the mesh of what darkens nothing hangs together is no matter.
-            mesh_findings: darkening(&run.scene, &lights)
+            mesh_findings: darkening
                 .into_iter()
                 .zip(&meshes)
                 .filter(|(darkens, _)| *darkens)
@@ -152,10 +153,13 @@ impl Session {
         scene.lights.iter().map(&mut of_light).collect()
     }
 
-    fn mesh_facts(&mut self, scene: &Scene) -> Vec<MeshFacts> {
+    fn mesh_facts(&mut self, scene: &Scene, progress: &Progress) -> Result<Vec<MeshFacts>, SessionError> {
         let one = |object: &Object| {
+            if progress.is_cancelled() {
+                return Err(SessionError::Cancelled);
+            }
             let edges = self.geometry.edges(&object.mesh);
-            MeshFacts::new(object, &edges, &self.geometry.topology(&object.mesh))
+            Ok(MeshFacts::new(object, &edges, &self.geometry.topology(&object.mesh)))
         };
         scene.objects.iter().map(one).collect()
     }
@@ -179,19 +183,23 @@ impl Session {
 }
 
 /// Which objects can darken anything: those that cast, but for floors and the like, of which all that receives lies
-/// on the light's side or in their own plane.
-fn darkening(scene: &Scene, lights: &[DVec4]) -> Vec<bool> {
+/// on the light's side or in their own plane. Each triangle of a floor is held against each corner of what may be a
+/// very large model: it is given up at once when the work is to stop.
+fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec<bool>, SessionError> {
     let places: Vec<Vec<DVec3>> = scene.objects.iter().map(Object::world_positions).collect();
     let receiving = || {
         let receives = scene.objects.iter().zip(&places).filter(|(object, _)| object.receives && object.visible);
-        receives.flat_map(|(_, places)| places.iter().copied())
+        let corners = receives.flat_map(|(_, places)| places.iter().copied());
+        corners.take_while(|_| !progress.is_cancelled())
     };
     let darkens = |(object, places): (&Object, &Vec<DVec3>)| {
         let triangles = object.mesh.triangles();
         let under = |light: &DVec4| light_frame::object_can_darken(places, triangles, *light, receiving);
         object.casts && lights.iter().any(under)
     };
-    scene.objects.iter().zip(&places).map(darkens).collect()
+    let darkening = scene.objects.iter().zip(&places).map(darkens).collect();
+    // What was given up is no answer.
+    if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(darkening) }
 }
 
 /// All wrong regions, the largest first; what is merely too dark comes after what is wrong.

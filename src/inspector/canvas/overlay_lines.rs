@@ -9,7 +9,7 @@ use crate::reading::projected::Projector;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Pos2, Rect, pos2, vec2};
 use glam::DVec2;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// Lines that are drawn at most.
@@ -88,13 +88,12 @@ impl Lines {
     #[must_use]
     pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
         let mut numbers: Vec<(Pos2, i32)> = Vec::new();
-        let mut taken: Vec<Rect> = Vec::new();
+        let mut taken = Taken::default();
         for ([from, to], multiplicity) in self.counting(placement) {
             let at = from + (to - from) / 2.0;
             let room = Rect::from_center_size(at, NUMBER_SIZE.into());
             let is_legible = (to - from).length() >= LEAST_EDGE && seen.contains_rect(room);
-            if is_legible && !taken.iter().any(|other| other.intersects(room)) {
-                taken.push(room);
+            if is_legible && taken.take(at) {
                 numbers.push((at, multiplicity));
             }
             if numbers.len() == MOST_NUMBERS {
@@ -130,6 +129,26 @@ impl Lines {
             add_line(&mut mesh, ends.map(|end| on_screen(placement, end)), color, width, 1.0 / pixels_per_point);
         }
         Arc::new(mesh)
+    }
+}
+
+/// Where numbers are written, by cells of a number's size: each holds one middle at most, and what is written at another
+/// cell's middle reaches the cells beside it and no farther.
+#[derive(Debug, Default)]
+struct Taken(HashMap<[i32; 2], Pos2>);
+
+impl Taken {
+    /// Takes the room of a number with its middle at `at`, where no other is written over it.
+    fn take(&mut self, at: Pos2) -> bool {
+        let [width, height] = NUMBER_SIZE;
+        let cell = [(at.x / width).floor() as i32, (at.y / height).floor() as i32];
+        let lies_on = |other: &Pos2| (other.x - at.x).abs() < width && (other.y - at.y).abs() < height;
+        let beside = (-1..=1).flat_map(|column| (-1..=1).map(move |row| [cell[0] + column, cell[1] + row]));
+        let is_free = !beside.filter_map(|cell| self.0.get(&cell)).any(lies_on);
+        if is_free {
+            self.0.insert(cell, at);
+        }
+        is_free
     }
 }
 
@@ -254,6 +273,31 @@ mod tests {
         let numbers = lines(&many).numbers(placed(1.0), SEEN);
         assert!((1..4).contains(&numbers.len()), "{numbers:?}");
         assert!(numbers.windows(2).all(|pair| pair[1].0.y - pair[0].0.y >= NUMBER_SIZE[1]));
+    }
+
+    #[test]
+    fn many_thousand_edges_are_numbered_as_if_each_were_held_against_all() {
+        let mut state = 7_u32;
+        let mut random = |most: f64| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24) * most
+        };
+        let edge = |x: f64, y: f64| ([[x, y], [x + 60.0, y]], 2);
+        let many: Vec<_> = (0..20_000).map(|_| edge(random(400.0), random(300.0))).collect();
+        let found = lines(&many).numbers(placed(1.0), SEEN);
+        let mut expected: Vec<Pos2> = Vec::new();
+        for ([from, to], _) in &many {
+            let at = pos2(((from[0] + to[0]) / 2.0) as f32, from[1] as f32);
+            let room = Rect::from_center_size(at, NUMBER_SIZE.into());
+            let lies_on =
+                |other: &Pos2| Rect::from_center_size(*other, NUMBER_SIZE.into()).shrink(1e-3).intersects(room);
+            if SEEN.contains_rect(room) && !expected.iter().any(lies_on) {
+                expected.push(at);
+            }
+        }
+        let found: Vec<Pos2> = found.into_iter().map(|(at, _)| at).collect();
+        assert!(found.len() > 60, "{}", found.len());
+        assert_eq!(found, expected);
     }
 
     #[test]

@@ -32,8 +32,10 @@ const QUIET: f32 = 4.0;
 const QUIET_EDGES: f32 = 500.0;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
-/// What the GPU is given at most: a window's buffers hold no more.
+/// What the GPU is given at most, of all objects and volumes together: a window's buffers hold no more.
 const MOST_VERTICES: usize = 7_000_000;
+/// The same: 240 MB of corners.
+const MOST_TRIANGLES: usize = 20_000_000;
 
 /// Words at a place.
 #[derive(Debug, Clone)]
@@ -240,6 +242,9 @@ impl Build<'_> {
         }
         self.stage.is_cut |= found.iter().flatten().any(|corner| *corner == NONE);
         found.retain(|corners| !corners.contains(&NONE));
+        let room = self.room_for_triangles();
+        self.stage.is_cut |= found.len() > room;
+        found.truncate(room);
         match (inside, object.visible) {
             (_, false) => self.geometry.shells.extend(found),
             (Some(_), true) => self.geometry.holders.extend(found),
@@ -278,6 +283,12 @@ impl Build<'_> {
         if object.visible { color } else { color.gamma_multiply(0.25) }
     }
 
+    /// How many more triangles the GPU is given, of all kinds together.
+    fn room_for_triangles(&self) -> usize {
+        let Geometry { solids, holders, shells, .. } = &self.geometry;
+        MOST_TRIANGLES.saturating_sub(solids.len() + holders.len() + shells.len())
+    }
+
     /// [`NONE`] where there is no more room.
     fn vertex(&mut self, place: DVec3, normal: Vec3, color: Color32) -> u32 {
         self.corner((place - self.stage.middle).extend(1.0), normal, color)
@@ -312,7 +323,7 @@ impl Build<'_> {
                     }
                     *slot
                 });
-                match corners.contains(&NONE) {
+                match corners.contains(&NONE) || self.room_for_triangles() == 0 {
                     true => self.stage.is_cut = true,
                     false => self.geometry.shells.push(corners),
                 }
@@ -405,7 +416,8 @@ impl Build<'_> {
 
     fn shell(&mut self, places: [DVec3; 3], color: Color32) {
         let corners = places.map(|place| self.vertex(place, Vec3::ZERO, color));
-        self.geometry.shells.extend(Some(corners).filter(|corners| !corners.contains(&NONE)));
+        let has_room = self.room_for_triangles() > 0;
+        self.geometry.shells.extend(Some(corners).filter(|corners| has_room && !corners.contains(&NONE)));
     }
 
     fn line(&mut self, ends: [DVec3; 2], width: f32, color: Color32) {

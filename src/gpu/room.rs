@@ -1,0 +1,30 @@
+//! How much memory a frame may take.
+
+use super::GpuError;
+
+/// What a frame holds, of what it may.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Room {
+    most: u64,
+    held: u64,
+}
+
+impl Room {
+    /// Nothing is held yet, of `most` bytes.
+    pub fn of(most: u64) -> Room {
+        Room { most, held: 0 }
+    }
+
+    /// Holds so many bytes more.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`]: that is more than fits.
+    pub fn take(&mut self, bytes: u64) -> Result<(), GpuError> {
+        self.held = self.held.saturating_add(bytes);
+        if self.held <= self.most {
+            return Ok(());
+        }
+        let [needed, most] = [self.held, self.most].map(|bytes| format!("{} MiB", bytes.div_ceil(1 << 20)));
+        Err(GpuError::TooLarge { what: "the frame".to_owned(), needed: format!("at least {needed}"), most })
+    }
+}
