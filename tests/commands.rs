@@ -43,6 +43,23 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// Without a display the same is a capture, and brackets it.
+#[cfg(all(feature = "inspector", target_os = "linux"))]
+#[test]
+fn a_window_is_no_frame_to_bracket() {
+    let output = Command::new(env!("CARGO_BIN_EXE_stencilscope"))
+        .args(["view", "tori", "--external-capture"])
+        .env("DISPLAY", ":nowhere")
+        .output()
+        .expect("the program runs");
+    let line = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{line}");
+    assert!(
+        line.lines().count() == 1 && line.contains("--external-capture") && line.contains("leave it out"),
+        "{line}"
+    );
+}
+
 #[test]
 fn a_headless_run_prints_nothing_but_its_own_words() {
     let folder = folder();

@@ -3,6 +3,7 @@
 use super::error::ImportError;
 use super::process::{self, Limits, Run};
 use super::{RawFrame, read};
+use crate::files::open_plain;
 use crate::progress::Progress;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -58,7 +59,8 @@ pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<Raw
     // RenderDoc has one error for all of these.
     let reason = match std::fs::metadata(file) {
         Ok(found) if found.is_dir() => Some("it is a folder".to_owned()),
-        Ok(_) => std::fs::File::open(file).err().map(|error| error.to_string()),
+        // A pipe would be waited for.
+        Ok(_) => open_plain(file).err().map(|error| format!("it {error}")),
         Err(error) => Some(error.to_string()),
     };
     if let Some(reason) = reason {

@@ -56,6 +56,12 @@ fn what_is_missing_is_named_with_its_package() {
     assert_fails("", &nothing, 3, &["`./nothing` can't be started", "python3-renderdoc"]);
     assert_fails("", &["import", "gone.rdc", "--list", "--python", "./python"], 2, &["gone.rdc", "check the path"]);
     assert_fails("", &["import", "temporary", "--list", "--python", "./python"], 2, &["it is a folder"]);
+    // Nobody writes to it: opening it would wait for ever.
+    let pipes = tempfile::tempdir().expect("a folder");
+    let pipe = pipes.path().join("pipe.rdc");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    let pipe = pipe.to_str().expect("a name");
+    assert_fails("", &["import", pipe, "--list", "--python", "./python"], 2, &["pipe.rdc", "it is a pipe"]);
 }
 
 #[test]
