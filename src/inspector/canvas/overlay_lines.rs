@@ -287,10 +287,11 @@ mod tests {
         let found = lines(&many).numbers(placed(1.0), SEEN);
         let mut expected: Vec<Pos2> = Vec::new();
         for ([from, to], _) in &many {
-            let at = pos2(((from[0] + to[0]) / 2.0) as f32, from[1] as f32);
+            let [from, to] = [from, to].map(|end| pos2(end[0] as f32, end[1] as f32));
+            let at = from + (to - from) / 2.0;
             let room = Rect::from_center_size(at, NUMBER_SIZE.into());
-            let lies_on =
-                |other: &Pos2| Rect::from_center_size(*other, NUMBER_SIZE.into()).shrink(1e-3).intersects(room);
+            let [width, height] = NUMBER_SIZE;
+            let lies_on = |other: &Pos2| (other.x - at.x).abs() < width && (other.y - at.y).abs() < height;
             if SEEN.contains_rect(room) && !expected.iter().any(lies_on) {
                 expected.push(at);
             }
