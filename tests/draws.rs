@@ -225,7 +225,8 @@ fn a_frame_whose_draws_change_too_much_is_refused_with_a_mend() {
     let mut session = session();
     session.hold_at_most(32 << 20);
     let request = CaptureRequest { size: [640, 480], ..by_draw(Technique::None) };
-    let error = session.capture(&many_sheets(50.0), &request).err().expect("too large").to_string();
+    let Err(error) = session.capture(&many_sheets(50.0), &request) else { panic!("it is too large") };
+    let error = error.to_string();
     assert!(error.contains("at least 3") && error.contains("32 MiB fit"), "{error}");
     assert!(error.contains("--every pass") && !error.contains('\n'), "{error}");
     // The same, pass by pass, does.
