@@ -113,7 +113,8 @@ fn volumes_fail_only_where_they_must() {
         .flat_map(|case| ["0.001", "0.0003", "0.0001"].map(|degrees| format!("{case} {degrees}: f32-limit")))
         .collect();
     let wraps = ["256", "512"].map(|count| format!("nested {count}: wrap-256"));
-    assert_eq!(must(Technique::ZFail), [&limits[..], &wraps[..]].concat());
+    let holes = ["0.0001", "0.00001", "0"].map(|pixels| format!("seam {pixels}: f32-limit"));
+    assert_eq!(must(Technique::ZFail), [&limits[..], &wraps[..], &holes[..]].concat());
     let names: BTreeSet<String> =
         must(Technique::ZPassPlus).iter().filter_map(|one| one.split(": ").nth(1)).map(str::to_owned).collect();
     let expected = ["f32-limit", "light-in-near-plane", "near-plane-crack", "near-plane-rounding", "wrap-256"];

@@ -226,8 +226,9 @@ impl Cause {
                  a map."
             }
             Cause::F32Limit => {
-                "The light lies so nearly in the triangle's plane that single precision cannot tell on which side. \
-                 No setting mends it: move the light or the triangle."
+                "Single precision cannot tell on which side: the light lies nearly in a triangle's plane, or a volume's \
+                 side meets the surface in the very middle of a pixel. No setting mends it: move the light, the \
+                 triangle or the eye."
             }
             Cause::SubpixelEdges => {
                 "The caster's edges are a fraction of a pixel long. The GPU moves corners to the nearest 1/256 of a pixel, \

@@ -1,21 +1,27 @@
 //! Which techniques are right for a scene: each is run on it.
 
-use super::{Measurement, Session, SessionError, median_ms};
+use super::truth::Traced;
+use super::{CaptureRequest, Session, SessionError, median_ms};
+use crate::accuracy::ErrorCounts;
 use crate::diagnosis::Suited;
 use crate::progress::Progress;
 use crate::scene::Scene;
+use crate::technique::Choice;
+use std::time::Duration;
 
-/// Frames of each technique that are timed.
+/// Frames of each technique that are timed, after one that is not.
 const RUNS: usize = 3;
+/// A frame that takes as long is its own time: what only a first frame does is little beside it.
+const LONG: Duration = Duration::from_millis(500);
 
 impl Session {
-    /// Measures every candidate on a scene: the right ones first, of these the fastest. What can't draw the scene
+    /// Runs every candidate on a scene: the right ones first, of these the fastest. What can't draw the scene
     /// is left out.
     ///
     /// # Errors
     /// A scene that can't be traced; [`SessionError::Cancelled`].
     pub fn suited(&mut self, scene: &Scene, size: [u32; 2], progress: &Progress) -> Result<Vec<Suited>, SessionError> {
-        self.traced(scene, size, progress)?;
+        let traced = self.traced(scene, size, progress)?;
         let choices = Suited::candidates();
         progress.start(choices.len());
         let mut suited = Vec::with_capacity(choices.len());
@@ -23,21 +29,30 @@ impl Session {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            let what = Measurement { choices: vec![choice], size, runs: RUNS };
-            // With a progress of its own: its steps are not these.
-            let measured = match self.measure(scene, &what, &Progress::default()) {
-                Ok(measured) => measured,
-                Err(SessionError::Plan(_) | SessionError::Gpu(_)) => Vec::new(),
+            match self.tried_on(scene, &traced, choice) {
+                Ok(one) => suited.push(one),
+                Err(SessionError::Plan(_) | SessionError::Gpu(_) | SessionError::NoRoom { .. }) => {}
                 Err(error) => return Err(error),
-            };
-            suited.extend(measured.into_iter().map(|one| Suited {
-                wrong: one.error.wrong(),
-                frame_ms: median_ms(&one.frames).unwrap_or(f64::INFINITY),
-                choice: one.choice,
-            }));
+            }
             progress.advance();
         }
         suited.sort_by(|a, b| a.wrong.cmp(&b.wrong).then(a.frame_ms.total_cmp(&b.frame_ms)));
         Ok(suited)
+    }
+
+    fn tried_on(&mut self, scene: &Scene, traced: &Traced, choice: Choice) -> Result<Suited, SessionError> {
+        let plan = self.plan(scene, &CaptureRequest::new(choice.clone(), traced.truth.size))?;
+        self.check_room(&plan)?;
+        let ready = self.executor.prepare(&plan)?;
+        let first = self.executor.time(&ready, false)?;
+        let frames = match first >= LONG {
+            true => vec![first],
+            false => (0..RUNS).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?,
+        };
+        let labels = self.executor.labels(ready)?.into_iter().enumerate();
+        let error: ErrorCounts =
+            labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
+        let frame_ms = median_ms(&frames).unwrap_or(f64::INFINITY);
+        Ok(Suited { wrong: error.wrong(), frame_ms, choice })
     }
 }

@@ -61,7 +61,7 @@ impl Session {
         Ok(judged(&plan, runs.traced, &labels, None).wrong)
     }
 
-    fn check_room(&self, plan: &FramePlan) -> Result<(), SessionError> {
+    pub(super) fn check_room(&self, plan: &FramePlan) -> Result<(), SessionError> {
         let needed = plan.bytes();
         match self.room {
             Some(most) if needed > most => Err(SessionError::NoRoom { needed, most }),

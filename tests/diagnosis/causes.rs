@@ -5,8 +5,10 @@ use super::{SMALL, diagnose, faults, first, session, told};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, MeshTrouble, Proof};
 use stencilscope::plan::Part;
+use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, builtin};
-use stencilscope::session::{CaptureRequest, Session};
+use stencilscope::session::{CaptureRequest, Fault, Session};
+use stencilscope::stress::{Case, Drives};
 use stencilscope::technique::Technique;
 
 /// Scenes that are looked at until one has wrong pixels.
@@ -112,6 +114,35 @@ fn a_silhouette_that_does_not_fit_its_picture_is_outside_the_map() {
     let found = found.expect("a wrong pixel");
     assert_eq!(first(&found), Some(Cause::OutsideMap), "{}", told(&found));
     assert!(told(&found).contains("set fit = on"), "{}", told(&found));
+}
+
+/// Where one shadow ends in the middle of a pixel and the next begins there, rounding leaves a hole in the dark.
+#[test]
+fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
+    let case = Case::named("seam").expect("a case");
+    let Drives::Scene(scene) = case.drives else { panic!("it drives a scene") };
+    let provoked = |technique| Provocation {
+        cause: Cause::F32Limit,
+        scene: scene(0.0).expect("a scene"),
+        choice: set(technique, &[]),
+        fault: None,
+    };
+    let mut session = session();
+    for technique in [Technique::ZFail, Technique::Auto] {
+        let request = CaptureRequest::new(provoked(technique).choice, [320, 240]);
+        let found = session.diagnose(&provoked(technique).scene, &request, Fault::None, &Progress::default());
+        let found = found.expect("a diagnosis");
+        let holes = found.regions.len() + found.rest.regions;
+        assert!(holes > 3 && found.error.false_shadow == 0, "{holes}: {}", told(&found));
+        for region in &found.regions {
+            let [first, ..] = &region.causes[..] else { panic!("no cause: {}", told(&found)) };
+            assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", told(&found));
+            let [column, row] = region.at;
+            assert_eq!([(column - 20) % 14, (row - 70) % 14], [0, 0], "only where a seam is");
+            let middle = format!("'s volume passes less than 1e-6 pixels from the middle of pixel {column},{row}");
+            assert!(first.evidence.contains(&middle), "{}", first.evidence);
+        }
+    }
 }
 
 /// One number for all pixels is right where the near plane is in what the eye is in.

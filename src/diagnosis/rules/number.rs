@@ -3,11 +3,14 @@
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
 use crate::diagnosis::mend::Mend;
+use crate::math::side_of_triangle;
 use crate::numbers;
 use crate::plan::Part;
 use crate::scene::Object;
+use glam::{DVec3, DVec4};
+use rayon::prelude::*;
 
-pub(crate) const RULES: &[Rule] = &[f32_limit, subpixel_edges];
+pub(crate) const RULES: &[Rule] = &[f32_limit, side_through_middle, subpixel_edges];
 
 /// Half a unit in the last place of 24 bits, as a part of the number.
 const ROUNDING: f64 = 6e-8;
@@ -53,6 +56,88 @@ fn f32_limit(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::digits(moved)
     );
     Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
+}
+
+/// Roundings between a corner and the depths that are compared: of its position, its place in the picture, the side's
+/// depth there and the surface's.
+const ROUNDINGS: f64 = 4.0;
+
+/// A side that meets the surface in the very middle of a pixel, as near as positions are rounded, is counted or not by
+/// chance. Where a shadow ends there, the truth's edge excuses that; where another shadow begins, a hole is left in both.
+fn side_through_middle(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    if !facts.counts_volumes(light) {
+        return None;
+    }
+    let ((name, at, pixels, rounding), shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let depth = facts.tracer.depth_of(seen.point);
+        let width = facts.pixel_width(depth);
+        let casting = facts.scene.objects.iter().filter(|object| object.casts);
+        let rounding = ROUNDING * depth;
+        let nearest = |object: &Object| {
+            let most = ROUNDINGS * rounding;
+            let side = nearest_side(object, seen.point, facts.tracer.light_position(light), most)?;
+            Some((object.name.clone(), side.metres / width, rounding * side.lever / width))
+        };
+        let (name, pixels, rounding) = casting.filter_map(nearest).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((name, sample.pixel, pixels, rounding))
+    })?;
+    let [column, row] = at;
+    let near = if pixels < 1e-6 { "less than 1e-6".to_owned() } else { numbers::digits(pixels) };
+    let evidence = format!(
+        "a side of {name}'s volume passes {near} pixels from the middle of pixel {column},{row}, and rounding positions to 24 \
+         bits moves it by {} each time",
+        numbers::digits(rounding)
+    );
+    Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
+}
+
+/// How near a side of a volume passes.
+struct NearSide {
+    /// Square to the light's way.
+    metres: f64,
+    /// How much farther the side moves there than its edge does.
+    lever: f64,
+}
+
+/// The side of an object's volume that passes a point that is seen nearer than so many metres, times its lever.
+fn nearest_side(object: &Object, seen: DVec3, light: DVec4, most: f64) -> Option<NearSide> {
+    let to_light = light.truncate() - seen * light.w;
+    let (towards, reach) = (to_light.normalize_or_zero(), to_light.length());
+    let world = object.world_positions();
+    // Along the light's way onto the plane through the point that is square to it; what is not between throws nothing.
+    let thrown = |corner: u32| {
+        let away = world[corner as usize] - seen;
+        let above = away.dot(towards);
+        let lever = if light.w == 0.0 { 1.0 } else { reach / (reach - above) };
+        (above > 0.0 && lever > 0.0 && lever.is_finite()).then_some(((away - towards * above) * lever, lever))
+    };
+    let near = |[a, b]: [u32; 2]| {
+        let ((from, lever), (to, other)) = (thrown(a)?, thrown(b)?);
+        let along = to - from;
+        let part = (-from.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let side = NearSide { metres: (from + along * part).length(), lever: lever.max(other) };
+        (side.metres <= most * side.lever).then_some(side)
+    };
+    let triangles = object.mesh.triangles();
+    let edges_of = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    // An edge is none of a side's where the triangles around it, turned towards the light, run along it to and fro alike.
+    let has_side = |[low, high]: [u32; 2]| {
+        let along = |corners: &[u32; 3]| {
+            let towards_high = edges_of(*corners)
+                .iter()
+                .fold(0, |sum, edge| sum + i32::from(*edge == [low, high]) - i32::from(*edge == [high, low]));
+            let turned = || side_of_triangle(corners.map(|index| world[index as usize]), light).value();
+            if towards_high == 0 { 0 } else { towards_high * turned() }
+        };
+        triangles.iter().map(along).sum::<i32>() != 0
+    };
+    let found =
+        triangles.par_iter().flat_map_iter(|corners| edges_of(*corners)).filter_map(|edge| Some((edge, near(edge)?)));
+    let found: Vec<([u32; 2], NearSide)> = found.collect();
+    let sides = found.into_iter().filter(|(edge, _)| has_side(*edge)).map(|(_, side)| side);
+    sides.min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
 /// Corners snap to 1/256 of a pixel. Where a caster's edges are fractions of one, so do those of its volume's sides, narrow

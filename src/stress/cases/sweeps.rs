@@ -2,6 +2,7 @@
 
 mod grazing;
 mod near;
+mod seam;
 
 use super::stage::{carried, enlarged, floor, scene, still_life};
 use super::who::*;
@@ -25,6 +26,7 @@ pub const ALL: &[Case] = &[
     THIN_GAP,
     FINE_GRID,
     SUBPIXEL_EDGES,
+    seam::SEAM,
     TRIANGLE_COUNT,
     MAP_SIZE,
     near::NEAR_PLANE,

@@ -1,0 +1,71 @@
+//! Where one shadow ends and the next begins, in the middle of a pixel.
+
+use crate::scene::{Camera, Light, MeshError, Object, Scene, shapes};
+use crate::stress::cases::stage::{floor, scene};
+use crate::stress::cases::who::*;
+use crate::stress::{Case, Drives, Failure};
+use crate::technique::Technique;
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+/// Each seam by itself: as chance has it, a tenth of them have a hole.
+const HOLE: Failure = fails(
+    Z_FAIL,
+    "f32-limit",
+    "two sides meet the floor in the middle of a pixel, as near as positions are rounded: each is counted or not by chance",
+)
+.at(|pixels| pixels <= 1e-4)
+.at_most(0.001);
+
+pub const SEAM: Case = Case {
+    name: "seam",
+    lesson: "two sheets that touch, turned and raised in a hundred ways, and seams of their shadows that come to the middles \
+             of pixels: the seam is dark on both sides, and rounding leaves holes in it",
+    parameter: "pixels from the middle",
+    values: &[0.1, 0.01, 1e-3, 1e-4, 1e-5, 0.0],
+    drives: Drives::Scene(seams),
+    without: &[
+        (Technique::ShadowMap, "a texel is wider than a seam: `map-size` shows that"),
+        (Technique::PlanarTexture, "a texel is wider than a seam"),
+        (Technique::Projective, "a texel is wider than a seam"),
+    ],
+    failures: &[HOLE, HOLE.of(AUTO), HOLE.of(Z_PASS), HOLE.of(Z_PASS_PLUS)],
+    ..PLAIN
+};
+
+fn seams(pixels: f64) -> Result<Scene, MeshError> {
+    const SIZE: DVec2 = DVec2::new(320.0, 240.0);
+    let (eye, target, lamp) = ([0.3, 3.1, 4.2], [0.0; 3], DVec3::new(1.3, 6.1, 0.7));
+    let camera = Camera::looking(eye, target);
+    let sights = camera.sights(SIZE.x / SIZE.y);
+    let mut sheets = [Vec::new(), Vec::new()];
+    let places = (0..20).flat_map(|column| {
+        (0..11).map(move |row| DVec2::new(20.5, 70.5) + DVec2::new(column as f64, row as f64) * 14.0)
+    });
+    for (index, middle) in places.enumerate() {
+        // Spread evenly, and no two alike.
+        let [turn, height, tilt] =
+            [0.754_877_666, 0.569_840_291, 0.618_033_989].map(|step: f64| (step * index as f64).fract());
+        let along = DVec3::new((turn * PI).cos(), 0.0, (turn * PI).sin());
+        let across = along.cross(DVec3::Y);
+        let way = sights.through((middle / SIZE * 2.0 - 1.0) * DVec2::new(1.0, -1.0)).along;
+        let width = 2.0 * camera.half_height_at(-camera.eye.y / way.y) / SIZE.y;
+        let seen = camera.eye - way * (camera.eye.y / way.y) + across * (pixels * width);
+        // On the way from what is seen to the lamp, so that the shadow falls there.
+        let raised = |on_floor: DVec3, part: f64| on_floor.lerp(lamp, part);
+        let part = 0.03 + 0.27 * height;
+        let seam = [raised(seen - along * 0.03, part + 0.02 * tilt), raised(seen + along * 0.03, part)];
+        let [first, second] = [1.0, -1.0].map(|side| raised(seen + across * (side * 0.04), part));
+        sheets[0].extend([seam[0], seam[1], first]);
+        sheets[1].extend([seam[1], seam[0], second]);
+    }
+    let object = |(name, points): (&str, Vec<DVec3>)| {
+        let points: Vec<[f64; 3]> = points.into_iter().map(Into::into).collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..points.len() as u32 / 3).map(|first| [0, 1, 2].map(|corner| first * 3 + corner)).collect();
+        Ok(Object::of(name, shapes::triangles(&points, &triangles)?).unseen())
+    };
+    let objects = ["left", "right"].into_iter().zip(sheets).map(object);
+    let objects = std::iter::once(floor(9.0)).chain(objects).collect::<Result<_, MeshError>>()?;
+    Ok(scene(eye, target, Light::point(lamp), objects))
+}
