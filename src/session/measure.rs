@@ -224,11 +224,14 @@ impl Session {
             self.executor.time(&ready, false)?;
             plans.push(plan);
         }
-        for seconds in moments.all() {
+        for (turn, seconds) in moments.all().enumerate() {
             let scene = moments.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
             let mut reference = Reference::new(&scene, &traced);
-            for ((item, measured, cache), kept) in moving.iter_mut().zip(&plans) {
+            // What comes just before slows a frame, or not: each frame begins with another choice.
+            let first = turn % moving.len().max(1);
+            for index in (first..moving.len()).chain(0..first) {
+                let ((item, measured, cache), kept) = (&mut moving[index], &plans[index]);
                 progress.turn_to(*item);
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
