@@ -292,7 +292,7 @@ pub struct CapturedMap {
 pub struct Timing {
     /// A frame without snapshots and mask passes: recording, submitting, waiting for the GPU.
     pub frame_ms: Option<f64>,
-    /// The same frame with a snapshot after every pass, read back to memory.
+    /// The same frame with a snapshot after every pass, read back to memory; `None` too where they don't all fit at once.
     pub captured_ms: Option<f64>,
     /// Writing the folder.
     pub write_ms: Option<f64>,

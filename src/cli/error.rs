@@ -52,7 +52,7 @@ pub enum CliError {
     Panels(#[from] crate::app::AppError),
     /// Histories contradict what the GPU stored.
     #[error(
-        "{pixels} of the histories do not make what the GPU stored, which is a bug of stencilscope: please report it"
+        "{pixels} of the histories do not make what the GPU stored, by the GPU's rounding or a bug of stencilscope: please report it"
     )]
     WrongHistory {
         /// How many.

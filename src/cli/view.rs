@@ -84,7 +84,8 @@ pub mod window {
 
     /// Everything that can be wrong with the arguments is found before a window is made.
     fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
-        let why = "a window draws many frames, and the debugger's own key records one";
+        let why =
+            "a window draws many frames, of which the debugger's own key records one; `capture` brackets its frame";
         arguments.frame.refuse_external_capture(why)?;
         let folder = Path::new(&arguments.scene);
         let shipped = Shipped::named(&arguments.scene).filter(|_| !folder.is_dir());

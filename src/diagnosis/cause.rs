@@ -226,9 +226,9 @@ impl Cause {
                  a map."
             }
             Cause::F32Limit => {
-                "Single precision cannot tell on which side: the light lies nearly in a triangle's plane, or a volume's \
-                 side meets the surface in the very middle of a pixel. No setting mends it: move the light, the \
-                 triangle or the eye."
+                "Single precision is too coarse: the light lies nearly in a triangle's plane, a volume's side meets the \
+                 surface in the very middle of a pixel, or a triangle reaches many kilometres beyond the picture's \
+                 border. No setting mends it: move the light, the triangle or the eye, or split what is so long."
             }
             Cause::SubpixelEdges => {
                 "The caster's edges are a fraction of a pixel long. The GPU moves corners to the nearest 1/256 of a pixel, \

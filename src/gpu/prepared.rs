@@ -246,7 +246,7 @@ fn check_size(device: &Device, plan: &FramePlan, room: &mut Room) -> Result<(), 
                 most: format!("{limit}x{limit}"),
             });
         }
-        bytes += plan.held_texels(AttachmentId(index)) * 8;
+        bytes += plan.attachment_bytes(AttachmentId(index));
     }
     bytes += plan.textures.iter().map(PlanTexture::bytes).sum::<u64>();
     for texture in &plan.textures {

@@ -304,7 +304,7 @@ impl PixelHistory {
     }
 
     /// Do the events make what the GPU stored, after every pass and bit for bit, and are they whole
-    /// and in order? If not, it is a bug of ours; [`PixelHistory::disagreements`] tells where.
+    /// and in order? If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] tells where.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.disagreements().is_empty()

@@ -51,7 +51,10 @@ impl PixelHistory {
             let _ = writeln!(text, "  {}", self.line(event, curve));
         }
         for disagreement in self.disagreements() {
-            let _ = writeln!(text, "\nTHIS HISTORY IS WRONG, which is a bug of stencilscope: {disagreement}");
+            let _ = writeln!(
+                text,
+                "\nTHIS HISTORY IS WRONG, by the GPU's rounding or a bug of stencilscope: {disagreement}"
+            );
         }
         text
     }

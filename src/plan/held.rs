@@ -44,7 +44,7 @@ impl FramePlan {
     }
 
     /// Of all its texels.
-    pub(super) fn attachment_bytes(&self, id: AttachmentId) -> u64 {
+    pub(crate) fn attachment_bytes(&self, id: AttachmentId) -> u64 {
         let Attachment { format, .. } = self.attachment(id);
         // Depth32FloatStencil8 has no fixed size; drivers keep four bytes and one.
         self.held_texels(id) * u64::from(format.block_copy_size(None).unwrap_or(5))

@@ -228,9 +228,13 @@ impl Session {
             let scene = moments.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
             let mut reference = Reference::new(&scene, &traced);
-            // What comes just before slows a frame, or not: each frame begins with another choice.
-            let first = turn % moving.len().max(1);
-            for index in (first..moving.len()).chain(0..first) {
+            // What comes just before slows a frame, or not: each moment begins with another choice, every other one backwards.
+            let mut order: Vec<usize> = (0..moving.len()).collect();
+            order.rotate_left(turn % moving.len().max(1));
+            if turn % 2 == 1 {
+                order.reverse();
+            }
+            for index in order {
                 let ((item, measured, cache), kept) = (&mut moving[index], &plans[index]);
                 progress.turn_to(*item);
                 if progress.is_cancelled() {

@@ -172,7 +172,7 @@ pub struct CaptureCost {
     pub frames: Vec<Duration>,
     /// Frames with a snapshot after every pass, all in memory; none where they don't [fit](Session::hold_at_most).
     pub captured: Vec<Duration>,
-    /// Bytes that each captured frame copied.
+    /// Bytes that a captured frame copies.
     pub snapshot_bytes: u64,
 }
 
@@ -193,8 +193,8 @@ impl Session {
         })
     }
 
-    /// Lets a captured frame hold no more than so many bytes: attachments, pictures of materials, and the snapshots that
-    /// differ. At first 8 GiB.
+    /// Lets a frame hold no more than so many bytes: attachments, pictures of materials, and of a captured frame the
+    /// snapshots that differ; meshes are not counted. At first 8 GiB.
     pub fn hold_at_most(&mut self, bytes: u64) {
         self.executor.hold_at_most(bytes);
     }

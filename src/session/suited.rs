@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// Frames of each technique that are timed, after one that is not.
 const RUNS: usize = 3;
-/// A frame that takes as long is its own time: what only a first frame does is little beside it.
+/// Where the first frame takes as long, one more is timed and no others.
 const LONG: Duration = Duration::from_millis(500);
 
 impl Session {
@@ -43,12 +43,9 @@ impl Session {
     fn tried_on(&mut self, scene: &Scene, traced: &Traced, choice: Choice) -> Result<Suited, SessionError> {
         let plan = self.plan(scene, &CaptureRequest::new(choice.clone(), traced.truth.size))?;
         self.check_room(&plan)?;
-        let ready = self.executor.prepare(&plan)?;
-        let first = self.executor.time(&ready, false)?;
-        let frames = match first >= LONG {
-            true => vec![first],
-            false => (0..RUNS).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?,
-        };
+        let ready = self.executor.prepare_apart(&plan)?;
+        let runs = if self.executor.time(&ready, false)? >= LONG { 1 } else { RUNS };
+        let frames: Vec<Duration> = (0..runs).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?;
         let labels = self.executor.labels(ready)?.into_iter().enumerate();
         let error: ErrorCounts =
             labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();

@@ -271,12 +271,12 @@ fn a_folder_says_what_histories_need() {
 }
 
 #[test]
-fn a_history_that_contradicts_the_gpu_says_that_it_is_our_bug() {
+fn a_history_that_contradicts_the_gpu_says_so() {
     let mut wrong = history(DARK, &FACES);
     wrong.events.remove(7);
     let mut harness = picked(DARK);
     answer(&mut harness, wrong);
-    harness.get_by_label("× This history is wrong, which is our bug. Please report it.");
+    harness.get_by_label("× This history is wrong, by the GPU's rounding or our bug. Please report it.");
     harness.get_by_label("the GPU counted 8 fragments, and 7 are listed");
     assert!(harness.query_by_label("· as the GPU stored it").is_none());
 }

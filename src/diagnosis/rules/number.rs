@@ -9,8 +9,9 @@ use crate::plan::Part;
 use crate::scene::Object;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
-pub(crate) const RULES: &[Rule] = &[f32_limit, side_through_middle, subpixel_edges];
+pub(crate) const RULES: &[Rule] = &[f32_limit, subpixel_edges];
 
 /// Half a unit in the last place of 24 bits, as a part of the number.
 const ROUNDING: f64 = 6e-8;
@@ -25,9 +26,15 @@ const LARGER: [u32; 3] = [3, 5, 15];
 /// Pixels along a side of the largest picture that every GPU draws.
 const MOST_SIDE: u32 = 8192;
 
+/// What 24 bits round away. Nothing that could be run proves it, so the numbers must.
+fn f32_limit(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let looks: [Rule; 3] = [grazed, cut_at_border, side_through_middle];
+    looks.into_iter().find_map(|look| look(facts, case))
+}
+
 /// Positions are rounded when they go to the GPU; where light grazes, that moves a shadow's edge by the
 /// rounding over the tangent of the light's height, for a lamp farther the nearer the caster is to it.
-fn f32_limit(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn grazed(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     let is_geometric = facts.counts_volumes(light) || facts.draws(light, Part::PlanarShadow).next().is_some();
     if !is_geometric {
@@ -66,78 +73,126 @@ const ROUNDINGS: f64 = 4.0;
 /// chance. Where a shadow ends there, the truth's edge excuses that; where another shadow begins, a hole is left in both.
 fn side_through_middle(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    if !facts.counts_volumes(light) {
-        return None;
-    }
     let ((name, at, pixels, rounding), shown_by) = case.shown(|sample| {
-        let seen = sample.seen?;
-        let depth = facts.tracer.depth_of(seen.point);
-        let width = facts.pixel_width(depth);
-        let casting = facts.scene.objects.iter().filter(|object| object.casts);
-        let rounding = ROUNDING * depth;
-        let nearest = |object: &Object| {
-            let most = ROUNDINGS * rounding;
-            let side = nearest_side(object, seen.point, facts.tracer.light_position(light), most)?;
-            Some((object.name.clone(), side.metres / width, rounding * side.lever / width))
+        let seen = sample.seen?.point;
+        let width = facts.pixel_width(facts.tracer.depth_of(seen));
+        let nearest = |(name, ..): (String, i32, i32)| {
+            let side = nearest_side(facts, facts.object(&name)?.1, seen, facts.tracer.light_position(light))?;
+            Some((name, side.metres / width, side.rounding / width))
         };
-        let (name, pixels, rounding) = casting.filter_map(nearest).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let sides = sample.miscounted(facts, light).into_iter().filter_map(nearest);
+        let (name, pixels, rounding) = sides.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some((name, sample.pixel, pixels, rounding))
     })?;
-    let [column, row] = at;
     let near = if pixels < 1e-6 { "less than 1e-6".to_owned() } else { numbers::digits(pixels) };
+    let [column, row] = at;
     let evidence = format!(
-        "a side of {name}'s volume passes {near} pixels from the middle of pixel {column},{row}, and rounding positions to 24 \
-         bits moves it by {} each time",
+        "a side of {name}'s volume passes {near} pixels, measured across the light, from the middle of pixel \
+         {column},{row}, and rounding positions to 24 bits moves it by {} each time",
         numbers::digits(rounding)
     );
-    Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
+    // By chance one pixel of many lies so: what is wrong all over a region has another cause.
+    (shown_by == case.samples.len()).then(|| Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
+}
+
+/// The GPU cuts what reaches beyond the picture where that ends, and rounds the place by the length of what it cuts: pixels
+/// along the border miss faces that cover them.
+fn cut_at_border(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let ((name, length, away, at, moved), shown_by) = case.shown(|sample| {
+        let seen = sample.seen?.point;
+        let lengths = sample.miscounted(facts, light).into_iter().filter_map(|(name, ..)| {
+            let length = longest_edge(facts.object(&name)?.1);
+            Some((name, length))
+        });
+        let (name, length) = lengths.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let moved = ROUNDING * length / facts.pixel_width(facts.tracer.depth_of(seen));
+        let to_border = |axis: usize| sample.pixel[axis].min(facts.plan.size[axis] - 1 - sample.pixel[axis]);
+        let away = f64::from(to_border(0).min(to_border(1))) + 0.5;
+        (away <= moved).then_some((name, length, away, sample.pixel, moved))
+    })?;
+    let [column, row] = at;
+    let evidence = format!(
+        "edges of {name} are up to {} long: where the picture ends, {} pixels from the middle of pixel {column},{row}, they \
+         are cut, and rounding to 24 bits moves the cut by {} pixels",
+        numbers::metres(length),
+        numbers::digits(away),
+        numbers::digits(moved)
+    );
+    (shown_by == case.samples.len()).then(|| Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
+}
+
+fn longest_edge(object: &Object) -> f64 {
+    let world = object.world_positions();
+    let longest = |[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|index| world[*index as usize]);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    };
+    object.mesh.triangles().iter().map(longest).fold(0.0, f64::max)
 }
 
 /// How near a side of a volume passes.
+#[derive(Clone, Copy)]
 struct NearSide {
     /// Square to the light's way.
     metres: f64,
-    /// How much farther the side moves there than its edge does.
-    lever: f64,
+    /// How far one rounding of its corners moves it there.
+    rounding: f64,
 }
 
-/// The side of an object's volume that passes a point that is seen nearer than so many metres, times its lever.
-fn nearest_side(object: &Object, seen: DVec3, light: DVec4, most: f64) -> Option<NearSide> {
+/// The side of an object's volume that passes a point that is seen nearer than roundings move it.
+fn nearest_side(facts: &Facts, object: &Object, seen: DVec3, light: DVec4) -> Option<NearSide> {
     let to_light = light.truncate() - seen * light.w;
-    let (towards, reach) = (to_light.normalize_or_zero(), to_light.length());
+    let towards = to_light.normalize_or_zero();
+    let reach = if light.w == 0.0 { f64::INFINITY } else { to_light.length() };
     let world = object.world_positions();
-    // Along the light's way onto the plane through the point that is square to it; what is not between throws nothing.
-    let thrown = |corner: u32| {
-        let away = world[corner as usize] - seen;
-        let above = away.dot(towards);
-        let lever = if light.w == 0.0 { 1.0 } else { reach / (reach - above) };
-        (above > 0.0 && lever > 0.0 && lever.is_finite()).then_some(((away - towards * above) * lever, lever))
-    };
+    let eye = facts.scene.camera.eye;
     let near = |[a, b]: [u32; 2]| {
-        let ((from, lever), (to, other)) = (thrown(a)?, thrown(b)?);
-        let along = to - from;
-        let part = (-from.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let side = NearSide { metres: (from + along * part).length(), lever: lever.max(other) };
-        (side.metres <= most * side.lever).then_some(side)
+        let [a, b] = [a, b].map(|index| world[index as usize]);
+        let [from, to] = [a, b].map(|corner| (corner - seen).dot(towards));
+        // The part of the edge that is between the point and the light.
+        let crossing = |height: f64| ((height - from) / (to - from)).clamp(0.0, 1.0);
+        let ends = match (from <= to, from == to) {
+            (_, true) => [0.0, 1.0],
+            (true, _) => [crossing(0.0), crossing(reach)],
+            (false, _) => [crossing(reach), crossing(0.0)],
+        };
+        let tiny = 1e-9 * (from.abs() + to.abs());
+        let thrown = |part: f64| {
+            let away = a.lerp(b, part) - seen;
+            let above = away.dot(towards);
+            let lever = if reach.is_finite() { reach / (reach - above) } else { 1.0 };
+            (above >= -tiny && above < reach).then_some(((away - towards * above) * lever, lever))
+        };
+        // Just short of the light's own height nothing is thrown any more.
+        let shorter = ends.map(|end| end + (0.5 - end) * 1e-9);
+        let ((start, lever), (end, other)) = (thrown(shorter[0])?, thrown(shorter[1])?);
+        let along = end - start;
+        let part = (-start.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let farthest = a.distance(eye).max(b.distance(eye)).max(seen.distance(eye));
+        let rounding = ROUNDING * farthest * (lever + part * (other - lever));
+        let metres = (start + along * part).length();
+        (metres <= ROUNDINGS * rounding).then_some(NearSide { metres, rounding })
     };
     let triangles = object.mesh.triangles();
     let edges_of = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
-    // An edge is none of a side's where the triangles around it, turned towards the light, run along it to and fro alike.
-    let has_side = |[low, high]: [u32; 2]| {
-        let along = |corners: &[u32; 3]| {
-            let towards_high = edges_of(*corners)
-                .iter()
-                .fold(0, |sum, edge| sum + i32::from(*edge == [low, high]) - i32::from(*edge == [high, low]));
-            let turned = || side_of_triangle(corners.map(|index| world[index as usize]), light).value();
-            if towards_high == 0 { 0 } else { towards_high * turned() }
-        };
-        triangles.iter().map(along).sum::<i32>() != 0
-    };
-    let found =
-        triangles.par_iter().flat_map_iter(|corners| edges_of(*corners)).filter_map(|edge| Some((edge, near(edge)?)));
-    let found: Vec<([u32; 2], NearSide)> = found.collect();
-    let sides = found.into_iter().filter(|(edge, _)| has_side(*edge)).map(|(_, side)| side);
-    sides.min_by(|a, b| a.metres.total_cmp(&b.metres))
+    let low_first = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let edges = triangles.par_iter().flat_map_iter(|corners| edges_of(*corners)).map(low_first);
+    let found: HashMap<[u32; 2], NearSide> = edges.filter_map(|edge| Some((edge, near(edge)?))).collect();
+    if found.is_empty() {
+        return None;
+    }
+    // How often more the triangles around an edge, turned towards the light, run along it to than fro: where it is as often,
+    // the lit sheet goes on and has no side there.
+    let mut bounds: HashMap<[u32; 2], i32> = HashMap::new();
+    for corners in triangles {
+        for edge in edges_of(*corners).into_iter().filter(|edge| found.contains_key(&low_first(*edge))) {
+            let turned = side_of_triangle(corners.map(|index| world[index as usize]), light).value();
+            *bounds.entry(low_first(edge)).or_default() += if edge[0] < edge[1] { turned } else { -turned };
+        }
+    }
+    let sides = found.into_iter().filter(|(edge, _)| bounds.get(edge).is_some_and(|times| *times != 0));
+    sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
 /// Corners snap to 1/256 of a pixel. Where a caster's edges are fractions of one, so do those of its volume's sides, narrow

@@ -2,7 +2,7 @@
 
 mod grazing;
 mod near;
-mod seam;
+mod rounding;
 
 use super::stage::{carried, enlarged, floor, scene, still_life};
 use super::who::*;
@@ -26,7 +26,8 @@ pub const ALL: &[Case] = &[
     THIN_GAP,
     FINE_GRID,
     SUBPIXEL_EDGES,
-    seam::SEAM,
+    rounding::SEAM,
+    rounding::LONG_EDGE,
     TRIANGLE_COUNT,
     MAP_SIZE,
     near::NEAR_PLANE,

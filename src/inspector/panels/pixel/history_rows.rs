@@ -85,7 +85,7 @@ fn heading(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, at: [u32; 2
     });
 }
 
-/// A history that contradicts the GPU is a bug of this program, and must not be believed.
+/// A history that contradicts the GPU must not be believed.
 fn wrong(ui: &mut Ui, wrong: &[String]) {
     if wrong.is_empty() {
         return;
@@ -93,8 +93,8 @@ fn wrong(ui: &mut Ui, wrong: &[String]) {
     let frame = theme::card(ui).stroke(Stroke::new(1.0, theme::of(ui).error)).inner_margin(Margin::same(8));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let title =
-            RichText::new("× This history is wrong, which is our bug. Please report it.").color(theme::of(ui).error);
+        let title = RichText::new("× This history is wrong, by the GPU's rounding or our bug. Please report it.")
+            .color(theme::of(ui).error);
         ui.add(egui::Label::new(title).wrap());
         for one in wrong.iter().take(MOST_WRONG) {
             ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::of(ui).text)).wrap());

@@ -417,6 +417,7 @@ impl Build<'_> {
     fn shell(&mut self, places: [DVec3; 3], color: Color32) {
         let corners = places.map(|place| self.vertex(place, Vec3::ZERO, color));
         let has_room = self.room_for_triangles() > 0;
+        self.stage.is_cut |= !has_room;
         self.geometry.shells.extend(Some(corners).filter(|corners| has_room && !corners.contains(&NONE)));
     }
 

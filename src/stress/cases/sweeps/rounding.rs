@@ -1,4 +1,4 @@
-//! Where one shadow ends and the next begins, in the middle of a pixel.
+//! What 24 bits round away: the middle of a seam, and the ends of very long edges.
 
 use crate::scene::{Camera, Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene};
@@ -69,3 +69,40 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
     let objects = std::iter::once(floor(9.0)).chain(objects).collect::<Result<_, MeshError>>()?;
     Ok(scene(eye, target, Light::point(lamp), objects))
 }
+
+/// A column or two.
+const MOVED_END: Failure = fails(
+    Z_FAIL,
+    "f32-limit",
+    "strips are cut where the picture ends, and rounding moves the cut by half a pixel: the outermost column misses it",
+)
+.at(|metres| metres >= 1e6)
+.at_most(0.02);
+
+pub const LONG_EDGE: Case = Case {
+    name: "long-edge",
+    lesson: "strips over a floor under a near lamp, longer and longer: the GPU cuts them where the picture ends, and rounds \
+             where that is by their length",
+    parameter: "metres",
+    values: &[10.0, 1e3, 1e4, 1e6],
+    drives: Drives::Scene(|metres| {
+        let half = metres / 2.0;
+        let strip = |index: u32| {
+            let front = -2.0 + 0.5 * f64::from(index);
+            [[-half, front], [half, front], [half, front + 0.2], [-half, front + 0.2]].map(|[x, z]| [x, 1.0, z])
+        };
+        let points: Vec<[f64; 3]> = (0..8).flat_map(strip).collect();
+        let triangles: Vec<[u32; 3]> = (0..8)
+            .flat_map(|index| [[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|corner| 4 * index + corner)))
+            .collect();
+        let strips = Object::of("strips", shapes::triangles(&points, &triangles)?);
+        Ok(scene([0.0, 3.0, 6.0], [0.0; 3], Light::point([0.3, 1.5, 0.1]), vec![floor(1.2 * half.max(10.0))?, strips]))
+    }),
+    without: &[
+        (Technique::ShadowMap, "no map has texels for a strip of kilometres"),
+        (Technique::PlanarTexture, "no texture has texels for a strip of kilometres"),
+        (Technique::Projective, "no silhouette has texels for a strip of kilometres"),
+    ],
+    failures: &[MOVED_END, MOVED_END.of(AUTO), MOVED_END.of(Z_PASS), MOVED_END.of(Z_PASS_PLUS), MOVED_END.of(PLANAR)],
+    ..PLAIN
+};
