@@ -160,15 +160,20 @@ fn what_is_cut_beside_the_border_is_told_with_the_length_of_what_is_cut() {
     };
     assert!(!diagnose(1e3).is_bad());
     let found = diagnose(1e5);
-    let first = found.regions.first().and_then(|region| region.causes.first()).expect("a cause");
-    assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", told(&found));
-    let [column, _] = found.regions[0].at;
-    assert!(column == 0 || column == 639, "beside the border: {}", told(&found));
-    assert!(
-        first.evidence.starts_with("edges of strips are up to 1.0e5 m long: where the picture ends"),
-        "{}",
-        first.evidence
-    );
+    let mut beside = 0;
+    for region in &found.regions {
+        let [first, ..] = &region.causes[..] else { panic!("no cause: {}", told(&found)) };
+        assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", told(&found));
+        // Within the picture it is the corners, kilometres off, that are rounded.
+        let is_beside = [0, 639].contains(&region.at[0]) || [0, 479].contains(&region.at[1]);
+        let start = match is_beside {
+            true => "edges of strips are up to 1.0e5 m long: where the picture ends",
+            false => "a side of strips's volume passes 0.",
+        };
+        assert!(first.evidence.starts_with(start), "{}", told(&found));
+        beside += u32::from(is_beside);
+    }
+    assert!(beside > 3, "{}", told(&found));
 }
 
 /// One number for all pixels is right where the near plane is in what the eye is in.
