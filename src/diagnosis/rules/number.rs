@@ -28,8 +28,10 @@ const MOST_SIDE: u32 = 8192;
 
 /// What 24 bits round away. Nothing that could be run proves it, so the numbers must.
 fn f32_limit(facts: &Facts, case: &Case) -> Option<Suspicion> {
-    let looks: [Rule; 3] = [grazed, cut_at_border, side_through_middle];
-    looks.into_iter().find_map(|look| look(facts, case))
+    // Only what counts volumes has sides that pass a pixel, or faces that it can miss.
+    let looks: &[Rule] =
+        if facts.counts_volumes(case.light()) { &[grazed, cut_at_border, side_through_middle] } else { &[grazed] };
+    looks.iter().find_map(|look| look(facts, case))
 }
 
 /// Positions are rounded when they go to the GPU; where light grazes, that moves a shadow's edge by the
