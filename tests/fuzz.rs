@@ -38,7 +38,7 @@ struct Kind {
 
 #[test]
 fn broken_files_are_refused_or_read() {
-    let parts = ["obj", "mtl", "toml", "gltf", "manifest", "arrays", "recordings"];
+    let parts = ["obj", "mtl", "toml", "gltf", "ply", "manifest", "arrays", "recordings"];
     apart("fuzz::broken_files_are_refused_or_read", &parts, |part| {
         let home = env::temp_dir().join(format!("stencilscope-fuzz-{}", std::process::id()));
         let kind = kind(part, &home.join("whole"));
@@ -131,14 +131,11 @@ fn kind(part: &str, made: &Path) -> Kind {
             let names = ["tori", "glass", "two-lights", "tiger-cage"];
             (names.map(|name| (made.join(name), "scene.toml".to_owned())).to_vec(), scene)
         }
-        "gltf" => {
-            let folder = assets.join("gltf");
-            let names = fs::read_dir(&folder).expect("samples").map(|entry| entry.expect("a file").file_name());
-            let names = names.map(|name| name.to_string_lossy().into_owned());
-            let mut names: Vec<String> =
-                names.filter(|name| name.ends_with(".glb") || name.ends_with(".gltf")).collect();
-            names.sort();
-            (names.into_iter().map(|name| (folder.clone(), name)).collect(), scene)
+        "gltf" | "ply" => {
+            let folder = assets.join(part);
+            let names = crate::common::names(&folder).into_iter();
+            let names = names.filter(|name| [".glb", ".gltf", ".ply"].iter().any(|ending| name.ends_with(ending)));
+            (names.map(|name| (folder.clone(), name)).collect(), scene)
         }
         "manifest" | "arrays" => {
             let request = CaptureRequest::new(Choice::new(Technique::ZFail), [24, 16]);
@@ -165,7 +162,7 @@ fn kind(part: &str, made: &Path) -> Kind {
             (files.concat(), read)
         }
     };
-    let name = ["obj", "mtl", "toml", "gltf", "manifest", "arrays"].into_iter().find(|name| *name == part);
+    let name = ["obj", "mtl", "toml", "gltf", "ply", "manifest", "arrays"].into_iter().find(|name| *name == part);
     Kind { name: name.unwrap_or("recordings"), whole, read }
 }
 

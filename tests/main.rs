@@ -29,6 +29,7 @@ mod page;
 mod parallel;
 
 mod plan;
+mod ply;
 mod ray_cast;
 mod readback;
 mod readme;

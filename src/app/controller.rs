@@ -281,7 +281,7 @@ impl Controller {
         let dialog: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match wanted {
             Wanted::File => {
                 let dialog = dialog.set_title("Open a scene or a model");
-                Box::pin(dialog.add_filter("scenes and models", &["toml", "obj", "gltf", "glb"]).pick_file())
+                Box::pin(dialog.add_filter("scenes and models", &["toml", "obj", "ply", "gltf", "glb"]).pick_file())
             }
             Wanted::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
         };

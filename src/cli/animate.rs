@@ -28,7 +28,7 @@ const MOST_MILLISECONDS: u16 = 60_000;
     most 1 of 255 a channel, unless --exact is given."
 )]
 pub struct AnimateArguments {
-    /// A built-in scene, a scene file (.toml), a model (.obj, .gltf, .glb) or a capture folder
+    /// A built-in scene, a scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder
     scene: String,
     /// The file to make
     #[arg(short, long, value_name = "FILE.png")]

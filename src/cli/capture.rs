@@ -18,7 +18,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct CaptureArguments {
-    /// A built-in scene, a scene file (.toml) or a model (.obj, .gltf, .glb)
+    /// A built-in scene, a scene file (.toml) or a model (.obj, .ply, .gltf, .glb)
     scene: String,
     /// The folder to make
     #[arg(short, long, value_name = "DIR")]

@@ -20,7 +20,7 @@ const DOCUMENT: &str = "diagnosis.json";
 
 #[derive(Debug, Args)]
 pub struct DiagnoseArguments {
-    /// A built-in scene, a scene file (.toml) or a model (.obj, .gltf, .glb)
+    /// A built-in scene, a scene file (.toml) or a model (.obj, .ply, .gltf, .glb)
     scene: String,
     #[command(flatten)]
     scene_options: SceneOptions,

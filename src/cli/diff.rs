@@ -16,7 +16,7 @@ use std::path::Path;
     Two settings of one technique: stencilscope diff tori -t z-fail --set-b casters=light-facing\n\n\
     Exit code 0: every pass and pixel is the same; 1: something differs.")]
 pub struct DiffArguments {
-    /// A capture folder; or a built-in scene, a scene file (.toml) or a model (.obj, .gltf, .glb)
+    /// A capture folder; or a built-in scene, a scene file (.toml) or a model (.obj, .ply, .gltf, .glb)
     #[arg(value_name = "A")]
     first: String,
     /// The other capture folder

@@ -165,7 +165,9 @@ impl SceneOptions {
         let mut scene = open(&self.spec(name))?;
         if self.z_up && !is_model(name) {
             let mend = "leave it out, or turn its objects in a scene file (`rotate_degrees`)";
-            return Err(CliError::Usage(format!("`--z-up` turns a bare model (.obj), and `{name}` is none: {mend}")));
+            return Err(CliError::Usage(format!(
+                "`--z-up` turns a bare model (.obj, .ply), and `{name}` is none: {mend}"
+            )));
         }
         self.place_camera(&mut scene)?;
         self.place_lights(&mut scene)?;

@@ -22,7 +22,7 @@ Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2.
 
 #[derive(Debug, Args)]
 pub struct PageArguments {
-    /// A built-in scene, a scene file (.toml), a model (.obj, .gltf, .glb) or a capture folder
+    /// A built-in scene, a scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder
     scene: String,
     /// The file to make
     #[arg(short, long, value_name = "FILE.html")]

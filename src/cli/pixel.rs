@@ -15,7 +15,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct PixelArguments {
-    /// A built-in scene, a scene file (.toml), a model (.obj, .gltf, .glb) or a capture folder
+    /// A built-in scene, a scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder
     scene: String,
     /// Column and row from the top left; repeatable
     #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "vertex")]

@@ -20,7 +20,7 @@ use std::path::Path;
 pub struct ReportArguments {
     #[command(subcommand)]
     merge: Option<Merge>,
-    /// Built-in scenes, scene files (.toml) or models (.obj, .gltf, .glb)
+    /// Built-in scenes, scene files (.toml) or models (.obj, .ply, .gltf, .glb)
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     #[command(flatten)]

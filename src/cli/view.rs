@@ -10,7 +10,7 @@ const FALLBACK_FOLDER: &str = "stencilscope-out";
 
 #[derive(Debug, Args)]
 pub struct ViewArguments {
-    /// A built-in scene, a scene file (.toml), a model (.obj, .gltf, .glb) or a capture folder
+    /// A built-in scene, a scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder
     #[arg(default_value = "tori")]
     scene: String,
     /// Open at this pass, by its index in the manifest

@@ -27,7 +27,7 @@ pub use save::{SaveError, SavedScene, save};
 pub use store::{StoreError, store};
 
 use super::read_text::{read_text, stem};
-use super::{Scene, SceneError, pointer};
+use super::{Scene, SceneError, model};
 use problem::Problem;
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub fn models_of(path: &Path) -> Vec<PathBuf> {
     let named = |object: &toml::Value| {
         let texture = object.get("material").and_then(|material| material.get("texture"));
         let names = [object.get("mesh"), texture].map(|name| name.and_then(toml::Value::as_str));
-        names.map(|name| name.map(|name| path.with_file_name(pointer::split(name).0)))
+        names.map(|name| name.map(|name| path.with_file_name(model::split(name).0)))
     };
     let mut models: Vec<PathBuf> = objects.into_iter().flatten().flat_map(named).flatten().collect();
     models.sort();

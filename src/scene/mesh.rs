@@ -40,6 +40,14 @@ pub struct Group {
     pub texture: Option<Texture>,
 }
 
+/// Beyond it, neighbouring texels are one number in single precision.
+const MOST_UV: f32 = 1e5;
+
+/// Is it a place in a picture that single precision tells from others?
+pub(super) fn is_usable_uv(uv: &Vec2) -> bool {
+    uv.to_array().iter().all(|part| part.abs() <= MOST_UV)
+}
+
 /// Why a mesh can't be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshError {

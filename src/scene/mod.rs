@@ -1,6 +1,6 @@
 //! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
 //!
-//! A scene comes from a scene file ([`mod@file`]), a glTF file, a model ([`obj`], completed by [`model_scene`]) or
+//! A scene comes from a scene file ([`mod@file`]), a glTF file, a model ([`obj`] or PLY, completed by [`model_scene`]) or
 //! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
@@ -11,11 +11,12 @@ mod camera;
 mod collision;
 mod error;
 pub mod file;
-#[cfg_attr(not(feature = "program"), path = "gltf_left_out.rs")]
+#[cfg(feature = "program")]
 mod gltf;
 mod light;
 mod material;
 mod mesh;
+mod model;
 mod model_scene;
 mod names;
 mod not_taken;
@@ -24,7 +25,9 @@ mod object;
 mod open;
 mod picture;
 mod placement;
-mod pointer;
+#[cfg(feature = "program")]
+mod ply;
+mod polygon;
 mod read_text;
 mod refine;
 pub mod shapes;

@@ -1,5 +1,6 @@
 //! A scene around a bare model: floor, light and camera from its bounds.
 
+#[cfg(feature = "program")]
 use super::gltf;
 use super::names::Names;
 use super::placement::Surroundings;
@@ -49,6 +50,7 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
 ///
 /// # Errors
 /// As [`model_scene`].
+#[cfg(feature = "program")]
 pub(super) fn gltf_scene(name: &str, loaded: gltf::Loaded, floor: bool) -> Result<Scene, SceneError> {
     let gltf::Loaded { objects, lights, camera, not_taken, .. } = loaded;
     let is_bare = lights.is_empty() && camera.is_none();

@@ -6,10 +6,11 @@
 //! closed. The parts stay known as [`Group`]s; where they lie in a picture, their corners know.
 
 mod materials;
-mod polygon;
 mod text;
 
+use super::mesh::is_usable_uv;
 use super::picture::Pictures;
+use super::polygon;
 use super::read_text::{quoted, read_old_text};
 use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
 use glam::{DVec3, Vec2, Vec3};
@@ -113,12 +114,12 @@ fn assemble(
                     let given = normals.map(|indices| triangle.map(|corner| normal(&model.mesh, indices[corner])));
                     builder
                         .corner_normals
-                        .push(given.unwrap_or_else(|| [face_normal(triangle.map(|i| corners[i])); 3]));
+                        .push(given.unwrap_or_else(|| [polygon::normal(triangle.map(|i| corners[i])); 3]));
                 }
                 if has_uvs {
                     let place = |uv: Vec2| map.as_ref().map_or(uv, |map| map.place(uv));
                     let placed = uvs.map(|uvs| triangle.map(|corner| place(uvs[corner])));
-                    let placed = placed.filter(|placed| placed.iter().all(text::is_usable));
+                    let placed = placed.filter(|placed| placed.iter().all(is_usable_uv));
                     is_placed &= placed.is_some();
                     builder.corner_uvs.push(placed);
                 } else {
@@ -146,10 +147,6 @@ fn assemble(
 fn normal(mesh: &tobj::Mesh, index: u32) -> Vec3 {
     let [x, y, z] = mesh.normals.as_chunks::<3>().0[index as usize];
     DVec3::new(x, y, z).as_vec3()
-}
-
-fn face_normal([a, b, c]: [DVec3; 3]) -> Vec3 {
-    (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }
 
 /// The faces of a part, one after the other.

@@ -1,16 +1,15 @@
 //! A scene by whatever names it: a built-in name, a scene file or a model.
 
 use super::builtin::{self, Builtin};
-use super::model_scene::gltf_scene;
-use super::read_text::stem;
+use super::model::{self, Format};
 use super::suggestion::nearest;
-use super::{Scene, SceneError, UpAxis, file, gltf, model_scene, obj, pointer};
+use super::{Scene, SceneError, UpAxis, file};
 use std::path::{Path, PathBuf};
 
 /// What to open, and how a bare model is completed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenSpec {
-    /// A built-in name, or the path of a scene file (`.toml`), a glTF file (`.gltf`, `.glb`) or a model (`.obj`).
+    /// A built-in name, or the path of a scene file (`.toml`), a glTF file (`.gltf`, `.glb`) or a model (`.obj`, `.ply`).
     pub name: String,
     /// Puts a floor under a bare model, and under what a glTF file shows without camera and lights; other scenes are taken as
     /// they are.
@@ -37,12 +36,7 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     let path = PathBuf::from(&spec.name);
     let named = if Kind::of(&path) == Some(Kind::SceneFile) { file::models_of(&path) } else { Vec::new() };
     let files: Vec<PathBuf> = std::iter::once(path).chain(named).collect();
-    let of_model = |model: &PathBuf| match Kind::of(model) {
-        Some(Kind::Model) => obj::files_of(model),
-        Some(Kind::Gltf) => gltf::files_of(model),
-        _ => Vec::new(),
-    };
-    let of_models: Vec<PathBuf> = files.iter().flat_map(of_model).collect();
+    let of_models: Vec<PathBuf> = files.iter().flat_map(|file| model::files_of(file)).collect();
     files.into_iter().chain(of_models).collect()
 }
 
@@ -50,15 +44,13 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     SceneFile,
-    Model,
-    Gltf,
+    Model(Format),
 }
 
 impl Kind {
     fn of(path: &Path) -> Option<Kind> {
-        let is = |ending: &str| path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case(ending));
-        let others = || is("toml").then_some(Kind::SceneFile).or(is("obj").then_some(Kind::Model));
-        if pointer::is_gltf(path) { Some(Kind::Gltf) } else { others() }
+        let is_scene_file = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        if is_scene_file { Some(Kind::SceneFile) } else { Format::of(path).map(Kind::Model) }
     }
 }
 
@@ -71,7 +63,8 @@ pub fn is_scene_file(path: &Path) -> bool {
 /// Does this name a bare model, whose up axis is anybody's guess? A glTF file's is y.
 #[must_use]
 pub fn is_model(name: &str) -> bool {
-    Builtin::named(name).is_none() && Kind::of(Path::new(name)) == Some(Kind::Model)
+    let format = Format::of(Path::new(name)).filter(|_| Builtin::named(name).is_none());
+    matches!(format, Some(Format::Obj | Format::Ply))
 }
 
 /// Opens a scene. The result is at time 0.
@@ -86,10 +79,7 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
     let path = Path::new(&spec.name);
     match Kind::of(path) {
         Some(Kind::SceneFile) => file::load(path),
-        Some(Kind::Model) => {
-            model_scene(&stem(path), obj::load(path)?, spec.floor, spec.up).map_err(|error| error.in_file(path))
-        }
-        Some(Kind::Gltf) => gltf_scene(&stem(path), gltf::load(path)?, spec.floor).map_err(|error| error.in_file(path)),
+        Some(Kind::Model(_)) => model::scene(path, spec.floor, spec.up),
         None => Err(unknown(&spec.name)),
     }
 }
@@ -99,18 +89,20 @@ fn unknown(name: &str) -> SceneError {
     if path.is_dir() {
         return SceneError::Read {
             file: path.to_owned(),
-            reason: "is a folder: name a scene file (.toml) or a model (.obj, .gltf, .glb) in it".to_owned(),
+            reason: "is a folder: name a scene file (.toml) or a model (.obj, .ply, .gltf, .glb) in it".to_owned(),
         };
     }
     if path.is_file() {
-        let reason =
-            "is of no kind that can be opened: give a scene file (.toml) or a model (.obj, .gltf, .glb)".to_owned();
+        let reason = "is of no kind that can be opened: give a scene file (.toml) or a model (.obj, .ply, .gltf, .glb)"
+            .to_owned();
         return SceneError::Read { file: path.to_owned(), reason };
     }
     let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
     let hint = match nearest(name, &names) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => format!("choose one of {}, a scene file (.toml) or a model (.obj, .gltf, .glb)", names.join(", ")),
+        None => {
+            format!("choose one of {}, a scene file (.toml) or a model (.obj, .ply, .gltf, .glb)", names.join(", "))
+        }
     };
     SceneError::Unknown { name: name.escape_debug().to_string(), hint }
 }

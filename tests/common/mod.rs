@@ -8,6 +8,8 @@ pub mod ray_cast;
 pub mod report;
 
 pub use apart::apart;
+use glam::DMat3;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -57,6 +59,29 @@ pub fn from_above(objects: Vec<Object>) -> Scene {
         .object(square("floor", 0.0, 50.0))
         .objects(objects)
         .build()
+}
+
+/// Is each edge used as often one way as the other?
+pub fn is_closed(mesh: &Mesh) -> bool {
+    let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
+    for [a, b, c] in mesh.triangles() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let step = if from < to { 1 } else { -1 };
+            *edges.entry([*from.min(to), *from.max(to)]).or_default() += step;
+        }
+    }
+    edges.values().all(|sum| *sum == 0)
+}
+
+/// Six times what an object encloses in world space, positive where its fronts face outwards.
+pub fn volume(scene: &Scene, name: &str) -> f64 {
+    let object = scene.objects.iter().find(|object| object.name == name).expect("an object");
+    let world = object.world_positions();
+    let six = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| world[corner as usize]);
+        DMat3::from_cols(a, b, c).determinant()
+    };
+    object.mesh.triangles().iter().map(six).sum()
 }
 
 /// How many pixels of light 0 have each label.

@@ -102,7 +102,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
         });
         ui.add_space(8.0);
     }
-    let label = ui.label(theme::note("A scene file (.toml), a model (.obj, .gltf, .glb) or a capture folder"));
+    let label = ui.label(theme::note("A scene file (.toml), a model (.obj, .ply, .gltf, .glb) or a capture folder"));
     let field = egui::TextEdit::singleline(&mut dialog.path).hint_text("path").desired_width(f32::INFINITY);
     let field = field.align(egui::Align2::LEFT_CENTER);
     let field = ui.add(field).labelled_by(label.id);

@@ -6,13 +6,13 @@ use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, SwingTable,
     TechniqueTable, Text, Triple,
 };
+use crate::scene::model::{self, Models};
 use crate::scene::names::Names;
-use crate::scene::picture::Pictures;
 use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
     Camera, Group, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing,
-    TechniqueRequest, Texture, gltf, obj, pointer,
+    TechniqueRequest, Texture,
     read_text::{quoted, stem},
 };
 use glam::DVec3;
@@ -38,9 +38,8 @@ const DEFAULT_NEAR: f64 = 0.01;
 pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Problem> {
     let mut builder = ObjectBuilder {
         folder,
-        models: BTreeMap::new(),
-        pictures: Pictures::default(),
-        gltf: None,
+        models: Models::default(),
+        known: BTreeMap::new(),
         objects: Vec::new(),
         names: Names::default(),
     };
@@ -246,9 +245,9 @@ fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
 /// Makes objects; models are loaded once.
 struct ObjectBuilder<'a> {
     folder: &'a Path,
-    models: BTreeMap<String, Arc<Mesh>>,
-    pictures: Pictures,
-    gltf: Option<gltf::Opened>,
+    models: Models,
+    /// By the name that the file gives them.
+    known: BTreeMap<String, Arc<Mesh>>,
     objects: Vec<Object>,
     names: Names,
 }
@@ -289,17 +288,13 @@ impl ObjectBuilder<'_> {
             MeshSource::Shape(table) => return shape::mesh(table).map(Arc::new),
             MeshSource::File(name) => name,
         };
-        if let Some(model) = self.models.get(name) {
+        if let Some(model) = self.known.get(name) {
             return Ok(Arc::clone(model));
         }
-        let (file, pointer) = pointer::split(name);
-        let path = self.folder.join(file);
-        let model = match pointer::is_gltf(&path) {
-            true => gltf::load_mesh(&path, pointer, &mut self.pictures, &mut self.gltf),
-            false => obj::load_among(&path, &mut self.pictures),
-        };
+        let (file, pointer) = model::split(name);
+        let model = self.models.mesh(&self.folder.join(file), pointer);
         let model = Arc::new(model.map_err(|error| Problem::new(source.span(), error.to_string()))?);
-        self.models.insert(name.clone(), Arc::clone(&model));
+        self.known.insert(name.clone(), Arc::clone(&model));
         Ok(model)
     }
 
@@ -326,7 +321,7 @@ impl ObjectBuilder<'_> {
         }
         let path = self.folder.join(file.get_ref());
         let picture =
-            self.pictures.load(&path).map_err(|error| problem(format!("{} {error}", quoted(file.get_ref()))))?;
+            self.models.pictures.load(&path).map_err(|error| problem(format!("{} {error}", quoted(file.get_ref()))))?;
         Ok(Some(Texture {
             picture,
             side,
@@ -348,7 +343,7 @@ impl ObjectBuilder<'_> {
         }
         Ok(self.names.take_like(&match table.mesh.get_ref() {
             MeshSource::Shape(shape) => shape.shape.get_ref().clone(),
-            MeshSource::File(path) => stem(Path::new(pointer::split(path).0)),
+            MeshSource::File(path) => stem(Path::new(model::split(path).0)),
         }))
     }
 }

@@ -3,10 +3,9 @@
 use super::save::{SaveError, SavedScene, save};
 use crate::files::{from_beside, read_plain, write_whole};
 use crate::scene::read_text::stem;
-use crate::scene::{Scene, gltf, obj, pointer};
+use crate::scene::{Scene, model};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Why a scene is not in its file.
 #[derive(Debug, thiserror::Error)]
@@ -39,16 +38,7 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
         return Err(StoreError::NoSceneFile(file.display().to_string().escape_debug().to_string()));
     }
     // A mesh that was changed is another, and not named.
-    let known = match source {
-        Some(path) if pointer::is_gltf(path) => {
-            let model = from_beside(file, path);
-            gltf::named_meshes(path).into_iter().map(|(mesh, pointer)| (mesh, format!("{model}#{pointer}"))).collect()
-        }
-        Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) => {
-            obj::load(path).ok().map(|model| (Arc::new(model), from_beside(file, path))).into_iter().collect()
-        }
-        _ => Vec::new(),
-    };
+    let known = source.map(|path| model::named_meshes(path, &from_beside(file, path))).unwrap_or_default();
     write_files(&save(scene, &stem(file), known)?, file)
 }
 

@@ -1,7 +1,7 @@
 //! Lights (`KHR_lights_punctual`) and cameras.
 //!
-//! Intensities are candela and lux there, and nothing here is exposed: of all lights the brightest, in the middle of
-//! what is seen, is made 1, and the others keep their share. Light does not fade here but towards its range.
+//! Intensities are candela and lux there, and nothing here is exposed: what all lights together bring to the middle of
+//! what is seen is made 1, of which each keeps its share: more would be white. Light does not fade here but towards its range.
 
 use super::document::Told;
 use super::named;
@@ -64,9 +64,9 @@ pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
         refusals.refuse(format!("{} more lights", found.len() - MOST_LIGHTS), format!("at most {MOST_LIGHTS} fit"));
         found.truncate(MOST_LIGHTS);
     }
-    let brightest = found.iter().map(|light| light.it.intensity).fold(0.0, f32::max);
-    if brightest > 0.0 {
-        found.iter_mut().for_each(|light| light.it.intensity /= brightest);
+    let together: f64 = found.iter().map(|light| f64::from(light.it.intensity)).sum();
+    if together > 0.0 {
+        found.iter_mut().for_each(|light| light.it.intensity = (f64::from(light.it.intensity) / together) as f32);
     }
     found
 }

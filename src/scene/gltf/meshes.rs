@@ -3,7 +3,9 @@
 use super::document::{Document, Told};
 use super::materials::{Look, Map, Materials};
 use super::named;
+use crate::scene::mesh::is_usable_uv;
 use crate::scene::not_taken::Refusals;
+use crate::scene::polygon;
 use crate::scene::read_text::quoted;
 use crate::scene::{Group, Mesh, MeshBuilder, Shading};
 use foldhash::fast::RandomState;
@@ -168,9 +170,7 @@ fn uvs(document: &Document, index: Index<Accessor>, map: &Map, used: &[usize]) -
     let all = numbers.as_chunks::<2>().0;
     let placed = |index: &usize| all.get(*index).map(|[u, v]| map.place(Vec2::new(*u as f32, *v as f32)));
     let uvs: Vec<Vec2> = used.iter().map(placed).collect::<Option<_>>()?;
-    // As far out, neighbouring texels are one number.
-    let is_usable = |uv: &Vec2| uv.abs().max_element() <= 1e6;
-    uvs.iter().all(is_usable).then_some(uvs)
+    uvs.iter().all(is_usable_uv).then_some(uvs)
 }
 
 /// Of each vertex that is used, the matrix that its joints move it by.
@@ -212,11 +212,7 @@ fn skin(
 /// Corners of triangles, all turned the same way.
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
-        Mode::TriangleStrip => {
-            let in_order =
-                |(at, of): (usize, &[u32])| if at % 2 == 0 { [of[0], of[1], of[2]] } else { [of[0], of[2], of[1]] };
-            indices.windows(3).enumerate().map(in_order).collect()
-        }
+        Mode::TriangleStrip => polygon::strip(indices.len()).map(|of| of.map(|corner| indices[corner])).collect(),
         Mode::TriangleFan => {
             let first = indices.first().copied().unwrap_or(0);
             indices.get(1..).unwrap_or_default().windows(2).map(|of| [of[0], of[1], first]).collect()
@@ -236,10 +232,7 @@ fn assemble(parts: &[(Part, Look)], name: &str, refusals: &mut Refusals) -> Mesh
         if is_smooth {
             let normals = part.triangles.iter().map(|corners| match &part.normals {
                 Some(normals) => corners.map(|corner| normals[corner as usize]),
-                None => {
-                    let [a, b, c] = corners.map(|corner| part.positions[corner as usize]);
-                    [(b - a).cross(c - a).normalize_or_zero().as_vec3(); 3]
-                }
+                None => [polygon::normal(corners.map(|corner| part.positions[corner as usize])); 3],
             });
             builder.corner_normals.extend(normals);
         }

@@ -6,14 +6,12 @@
 //! curves are left out. A face keeps its normals only if all its corners have one; so its places in a
 //! picture, which are read here, as no mesh is worth less without.
 
+use crate::scene::mesh::is_usable_uv;
 use crate::scene::read_text::quoted;
 use glam::Vec2;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::fmt::Write;
-
-/// Beyond it, a place in a picture is no number worth having in single precision.
-const MOST_UV: f32 = 1e5;
 
 /// An OBJ file that `tobj` reads without an error.
 #[derive(Debug, Default)]
@@ -191,14 +189,9 @@ impl Line<'_> {
             let mut numbers = words(rest).map(|word| word.parse().ok());
             // The second is 0 unless given.
             let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
-            is_usable(&place).then_some(place)
+            is_usable_uv(&place).then_some(place)
         })
     }
-}
-
-/// Is it a place that single precision tells from others?
-pub fn is_usable(place: &Vec2) -> bool {
-    place.to_array().iter().all(|part| part.abs() <= MOST_UV)
 }
 
 /// Where a corner, `v/vt` or `v/vt/vn`, lies in a picture, if that can be told.

@@ -1,10 +1,10 @@
-//! Cutting a face with any number of corners into triangles.
+//! Faces of model files as triangles: cutting one with any number of corners, strips, and normals where a file has none.
 //!
 //! The face is looked at along its Newell normal (which exists for corners that are not quite
 //! coplanar, too), by dropping the axis in which that normal is longest. Convex faces become a
 //! fan, others are cut ear by ear. Triangles run the way the face does.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Triangles of the face, as indices into its corners, of which there are at least three.
 #[must_use]
@@ -16,6 +16,18 @@ pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
         Some(flat) if !is_convex(&flat) => cut_ears(&flat).unwrap_or_else(|| fan(corners.len())),
         _ => fan(corners.len()),
     }
+}
+
+/// Triangles of a strip, as indices into its corners, all turned as the first.
+#[cfg(feature = "program")]
+pub fn strip(count: usize) -> impl Iterator<Item = [usize; 3]> {
+    (2..count).map(|last| if last % 2 == 0 { [last - 2, last - 1, last] } else { [last - 2, last, last - 1] })
+}
+
+/// The normal of a triangle, of unit length; zero where it has no area.
+#[must_use]
+pub fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
+    (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }
 
 fn fan(count: usize) -> Vec<[usize; 3]> {

@@ -1,0 +1,137 @@
+//! Models: what reads a file, by its name's ending.
+//!
+//! glTF and PLY are read in builds with the program alone; others say so.
+
+use super::model_scene::{self, UpAxis};
+use super::picture::Pictures;
+use super::read_text::stem;
+use super::{Mesh, Scene, SceneError, obj};
+#[cfg(feature = "program")]
+use super::{gltf, ply};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a model's file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    Obj,
+    Ply,
+    /// A scene of its own: it says which axis is up, and may have lights and a camera.
+    Gltf,
+}
+
+impl Format {
+    /// By the name's ending; `None` of any other.
+    pub fn of(file: &Path) -> Option<Format> {
+        let ending = file.extension()?.to_ascii_lowercase();
+        match ending.to_str()? {
+            "obj" => Some(Format::Obj),
+            "ply" => Some(Format::Ply),
+            "gltf" | "glb" => Some(Format::Gltf),
+            _ => None,
+        }
+    }
+}
+
+/// The file and the pointer of `model.glb#/meshes/2`; no pointer of anything else.
+pub fn split(name: &str) -> (&str, Option<&str>) {
+    match name.rsplit_once('#') {
+        Some((file, pointer)) if Format::of(Path::new(file)) == Some(Format::Gltf) => (file, Some(pointer)),
+        _ => (name, None),
+    }
+}
+
+/// Reads meshes for a scene file: they share what room pictures have, and one glTF file is opened once for all that stand
+/// together.
+#[derive(Debug, Default)]
+pub struct Models {
+    pub pictures: Pictures,
+    #[cfg(feature = "program")]
+    gltf: Option<gltf::Opened>,
+}
+
+impl Models {
+    /// The mesh in a file, of a glTF file the one that `pointer` names. A name without a known ending is an OBJ's.
+    ///
+    /// # Errors
+    /// A file that can't be read, with the mend.
+    #[cfg_attr(not(feature = "program"), expect(unused_variables, reason = "only glTF files have pointers"))]
+    pub fn mesh(&mut self, file: &Path, pointer: Option<&str>) -> Result<Mesh, SceneError> {
+        match Format::of(file) {
+            #[cfg(feature = "program")]
+            Some(Format::Gltf) => gltf::load_mesh(file, pointer, &mut self.pictures, &mut self.gltf),
+            _ => of_one_mesh(file, &mut self.pictures),
+        }
+    }
+}
+
+/// Of a file that is one mesh.
+fn of_one_mesh(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError> {
+    match Format::of(file) {
+        #[cfg(feature = "program")]
+        Some(Format::Ply) => ply::load(file),
+        #[cfg(not(feature = "program"))]
+        Some(format @ (Format::Ply | Format::Gltf)) => Err(left_out(file, format)),
+        _ => obj::load_among(file, pictures),
+    }
+}
+
+/// The scene of a model: completed by light, camera and floor where its file has none.
+///
+/// # Errors
+/// As [`Models::mesh`] and [`model_scene::model_scene`].
+pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
+    let scene = match Format::of(file) {
+        #[cfg(feature = "program")]
+        Some(Format::Gltf) => model_scene::gltf_scene(&stem(file), gltf::load(file)?, floor),
+        _ => model_scene::model_scene(&stem(file), of_one_mesh(file, &mut Pictures::default())?, floor, up),
+    };
+    scene.map_err(|error| error.in_file(file))
+}
+
+/// The other files that a model is made of; none of what can't be read, which loading tells.
+pub fn files_of(file: &Path) -> Vec<PathBuf> {
+    match Format::of(file) {
+        Some(Format::Obj) => obj::files_of(file),
+        #[cfg(feature = "program")]
+        Some(Format::Gltf) => gltf::files_of(file),
+        _ => Vec::new(),
+    }
+}
+
+/// The meshes of a file as its scene has them, each with the name that a scene file gives it where the file is `called` so.
+pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
+    match Format::of(file) {
+        #[cfg(feature = "program")]
+        Some(Format::Gltf) => {
+            let named = |(mesh, pointer)| (mesh, format!("{called}#{pointer}"));
+            gltf::named_meshes(file).into_iter().map(named).collect()
+        }
+        Some(_) => {
+            let mesh = of_one_mesh(file, &mut Pictures::default()).ok();
+            mesh.map(|mesh| (Arc::new(mesh), called.to_owned())).into_iter().collect()
+        }
+        None => Vec::new(),
+    }
+}
+
+#[cfg(not(feature = "program"))]
+fn left_out(file: &Path, format: Format) -> SceneError {
+    let name = if format == Format::Ply { "PLY" } else { "glTF" };
+    let reason = format!("is {name}, which is read with the feature `program`: switch that on, or convert it to OBJ");
+    SceneError::Read { file: file.to_owned(), reason }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_gltf_file_has_a_pointer() {
+        assert_eq!(split("a#b.glb#/meshes/2"), ("a#b.glb", Some("/meshes/2")));
+        assert_eq!(split("a.GLTF#/nodes/0"), ("a.GLTF", Some("/nodes/0")));
+        assert_eq!(split("a#b.obj"), ("a#b.obj", None));
+        assert_eq!(split("a#b.ply#/meshes/2"), ("a#b.ply#/meshes/2", None));
+        assert_eq!(split("a.glb"), ("a.glb", None));
+    }
+}

@@ -1,0 +1,273 @@
+//! PLY models: samples that Blender, trimesh and plyfile wrote (`assets/ply`), files that lie, and what is said of both.
+
+use crate::commands::{folder, run, text};
+use crate::common::{is_closed, judged, session, volume};
+use std::fs;
+use std::path::{Path, PathBuf};
+use stencilscope::scene::{Mesh, OpenSpec, Scene, SceneError, Shading, UpAxis, files_of, obj, open};
+use stencilscope::technique::Technique;
+
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/ply").join(name)
+}
+
+fn opened(file: &Path) -> Result<Scene, SceneError> {
+    open(&OpenSpec::new(file.to_string_lossy()))
+}
+
+fn scene(name: &str) -> Scene {
+    opened(&sample(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The model in a scene: beside it there is a floor.
+fn model(scene: &Scene) -> &Mesh {
+    assert_eq!(scene.objects.len(), 2);
+    &scene.objects[0].mesh
+}
+
+/// Samples: vertices and triangles of the welded mesh, shading, and what is not taken.
+const SAMPLES: [(&str, usize, usize, Shading, &[&str]); 4] = [
+    ("blender.ply", 344, 680, Shading::Phong, &[]),
+    (
+        "plyfile.ply",
+        28,
+        52,
+        Shading::Flat,
+        &[
+            "14 elements `edge`: a mesh is of vertices, faces and strips",
+            "the picture `star.png`: name it as the `texture` of the object's material in a scene file",
+        ],
+    ),
+    ("trimesh.ply", 202, 400, Shading::Flat, &["colours of `vertex`: a surface has its material's colour"]),
+    ("trimesh-text.ply", 42, 80, Shading::Phong, &[]),
+];
+
+#[test]
+fn samples_open_closed_and_right_side_out_and_what_is_not_shown_is_named() {
+    for (name, vertices, triangles, shading, told) in SAMPLES {
+        let scene = scene(name);
+        let mesh = model(&scene);
+        assert_eq!((mesh.positions().len(), mesh.triangles().len()), (vertices, triangles), "{name}");
+        assert_eq!(scene.objects[0].material.shading, shading, "{name}");
+        assert!(is_closed(mesh) && volume(&scene, &scene.objects[0].name) > 0.1, "{name}");
+        let not_taken: Vec<String> =
+            mesh.not_taken().iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
+        assert_eq!(not_taken, told, "{name}");
+    }
+    assert_eq!(crate::common::names(&sample("")).len(), SAMPLES.len());
+}
+
+#[test]
+fn auto_is_right_on_every_sample() {
+    let mut session = session();
+    for (name, ..) in SAMPLES {
+        let capture = judged(&mut session, &scene(name), Technique::Auto, [320, 200]);
+        let accuracy = &capture.lights[0].truth.as_ref().expect("a comparison").error;
+        assert_eq!(accuracy.wrong(), 0, "{name}");
+        assert!(accuracy.compared > 2000, "{name}: {}", accuracy.compared);
+    }
+}
+
+/// A pyramid on a square, with normals and texture coordinates, in numbers that any of the formats holds exactly.
+const VERTICES: [[f64; 8]; 5] = [
+    [-1.0, 0.0, -1.0, 0.0, 1.0, 0.5, 0.0, 0.0],
+    [1.0, 0.0, -1.0, 0.0, 1.0, 0.5, 1.0, 0.0],
+    [1.0, 0.0, 1.0, 0.5, 1.0, 0.0, 1.0, 1.0],
+    [-1.0, 0.0, 1.0, 0.0, 1.0, -0.5, 0.0, 1.0],
+    [0.25, 1.5, 0.0, 0.0, 1.0, 0.0, 0.5, 0.5],
+];
+const FACES: [&[u32]; 5] = [&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]];
+
+#[derive(Clone, Copy)]
+enum Encoding {
+    Text,
+    Little,
+    Big,
+}
+
+/// The pyramid as a file. `float` is the type of its vertices, `count` and `index` those of its faces' lists.
+fn pyramid(encoding: Encoding, float: &str, count: &str, index: &str) -> Vec<u8> {
+    let name = match encoding {
+        Encoding::Text => "ascii",
+        Encoding::Little => "binary_little_endian",
+        Encoding::Big => "binary_big_endian",
+    };
+    let names = ["x", "y", "z", "nx", "ny", "nz", "s", "t"].map(|name| format!("property {float} {name}\n")).concat();
+    let mut file = format!(
+        "ply\nformat {name} 1.0\nelement vertex 5\n{names}element face 5\nproperty list {count} {index} vertex_indices\nend_header\n"
+    )
+    .into_bytes();
+    let mut put = |number: f64, of: &str, last: bool| {
+        let mut bytes = match of {
+            _ if matches!(encoding, Encoding::Text) => {
+                file.extend(format!("{number}{}", if last { "\n" } else { " " }).bytes());
+                return;
+            }
+            "double" => number.to_le_bytes().to_vec(),
+            "float" => (number as f32).to_le_bytes().to_vec(),
+            "int" | "uint" => (number as u32).to_le_bytes().to_vec(),
+            "short" | "ushort" => (number as u16).to_le_bytes().to_vec(),
+            "char" | "uchar" => vec![number as u8],
+            other => panic!("{other}"),
+        };
+        if matches!(encoding, Encoding::Big) {
+            bytes.reverse();
+        }
+        file.extend(bytes);
+    };
+    for vertex in VERTICES {
+        for (at, number) in vertex.into_iter().enumerate() {
+            put(number, float, at == 7);
+        }
+    }
+    for face in FACES {
+        put(face.len() as f64, count, false);
+        for (at, corner) in face.iter().enumerate() {
+            put(f64::from(*corner), index, at + 1 == face.len());
+        }
+    }
+    file
+}
+
+/// Whatever the encoding and the types, it is the mesh that the same numbers make as an OBJ.
+#[test]
+fn one_mesh_in_any_encoding_is_the_mesh_of_an_obj() {
+    let folder = folder();
+    let mut lines = String::new();
+    for [x, y, z, nx, ny, nz, s, t] in VERTICES {
+        lines += &format!("v {x} {y} {z}\nvn {nx} {ny} {nz}\nvt {s} {t}\n");
+    }
+    for face in FACES {
+        let corners = face.iter().map(|corner| corner + 1).map(|corner| format!(" {corner}/{corner}/{corner}"));
+        lines += &format!("f{}\n", corners.collect::<String>());
+    }
+    fs::write(folder.path().join("a.obj"), lines).expect("written");
+    let expected = obj::load(&folder.path().join("a.obj")).expect("a mesh");
+    assert_eq!((expected.triangles().len(), is_closed(&expected)), (6, true));
+    let kinds = [
+        (Encoding::Text, "float", "uchar", "int"),
+        (Encoding::Text, "double", "int", "uint"),
+        (Encoding::Little, "float", "uchar", "int"),
+        (Encoding::Little, "double", "char", "uchar"),
+        (Encoding::Big, "float", "ushort", "short"),
+        (Encoding::Big, "double", "uint", "ushort"),
+    ];
+    let file = folder.path().join("a.ply");
+    for (encoding, float, count, index) in kinds {
+        fs::write(&file, pyramid(encoding, float, count, index)).expect("written");
+        let scene = opened(&file).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(model(&scene), &expected, "{float} {count} {index}");
+    }
+    // As a file of Windows has it, with empty lines between.
+    let text = String::from_utf8(pyramid(Encoding::Text, "float", "uchar", "int")).expect("text");
+    fs::write(&file, text.replace('\n', "\r\n") + "\r\n").expect("written");
+    assert_eq!(model(&opened(&file).expect("a mesh")), &expected);
+}
+
+#[test]
+fn a_scene_file_names_a_ply_and_saving_names_it_again() {
+    let folder = folder();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("written");
+    fs::copy(sample("trimesh.ply"), folder.path().join("ring.PLY")).expect("copied");
+    write("a.toml", "[[objects]]\nmesh = \"ring.PLY\"\n[[objects]]\nmesh = \"ring.PLY\"\ntranslate = [3, 0, 0]\n");
+    let scene = opened(&folder.path().join("a.toml")).expect("a scene");
+    assert!(std::sync::Arc::ptr_eq(&scene.objects[0].mesh, &scene.objects[1].mesh));
+    assert_eq!(*scene.objects[0].mesh, *model(&self::scene("trimesh.ply")));
+    let spec = OpenSpec::new(folder.path().join("a.toml").to_string_lossy());
+    assert!(files_of(&spec).iter().any(|file| file.ends_with("ring.PLY")));
+
+    let (model, saved) = (folder.path().join("ring.PLY"), folder.path().join("saved.toml"));
+    let original = opened(&model).expect("a scene");
+    stencilscope::scene::file::store(&original, Some(&model), &saved).expect("stored");
+    let written = fs::read_to_string(&saved).expect("a scene file");
+    assert!(written.contains("mesh = \"ring.PLY\""), "{written}");
+    assert_eq!(opened(&saved).expect("a scene").objects, original.objects);
+}
+
+/// Many programs have z up, and the file does not say.
+#[test]
+fn z_can_be_up() {
+    let spec = OpenSpec { up: UpAxis::Z, ..OpenSpec::new(sample("plyfile.ply").to_string_lossy()) };
+    let scene = open(&spec).expect("a scene");
+    let reach =
+        |axis: usize| scene.objects[0].world_positions().iter().map(|point| point[axis].abs()).fold(0.0, f64::max);
+    // The star is flat along its own y.
+    assert!((reach(2) - 0.3).abs() < 1e-9 && reach(1) > 0.9, "{} {}", reach(1), reach(2));
+    let folder = folder();
+    let file = sample("plyfile.ply").display().to_string();
+    let output = run(folder.path(), &["capture", &file, "--z-up", "--size", "64x48", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
+
+#[test]
+fn files_that_lie_are_refused_in_one_line() {
+    let folder = folder();
+    let whole = String::from_utf8(pyramid(Encoding::Text, "float", "uchar", "int")).expect("text");
+    let binary = pyramid(Encoding::Little, "float", "uchar", "int");
+    let with = |from: &str, to: &str| {
+        assert!(whole.contains(from), "{from}");
+        whole.replacen(from, to, 1).into_bytes()
+    };
+    let cases: Vec<(Vec<u8>, &str)> = vec![
+        (Vec::new(), "is empty: give a PLY model with content"),
+        (b"solid\n".to_vec(), "is no PLY model: its first line is not `ply`"),
+        (b"ply\nformat ascii 1.0\n".to_vec(), "has no end of its header, a line `end_header`: export the file again"),
+        (b"ply\ncomment a\nend_header\n".to_vec(), "has no line `format` in its header: export the file again"),
+        (with("ascii", "ebcdic"), ":2: `format ebcdic 1.0` is no line of a PLY header: export the file again"),
+        (with("float x", "quad x"), ":4: `property quad x` is no line of a PLY header: export the file again"),
+        (with("float z", "float w"), "has no vertices with x, y and z: export its surface"),
+        (with("element face 5", "element face 0"), "has no faces: export its surface"),
+        (
+            with("element face 5", "element face 4000000000"),
+            "is too short for 4000000000 elements `face`: export it again",
+        ),
+        (with("element face 5", "element face 6"), "ends after 5 of 6 elements `face`: export it again"),
+        (
+            with("-1 0 -1 0 1 0.5 0 0", "-1 nan -1 0 1 0.5 0 0"),
+            ":15: `-1 nan -1 0 1 0.5 0 0` are not the numbers of `vertex`, `x y z nx ny nz s t`: correct it",
+        ),
+        (with("3 1 0 4\n", "3 1 0\n"), ":21: `3 1 0` are not the numbers of `face`, `vertex_indices`: correct it"),
+        (with("3 1 0 4\n", "2 1 0\n"), "has 2 corners at face 1, counted from 0: a face has three or more"),
+        (with("3 1 0 4\n", "3 1 0 5\n"), "uses vertex 5 of 5, counted from 0: export it again"),
+        (with("3 1 0 4\n", "3 1 0 -1\n"), "uses vertex -1 of 5, counted from 0: export it again"),
+        (with("list uchar int", "list uchar float"), ":20: `4 0 1 2 3` are not the numbers of `face`"),
+        (binary[..binary.len() - 1].to_vec(), "ends after 4 of 5 elements `face`: export it again"),
+        (binary[..binary.len() - 64].to_vec(), "ends after 0 of 5 elements `face`: export it again"),
+    ];
+    for (bytes, words) in cases {
+        fs::write(folder.path().join("a.ply"), bytes).expect("written");
+        let error = opened(&folder.path().join("a.ply")).expect_err(words).to_string();
+        assert!(error.contains(words) && !error.contains('\n') && error.contains("a.ply"), "{error}, not {words}");
+    }
+    // A vertex that is no number.
+    let head = binary.len() - (5 * 8 * 4 + 5 * 1 + 16 * 4);
+    let mut nan = binary.clone();
+    nan[head..head + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    fs::write(folder.path().join("a.ply"), nan).expect("written");
+    assert!(opened(&folder.path().join("a.ply")).expect_err("a NaN").to_string().contains("vertex 0 is not finite"));
+    // Elements of nothing, more than anybody could count.
+    let many = whole.replace("element face", "element nothing 18446744073709551615\nelement face").into_bytes();
+    fs::write(folder.path().join("a.ply"), many).expect("written");
+    assert_eq!(model(&opened(&folder.path().join("a.ply")).expect("a mesh")).triangles().len(), 6);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_not_waited_for() {
+    let folder = folder();
+    let made = std::process::Command::new("mkfifo").arg(folder.path().join("a.ply")).status().expect("mkfifo");
+    assert!(made.success());
+    fs::create_dir(folder.path().join("b.ply")).expect("a folder");
+    for (name, words) in [
+        ("a.ply", "a.ply: is a pipe: only plain files are read"),
+        ("b.ply", "b.ply: is a folder: name a PLY model in it"),
+        ("c.ply", "c.ply: there is no such file"),
+    ] {
+        let output = run(folder.path(), &["capture", name, "-o", "out"]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(text(&output.stderr).contains(words), "{}", text(&output.stderr));
+    }
+    fs::write(folder.path().join("d.toml"), "[[objects]]\nmesh = \"a.ply\"\n").expect("written");
+    let error = opened(&folder.path().join("d.toml")).expect_err("a pipe").to_string();
+    assert!(error.contains("d.toml:2: ") && error.contains("is a pipe: only plain files are read"), "{error}");
+}
