@@ -240,7 +240,7 @@ fn files_that_lie_are_refused_in_one_line() {
         assert!(error.contains(words) && !error.contains('\n') && error.contains("a.ply"), "{error}, not {words}");
     }
     // A vertex that is no number.
-    let head = binary.len() - (5 * 8 * 4 + 5 * 1 + 16 * 4);
+    let head = binary.len() - (5 * 8 * 4 + 5 + 16 * 4);
     let mut nan = binary.clone();
     nan[head..head + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     fs::write(folder.path().join("a.ply"), nan).expect("written");

@@ -1,6 +1,6 @@
 //! Does a mesh meet itself? Decided by exact signs.
 //!
-//! A hierarchy of boxes gives the pairs of triangles that may touch. Triangles that share an edge or
+//! A hierarchy of boxes, held against itself, gives the pairs of triangles that may touch. Triangles that share an edge or
 //! a corner touch there, and may nowhere else; others may not at all. Every answer is a sign of
 //! an orientation determinant, in space or, for triangles in one plane, along the axis that shows
 //! them best. Whatever is left open counts as a meeting: the answer "no" is a proof.
@@ -11,6 +11,7 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::time::Duration;
 
@@ -24,24 +25,106 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
     let each = |triangle: usize| (outer_box(corners(triangle)), Flat::of(corners(triangle)).is_some());
     let (boxes, has_area): (Vec<Aabb>, Vec<bool>) = (0..triangles.len()).into_par_iter().map(each).unzip();
     let hierarchy = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
-    let first_of = |one: usize| {
-        let mut met = None;
-        hierarchy.aabb_traverse(boxes[one], |hierarchy: &Bvh2, node| {
-            let node = &hierarchy.nodes[node as usize];
-            let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-            for other in hierarchy.primitive_indices[leaf].iter().map(|index| *index as usize) {
-                if other > one
-                    && boxes[one].intersect_aabb(&boxes[other])
-                    && meet(world, [one, other].map(|triangle| (triangles[triangle], has_area[triangle])))
-                {
-                    met = Some([one, other]);
+    let search = Search { world, triangles, boxes: &boxes, has_area: &has_area, hierarchy: &hierarchy };
+    if search.finds_any() { search.first() } else { None }
+}
+
+/// Looks for triangles that meet among those whose boxes overlap.
+struct Search<'a> {
+    world: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+    /// Of each triangle, as is the next.
+    boxes: &'a [Aabb],
+    has_area: &'a [bool],
+    hierarchy: &'a Bvh2,
+}
+
+/// Two nodes of the hierarchy: which triangles below the one meet which below the other?
+type Pair = [u32; 2];
+
+impl Search<'_> {
+    /// Pairs that are shared among threads, about.
+    const SHARED: usize = 1024;
+
+    /// The hierarchy is held against itself: no way down is gone twice, as it is where each triangle asks for those
+    /// around it.
+    fn finds_any(&self) -> bool {
+        let mut pairs: Vec<Pair> = vec![[0, 0]];
+        while !pairs.is_empty() && pairs.len() < Self::SHARED {
+            let mut below = Vec::with_capacity(3 * pairs.len());
+            if pairs.into_iter().any(|pair| self.look(pair, &mut below)) {
+                return true;
+            }
+            pairs = below;
+        }
+        pairs.into_par_iter().any(|pair| {
+            let mut rest = vec![pair];
+            while let Some(pair) = rest.pop() {
+                if self.look(pair, &mut rest) {
+                    return true;
                 }
             }
-            met.is_none()
-        });
-        met
-    };
-    (0..triangles.len()).into_par_iter().with_min_len(256).find_map_first(first_of)
+            false
+        })
+    }
+
+    /// Do triangles of two leaves meet? Of other nodes, the pairs below are added whose boxes overlap.
+    fn look(&self, [one, other]: Pair, below: &mut Vec<Pair>) -> bool {
+        let node = |index: u32| &self.hierarchy.nodes[index as usize];
+        let overlap = |pair: &Pair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
+        let children = |index: u32| [node(index).first_index, node(index).first_index + 1];
+        match (node(one).is_leaf(), node(other).is_leaf()) {
+            (true, true) => return self.meet_in(self.leaf(node(one)), self.leaf(node(other))),
+            _ if one == other => {
+                let [left, right] = children(one);
+                below.extend([[left, left], [right, right]]);
+                below.extend(Some([left, right]).filter(overlap));
+            }
+            (is_leaf, other_is_leaf) => {
+                let is_larger = || node(one).aabb().half_area() >= node(other).aabb().half_area();
+                let goes_down = !is_leaf && (other_is_leaf || is_larger());
+                let pairs = match goes_down {
+                    true => children(one).map(|child| [child, other]),
+                    false => children(other).map(|child| [one, child]),
+                };
+                below.extend(pairs.iter().filter(|pair| overlap(pair)));
+            }
+        }
+        false
+    }
+
+    fn leaf(&self, node: &Bvh2Node) -> &[u32] {
+        let first = node.first_index as usize;
+        &self.hierarchy.primitive_indices[first..first + node.prim_count as usize]
+    }
+
+    /// Does a triangle of one leaf meet one of another, or of the same?
+    fn meet_in(&self, leaf: &[u32], other: &[u32]) -> bool {
+        let same = std::ptr::eq(leaf, other);
+        leaf.iter().enumerate().any(|(at, one)| {
+            let others = if same { &other[at + 1..] } else { other };
+            others.iter().any(|other| self.meet([*one.min(other), *one.max(other)].map(|index| index as usize)))
+        })
+    }
+
+    fn meet(&self, [one, other]: [usize; 2]) -> bool {
+        self.boxes[one].intersect_aabb(&self.boxes[other])
+            && meet(self.world, [one, other].map(|triangle| (self.triangles[triangle], self.has_area[triangle])))
+    }
+
+    /// Of all that meet, the first in the mesh's order with some later one: the same in every run.
+    fn first(&self) -> Option<[usize; 2]> {
+        let with = |one: usize| {
+            let mut met = None;
+            self.hierarchy.aabb_traverse(self.boxes[one], |hierarchy: &Bvh2, node| {
+                let leaf = self.leaf(&hierarchy.nodes[node as usize]).iter().map(|index| *index as usize);
+                met = leaf.filter(|other| *other > one).map(|other| [one, other]).find(|pair| self.meet(*pair));
+                met.is_none()
+            });
+            met
+        };
+        (0..self.triangles.len()).into_par_iter().with_min_len(256).find_map_first(with)
+    }
 }
 
 /// In `f32`, rounded outwards.

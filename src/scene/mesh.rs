@@ -184,7 +184,7 @@ impl MeshBuilder {
     /// # Errors
     /// A coordinate that is not finite, an index out of range, too many vertices.
     pub fn build(self) -> Result<Mesh, MeshError> {
-        self.build_with(Welder::default())
+        self.build_with(false)
     }
 
     /// The same without welding, as a renderer that trusts a file's indices has it: for showing what that
@@ -193,11 +193,12 @@ impl MeshBuilder {
     /// # Errors
     /// As [`MeshBuilder::build`].
     pub fn build_unwelded(self) -> Result<Mesh, MeshError> {
-        self.build_with(Welder { keeps_apart: true, ..Welder::default() })
+        self.build_with(true)
     }
 
-    fn build_with(self, mut welder: Welder) -> Result<Mesh, MeshError> {
+    fn build_with(self, keeps_apart: bool) -> Result<Mesh, MeshError> {
         self.check()?;
+        let mut welder = Welder::new(keeps_apart, self.positions.len());
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
         let mut corner_uvs = Vec::with_capacity(self.corner_uvs.len());
@@ -216,10 +217,9 @@ impl MeshBuilder {
         kept_before.push(triangles.len());
         let groups = self.groups_after(&kept_before);
         let mut hasher = FixedState::default().build_hasher();
-        for position in &welder.positions {
-            bits(*position).hash(&mut hasher);
+        for bytes in [bytemuck::cast_slice(&welder.positions), bytemuck::cast_slice::<[u32; 3], u8>(&triangles)] {
+            bytes.hash(&mut hasher);
         }
-        triangles.hash(&mut hasher);
         Ok(Mesh {
             dropped: self.triangles.len() - triangles.len(),
             corner_normals: (!corner_normals.is_empty()).then_some(corner_normals),
@@ -260,23 +260,31 @@ impl MeshBuilder {
 }
 
 /// Gives every distinct position one index, in the order of first use.
-#[derive(Default)]
 struct Welder {
     /// Every vertex that was given stays one of its own.
     keeps_apart: bool,
     positions: Vec<DVec3>,
-    index_of: HashMap<([u64; 3], u32), u32, RandomState>,
+    /// Of vertices that were given, where they were used.
+    of_given: Vec<Option<u32>>,
+    index_of: HashMap<[u64; 3], u32, RandomState>,
 }
 
 impl Welder {
+    fn new(keeps_apart: bool, given: usize) -> Welder {
+        Welder { keeps_apart, positions: Vec::new(), of_given: vec![None; given], index_of: HashMap::default() }
+    }
+
     fn weld(&mut self, given: u32, position: DVec3) -> u32 {
+        if let Some(index) = self.of_given[given as usize] {
+            return index;
+        }
         let position = position + 0.0; // −0 + 0 = 0: the two zeros are one place
         let next = self.positions.len() as u32;
-        let apart = if self.keeps_apart { given } else { 0 };
-        let index = *self.index_of.entry((bits(position), apart)).or_insert(next);
+        let index = if self.keeps_apart { next } else { *self.index_of.entry(bits(position)).or_insert(next) };
         if index == next {
             self.positions.push(position);
         }
+        self.of_given[given as usize] = Some(index);
         index
     }
 }

@@ -1,9 +1,8 @@
 //! OBJ models.
 //!
-//! [`load`] checks every line first (`text`), lets `tobj` read what is left, and cuts faces into
-//! triangles (`polygon`). The whole file is one mesh, whatever groups it has: `tobj` splits it
-//! at `o`, `g` and `usemtl`, and the mesh's weld joins it again, so that what is closed stays
-//! closed. The parts stay known as [`Group`]s; where they lie in a picture, their corners know.
+//! [`load`] reads and checks every line (`text`), lets `tobj` read the material libraries, and cuts faces into
+//! triangles (`polygon`). The whole file is one mesh, whatever groups it has, so that what is closed stays closed. The
+//! parts between `o`, `g` and `usemtl` stay known as [`Group`]s; where they lie in a picture, their corners know.
 
 mod materials;
 mod text;
@@ -13,11 +12,10 @@ use super::picture::Pictures;
 use super::polygon;
 use super::read_text::{quoted, read_old_text};
 use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
-use glam::{DVec3, Vec2, Vec3};
-use materials::Libraries;
-use std::cell::RefCell;
+use glam::Vec2;
+use materials::{Libraries, Map};
 use std::path::{Path, PathBuf};
-use text::CleanText;
+use text::{Contents, Corner, Statement};
 
 /// Loads a model as one mesh. It has corner normals if any face of the file has them; faces
 /// without get their own.
@@ -63,120 +61,148 @@ enum ObjProblem {
 
 /// Material libraries are looked for in `folder`.
 fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, ObjProblem> {
-    let cleaned = text::clean(raw).map_err(ObjProblem::Line)?;
-    if cleaned.has_normals.is_empty() {
+    let contents = text::read(raw).map_err(ObjProblem::Line)?;
+    if contents.arities.is_empty() {
         return Err(ObjProblem::File("has no faces: export the surface as `f` lines".to_owned()));
     }
-    let known = RefCell::new(Libraries::new(pictures));
-    let load_library = |name: &Path| known.borrow_mut().load(&folder.join(name), &name.to_string_lossy());
-    let (models, libraries) =
-        tobj::load_obj_buf(&mut cleaned.text.as_bytes(), &tobj::LoadOptions::default(), load_library)
-            .map_err(|error| ObjProblem::File(format!("can't be read as OBJ: {error}; export it again")))?;
-    // A library that can't be read costs colours only.
-    let (libraries, mut known) = (libraries.unwrap_or_default(), known.into_inner());
-    let mesh = assemble(&models, &libraries, &cleaned, &mut known).build();
-    let mesh = mesh.map_err(|error| ObjProblem::File(error.to_string()))?.without(known.refusals.into_list());
+    let mut libraries = Libraries::new(pictures);
+    let faces = assemble(&contents, folder, &mut libraries);
+    let mesh = MeshBuilder { positions: contents.positions, ..faces }.build();
+    let mesh = mesh.map_err(|error| ObjProblem::File(error.to_string()))?.without(libraries.refusals.into_list());
     if mesh.triangles().is_empty() {
         return Err(ObjProblem::File("has no triangle with three different corners: export its surface".to_owned()));
     }
     Ok(mesh)
 }
 
-/// Joins the parts of a file.
-fn assemble(
-    models: &[tobj::Model],
-    libraries: &[tobj::Material],
-    cleaned: &CleanText,
-    known: &mut Libraries,
-) -> MeshBuilder {
-    let is_smooth = cleaned.has_normals.contains(&true);
-    let has_uvs = cleaned.uvs.iter().any(Option::is_some);
-    let shading = if is_smooth { Shading::Phong } else { Shading::Flat };
-    let mut builder = MeshBuilder::default();
-    // Faces stay in the file's order.
-    let mut told = cleaned.has_normals.iter().zip(&cleaned.uvs);
-    for model in models {
-        let start = builder.triangles.len();
-        let first_vertex = builder.positions.len() as u32;
-        let positions: Vec<DVec3> = model.mesh.positions.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();
-        let from = model.mesh.material_id.and_then(|id| libraries.get(id));
-        let map = from.and_then(|from| known.map(&from.name)).cloned();
-        let mut is_placed = true;
-        for face in Faces::of(&model.mesh) {
-            let (has_normals, uvs) = told.next().map_or((false, None), |(has, uvs)| (*has, uvs.as_ref()));
-            // `tobj` makes up normals where a face has none.
-            let normals = face.normals.filter(|_| has_normals);
-            let uvs = uvs.filter(|uvs| uvs.len() == face.vertices.len());
-            let corners: Vec<DVec3> = face.vertices.iter().map(|index| positions[*index as usize]).collect();
-            for triangle in polygon::triangulate(&corners) {
-                builder.triangles.push(triangle.map(|corner| first_vertex + face.vertices[corner]));
-                if is_smooth {
-                    let given = normals.map(|indices| triangle.map(|corner| normal(&model.mesh, indices[corner])));
-                    builder
-                        .corner_normals
-                        .push(given.unwrap_or_else(|| [polygon::normal(triangle.map(|i| corners[i])); 3]));
+/// All but the positions: adds face after face, and what stands between them.
+fn assemble(contents: &Contents, folder: &Path, libraries: &mut Libraries) -> MeshBuilder {
+    let faces = || {
+        let mut rest = contents.corners.as_slice();
+        contents.arities.iter().filter_map(move |arity| rest.split_off(..*arity as usize))
+    };
+    let is_smooth = faces().any(|face| face.iter().all(|corner| corner.normal.is_some()));
+    let has_uvs = faces().any(|face| face.iter().all(|corner| contents.place_of(corner).is_some()));
+    let mut assembly = Assembly {
+        contents,
+        folder,
+        libraries,
+        is_smooth,
+        has_uvs,
+        builder: MeshBuilder::default(),
+        part: Part::default(),
+        triangles: Vec::new(),
+    };
+    let mut statements = contents.statements.iter().peekable();
+    for (at, face) in faces().enumerate() {
+        while let Some((_, statement)) = statements.next_if(|(before, _)| *before <= at) {
+            assembly.state(statement);
+        }
+        assembly.add(face);
+    }
+    statements.for_each(|(_, statement)| assembly.state(statement));
+    assembly.end_part();
+    assembly.builder
+}
+
+struct Assembly<'a, 'b> {
+    contents: &'a Contents,
+    folder: &'a Path,
+    libraries: &'a mut Libraries<'b>,
+    /// Has any face normals, and any a place in a picture?
+    is_smooth: bool,
+    has_uvs: bool,
+    builder: MeshBuilder,
+    part: Part,
+    /// Room for those of a face.
+    triangles: Vec<[usize; 3]>,
+}
+
+/// The group that faces are added to.
+#[derive(Default)]
+struct Part {
+    name: String,
+    /// In the libraries.
+    material: Option<usize>,
+    map: Option<Map>,
+    /// Its first triangle.
+    start: usize,
+    /// Does some triangle lie in no picture?
+    is_unplaced: bool,
+}
+
+impl Assembly<'_, '_> {
+    fn state(&mut self, statement: &Statement) {
+        match statement {
+            Statement::Name(name) => {
+                self.end_part();
+                self.part.name.clone_from(name);
+            }
+            Statement::Material(name) => {
+                let material = self.libraries.find(name);
+                if material != self.part.material {
+                    self.end_part();
                 }
-                if has_uvs {
-                    let place = |uv: Vec2| map.as_ref().map_or(uv, |map| map.place(uv));
-                    let placed = uvs.map(|uvs| triangle.map(|corner| place(uvs[corner])));
-                    let placed = placed.filter(|placed| placed.iter().all(is_usable_uv));
-                    is_placed &= placed.is_some();
-                    builder.corner_uvs.push(placed);
-                } else {
-                    is_placed = false;
-                }
+                self.part.material = material;
+                self.part.map = self.libraries.map(name).filter(|_| material.is_some()).cloned();
+            }
+            Statement::Library(name) => self.libraries.load(&self.folder.join(name), name),
+        }
+    }
+
+    fn add(&mut self, face: &[Corner]) {
+        let contents = self.contents;
+        let position = |corner: &Corner| contents.positions[corner.vertex as usize];
+        let has_normals = face.iter().all(|corner| corner.normal.is_some());
+        let is_placed = face.iter().all(|corner| contents.place_of(corner).is_some());
+        let map = self.part.map.as_ref();
+        self.triangles.clear();
+        match face.len() {
+            3 => self.triangles.push([0, 1, 2]),
+            _ => self.triangles.extend(polygon::triangulate(&face.iter().map(position).collect::<Vec<_>>())),
+        }
+        for triangle in &self.triangles {
+            let corners = triangle.map(|corner| &face[corner]);
+            self.builder.triangles.push(corners.map(|corner| corner.vertex));
+            if self.is_smooth {
+                let given = |corner: &Corner| corner.normal.map(|normal| contents.normals[normal as usize].as_vec3());
+                let own = || polygon::normal(corners.map(position));
+                let normals = corners.map(|corner| given(corner).filter(|_| has_normals).unwrap_or_else(own));
+                self.builder.corner_normals.push(normals);
+            }
+            if self.has_uvs {
+                let place = |uv: Vec2| map.map_or(uv, |map| map.place(uv));
+                let uvs = corners.map(|corner| contents.place_of(corner).map_or(Vec2::NAN, place));
+                let uvs = Some(uvs).filter(|uvs| is_placed && uvs.iter().all(is_usable_uv));
+                self.part.is_unplaced |= uvs.is_none();
+                self.builder.corner_uvs.push(uvs);
             }
         }
-        builder.positions.extend(positions);
-        let name = if model.name == "unnamed_object" { String::new() } else { model.name.clone() };
-        let is_unplaced = map.is_some() && !is_placed;
-        if let Some(from) = from.filter(|_| is_unplaced) {
-            let what = format!("map_Kd of {}", quoted(&from.name));
-            known.refusals.refuse(what, "faces have no texture coordinates (vt) that can be used: export them too");
+    }
+
+    /// Makes the faces since the last one a group, if there are any. Name and material go on.
+    fn end_part(&mut self) {
+        let triangles = self.part.start..self.builder.triangles.len();
+        let from = self.part.material.map(|material| self.libraries.material(material));
+        let is_unplaced = self.part.is_unplaced || !self.has_uvs;
+        if !triangles.is_empty() {
+            let map = self.part.map.as_ref();
+            let shown = map.filter(|_| !is_unplaced);
+            let shading = if self.is_smooth { Shading::Phong } else { Shading::Flat };
+            self.builder.groups.push(Group {
+                name: self.part.name.clone(),
+                triangles: triangles.clone(),
+                material: from.map(|from| materials::material(from, shading, shown.is_some())),
+                texture: shown.map(|map| map.texture.clone()),
+            });
+            let unplaced = from.filter(|_| map.is_some() && is_unplaced).map(|from| quoted(&from.name));
+            if let Some(material) = unplaced {
+                let what = format!("map_Kd of {material}");
+                let because = "faces have no texture coordinates (vt) that can be used: export them too";
+                self.libraries.refusals.refuse(what, because);
+            }
         }
-        builder.groups.push(Group {
-            name,
-            triangles: start..builder.triangles.len(),
-            material: from.map(|from| materials::material(from, shading, map.is_some() && !is_unplaced)),
-            texture: map.filter(|_| !is_unplaced).map(|map| map.texture),
-        });
-    }
-    builder
-}
-
-fn normal(mesh: &tobj::Mesh, index: u32) -> Vec3 {
-    let [x, y, z] = mesh.normals.as_chunks::<3>().0[index as usize];
-    DVec3::new(x, y, z).as_vec3()
-}
-
-/// The faces of a part, one after the other.
-struct Faces<'a> {
-    vertices: &'a [u32],
-    /// Parallel to `vertices`, or empty.
-    normals: &'a [u32],
-    /// Corners of each face; empty: three each.
-    arities: &'a [u32],
-}
-
-/// Corners of one face.
-struct Face<'a> {
-    vertices: &'a [u32],
-    normals: Option<&'a [u32]>,
-}
-
-impl<'a> Faces<'a> {
-    fn of(mesh: &'a tobj::Mesh) -> Faces<'a> {
-        Faces { vertices: &mesh.indices, normals: &mesh.normal_indices, arities: &mesh.face_arities }
-    }
-}
-
-impl<'a> Iterator for Faces<'a> {
-    type Item = Face<'a>;
-
-    fn next(&mut self) -> Option<Face<'a>> {
-        let arity = self.arities.split_off_first().map_or(3, |arity| *arity as usize);
-        let vertices = self.vertices.split_off(..arity)?;
-        Some(Face { vertices, normals: self.normals.split_off(..arity) })
+        (self.part.start, self.part.is_unplaced) = (triangles.end, false);
     }
 }
 

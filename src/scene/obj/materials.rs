@@ -4,7 +4,7 @@
 //! is worth seeing without its colours. Of pictures, `map_Kd` is shown; what else the library asks for is named
 //! ([`Refusals`]).
 
-use crate::files::{ReadError, read_plain};
+use crate::files::read_plain;
 use crate::scene::not_taken::Refusals;
 use crate::scene::picture::Pictures;
 use crate::scene::read_text::{decoded, quoted};
@@ -16,9 +16,12 @@ use std::path::{Path, PathBuf};
 /// Bytes of the largest library.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// What a model's libraries say beside the numbers of materials.
+/// What a model's libraries say.
 #[derive(Debug)]
 pub struct Libraries<'a> {
+    materials: Vec<tobj::Material>,
+    /// Places in the list; of two with one name, the later holds.
+    by_name: BTreeMap<String, usize>,
     /// By the material's name.
     maps: BTreeMap<String, Map>,
     /// What is asked for and not done.
@@ -45,7 +48,18 @@ impl Map {
 impl<'a> Libraries<'a> {
     /// Nothing yet.
     pub fn new(pictures: &'a mut Pictures) -> Libraries<'a> {
-        Libraries { maps: BTreeMap::new(), refusals: Refusals::default(), pictures }
+        let (maps, by_name) = (BTreeMap::new(), BTreeMap::new());
+        Libraries { materials: Vec::new(), by_name, maps, refusals: Refusals::default(), pictures }
+    }
+
+    /// Which material is called so, of those that were read.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
+    /// One that was found.
+    pub fn material(&self, found: usize) -> &tobj::Material {
+        &self.materials[found]
     }
 
     /// The picture of a material.
@@ -53,16 +67,13 @@ impl<'a> Libraries<'a> {
         self.maps.get(material)
     }
 
-    /// Reads a library; pictures are looked for beside it.
-    ///
-    /// # Errors
-    /// A file that can't be read, which is named.
-    pub fn load(&mut self, file: &Path, name: &str) -> tobj::MTLLoadResult {
-        let bytes = read_plain(file, MOST_BYTES).map_err(|error: ReadError| {
-            self.refusals.refuse(format!("the materials of {}", quoted(name)), error.to_string());
-            tobj::LoadError::OpenFileFailed
-        })?;
-        let text = decoded(bytes);
+    /// Reads a library; pictures are looked for beside it. One that can't be read costs colours only, and is named.
+    pub fn load(&mut self, file: &Path, name: &str) {
+        let what = || format!("the materials of {}", quoted(name));
+        let text = match read_plain(file, MOST_BYTES) {
+            Ok(bytes) => decoded(bytes),
+            Err(error) => return self.refusals.refuse(what(), error.to_string()),
+        };
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut material = "";
         for line in text.lines() {
@@ -79,7 +90,14 @@ impl<'a> Libraries<'a> {
             }
         }
         let plain: String = text.lines().filter_map(usable_line).collect();
-        tobj::load_mtl_buf(&mut plain.as_bytes())
+        match tobj::load_mtl_buf(&mut plain.as_bytes()) {
+            Ok((materials, by_name)) => {
+                let before = self.materials.len();
+                self.materials.extend(materials);
+                self.by_name.extend(by_name.into_iter().map(|(name, at)| (name, before + at)));
+            }
+            Err(error) => self.refusals.refuse(what(), format!("{error}: correct the library")),
+        }
     }
 
     fn add_map(&mut self, material: &str, rest: &str, folder: &Path) {

@@ -1,5 +1,5 @@
 use super::*;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 fn parsed(text: &str) -> Result<Mesh, String> {
     parse(text, Path::new(""), &mut Pictures::default()).map_err(|problem| match problem {

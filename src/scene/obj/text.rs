@@ -1,31 +1,53 @@
-//! The text of an OBJ file, checked line by line and reduced to what a mesh needs.
+//! The text of an OBJ file, read on all cores and checked line by line: the first line that is wrong is named.
 //!
-//! `tobj` names neither the line of an error nor survives every broken number, so each line is
-//! checked here first. What is left is plain: finite coordinates, faces of at least three corners
-//! with absolute indices in range, group and material lines. Vertex colours, points, lines and
-//! curves are left out. A face keeps its normals only if all its corners have one; so its places in a
-//! picture, which are read here, as no mesh is worth less without.
+//! Vertex colours, points, lines and curves are left out. A place in a picture that is broken is none, as no mesh is worth
+//! less without.
 
 use crate::scene::mesh::is_usable_uv;
 use crate::scene::read_text::quoted;
-use glam::Vec2;
+use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::fmt::Write;
+use std::ops::AddAssign;
 
-/// An OBJ file that `tobj` reads without an error.
-#[derive(Debug, Default)]
-pub struct CleanText {
-    /// Vertices first, then everything else in the file's order.
-    pub text: String,
-    /// For each face, in order: do all its corners have a normal?
-    pub has_normals: Vec<bool>,
-    /// For each face, in order: where each corner lies in a picture, if all of them do.
-    pub uvs: Vec<Option<Vec<Vec2>>>,
+/// What an OBJ file says; indices count from 0 and are in range.
+#[derive(Debug, Default, PartialEq)]
+pub struct Contents {
+    /// Finite.
+    pub positions: Vec<DVec3>,
+    /// Finite in single precision, too.
+    pub normals: Vec<DVec3>,
+    /// Places in a picture; `None` where one can't be used.
+    pub places: Vec<Option<Vec2>>,
+    /// Of all faces, one after the other.
+    pub corners: Vec<Corner>,
+    /// How many corners each face has: three or more.
+    pub arities: Vec<u32>,
+    /// Between faces: behind how many of them, and what.
+    pub statements: Vec<(usize, Statement)>,
+}
+
+/// A corner of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corner {
+    pub vertex: u32,
+    pub place: Option<u32>,
+    pub normal: Option<u32>,
+}
+
+/// What holds for the faces that follow.
+#[derive(Debug, PartialEq)]
+pub enum Statement {
+    /// `o` or `g`; empty where it gives no name.
+    Name(String),
+    /// `usemtl`.
+    Material(String),
+    /// `mtllib`.
+    Library(String),
 }
 
 /// What is wrong with a line.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LineProblem {
     /// Counted from 1.
     pub line: usize,
@@ -33,226 +55,244 @@ pub struct LineProblem {
     pub reason: String,
 }
 
-/// Checks and reduces a file.
+/// Bytes that a thread takes at once, about.
+const PART: usize = 1 << 18;
+
+/// Reads and checks a file.
 ///
 /// # Errors
 /// The first broken vertex or normal, else the first broken face.
-pub fn clean(raw: &str) -> Result<CleanText, LineProblem> {
-    let (lines, all) = counted_lines(raw);
-    let vectors: Vec<_> = lines.par_chunks(PART).map(vectors_of).collect();
-    let places: Vec<Option<Vec2>> = lines.iter().filter_map(Line::place).collect();
-    let others: Vec<_> = lines.par_chunks(PART).map(|lines| others_of(lines, all, &places)).collect();
+pub fn read(raw: &str) -> Result<Contents, LineProblem> {
+    read_in_parts(raw, PART)
+}
+
+fn read_in_parts(raw: &str, size: usize) -> Result<Contents, LineProblem> {
+    let parts = parts(raw, size);
+    let counts: Vec<Counts> = parts.par_iter().map(|part| Counts::of(part)).collect();
+    let mut all = Counts::default();
+    let mut before = Vec::with_capacity(parts.len());
+    for count in counts {
+        before.push(all);
+        all += count;
+    }
+    let read: Vec<Part> = parts.par_iter().zip(before).map(|(text, before)| Part::read(text, before, all)).collect();
     // The first error in the file's order, whichever thread was first.
-    let mut cleaned = CleanText { text: vectors.into_iter().collect::<Result<_, _>>()?, ..CleanText::default() };
-    for part in others {
-        let part = part?;
-        cleaned.text.push_str(&part.text);
-        cleaned.has_normals.extend(part.has_normals);
-        cleaned.uvs.extend(part.uvs);
+    let of_vectors = read.iter().find_map(|part| part.of_vectors.clone());
+    if let Some(problem) = of_vectors.or_else(|| read.iter().find_map(|part| part.of_faces.clone())) {
+        return Err(problem);
     }
-    Ok(cleaned)
+    let mut joined = Contents::default();
+    for Part { contents, .. } in read {
+        let faces = joined.arities.len();
+        joined.positions.extend(contents.positions);
+        joined.normals.extend(contents.normals);
+        joined.places.extend(contents.places);
+        joined.corners.extend(contents.corners);
+        joined.arities.extend(contents.arities);
+        joined.statements.extend(contents.statements.into_iter().map(|(at, statement)| (faces + at, statement)));
+    }
+    Ok(joined)
 }
 
-/// Vertices and normals among some lines.
-fn vectors_of(lines: &[Line]) -> Result<String, LineProblem> {
-    let mut text = String::new();
-    for line in lines {
-        line.add_vector(&mut text).map_err(|reason| LineProblem { line: line.number, reason })?;
-    }
-    Ok(text)
-}
-
-/// All else among them.
-fn others_of(lines: &[Line], all: Counts, places: &[Option<Vec2>]) -> Result<CleanText, LineProblem> {
-    let mut cleaned = CleanText::default();
-    let mut corners = Vec::new();
-    for Line { number, content, before } in lines {
-        let (keyword, rest) = split_keyword(content);
-        match keyword {
-            "f" => {
-                cleaned.uvs.push(words(rest).map(|word| place(word, *before, places)).collect());
-                let has_normals = add_face(&mut cleaned.text, rest, (*before, all), &mut corners);
-                cleaned.has_normals.push(has_normals.map_err(|reason| LineProblem { line: *number, reason })?);
+/// The text in pieces that end where lines do, none of which goes on.
+fn parts(raw: &str, size: usize) -> Vec<&str> {
+    let mut parts = Vec::new();
+    let mut rest = raw;
+    while !rest.is_empty() {
+        let mut end = 0;
+        for line in rest.as_bytes().split_inclusive(|byte| *byte == b'\n') {
+            end += line.len();
+            if end >= size && !line.trim_ascii_end().ends_with(b"\\") {
+                break;
             }
-            "o" | "g" => push_line(&mut cleaned.text, &[keyword, rest]),
-            "usemtl" | "mtllib" if !rest.is_empty() => push_line(&mut cleaned.text, &[keyword, rest]),
-            _ => {}
         }
+        let (part, after) = rest.split_at(end);
+        parts.push(part);
+        rest = after;
     }
-    Ok(cleaned)
+    parts
 }
 
-fn push_line(text: &mut String, words: &[&str]) {
-    for (index, word) in words.iter().enumerate() {
-        text.push_str(if index == 0 { "" } else { " " });
-        text.push_str(word);
-    }
-    text.push('\n');
-}
-
-/// Lines that a thread takes at once.
-const PART: usize = 8192;
-
-/// A line, joined with those that it continues on.
-struct Line<'a> {
-    /// Counted from 1.
-    number: usize,
-    content: Cow<'a, str>,
-    /// What stands before it.
-    before: Counts,
-}
-
-/// How many vertices, normals and places in a picture there are.
+/// How many lines, vertices, normals and places in a picture there are.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
+    lines: usize,
     vertices: usize,
     normals: usize,
     places: usize,
 }
 
-impl Counts {
-    fn add(&mut self, keyword: &str) {
-        match keyword {
-            "v" => self.vertices += 1,
-            "vn" => self.normals += 1,
-            "vt" => self.places += 1,
-            _ => {}
-        }
+impl AddAssign for Counts {
+    fn add_assign(&mut self, more: Counts) {
+        self.lines += more.lines;
+        self.vertices += more.vertices;
+        self.normals += more.normals;
+        self.places += more.places;
     }
 }
 
-/// All lines, and how many vertices, normals and places they have; a backslash at the end joins the next one.
-fn counted_lines(raw: &str) -> (Vec<Line<'_>>, Counts) {
-    let mut joined: Vec<Line> = Vec::new();
-    let mut continues = false;
-    for (index, line) in raw.lines().enumerate() {
-        let (content, goes_on) = match line.trim_end().strip_suffix('\\') {
-            Some(content) => (content, true),
-            None => (line, false),
-        };
-        match joined.last_mut().filter(|_| continues) {
-            Some(start) => {
-                let joined = start.content.to_mut();
-                joined.push(' ');
-                joined.push_str(content);
+impl Counts {
+    fn of(part: &str) -> Counts {
+        let mut counts = Counts::default();
+        for (_, line) in lines(part) {
+            match split_keyword(&line).0 {
+                "v" => counts.vertices += 1,
+                "vn" => counts.normals += 1,
+                "vt" => counts.places += 1,
+                _ => {}
             }
-            None => joined.push(Line { number: index + 1, content: content.into(), before: Counts::default() }),
         }
-        continues = goes_on;
+        Counts { lines: part.lines().count(), ..counts }
     }
-    let mut counts = Counts::default();
-    for line in &mut joined {
-        line.before = counts;
-        counts.add(split_keyword(&line.content).0);
-    }
-    (joined, counts)
+}
+
+/// Lines with their numbers, counted from 0; a backslash at the end joins the next one.
+fn lines(part: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+    let mut rest = part.lines().enumerate();
+    std::iter::from_fn(move || {
+        let (number, line) = rest.next()?;
+        let Some(first) = line.trim_ascii_end().strip_suffix('\\') else { return Some((number, Cow::Borrowed(line))) };
+        let mut joined = first.to_owned();
+        for (_, line) in rest.by_ref() {
+            let goes_on = line.trim_ascii_end().strip_suffix('\\');
+            joined.push(' ');
+            joined.push_str(goes_on.unwrap_or(line));
+            if goes_on.is_none() {
+                break;
+            }
+        }
+        Some((number, Cow::Owned(joined)))
+    })
 }
 
 fn split_keyword(line: &str) -> (&str, &str) {
-    let line = line.trim();
-    line.split_once(char::is_whitespace).map_or((line, ""), |(keyword, rest)| (keyword, rest.trim()))
+    let line = line.trim_ascii();
+    line.split_once(|c: char| c.is_ascii_whitespace())
+        .map_or((line, ""), |(keyword, rest)| (keyword, rest.trim_ascii()))
 }
 
 /// The words before a comment.
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split_whitespace().take_while(|word| !word.starts_with('#'))
+    text.split_ascii_whitespace().take_while(|word| !word.starts_with('#'))
 }
 
-impl Line<'_> {
-    /// Adds a `v` or `vn` line with its three numbers; nothing of any other line.
-    fn add_vector(&self, text: &mut String) -> Result<(), String> {
-        let (keyword, rest) = split_keyword(&self.content);
-        let (what, most) = match keyword {
-            "v" => ("vertex", f64::MAX),
-            "vn" => ("normal", f64::from(f32::MAX)),
-            _ => return Ok(()),
-        };
-        let mut three = words(rest);
-        let [Some(x), Some(y), Some(z)] = [three.next(), three.next(), three.next()] else {
-            let count = words(rest).count();
-            return Err(format!("a {what} needs three numbers, but this has {count}: complete it"));
-        };
-        for word in [x, y, z] {
-            let number: f64 = word.parse().map_err(|_| format!("{} is not a number: correct it", quoted(word)))?;
-            if !number.is_finite() || number.abs() > most {
-                return Err(format!("{} is not a finite number: replace it", quoted(word)));
+/// Some lines of a file, and what is first wrong with them.
+#[derive(Debug, Default)]
+struct Part {
+    contents: Contents,
+    of_vectors: Option<LineProblem>,
+    of_faces: Option<LineProblem>,
+}
+
+impl Part {
+    fn read(text: &str, before: Counts, all: Counts) -> Part {
+        let mut part = Part::default();
+        for (at, line) in lines(text) {
+            let (keyword, rest) = split_keyword(&line);
+            let contents = &mut part.contents;
+            let told = |reason| LineProblem { line: before.lines + at + 1, reason };
+            let mut state = |statement| contents.statements.push((contents.arities.len(), statement));
+            match keyword {
+                "v" | "vn" => match vector(keyword, rest) {
+                    Ok(vector) if keyword == "v" => contents.positions.push(vector),
+                    Ok(vector) => contents.normals.push(vector),
+                    Err(reason) => {
+                        part.of_vectors = Some(told(reason));
+                        break;
+                    }
+                },
+                "vt" => contents.places.push(place(rest)),
+                "f" if part.of_faces.is_none() => {
+                    part.of_faces = contents.add_face(rest, before, all).err().map(told);
+                }
+                "o" | "g" => state(Statement::Name(rest.to_owned())),
+                "usemtl" if !rest.is_empty() => state(Statement::Material(rest.to_owned())),
+                "mtllib" if !rest.is_empty() => state(Statement::Library(rest.to_owned())),
+                _ => {}
             }
         }
-        push_line(text, &[keyword, x, y, z]);
+        part
+    }
+}
+
+impl Contents {
+    /// Where a corner lies in a picture, if that can be used.
+    pub fn place_of(&self, corner: &Corner) -> Option<Vec2> {
+        self.places[corner.place? as usize]
+    }
+
+    /// Adds a face of a part of a file that has so much before it and in all.
+    fn add_face(&mut self, rest: &str, before: Counts, all: Counts) -> Result<(), String> {
+        let here = Counts {
+            vertices: before.vertices + self.positions.len(),
+            normals: before.normals + self.normals.len(),
+            places: before.places + self.places.len(),
+            ..before
+        };
+        let first = self.corners.len();
+        for word in words(rest) {
+            self.corners.push(corner(word, here, all)?);
+        }
+        let count = self.corners.len() - first;
+        if count < 3 {
+            return Err(format!(
+                "a face needs at least 3 corners, but this has {count}: complete it or delete the line"
+            ));
+        }
+        self.arities.push(count as u32);
         Ok(())
     }
-
-    /// The place of a `vt` line: `None` inside where it can't be used, outside for any other line.
-    fn place(&self) -> Option<Option<Vec2>> {
-        let (keyword, rest) = split_keyword(&self.content);
-        (keyword == "vt").then(|| {
-            let mut numbers = words(rest).map(|word| word.parse().ok());
-            // The second is 0 unless given.
-            let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
-            is_usable_uv(&place).then_some(place)
-        })
-    }
 }
 
-/// Where a corner, `v/vt` or `v/vt/vn`, lies in a picture, if that can be told.
-fn place(word: &str, before: Counts, places: &[Option<Vec2>]) -> Option<Vec2> {
-    let named = word.split('/').nth(1).filter(|named| !named.is_empty())?;
-    let index = index("place", "places", named, before.places, places.len()).ok()?;
-    *places.get(index - 1)?
+/// Three numbers of a `v` or `vn` line.
+fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
+    let (what, most) = if keyword == "v" { ("vertex", f64::MAX) } else { ("normal", f64::from(f32::MAX)) };
+    let mut three = words(rest);
+    let mut vector = DVec3::ZERO;
+    for axis in 0..3 {
+        let word = three.next().ok_or_else(|| {
+            let count = words(rest).count();
+            format!("a {what} needs three numbers, but this has {count}: complete it")
+        })?;
+        let number: f64 = word.parse().map_err(|_| format!("{} is not a number: correct it", quoted(word)))?;
+        if !number.is_finite() || number.abs() > most {
+            return Err(format!("{} is not a finite number: replace it", quoted(word)));
+        }
+        vector[axis] = number;
+    }
+    Ok(vector)
 }
 
-/// Vertex and, where it has one, normal of a corner: absolute.
-type Corner = (usize, Option<usize>);
-
-/// Adds a face line with absolute indices, as `v` or, where every corner has a normal, `v//vn`: whether they have. `corners`
-/// is room for them.
-fn add_face(
-    text: &mut String,
-    rest: &str,
-    counts: (Counts, Counts),
-    corners: &mut Vec<Corner>,
-) -> Result<bool, String> {
-    corners.clear();
-    for word in words(rest) {
-        corners.push(corner(word, counts)?);
-    }
-    if corners.len() < 3 {
-        let count = corners.len();
-        return Err(format!("a face needs at least 3 corners, but this has {count}: complete it or delete the line"));
-    }
-    let all_have_normals = corners.iter().all(|(_, normal)| normal.is_some());
-    text.push('f');
-    for (vertex, normal) in corners {
-        // Writing to a string can't fail.
-        let _ = match normal.filter(|_| all_have_normals) {
-            Some(normal) => write!(text, " {vertex}//{normal}"),
-            None => write!(text, " {vertex}"),
-        };
-    }
-    text.push('\n');
-    Ok(all_have_normals)
+/// The place of a `vt` line, if it can be used; its second number is 0 unless given.
+fn place(rest: &str) -> Option<Vec2> {
+    let mut numbers = words(rest).map(|word| word.parse().ok());
+    let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
+    is_usable_uv(&place).then_some(place)
 }
 
-/// Vertex and normal of a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-fn corner(word: &str, (before, all): (Counts, Counts)) -> Result<Corner, String> {
+/// A corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+fn corner(word: &str, before: Counts, all: Counts) -> Result<Corner, String> {
     let mut parts = word.split('/');
-    let (vertex, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
-        [Some(vertex), _, normal, None] => (vertex, normal.unwrap_or_default()),
+    let (vertex, place, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
+        [Some(vertex), place, normal, None] => (vertex, place.unwrap_or_default(), normal.unwrap_or_default()),
         _ => return Err(format!("{} is no corner: write v, v/vt, v//vn or v/vt/vn", quoted(word))),
     };
     let vertex = index("vertex", "vertices", vertex, before.vertices, all.vertices)?;
-    if normal.is_empty() {
-        return Ok((vertex, None));
-    }
-    Ok((vertex, Some(index("normal", "normals", normal, before.normals, all.normals)?)))
+    let normal = match normal {
+        "" => None,
+        normal => Some(index("normal", "normals", normal, before.normals, all.normals)?),
+    };
+    // One that is not there is none.
+    let place = index("place", "places", place, before.places, all.places).ok();
+    Ok(Corner { vertex, place, normal })
 }
 
-/// An absolute index, counted from 1; negative ones count back from the line.
-fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Result<usize, String> {
+/// An index, counted from 0; in the file from 1, and negative ones count back from the line.
+fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Result<u32, String> {
     let given: i64 = word.parse().map_err(|_| format!("{} is no {what} index: give a whole number", quoted(word)))?;
     let back = usize::try_from(given.unsigned_abs()).unwrap_or(usize::MAX);
-    let absolute = if given < 0 { before.checked_sub(back).map(|index| index + 1) } else { Some(back) };
-    absolute.filter(|index| (1..=all).contains(index)).ok_or_else(|| {
+    let absolute = if given < 0 { before.checked_sub(back) } else { back.checked_sub(1) };
+    absolute.filter(|index| *index < all).and_then(|index| u32::try_from(index).ok()).ok_or_else(|| {
         let range = if given < 0 {
             format!("{before} {plural} stand before it")
         } else {
@@ -260,4 +300,32 @@ fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Res
         };
         format!("{what} index {given} is out of range: {range}; correct it")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wherever a file is cut for its threads, it says the same: indices that count back, lines that go on, names, errors.
+    #[test]
+    fn cuts_change_nothing() {
+        let text = "# é\nv 0 0 0\nv 1 0 0 \\\n# more\nv 1 1\\\n 0\r\nvn 0 0 1\nvt 0.5 \\\r\n0.25\nmtllib a b.mtl\no left\nf 1/1/1 2//1 3\n\
+                    v 0 1 0\nusemtl red\nf -4 -3 -2 \\\n-1\ng\nvt x\nvn 0 1 0\nf 1/2/-1 2/1/1 -1/-2/-2\nf 4/-7 3/9 1";
+        let whole = read(text).expect("a file");
+        assert_eq!((whole.positions.len(), whole.normals.len(), whole.places.len()), (4, 2, 2));
+        assert_eq!((&whole.arities[..], whole.statements.len()), ([3, 4, 3, 3].as_slice(), 4));
+        assert_eq!(whole.corners[3..7].iter().map(|corner| corner.vertex).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(whole.corners[9], Corner { vertex: 3, place: Some(0), normal: Some(0) });
+        for size in 1..text.len() {
+            assert_eq!(parts(text, size).concat(), text, "{size}");
+            assert_eq!(read_in_parts(text, size).as_ref(), Ok(&whole), "{size}");
+        }
+        // A vertex goes before a face, and of each kind the first.
+        for (more, line) in [("f 1 2\nf 1 2 x\nv 1\nv 2\n", 24), ("\nf 1 2\nv 0 0 0\nf 7 7 7\n", 23)] {
+            let broken = format!("{text}\n{more}");
+            for size in 1..broken.len() {
+                assert_eq!(read_in_parts(&broken, size).expect_err("broken").line, line, "{size}");
+            }
+        }
+    }
 }
