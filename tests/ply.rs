@@ -212,10 +212,13 @@ fn files_that_lie_are_refused_in_one_line() {
         (Vec::new(), "is empty: give a PLY model with content"),
         (b"solid\n".to_vec(), "is no PLY model: its first line is not `ply`"),
         (b"ply\nformat ascii 1.0\n".to_vec(), "has no end of its header, a line `end_header`: export the file again"),
-        (b"ply\ncomment a\nend_header\n".to_vec(), "has no line `format` in its header: export the file again"),
-        (with("ascii", "ebcdic"), ":2: `format ebcdic 1.0` is no line of a PLY header: export the file again"),
-        (with("float x", "quad x"), ":4: `property quad x` is no line of a PLY header: export the file again"),
-        (with("float z", "float w"), "has no vertices with x, y and z: export its surface"),
+        (
+            b"ply\ncomment a\nend_header\n".to_vec(),
+            "has no `format` in its header that is known: export the file again",
+        ),
+        (with("ascii", "ebcdic"), ":2: `format ebcdic 1.0` can't stand there in a PLY header: export the file again"),
+        (with("float x", "quad x"), ":4: `property quad x` can't stand there in a PLY header: export the file again"),
+        (with("float z", "float w"), "has no vertices with numbers x, y and z: export its surface"),
         (with("element face 5", "element face 0"), "has no faces: export its surface"),
         (
             with("element face 5", "element face 4000000000"),
@@ -223,14 +226,19 @@ fn files_that_lie_are_refused_in_one_line() {
         ),
         (with("element face 5", "element face 6"), "ends after 5 of 6 elements `face`: export it again"),
         (
-            with("-1 0 -1 0 1 0.5 0 0", "-1 nan -1 0 1 0.5 0 0"),
-            ":15: `-1 nan -1 0 1 0.5 0 0` are not the numbers of `vertex`, `x y z nx ny nz s t`: correct it",
+            with("-1 0 -1 0 1 0.5 0 0", "-1 x -1 0 1 0.5 0 0"),
+            ":15: `-1 x -1 0 1 0.5 0 0` does not hold `x y z nx ny nz s t` of `vertex`: correct it",
         ),
-        (with("3 1 0 4\n", "3 1 0\n"), ":21: `3 1 0` are not the numbers of `face`, `vertex_indices`: correct it"),
-        (with("3 1 0 4\n", "2 1 0\n"), "has 2 corners at face 1, counted from 0: a face has three or more"),
+        (with("-1 0 -1 0 1 0.5 0 0", "-1 nan -1 0 1 0.5 0 0"), "vertex 0 is not finite"),
+        (with("3 1 0 4\n", "3 1 0\n"), ":21: `3 1 0` does not hold `vertex_indices` of `face`: correct it"),
+        (with("3 1 0 4\n", "2 1 0\n"), ":21: the face has 2 corners: a face needs three or more"),
         (with("3 1 0 4\n", "3 1 0 5\n"), "uses vertex 5 of 5, counted from 0: export it again"),
-        (with("3 1 0 4\n", "3 1 0 -1\n"), "uses vertex -1 of 5, counted from 0: export it again"),
-        (with("list uchar int", "list uchar float"), ":20: `4 0 1 2 3` are not the numbers of `face`"),
+        (with("3 1 0 4\n", "3 1 0 -1\n"), ":21: the face uses vertex -1, which can't be"),
+        (with("list uchar int", "list uchar float"), "has no one list `vertex_indices` of whole numbers in `face`"),
+        (with("vertex_indices", "corners"), "has no one list `vertex_indices` of whole numbers in `face`"),
+        (with("float ny", "float nx"), "has two elements or properties of one name: export the file again"),
+        (with("float x", "list uchar float x"), "has no vertices with numbers x, y and z"),
+        (whole.replace('\n', "\r").into_bytes(), "has lines that end as on old Macs: save it with line feeds"),
         (binary[..binary.len() - 1].to_vec(), "ends after 4 of 5 elements `face`: export it again"),
         (binary[..binary.len() - 64].to_vec(), "ends after 0 of 5 elements `face`: export it again"),
     ];
@@ -245,10 +253,106 @@ fn files_that_lie_are_refused_in_one_line() {
     nan[head..head + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     fs::write(folder.path().join("a.ply"), nan).expect("written");
     assert!(opened(&folder.path().join("a.ply")).expect_err("a NaN").to_string().contains("vertex 0 is not finite"));
+    // A face of two corners, and one of a corner that can't be.
+    let face = binary.len() - 16 * 4 - 5 + 17;
+    for (at, byte, words) in [
+        (face, 2, "has a face, number 1 counted from 0, that has 2 corners: a face needs three or more"),
+        (face + 4, 255, "has a face, number 1 counted from 0, that uses vertex -16777215, which can't be"),
+    ] {
+        let mut broken = binary.clone();
+        broken[at] = byte;
+        fs::write(folder.path().join("a.ply"), broken).expect("written");
+        let error = opened(&folder.path().join("a.ply")).expect_err(words).to_string();
+        assert!(error.contains(words), "{error}");
+    }
     // Elements of nothing, more than anybody could count.
     let many = whole.replace("element face", "element nothing 18446744073709551615\nelement face").into_bytes();
     fs::write(folder.path().join("a.ply"), many).expect("written");
     assert_eq!(model(&opened(&folder.path().join("a.ply")).expect("a mesh")).triangles().len(), 6);
+}
+
+/// Two triangles of a square, and the header's lines for a vertex's more numbers, which are `more`.
+fn square(properties: &str, more: &[&str; 4], faces: &str) -> String {
+    let corners = ["0 0 0", "1. 0 0", "1 0 -1", "0 0 -1e0"];
+    let rows: String = corners.iter().zip(more).map(|(corner, more)| format!("{corner} {more}\n")).collect();
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n{properties}{faces}{rows}"
+    )
+}
+
+/// Where corners lie in a picture: each as its face says, else as its vertex does.
+#[test]
+fn places_in_a_picture_are_of_corners_or_of_vertices() {
+    let folder = folder();
+    let file = folder.path().join("a.ply");
+    let uvs = |text: &str| {
+        fs::write(&file, text).expect("written");
+        let scene = opened(&file).unwrap_or_else(|error| panic!("{error}: {text}"));
+        let mesh = model(&scene);
+        let not_taken: Vec<String> = mesh.not_taken().iter().map(|one| one.what.clone()).collect();
+        let uvs =
+            mesh.corner_uvs().map(|uvs| uvs.iter().map(|uvs| uvs.map(|uvs| uvs.map(|uv| uv.to_array()))).collect());
+        (uvs.unwrap_or_default(), not_taken)
+    };
+    let faces = "element face 2\nproperty list uchar int vertex_index\nend_header\n";
+    // The rows of faces follow those of vertices.
+    let with = |properties: &str, more: &[&str; 4], head: &str, rows: &str| square(properties, more, head) + rows;
+    let expected = vec![Some([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), Some([[0.0, 0.0], [1.0, 1.0], [0.0, 1.0]])];
+    for [u, v] in [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]] {
+        let properties = format!("property float {u}\nproperty float {v}\n");
+        let text = with(&properties, &["0 0", "1 0", "1 1", "0 1"], faces, "3 0 1 2\n3 0 2 3\n");
+        assert_eq!(uvs(&text), (expected.clone(), vec![]), "{u} {v}");
+    }
+    // One without the other is none; nor is a number that is none.
+    let text = with("property float u\nproperty float s\n", &["0 0"; 4], faces, "3 0 1 2\n3 0 2 3\n");
+    assert_eq!(uvs(&text), (vec![], vec!["`u` of `vertex`".to_owned(), "`s` of `vertex`".to_owned()]));
+    let text =
+        with("property float s\nproperty float t\n", &["0 0", "nan 0", "1 1", "0 1"], faces, "3 0 1 2\n3 0 2 3\n");
+    assert_eq!(uvs(&text).0, [None, expected[1]]);
+    // Of a face's corners; where it has none, of vertices.
+    let of_corners =
+        "element face 2\nproperty list uchar int vertex_index\nproperty list uchar float texcoord\nend_header\n";
+    let rows = "3 0 1 2 6 .5 0 .5 .5 .5 1\n3 0 2 3 0\n";
+    let text = with("property float s\nproperty float t\n", &["0 0", "1 0", "1 1", "0 1"], of_corners, rows);
+    assert_eq!(uvs(&text).0, [Some([[0.5, 0.0], [0.5, 0.5], [0.5, 1.0]]), expected[1]]);
+    // A list of another type is named, and not taken.
+    let text = with("", &[""; 4], &of_corners.replace("uchar float", "uchar int"), "3 0 1 2 0\n3 0 2 3 1 7\n");
+    assert_eq!(uvs(&text), (vec![], vec!["`texcoord` of `face`".to_owned()]));
+    // The sample has them for its polygons, and none for its strips.
+    let sample = scene("plyfile.ply");
+    let uvs = model(&sample).corner_uvs().expect("of its polygons");
+    assert_eq!(uvs.iter().filter(|uvs| uvs.is_some()).count(), 24);
+    let [corner, ..] = model(&sample).triangles()[0];
+    let place = model(&sample).positions()[corner as usize];
+    let [u, v] = uvs[0].expect("three")[0].to_array();
+    assert!((f64::from(u) - (0.5 * place.x + 0.5)).abs() < 1e-6 && (f64::from(v) - (0.5 * place.z + 0.5)).abs() < 1e-6);
+}
+
+/// What programs write beside a surface does not keep it from being read.
+#[test]
+fn what_is_not_wanted_is_read_over() {
+    let folder = folder();
+    let file = folder.path().join("a.ply");
+    let head = "ply\nformat ascii 1.0\n";
+    let faces = "element face 1\nproperty list uchar int vertex_indices\nproperty uchar filtered\n";
+    let vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float quality\n\
+                    property float nx\nproperty float ny\nproperty float nz\nproperty uchar diffuse_red\n";
+    let camera = "element camera 1\nproperty list uchar float u\nproperty list uchar float vertex_index\n";
+    // Faces before vertices, lists where others have numbers, numbers that are none, words behind the end of a row.
+    let text = format!(
+        "{head}{camera}{faces}{vertices}end_header\n1 0.5 2 1 2\n3 0 1 2 7\n\n0 0 0 nan nan 0 1 9\n1 0 0 inf 0 2 0 9\n\
+         +0 0 -1e0 1 0 1 0 9 more\n"
+    );
+    fs::write(&file, text).expect("written");
+    let scene = opened(&file).unwrap_or_else(|error| panic!("{error}"));
+    let mesh = model(&scene);
+    assert_eq!(mesh.triangles(), [[0, 1, 2]]);
+    // A normal that is none is the triangle's own.
+    let normals = mesh.corner_normals().expect("normals")[0].map(|normal| normal.to_array());
+    assert_eq!(normals, [[0.0; 3], [0.0, 2.0, 0.0], [0.0, 1.0, 0.0]]);
+    let not_taken: Vec<&str> = mesh.not_taken().iter().map(|one| one.what.as_str()).collect();
+    let expected = ["1 elements `camera`", "`filtered` of `face`", "`quality` of `vertex`", "colours of `vertex`"];
+    assert_eq!(not_taken, expected);
 }
 
 #[cfg(unix)]

@@ -43,6 +43,31 @@ pub enum SceneError {
     },
 }
 
+/// What is wrong with a file, by one who reads its text and does not know its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum FileProblem {
+    /// With a line, counted from 1: what is wrong with it and how to mend it.
+    Line(usize, String),
+    /// With all of it.
+    File(String),
+}
+
+impl FileProblem {
+    /// A model of which nothing is left to show.
+    pub fn no_triangles() -> FileProblem {
+        FileProblem::File("has no triangle with three different corners: export its surface".to_owned())
+    }
+
+    /// In this file.
+    pub fn of(self, file: &Path) -> SceneError {
+        let file = file.to_owned();
+        match self {
+            FileProblem::Line(line, reason) => SceneError::Line { file, line, reason },
+            FileProblem::File(reason) => SceneError::Read { file, reason },
+        }
+    }
+}
+
 impl SceneError {
     /// The same, of this file: what a part of a scene only knows by its name.
     #[must_use]

@@ -1,7 +1,7 @@
 //! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
 //!
 //! A scene comes from a scene file ([`mod@file`]), a glTF file, a model ([`obj`] or PLY, completed by [`model_scene`]) or
-//! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
+//! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes the name of any of them. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
 mod body;
@@ -39,6 +39,7 @@ pub use body::{Body, Standing};
 pub use builder::SceneBuilder;
 pub use camera::{Camera, Projection, Sight, Sights};
 pub use collision::{WallCache, Walls};
+use error::FileProblem;
 pub use error::SceneError;
 pub use light::{Light, MOST_LIGHTS};
 pub use material::{Material, Shading};

@@ -11,8 +11,8 @@ use super::mesh::is_usable_uv;
 use super::picture::Pictures;
 use super::polygon;
 use super::read_text::{quoted, read_old_text};
-use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
-use glam::Vec2;
+use super::{FileProblem, Group, Mesh, MeshBuilder, SceneError, Shading};
+use glam::{DVec3, Vec2};
 use materials::{Libraries, Map};
 use std::path::{Path, PathBuf};
 use text::{Contents, Corner, Statement};
@@ -31,12 +31,7 @@ pub fn load(file: &Path) -> Result<Mesh, SceneError> {
 pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError> {
     let raw = read_old_text(file, "OBJ model")?;
     let folder = file.parent().unwrap_or(Path::new(""));
-    parse(&raw, folder, pictures).map_err(|problem| match problem {
-        ObjProblem::Line(text::LineProblem { line, reason }) => {
-            SceneError::Line { file: file.to_owned(), line, reason }
-        }
-        ObjProblem::File(reason) => SceneError::Read { file: file.to_owned(), reason },
-    })
+    parse(&raw, folder, pictures).map_err(|problem| problem.of(file))
 }
 
 /// The libraries of a model, and the pictures that they show; none of what can't be read, which loading tells.
@@ -52,27 +47,21 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// What is wrong with the text of a model.
-#[derive(Debug, PartialEq, Eq)]
-enum ObjProblem {
-    Line(text::LineProblem),
-    File(String),
-}
-
 /// Material libraries are looked for in `folder`.
-fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, ObjProblem> {
-    let contents = text::read(raw).map_err(ObjProblem::Line)?;
+fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, FileProblem> {
+    let mut contents = text::read(raw).map_err(|text::LineProblem { line, reason }| FileProblem::Line(line, reason))?;
     if contents.arities.is_empty() {
-        return Err(ObjProblem::File("has no faces: export the surface as `f` lines".to_owned()));
+        return Err(FileProblem::File("has no faces: export the surface as `f` lines".to_owned()));
     }
     let mut libraries = Libraries::new(pictures);
     let faces = assemble(&contents, folder, &mut libraries);
-    let mesh = MeshBuilder { positions: contents.positions, ..faces }.build();
-    let mesh = mesh.map_err(|error| ObjProblem::File(error.to_string()))?.without(libraries.refusals.into_list());
+    let builder = MeshBuilder { positions: std::mem::take(&mut contents.positions), ..faces };
+    drop(contents);
+    let mesh = builder.build().map_err(|error| FileProblem::File(error.to_string()))?;
     if mesh.triangles().is_empty() {
-        return Err(ObjProblem::File("has no triangle with three different corners: export its surface".to_owned()));
+        return Err(FileProblem::no_triangles());
     }
-    Ok(mesh)
+    Ok(mesh.without(libraries.refusals.into_list()))
 }
 
 /// All but the positions: adds face after face, and what stands between them.
@@ -91,7 +80,7 @@ fn assemble(contents: &Contents, folder: &Path, libraries: &mut Libraries) -> Me
         has_uvs,
         builder: MeshBuilder::default(),
         part: Part::default(),
-        triangles: Vec::new(),
+        corners: Vec::new(),
     };
     let mut statements = contents.statements.iter().peekable();
     for (at, face) in faces().enumerate() {
@@ -115,7 +104,7 @@ struct Assembly<'a, 'b> {
     builder: MeshBuilder,
     part: Part,
     /// Room for those of a face.
-    triangles: Vec<[usize; 3]>,
+    corners: Vec<DVec3>,
 }
 
 /// The group that faces are added to.
@@ -156,12 +145,9 @@ impl Assembly<'_, '_> {
         let has_normals = face.iter().all(|corner| corner.normal.is_some());
         let is_placed = face.iter().all(|corner| contents.place_of(corner).is_some());
         let map = self.part.map.as_ref();
-        self.triangles.clear();
-        match face.len() {
-            3 => self.triangles.push([0, 1, 2]),
-            _ => self.triangles.extend(polygon::triangulate(&face.iter().map(position).collect::<Vec<_>>())),
-        }
-        for triangle in &self.triangles {
+        self.corners.clear();
+        self.corners.extend(face.iter().map(position));
+        polygon::triangulate(&self.corners, |triangle| {
             let corners = triangle.map(|corner| &face[corner]);
             self.builder.triangles.push(corners.map(|corner| corner.vertex));
             if self.is_smooth {
@@ -177,7 +163,7 @@ impl Assembly<'_, '_> {
                 self.part.is_unplaced |= uvs.is_none();
                 self.builder.corner_uvs.push(uvs);
             }
-        }
+        });
     }
 
     /// Makes the faces since the last one a group, if there are any. Name and material go on.

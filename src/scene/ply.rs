@@ -1,74 +1,62 @@
 //! PLY models (`.ply`), as text or binary: one mesh of the elements `vertex`, `face` and `tristrips`.
 //!
-//! The header is split off first, since its comments may be in any encoding. Then `ply_rs_bw` reads it, and element after
-//! element, none of which is kept: a row of numbers becomes a vertex or the corners of a face at once. What else a file
-//! holds is named ([`NotTaken`](super::NotTaken)).
+//! The header is split off first, since its comments may be in any encoding; `ply_rs_bw` reads it. What is looked for in
+//! each element is decided by it, types and all ([`Wanted`]). Then row after row becomes a vertex or the corners of a face:
+//! binary ones are read by `ply_rs_bw`, those of text here, as it takes no `.5` and no `nan`. What else a file holds is named
+//! ([`NotTaken`](super::NotTaken)).
 
 use super::mesh::is_usable_uv;
 use super::not_taken::Refusals;
 use super::read_text::{MOST_TEXT, decoded, quoted};
-use super::{Mesh, MeshBuilder, SceneError, polygon};
+use super::{FileProblem, Mesh, MeshBuilder, SceneError, polygon};
 use crate::files::{ReadError, read_plain};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use ply_rs_bw::parser::{self, Parser};
-use ply_rs_bw::ply::{ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
-use std::ops::Range;
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
+use std::io::ErrorKind;
 use std::path::Path;
 
-/// Bytes of the longest header that is looked for an end.
+/// How far the end of a header is looked for, bytes.
 const MOST_HEADER: usize = 1 << 20;
-/// Texture coordinates of vertices, by the programs that write them.
-const UV_NAMES: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
+const PLACE: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
-/// How the names of colours end: `diffuse_red` is one, too.
-const COLORS: [&str; 4] = ["red", "green", "blue", "alpha"];
+/// Texture coordinates of vertices, by the programs that write them.
+const UVS: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
 /// The list that faces and strips have of their corners.
-const CORNER_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+/// Texture coordinates of a face's corners.
+const CORNER_UVS: &str = "texcoord";
+const COLORS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// Loads a model as one mesh. It has corner normals if its vertices have them.
 ///
 /// # Errors
 /// A file that can't be read or has no faces; a header or an element that can't be understood, where there are lines with its
-/// line; fewer elements than the header says, a face of fewer than three corners, an index out of range, a number that is
-/// not finite.
+/// line; fewer elements than the header says, a face of fewer than three corners, an index out of range, a place that is not
+/// finite.
 pub fn load(file: &Path) -> Result<Mesh, SceneError> {
-    read(file).map_err(|problem| match problem {
-        Problem::Line(line, reason) => SceneError::Line { file: file.to_owned(), line, reason },
-        Problem::File(reason) => SceneError::Read { file: file.to_owned(), reason },
-    })
+    read(file).map_err(|problem| problem.of(file))
 }
 
-/// What is wrong with a file.
-enum Problem {
-    /// Of a line, counted from 1.
-    Line(usize, String),
-    File(String),
-}
-
-fn read(file: &Path) -> Result<Mesh, Problem> {
+fn read(file: &Path) -> Result<Mesh, FileProblem> {
     let bytes = read_plain(file, MOST_TEXT).map_err(|error| match error {
-        ReadError::Folder => Problem::File("is a folder: name a PLY model in it".to_owned()),
-        other => Problem::File(other.to_string()),
+        ReadError::Folder => FileProblem::File("is a folder: name a PLY model in it".to_owned()),
+        other => FileProblem::File(other.to_string()),
     })?;
-    let (header, payload) = split_header(&bytes).map_err(|reason| Problem::File(reason.to_owned()))?;
-    let text = decoded(header.to_vec());
-    let header = Parser::<Row>::new().read_header(&mut parser::Reader::new(text.as_bytes())).map_err(|error| {
-        let line = |line: usize| text.lines().nth(line - 1).unwrap_or_default();
-        let of_line =
-            |at| Problem::Line(at, format!("{} is no line of a PLY header: export the file again", quoted(line(at))));
-        let of_file = || Problem::File("has no line `format` in its header: export the file again".to_owned());
-        error.line().map_or_else(of_file, of_line)
-    })?;
-    let mut rows =
-        Rows { encoding: &header.encoding, rest: payload, line: text.lines().count(), parser: Parser::new() };
-    let surface = Surface::read(&header, &mut rows)?;
-    let mut refusals = Refusals::default();
-    name_rest(&header, &mut refusals);
-    let mesh = surface.build()?.without(refusals.into_list());
+    let (head, payload) = split_header(&bytes).map_err(|reason| FileProblem::File(reason.to_owned()))?;
+    let head = decoded(head.to_vec());
+    let header = header(&head)?;
+    let wanted = Wanted::of(&header)?;
+    let mut rows = Rows { encoding: &header.encoding, rest: payload, line: head.lines().count() };
+    let surface = Surface::read(&header, &wanted, &mut rows)?;
+    drop(bytes);
+    let mesh = surface.build().map_err(FileProblem::File)?;
     if mesh.triangles().is_empty() {
-        return Err(Problem::File("has no triangle with three different corners: export its surface".to_owned()));
+        return Err(FileProblem::no_triangles());
     }
-    Ok(mesh)
+    Ok(mesh.without(not_taken(&header, &wanted).into_list()))
 }
 
 /// The header with its last line, and what follows it.
@@ -78,27 +66,144 @@ fn split_header(bytes: &[u8]) -> Result<(&[u8], &[u8]), &'static str> {
     }
     let mut end = 0;
     for line in bytes[..bytes.len().min(MOST_HEADER)].split_inclusive(|byte| *byte == b'\n') {
-        if end == 0 && line.trim_ascii() != b"ply" {
-            return Err("is no PLY model: its first line is not `ply`");
-        }
-        end += line.len();
-        if line.trim_ascii() == b"end_header" {
-            return Ok(bytes.split_at(end));
+        match line.trim_ascii() {
+            line if end == 0 && line.starts_with(b"ply\r") => {
+                return Err("has lines that end as on old Macs: save it with line feeds");
+            }
+            line if end == 0 && line != b"ply" => return Err("is no PLY model: its first line is not `ply`"),
+            b"end_header" => return Ok(bytes.split_at(end + line.len())),
+            _ => end += line.len(),
         }
     }
     Err("has no end of its header, a line `end_header`: export the file again")
 }
 
-/// What one element says of what is taken: a vertex, a face or a strip.
+fn header(text: &str) -> Result<Header, FileProblem> {
+    let line = |at: usize| quoted(text.lines().nth(at - 1).unwrap_or_default().trim());
+    let wrong = |at: usize| {
+        FileProblem::Line(at, format!("{} can't stand there in a PLY header: export the file again", line(at)))
+    };
+    let no_format =
+        || FileProblem::File("has no `format` in its header that is known: export the file again".to_owned());
+    let header = Parser::<Row>::new()
+        .read_header(&mut parser::Reader::new(text.as_bytes()))
+        .map_err(|error| error.line().map_or_else(no_format, wrong))?;
+    // Of two with one name only one is kept, and the rows would be cut wrongly.
+    let begin = |word: &str| text.lines().filter(|line| line.split_ascii_whitespace().next() == Some(word)).count();
+    let properties = header.elements.values().map(|element| element.properties.len()).sum();
+    if [begin("element"), begin("property")] != [header.elements.len(), properties] {
+        return Err(FileProblem::File("has two elements or properties of one name: export the file again".to_owned()));
+    }
+    Ok(header)
+}
+
+/// What is looked for in a file: all of it is there, and of a type that can be used.
+struct Wanted {
+    has_normals: bool,
+    /// Which of [`UVS`].
+    uvs: Option<usize>,
+    has_corner_uvs: bool,
+}
+
+impl Wanted {
+    fn of(header: &Header) -> Result<Wanted, FileProblem> {
+        let kind = |element: &str, name: &str| {
+            header.elements.get(element)?.properties.get(name).map(|property| &property.data_type)
+        };
+        let are_numbers =
+            |names: &[&str]| names.iter().all(|name| matches!(kind("vertex", name), Some(PropertyType::Scalar(_))));
+        if !are_numbers(&PLACE) {
+            return Err(FileProblem::File("has no vertices with numbers x, y and z: export its surface".to_owned()));
+        }
+        for element in ["face", "tristrips"].into_iter().filter(|name| header.elements.contains_key(*name)) {
+            let lists: Vec<&PropertyType> = CORNERS.iter().filter_map(|name| kind(element, name)).collect();
+            if !matches!(lists[..], [PropertyType::List(_, of)] if !is_fraction(of)) {
+                let reason = format!(
+                    "has no one list `vertex_indices` of whole numbers in {}: export it again",
+                    quoted(element)
+                );
+                return Err(FileProblem::File(reason));
+            }
+        }
+        Ok(Wanted {
+            has_normals: are_numbers(&NORMAL),
+            uvs: UVS.iter().position(|names| are_numbers(names)),
+            has_corner_uvs: matches!(kind("face", CORNER_UVS), Some(PropertyType::List(_, of)) if is_fraction(of)),
+        })
+    }
+
+    /// Is this property one of them?
+    fn takes(&self, element: &str, property: &str) -> bool {
+        match element {
+            "vertex" => {
+                let uvs = self.uvs.map(|pair| UVS[pair]).into_iter().flatten();
+                let normal = NORMAL.into_iter().filter(|_| self.has_normals);
+                PLACE.into_iter().chain(normal).chain(uvs).any(|name| name == property)
+            }
+            "face" => CORNERS.contains(&property) || (self.has_corner_uvs && property == CORNER_UVS),
+            "tristrips" => CORNERS.contains(&property),
+            _ => false,
+        }
+    }
+}
+
+fn is_fraction(of: &ScalarType) -> bool {
+    matches!(of, ScalarType::Float | ScalarType::Double)
+}
+
+/// What the file holds and no mesh does.
+fn not_taken(header: &Header, wanted: &Wanted) -> Refusals {
+    let mut refusals = Refusals::default();
+    for element in header.elements.values().filter(|element| element.count > 0) {
+        let name = quoted(&element.name);
+        if !["vertex", "face", "tristrips"].contains(&element.name.as_str()) {
+            refusals.refuse(format!("{} elements {name}", element.count), "a mesh is of vertices, faces and strips");
+            continue;
+        }
+        let names = element.properties.keys().map(String::as_str);
+        for property in names.filter(|property| !wanted.takes(&element.name, property)) {
+            let last = property.rsplit('_').next().unwrap_or_default();
+            if COLORS.contains(&last) {
+                refusals.refuse(format!("colours of {name}"), "a surface has its material's colour");
+            } else {
+                let because = "only places, normals and texture coordinates are taken";
+                refusals.refuse(format!("{} of {name}", quoted(property)), because);
+            }
+        }
+    }
+    for picture in header.comments.iter().filter_map(|comment| comment.strip_prefix("TextureFile")) {
+        let because = "name it as the `texture` of the object's material in a scene file";
+        refusals.refuse(format!("the picture {}", quoted(picture.trim())), because);
+    }
+    refusals
+}
+
+/// What one element says of what may be wanted: a vertex, a face or a strip.
 #[derive(Debug, Default)]
 struct Row {
-    position: [f64; 3],
+    place: [f64; 3],
     normal: [f64; 3],
-    uv: [f64; 2],
+    /// As [`UVS`] are.
+    uvs: [[f64; 2]; 3],
     /// −1 ends a strip.
     corners: Vec<i64>,
     /// Two numbers a corner of a face.
     corner_uvs: Vec<f64>,
+}
+
+impl Row {
+    /// Where a number of this name goes.
+    fn number(&mut self, name: &str) -> Option<&mut f64> {
+        let at = |names: &[&str]| names.iter().position(|known| *known == name);
+        if let Some(axis) = at(&PLACE) {
+            return Some(&mut self.place[axis]);
+        }
+        if let Some(axis) = at(&NORMAL) {
+            return Some(&mut self.normal[axis]);
+        }
+        let axis = at(&UVS.concat())?;
+        Some(&mut self.uvs[axis / 2][axis % 2])
+    }
 }
 
 impl PropertyAccess for Row {
@@ -107,42 +212,28 @@ impl PropertyAccess for Row {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let place = match name {
-            "x" => &mut self.position[0],
-            "y" => &mut self.position[1],
-            "z" => &mut self.position[2],
-            "nx" => &mut self.normal[0],
-            "ny" => &mut self.normal[1],
-            "nz" => &mut self.normal[2],
-            name if UV_NAMES.iter().any(|[u, _]| *u == name) => &mut self.uv[0],
-            name if UV_NAMES.iter().any(|[_, v]| *v == name) => &mut self.uv[1],
-            name if CORNER_NAMES.contains(&name) => {
-                return match integers(property) {
-                    Some(corners) => set(&mut self.corners, corners),
-                    None => PropertyAccessResult::UnsupportedType,
-                };
+        match property {
+            Property::ListFloat(numbers) if name == CORNER_UVS => {
+                self.corner_uvs = numbers.into_iter().map(f64::from).collect();
             }
-            "texcoord" => {
-                return match property {
-                    Property::ListFloat(numbers) => {
-                        set(&mut self.corner_uvs, numbers.into_iter().map(f64::from).collect())
-                    }
-                    Property::ListDouble(numbers) => set(&mut self.corner_uvs, numbers),
-                    _ => PropertyAccessResult::Ignored,
-                };
-            }
-            _ => return PropertyAccessResult::Ignored,
-        };
-        match number(&property) {
-            Some(number) => set(place, number),
-            None => PropertyAccessResult::UnsupportedType,
+            Property::ListDouble(numbers) if name == CORNER_UVS => self.corner_uvs = numbers,
+            property if CORNERS.contains(&name) => self.corners = integers(property),
+            property => match (self.number(name), number(&property)) {
+                (Some(place), Some(number)) => *place = number,
+                _ => return PropertyAccessResult::Ignored,
+            },
         }
+        PropertyAccessResult::Set
     }
 }
 
-fn set<T>(place: &mut T, value: T) -> PropertyAccessResult {
-    *place = value;
-    PropertyAccessResult::Set
+/// An element of which nothing is wanted.
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Skipped {
+        Skipped
+    }
 }
 
 /// `None` of a list.
@@ -160,10 +251,10 @@ fn number(property: &Property) -> Option<f64> {
     }
 }
 
-/// `None` of anything but a list of whole numbers.
-fn integers(property: Property) -> Option<Vec<i64>> {
-    fn of<T: Into<i64>>(numbers: Vec<T>) -> Option<Vec<i64>> {
-        Some(numbers.into_iter().map(T::into).collect())
+/// Nothing of anything but a list of whole numbers.
+fn integers(property: Property) -> Vec<i64> {
+    fn of<T: Into<i64>>(numbers: Vec<T>) -> Vec<i64> {
+        numbers.into_iter().map(T::into).collect()
     }
     match property {
         Property::ListChar(numbers) => of(numbers),
@@ -172,7 +263,7 @@ fn integers(property: Property) -> Option<Vec<i64>> {
         Property::ListUShort(numbers) => of(numbers),
         Property::ListInt(numbers) => of(numbers),
         Property::ListUInt(numbers) => of(numbers),
-        _ => None,
+        _ => Vec::new(),
     }
 }
 
@@ -182,38 +273,41 @@ struct Rows<'a> {
     rest: &'a [u8],
     /// Lines that were read, where there are lines.
     line: usize,
-    parser: Parser<Row>,
 }
 
 impl<'a> Rows<'a> {
     /// The next element, the one `at` this place among its kind.
-    fn next(&mut self, element: &ElementDef, at: usize) -> Result<Row, Problem> {
-        let ends = || {
-            let ElementDef { name, count, .. } = element;
-            Problem::File(format!("ends after {at} of {count} elements {}: export it again", quoted(name)))
-        };
+    fn next<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        at: usize,
+        of_text: impl Fn(&str, &ElementDef) -> Option<E>,
+    ) -> Result<E, FileProblem> {
+        let ElementDef { name, count, .. } = element;
+        let ends =
+            || FileProblem::File(format!("ends after {at} of {count} elements {}: export it again", quoted(name)));
+        let parser = Parser::<E>::new();
         let read = match self.encoding {
             Encoding::Ascii => {
                 let line = self.line().ok_or_else(ends)?;
-                let text = str::from_utf8(line).unwrap_or_default();
-                return self.parser.read_ascii_element(text, element).map_err(|_| {
+                return str::from_utf8(line).ok().and_then(|line| of_text(line, element)).ok_or_else(|| {
+                    let line = quoted(String::from_utf8_lossy(line).trim());
                     let known: Vec<&str> = element.properties.keys().map(String::as_str).collect();
                     let known = quoted(&known.join(" "));
-                    let text = quoted(String::from_utf8_lossy(line).trim());
-                    Problem::Line(
+                    FileProblem::Line(
                         self.line,
-                        format!("{text} are not the numbers of {}, {known}: correct it", quoted(&element.name)),
+                        format!("{line} does not hold {known} of {}: correct it", quoted(name)),
                     )
                 });
             }
-            Encoding::BinaryBigEndian => self.parser.read_big_endian_element(&mut self.rest, element),
-            Encoding::BinaryLittleEndian => self.parser.read_little_endian_element(&mut self.rest, element),
+            Encoding::BinaryBigEndian => parser.read_big_endian_element(&mut self.rest, element),
+            Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut self.rest, element),
         };
         read.map_err(|error| match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => ends(),
+            ErrorKind::UnexpectedEof => ends(),
             _ => {
-                let name = quoted(&element.name);
-                Problem::File(format!("has an element {name}, number {at} from 0, that can't be read: export it again"))
+                let name = quoted(name);
+                FileProblem::File(format!("can't be read at element {at} of {name}, counted from 0: export it again"))
             }
         })
     }
@@ -230,6 +324,48 @@ impl<'a> Rows<'a> {
         }
         None
     }
+
+    /// What is wrong with the element that was read last: with its line, where there are lines.
+    fn wrong(&self, what: &str, at: usize, reason: &str) -> FileProblem {
+        match self.encoding {
+            Encoding::Ascii => FileProblem::Line(self.line, format!("the {what} {reason}")),
+            _ => FileProblem::File(format!("has a {what}, number {at} counted from 0, that {reason}")),
+        }
+    }
+}
+
+/// A line of text as an element; `None` where it does not hold what the header says.
+fn row_of_text(line: &str, element: &ElementDef) -> Option<Row> {
+    let mut row = Row::default();
+    let mut words = line.split_ascii_whitespace();
+    for (name, property) in &element.properties {
+        match &property.data_type {
+            PropertyType::Scalar(_) => {
+                let given: f64 = words.next()?.parse().ok()?;
+                if let Some(place) = row.number(name) {
+                    *place = given;
+                }
+            }
+            PropertyType::List(..) => {
+                let count: usize = words.next()?.parse().ok()?;
+                let mut list = (0..count).map(|_| words.next());
+                if CORNERS.contains(&name.as_str()) {
+                    row.corners = list.map(|word| word?.parse().ok()).collect::<Option<_>>()?;
+                } else if name == CORNER_UVS {
+                    row.corner_uvs = list.map(|word| word?.parse().ok()).collect::<Option<_>>()?;
+                } else if list.any(|word| word.is_none()) {
+                    return None;
+                }
+            }
+        }
+    }
+    Some(row)
+}
+
+/// The corners of a face or of a strip.
+struct Run {
+    count: u32,
+    is_strip: bool,
 }
 
 /// Vertices and faces as the file has them.
@@ -238,155 +374,119 @@ struct Surface {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
-    /// Of all faces, one after the other.
-    corners: Vec<i64>,
-    /// Parallel to `corners`, or empty.
+    /// Of all runs, one after the other.
+    corners: Vec<u32>,
+    /// Parallel to `corners`, or empty; what can't be used is where the vertex is.
     corner_uvs: Vec<Vec2>,
-    faces: Vec<Range<usize>>,
-    strips: Vec<Range<usize>>,
+    runs: Vec<Run>,
 }
 
 impl Surface {
-    fn read(header: &Header, rows: &mut Rows) -> Result<Surface, Problem> {
+    fn read(header: &Header, wanted: &Wanted, rows: &mut Rows) -> Result<Surface, FileProblem> {
         let mut surface = Surface::default();
-        if !has(header, "vertex", &["x", "y", "z"]) {
-            return Err(Problem::File("has no vertices with x, y and z: export its surface".to_owned()));
-        }
-        let has_normals = has(header, "vertex", &NORMAL);
-        let has_uvs = UV_NAMES.iter().any(|names| has(header, "vertex", names));
-        let has_corner_uvs = has(header, "face", &["texcoord"]);
         for element in header.elements.values().filter(|element| !element.properties.is_empty()) {
             // Each takes a byte or more: this many are not there.
             if element.count > rows.rest.len() {
                 let (count, name) = (element.count, quoted(&element.name));
-                return Err(Problem::File(format!("is too short for {count} elements {name}: export it again")));
+                return Err(FileProblem::File(format!("is too short for {count} elements {name}: export it again")));
             }
             for at in 0..element.count {
-                let row = rows.next(element, at)?;
                 match element.name.as_str() {
-                    "vertex" => {
-                        surface.positions.push(DVec3::from_array(row.position));
-                        surface.normals.extend(has_normals.then(|| usable(DVec3::from_array(row.normal).as_vec3())));
-                        surface.uvs.extend(has_uvs.then(|| DVec2::from_array(row.uv).as_vec2()));
-                    }
+                    "vertex" => surface.add_vertex(&rows.next(element, at, row_of_text)?, wanted),
                     "face" => {
+                        let row: Row = rows.next(element, at, row_of_text)?;
                         if row.corners.len() < 3 {
-                            let count = row.corners.len();
-                            let reason =
-                                format!("has {count} corners at face {at}, counted from 0: a face has three or more");
-                            return Err(Problem::File(reason));
+                            let reason = format!("has {} corners: a face needs three or more", row.corners.len());
+                            return Err(rows.wrong("face", at, &reason));
                         }
-                        let start = surface.corners.len();
-                        surface.corners.extend(&row.corners);
-                        surface.faces.push(start..surface.corners.len());
-                        if has_corner_uvs {
+                        let added = surface.add_run(&row.corners, false);
+                        added.map_err(|reason| rows.wrong("face", at, &reason))?;
+                        if wanted.has_corner_uvs {
                             let uvs =
                                 row.corner_uvs.as_chunks::<2>().0.iter().map(|uv| DVec2::from_array(*uv).as_vec2());
-                            // One that is missing is none that can be used.
-                            let uvs = uvs.chain(std::iter::repeat(Vec2::NAN));
                             surface.corner_uvs.extend(uvs.take(row.corners.len()));
+                            surface.corner_uvs.resize(surface.corners.len(), Vec2::NAN);
                         }
                     }
                     "tristrips" => {
+                        let row: Row = rows.next(element, at, row_of_text)?;
                         for strip in row.corners.split(|corner| *corner == -1) {
-                            let start = surface.corners.len();
-                            surface.corners.extend(strip);
-                            surface
-                                .corner_uvs
-                                .extend(has_corner_uvs.then(|| vec![Vec2::NAN; strip.len()]).into_iter().flatten());
-                            surface.strips.push(start..surface.corners.len());
+                            let added = surface.add_run(strip, true);
+                            added.map_err(|reason| rows.wrong("strip", at, &reason))?;
+                        }
+                        if wanted.has_corner_uvs {
+                            surface.corner_uvs.resize(surface.corners.len(), Vec2::NAN);
                         }
                     }
-                    _ => {}
+                    _ => {
+                        let Skipped = rows.next(element, at, |_, _| Some(Skipped))?;
+                    }
                 }
             }
         }
         if surface.corners.is_empty() {
-            return Err(Problem::File("has no faces: export its surface".to_owned()));
+            return Err(FileProblem::File("has no faces: export its surface".to_owned()));
         }
         Ok(surface)
     }
 
-    fn build(self) -> Result<Mesh, Problem> {
+    fn add_vertex(&mut self, row: &Row, wanted: &Wanted) {
+        self.positions.push(DVec3::from_array(row.place));
+        if wanted.has_normals {
+            let normal = DVec3::from_array(row.normal).as_vec3();
+            // One that is none is the triangle's own.
+            self.normals.push(if normal.is_finite() { normal } else { Vec3::ZERO });
+        }
+        if let Some(pair) = wanted.uvs {
+            self.uvs.push(DVec2::from_array(row.uvs[pair]).as_vec2());
+        }
+    }
+
+    fn add_run(&mut self, corners: &[i64], is_strip: bool) -> Result<(), String> {
+        for corner in corners {
+            let no_vertex = |_| format!("uses vertex {corner}, which can't be: correct it, or export the file again");
+            self.corners.push(u32::try_from(*corner).map_err(no_vertex)?);
+        }
+        self.runs.push(Run { count: corners.len() as u32, is_strip });
+        Ok(())
+    }
+
+    fn build(mut self) -> Result<Mesh, String> {
         let count = self.positions.len();
-        if let Some(corner) = self.corners.iter().find(|corner| !(0..count as i64).contains(corner)) {
-            return Err(Problem::File(format!("uses vertex {corner} of {count}, counted from 0: export it again")));
+        if let Some(corner) = self.corners.iter().find(|corner| **corner as usize >= count) {
+            return Err(format!("uses vertex {corner} of {count}, counted from 0: export it again"));
         }
         let mut builder = MeshBuilder::default();
-        for face in &self.faces {
-            let corners: Vec<DVec3> = face.clone().map(|corner| self.position(corner)).collect();
-            for triangle in polygon::triangulate(&corners) {
-                self.add(triangle.map(|corner| face.start + corner), &mut builder);
+        let (mut first, mut corners) = (0, Vec::new());
+        for Run { count, is_strip } in &self.runs {
+            let run = first..first + *count as usize;
+            let mut add = |triangle: [usize; 3]| self.add(triangle.map(|corner| run.start + corner), &mut builder);
+            if *is_strip {
+                polygon::strip(run.len()).for_each(add);
+            } else {
+                corners.clear();
+                corners.extend(self.corners[run.clone()].iter().map(|vertex| self.positions[*vertex as usize]));
+                polygon::triangulate(&corners, &mut add);
             }
+            first = run.end;
         }
-        for strip in &self.strips {
-            for triangle in polygon::strip(strip.len()) {
-                self.add(triangle.map(|corner| strip.start + corner), &mut builder);
-            }
-        }
-        builder.positions = self.positions;
-        builder.build().map_err(|error| Problem::File(error.to_string()))
-    }
-
-    fn vertex(&self, corner: usize) -> usize {
-        self.corners[corner] as usize
-    }
-
-    fn position(&self, corner: usize) -> DVec3 {
-        self.positions[self.vertex(corner)]
+        builder.positions = std::mem::take(&mut self.positions);
+        drop(self);
+        builder.build().map_err(|error| error.to_string())
     }
 
     /// Adds a triangle of these corners.
     fn add(&self, corners: [usize; 3], builder: &mut MeshBuilder) {
-        builder.triangles.push(corners.map(|corner| self.vertex(corner) as u32));
+        let vertices = corners.map(|corner| self.corners[corner]);
+        builder.triangles.push(vertices);
         if !self.normals.is_empty() {
-            builder.corner_normals.push(corners.map(|corner| self.normals[self.vertex(corner)]));
+            builder.corner_normals.push(vertices.map(|vertex| self.normals[vertex as usize]));
         }
-        let uvs = match (self.corner_uvs.is_empty(), self.uvs.is_empty()) {
-            (false, _) => corners.map(|corner| self.corner_uvs[corner]),
-            (true, false) => corners.map(|corner| self.uvs[self.vertex(corner)]),
-            (true, true) => return,
-        };
-        builder.corner_uvs.push(uvs.iter().all(is_usable_uv).then_some(uvs));
-    }
-}
-
-/// Have elements of this kind all of these properties?
-fn has(header: &Header, element: &str, properties: &[&str]) -> bool {
-    let element = header.elements.get(element);
-    element.is_some_and(|element| properties.iter().all(|name| element.properties.contains_key(*name)))
-}
-
-/// Names what the file holds and no mesh does.
-fn name_rest(header: &Header, refusals: &mut Refusals) {
-    for element in header.elements.values().filter(|element| element.count > 0) {
-        let name = element.name.as_str();
-        let taken: Vec<&str> = match name {
-            "vertex" => ["x", "y", "z"].into_iter().chain(NORMAL).chain(UV_NAMES.into_iter().flatten()).collect(),
-            "face" => CORNER_NAMES.into_iter().chain(["texcoord"]).collect(),
-            "tristrips" => CORNER_NAMES.to_vec(),
-            _ => {
-                let what = format!("{} elements {}", element.count, quoted(name));
-                refusals.refuse(what, "a mesh is of vertices, faces and strips");
-                continue;
-            }
-        };
-        for property in element.properties.keys().filter(|property| !taken.contains(&property.as_str())) {
-            if COLORS.iter().any(|color| property.ends_with(color)) {
-                refusals.refuse(format!("colours of {}", quoted(name)), "a surface has its material's colour");
-            } else {
-                let what = format!("{} of {}", quoted(property), quoted(name));
-                refusals.refuse(what, "only places, normals and texture coordinates are taken");
-            }
+        if !(self.uvs.is_empty() && self.corner_uvs.is_empty()) {
+            let of_corner = |corner: usize| self.corner_uvs.get(corner).filter(|uv| is_usable_uv(uv));
+            let of_vertex = |corner: usize| self.uvs.get(self.corners[corner] as usize);
+            let uvs = corners.map(|corner| of_corner(corner).or(of_vertex(corner)).copied().unwrap_or(Vec2::NAN));
+            builder.corner_uvs.push(uvs.iter().all(is_usable_uv).then_some(uvs));
         }
     }
-    for picture in header.comments.iter().filter_map(|comment| comment.strip_prefix("TextureFile")) {
-        let because = "name it as the `texture` of the object's material in a scene file";
-        refusals.refuse(format!("the picture {}", quoted(picture.trim())), because);
-    }
-}
-
-/// A normal that is none is the triangle's own.
-fn usable(normal: Vec3) -> Vec3 {
-    if normal.is_finite() { normal } else { Vec3::ZERO }
 }

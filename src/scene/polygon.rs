@@ -6,15 +6,19 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Triangles of the face, as indices into its corners, of which there are at least three.
-#[must_use]
-pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
-    if corners.len() == 3 {
-        return vec![[0, 1, 2]];
-    }
-    match projected(corners) {
-        Some(flat) if !is_convex(&flat) => cut_ears(&flat).unwrap_or_else(|| fan(corners.len())),
-        _ => fan(corners.len()),
+/// Corners of the largest face whose ears are cut: where it crosses itself that takes time by their square. A larger one is
+/// a fan, of the same outline.
+const MOST_EARS: usize = 1 << 14;
+
+/// Adds the triangles of a face, as indices into its corners, of which there are at least three.
+pub fn triangulate(corners: &[DVec3], add: impl FnMut([usize; 3])) {
+    let ears = match corners.len() {
+        3 | MOST_EARS.. => None,
+        _ => projected(corners).filter(|flat| !is_convex(flat)).and_then(|flat| cut_ears(&flat)),
+    };
+    match ears {
+        Some(ears) => ears.into_iter().for_each(add),
+        None => fan(corners.len()).for_each(add),
     }
 }
 
@@ -30,8 +34,8 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }
 
-fn fan(count: usize) -> Vec<[usize; 3]> {
-    (2..count).map(|last| [0, last - 1, last]).collect()
+fn fan(count: usize) -> impl Iterator<Item = [usize; 3]> {
+    (2..count).map(|last| [0, last - 1, last])
 }
 
 /// The corners in the plane, counter-clockwise; `None` where the face has no area.

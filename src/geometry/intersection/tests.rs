@@ -126,9 +126,9 @@ fn a_closed_surface_does_not_meet_itself_until_it_is_bent_through() {
     assert!(self_meeting(&bent, torus.triangles()).is_some());
 }
 
-/// The hierarchy leaves nothing out: the first pair is that of trying all of them.
+/// The hierarchy leaves nothing out: the first triangle that meets a later one is that of trying all pairs.
 #[test]
-fn the_first_pair_is_that_of_all_pairs() {
+fn the_first_triangle_that_meets_another_is_found() {
     let mut state = 7_u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

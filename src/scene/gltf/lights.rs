@@ -1,7 +1,8 @@
 //! Lights (`KHR_lights_punctual`) and cameras.
 //!
 //! Intensities are candela and lux there, and nothing here is exposed: what all lights together bring to the middle of
-//! what is seen is made 1, of which each keeps its share: more would be white. Light does not fade here but towards its range.
+//! what is seen is made 1, so that nothing is overexposed, and each keeps its share. Light does not fade here but towards its
+//! range.
 
 use super::document::Told;
 use super::named;

@@ -10,7 +10,7 @@ use crate::scene::picture::Pictures;
 use crate::scene::read_text::{decoded, quoted};
 use crate::scene::{Material, Shading, Texture};
 use glam::Vec2;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Bytes of the largest library.
@@ -22,6 +22,8 @@ pub struct Libraries<'a> {
     materials: Vec<tobj::Material>,
     /// Places in the list; of two with one name, the later holds.
     by_name: BTreeMap<String, usize>,
+    /// Names of those that were read.
+    read: BTreeSet<String>,
     /// By the material's name.
     maps: BTreeMap<String, Map>,
     /// What is asked for and not done.
@@ -48,8 +50,14 @@ impl Map {
 impl<'a> Libraries<'a> {
     /// Nothing yet.
     pub fn new(pictures: &'a mut Pictures) -> Libraries<'a> {
-        let (maps, by_name) = (BTreeMap::new(), BTreeMap::new());
-        Libraries { materials: Vec::new(), by_name, maps, refusals: Refusals::default(), pictures }
+        Libraries {
+            materials: Vec::new(),
+            by_name: BTreeMap::new(),
+            read: BTreeSet::new(),
+            maps: BTreeMap::new(),
+            refusals: Refusals::default(),
+            pictures,
+        }
     }
 
     /// Which material is called so, of those that were read.
@@ -68,7 +76,11 @@ impl<'a> Libraries<'a> {
     }
 
     /// Reads a library; pictures are looked for beside it. One that can't be read costs colours only, and is named.
+    /// Some programs name it before every object: it is read once.
     pub fn load(&mut self, file: &Path, name: &str) {
+        if !self.read.insert(name.to_owned()) {
+            return;
+        }
         let what = || format!("the materials of {}", quoted(name));
         let text = match read_plain(file, MOST_BYTES) {
             Ok(bytes) => decoded(bytes),

@@ -3,8 +3,8 @@ use glam::{DVec3, Vec3};
 
 fn parsed(text: &str) -> Result<Mesh, String> {
     parse(text, Path::new(""), &mut Pictures::default()).map_err(|problem| match problem {
-        ObjProblem::Line(text::LineProblem { line, reason }) => format!("{line}: {reason}"),
-        ObjProblem::File(reason) => reason,
+        FileProblem::Line(line, reason) => format!("{line}: {reason}"),
+        FileProblem::File(reason) => reason,
     })
 }
 

@@ -81,7 +81,14 @@ fn read_in_parts(raw: &str, size: usize) -> Result<Contents, LineProblem> {
     if let Some(problem) = of_vectors.or_else(|| read.iter().find_map(|part| part.of_faces.clone())) {
         return Err(problem);
     }
-    let mut joined = Contents::default();
+    let mut joined = Contents {
+        positions: Vec::with_capacity(all.vertices),
+        normals: Vec::with_capacity(all.normals),
+        places: Vec::with_capacity(all.places),
+        corners: Vec::with_capacity(read.iter().map(|part| part.contents.corners.len()).sum()),
+        arities: Vec::with_capacity(read.iter().map(|part| part.contents.arities.len()).sum()),
+        statements: Vec::new(),
+    };
     for Part { contents, .. } in read {
         let faces = joined.arities.len();
         joined.positions.extend(contents.positions);
@@ -99,13 +106,10 @@ fn parts(raw: &str, size: usize) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut rest = raw;
     while !rest.is_empty() {
-        let mut end = 0;
-        for line in rest.as_bytes().split_inclusive(|byte| *byte == b'\n') {
-            end += line.len();
-            if end >= size && !line.trim_ascii_end().ends_with(b"\\") {
-                break;
-            }
-        }
+        let bytes = rest.as_bytes();
+        let ends = (size.min(bytes.len())..bytes.len()).filter(|end| bytes[*end - 1] == b'\n');
+        let goes_on = |end: usize| bytes[..end].trim_ascii_end().ends_with(b"\\");
+        let end = ends.into_iter().find(|end| !goes_on(*end)).unwrap_or(bytes.len());
         let (part, after) = rest.split_at(end);
         parts.push(part);
         rest = after;
@@ -133,7 +137,7 @@ impl AddAssign for Counts {
 
 impl Counts {
     fn of(part: &str) -> Counts {
-        let mut counts = Counts::default();
+        let mut counts = Counts { lines: part.bytes().filter(|byte| *byte == b'\n').count(), ..Counts::default() };
         for (_, line) in lines(part) {
             match split_keyword(&line).0 {
                 "v" => counts.vertices += 1,
@@ -142,7 +146,7 @@ impl Counts {
                 _ => {}
             }
         }
-        Counts { lines: part.lines().count(), ..counts }
+        counts
     }
 }
 
@@ -166,14 +170,21 @@ fn lines(part: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
 }
 
 fn split_keyword(line: &str) -> (&str, &str) {
-    let line = line.trim_ascii();
-    line.split_once(|c: char| c.is_ascii_whitespace())
-        .map_or((line, ""), |(keyword, rest)| (keyword, rest.trim_ascii()))
+    // White space beyond ASCII takes longer to be looked for, and is hardly ever there.
+    let halves = match line.is_ascii() {
+        true => line.trim_ascii().split_once(|c: char| c.is_ascii_whitespace()),
+        false => line.trim().split_once(char::is_whitespace),
+    };
+    halves.map_or((line.trim(), ""), |(keyword, rest)| (keyword, rest.trim()))
 }
 
 /// The words before a comment.
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split_ascii_whitespace().take_while(|word| !word.starts_with('#'))
+    let is_plain = text.is_ascii();
+    let plain = is_plain.then(|| text.split_ascii_whitespace());
+    let other = (!is_plain).then(|| text.split_whitespace());
+    let words = plain.into_iter().flatten().chain(other.into_iter().flatten());
+    words.take_while(|word| !word.starts_with('#'))
 }
 
 /// Some lines of a file, and what is first wrong with them.
@@ -282,8 +293,11 @@ fn corner(word: &str, before: Counts, all: Counts) -> Result<Corner, String> {
         "" => None,
         normal => Some(index("normal", "normals", normal, before.normals, all.normals)?),
     };
-    // One that is not there is none.
-    let place = index("place", "places", place, before.places, all.places).ok();
+    // One that is not there is none; most corners have none.
+    let place = match place {
+        "" => None,
+        place => index("place", "places", place, before.places, all.places).ok(),
+    };
     Ok(Corner { vertex, place, normal })
 }
 
