@@ -5,7 +5,7 @@ use super::scale::{self, Log};
 use super::{Anchor, Chart, Ink, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of};
 use crate::report::{Report, Row, Swept};
 
-/// Width of the page and height of a chart, points.
+/// Width of the page, unless names need more, and height of a chart, points.
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 400.0;
 /// Above a chart's area and below it, points.
@@ -40,7 +40,8 @@ pub fn sweep(report: &Report) -> Plot {
         plot.charts.push(chart(report, scene, &name).moved([0.0, top]));
         top += HEIGHT;
     }
-    plot.size[1] = top;
+    let ends = plot.charts.iter().flat_map(|chart| &chart.labels).map(|label| label.rect().max[0] + 8.0);
+    plot.size = [ends.fold(WIDTH, f64::max), top];
     plot
 }
 

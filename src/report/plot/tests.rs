@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::report::tests::{adapter, row};
-use crate::report::{FrameTimes, Row};
+use crate::report::{FrameTimes, Row, Swept};
 use std::collections::BTreeMap;
 
 const PAGE: Page = Page { width: 600.0, height: None, most_columns: 3, compact: false };
@@ -133,6 +133,24 @@ fn every_technique_is_named_in_a_crowd() {
             }
         }
     }
+}
+
+/// However long the names of its lines are, a sweep's page holds them, and its charts are as wide as ever.
+#[test]
+fn a_sweep_s_page_holds_the_names_of_its_lines() {
+    let swept = |label: &str, value: f64| {
+        let sweep = Some(Swept { name: "lights".to_owned(), value, text: value.to_string() });
+        Row { sweep, ..row("a", "shadow-map", label, 3, 4.0 + value) }
+    };
+    let page = |label: &str| sweep(&report(vec![swept(label, 1.0), swept(label, 2.0)]));
+    let (short, long) = (page("pcf:3"), page("bias-slope 0, bias-constant 64, cull front, redraw changed"));
+    for plot in [&short, &long] {
+        let page = Rect { min: [0.0, 0.0], max: plot.size };
+        let [chart] = &plot.charts[..] else { panic!("one chart") };
+        assert_eq!(chart.labels.len(), 1);
+        assert!(chart.labels.iter().all(|label| page.holds(&label.rect())), "{:?}", chart.labels);
+    }
+    assert!(short.size[0] < long.size[0] && short.charts[0].area == long.charts[0].area);
 }
 
 #[test]
