@@ -84,6 +84,13 @@ pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> O
     (!points.is_empty() && distance > 0.0).then_some(distance)
 }
 
+/// The box that holds all that a light of that range reaches, places rounded relative to `eye`.
+#[must_use]
+pub fn reached(light: DVec3, range: f64, eye: DVec3) -> AxisBox {
+    let reach = range * (1.0 + MARGIN) + (range + light.distance(eye)) * ROUNDING;
+    AxisBox::around([light - reach, light + reach])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

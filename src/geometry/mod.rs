@@ -5,6 +5,7 @@
 
 mod blob;
 mod cache;
+mod clamping;
 mod connectivity;
 mod edges;
 mod extruded;
@@ -29,13 +30,14 @@ mod winding;
 
 pub use blob::Blob;
 pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
+pub use clamping::ClampedEnd;
 pub use connectivity::{Connectivity, Found};
 pub use edges::{Edge, EdgeList};
 pub use extruded::{Carry, Extruded, ExtrudedCorner, ExtrudedForm, ExtrudedVolume};
 pub use facing::{Casters, Facings, Planes};
 pub use far_end::Fan;
 pub use intersection::self_meeting;
-pub use light_range::{RangeInView, beyond_range, range_in_view};
+pub use light_range::{RangeInView, beyond_range, range_in_view, reached};
 pub use reach::{NearClipVolume, Outside, ViewVolume};
 pub use receiver_texture::Parallelogram;
 pub use silhouette::{MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search};

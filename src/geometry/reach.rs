@@ -86,6 +86,12 @@ impl ViewVolume {
         }
     }
 
+    /// The corners of the near rectangle in order round it, relative to the eye.
+    #[must_use]
+    pub fn near_rectangle(&self) -> [DVec3; 4] {
+        self.near_rectangle
+    }
+
     /// Where points lie outside of the view: nothing between them is seen. Points are homogeneous and
     /// relative to the eye; `w = 0` is a direction.
     #[must_use]

@@ -18,7 +18,7 @@
 
 use super::facing::{MIXED, RUN};
 use super::far_end::Fan;
-use super::{Carry, Facings, SilhouetteEdge, relative};
+use super::{Carry, ClampedEnd, Facings, SilhouetteEdge, relative};
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -39,6 +39,8 @@ pub enum Extrusion {
     /// A known mistake: where [`Extrusion::Finite`] has `L + (K + 1)·(V − L)`, the light is not added back, and far
     /// vertices are carried from the world's origin. A directional light has no place to add: the same as that.
     FromOrigin(f64),
+    /// Far vertices lie on a plane beyond all that is looked at. Not carried by a vertex shader.
+    Clamped(ClampedEnd),
 }
 
 /// What closes a volume away from the light.
@@ -93,6 +95,7 @@ impl Extruder {
         let light = self.light.truncate();
         match self.extrusion {
             Extrusion::Infinite => (position * self.light.w - light).extend(0.0),
+            Extrusion::Clamped(end) => end.carry(position, self.light).extend(1.0),
             Extrusion::Finite(factor) | Extrusion::FromOrigin(factor) if self.light.w == 0.0 => {
                 // The largest component first: a light's direction may have any length.
                 let direction = (light / light.abs().max_element()).normalize();
@@ -103,9 +106,10 @@ impl Extruder {
         }
     }
 
-    /// The same in single precision for what is relative to `origin`, as a vertex shader carries it.
+    /// The same in single precision for what is relative to `origin`, as a vertex shader carries it: not onto a plane.
     #[must_use]
     pub fn carry_from(&self, origin: DVec3) -> Carry {
+        debug_assert!(!matches!(self.extrusion, Extrusion::Clamped(_)), "a plane's factor differs by vertex");
         let light = relative::homogeneous(self.light, origin);
         // Linear in the place: where the origin goes, and what a metre makes.
         let (zero, one) = (self.carry(origin), self.carry(origin + DVec3::X));

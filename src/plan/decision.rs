@@ -22,6 +22,8 @@ named_enum! {
         LightCap = "light-cap",
         /// The dark cap of a volume whose far end is not in view, or is one point.
         DarkCap = "dark-cap",
+        /// What of a volume lies beyond all that receives: it ends there.
+        BeyondReceivers = "beyond-receivers",
         /// Surfaces that are not in view.
         Surfaces = "surfaces",
         /// Triangles of a closed surface that face away from the eye.
@@ -85,8 +87,8 @@ named_enum! {
 
 impl Decision {
     /// The names of those that may be forbidden: what `leave-out` knows, in order.
-    pub const NAMES: [&str; 15] = {
-        let mut names = [""; 15];
+    pub const NAMES: [&str; 16] = {
+        let mut names = [""; 16];
         let mut index = 0;
         while index < names.len() {
             names[index] = Decision::ALL[index].name();
@@ -107,6 +109,7 @@ impl Decision {
             Decision::Caps => "caps",
             Decision::LightCap => "light cap",
             Decision::DarkCap => "dark cap",
+            Decision::BeyondReceivers => "far part of the volume",
             Decision::Surfaces => "surface",
             Decision::HiddenTriangles => return format!("{of} triangles that face away from the eye"),
             Decision::UnlitTriangles => return format!("{of} triangles that face away"),

@@ -7,7 +7,7 @@
 //! its volume misses the view       ├─► no volume
 //! another caster's umbra holds it ─┘
 //! another part's umbra holds a part of it ───────────────► nothing of that part
-//! it holds no point of the near rectangle in its shadow ─► z-pass, without caps
+//! it holds no point of the near rectangle in its shadow ─► z-pass, without caps, to beyond all that receives
 //! else ─► z-fail: a light cap if it is in view itself, a dark cap if its far end is
 //! ```
 //!
@@ -18,14 +18,14 @@
 
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
-use super::frame::{Frame, Job, StencilUse};
+use super::frame::{Frame, Job, Placed, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::outside::{self, VIEW_PLANES, beyond};
 use super::settings::VolumeSettings;
 use super::volume::{Counting, Decides, Form};
 use super::{PlanError, shown, volume};
 use crate::geometry::umbra::{self, Occluder};
-use crate::geometry::{NearClipVolume, ViewVolume, layers};
+use crate::geometry::{ClampedEnd, Extrusion, NearClipVolume, ViewVolume, layers};
 use crate::math::AxisBox;
 use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
@@ -79,6 +79,8 @@ struct Questions {
     position: DVec4,
     view: ViewVolume,
     near_clip: NearClipVolume,
+    /// Around the eye and all that shows and receives, within the light's range.
+    looked_at: AxisBox,
     /// By object: what may hold others in its umbra.
     occluders: Vec<Option<Occluder>>,
 }
@@ -89,6 +91,7 @@ impl Questions {
         let [width, height] = frame.job.size.map(f64::from);
         let view = ViewVolume::new(&frame.job.scene.camera, width / height);
         let near_clip = view.near_clip(relative(position, frame.eye()));
+        let looked_at = looked_at(frame, light, &view);
         let asks = frame.common.allows(Decision::Umbra);
         let (placed, cache) = (&frame.placed, &mut frame.job.cache);
         let mut occluder = |index: usize| {
@@ -98,7 +101,7 @@ impl Questions {
             may.then(|| Occluder::new(&placed.world, mesh.triangles(), &cache.edges(mesh))).flatten()
         };
         let occluders = (0..placed.len()).map(&mut occluder).collect();
-        Questions { light, position, view, near_clip, occluders }
+        Questions { light, position, view, near_clip, looked_at, occluders }
     }
 
     /// A caster whose umbra holds all of another.
@@ -110,6 +113,42 @@ impl Questions {
         };
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
+
+    /// How far a volume must reach that is counted in front of surfaces.
+    fn extrusion(&self, frame: &mut Frame, index: usize) -> Extrusion {
+        if !frame.common.allows(Decision::BeyondReceivers) {
+            return Extrusion::Infinite;
+        }
+        let placed = &frame.placed[index];
+        let (object, caster) = (placed.object, AxisBox::around(placed.world.iter().copied()));
+        let Some(end) = ClampedEnd::beyond(self.looked_at, caster, self.position) else { return Extrusion::Infinite };
+        let (axis, at) = end.place();
+        let axis = ["x", "y", "z"][axis];
+        let because = format!(
+            "it ends at {axis} = {}: the eye and all that shows and receives have a {} {axis}, so nothing beyond is counted",
+            numbers::metres(at),
+            if end.is_below() { "higher" } else { "lower" },
+        );
+        frame.leave_out(Decision::BeyondReceivers, &object.name, because);
+        Extrusion::Clamped(end)
+    }
+}
+
+/// The box around the eye, the near rectangle, and all that shows, receives and is within a light's range.
+fn looked_at(frame: &Frame, light: LightId, view: &ViewVolume) -> AxisBox {
+    let eye = frame.eye();
+    let from = [eye].into_iter().chain(view.near_rectangle().map(|corner| eye + corner));
+    let shows = |index: usize| frame.pieces.iter().any(|piece| piece.object == index);
+    let receives = |(index, placed): &(usize, &Placed)| placed.object.receives && shows(*index);
+    let receiving = frame.placed.iter().enumerate().filter(receives);
+    let receiving = AxisBox::around(receiving.flat_map(|(_, placed)| placed.world.iter().copied()));
+    let reached = match frame.reached(light) {
+        Some(reach) => receiving.common(reach),
+        None => receiving,
+    };
+    let is_empty = reached.low.cmpgt(reached.high).any();
+    let corners = (!is_empty).then(|| reached.corners());
+    AxisBox::around(from.chain(corners.into_iter().flatten()))
 }
 
 impl Decides for Questions {
@@ -165,9 +204,11 @@ impl Decides for Questions {
             let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
             frame.leave_out(Decision::Caps, &object.name, because);
             // What is not drawn has no surface where its volume begins.
-            return Ok(Form { counting: Counting::InFront, light_cap: !object.visible, dark_cap: false });
+            let extrusion = self.extrusion(frame, index);
+            return Ok(Form { counting: Counting::InFront, extrusion, light_cap: !object.visible, dark_cap: false });
         }
-        let mut form = Form { counting: Counting::Behind, light_cap: true, dark_cap: true };
+        let extrusion = Extrusion::Infinite;
+        let mut form = Form { counting: Counting::Behind, extrusion, light_cap: true, dark_cap: true };
         if let Some(outside) = self.view.outside(&near).filter(|_| allowed(Decision::LightCap)) {
             let because = format!("the caster lies {}", beyond(outside, VIEW_PLANES[outside.plane]));
             frame.leave_out(Decision::LightCap, &object.name, because);

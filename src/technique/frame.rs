@@ -12,6 +12,7 @@ mod places;
 use super::error::MOST_LIGHTS;
 use super::{Choice, CommonSettings, PlanError};
 use crate::geometry::{self, GeometryCache};
+use crate::math::AxisBox;
 use crate::math::depth::DepthMapping;
 use crate::plan::{
     Attachment, AttachmentId, Decision, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, PlanTexture, TextureId,
@@ -213,9 +214,20 @@ impl<'a> Frame<'a> {
 
     /// By how many metres an object lies beyond the light's range.
     pub fn beyond_range(&self, light: LightId, index: usize) -> Option<f64> {
+        let (place, range) = self.range_of(light)?;
+        geometry::beyond_range(&self.placed[index].world, place, range, self.eye())
+    }
+
+    /// The box that holds all that a light of limited range reaches.
+    pub fn reached(&self, light: LightId) -> Option<AxisBox> {
+        let (place, range) = self.range_of(light)?;
+        Some(geometry::reached(place, range, self.eye()))
+    }
+
+    /// Where a lamp is, world space, and its range in metres if it has one.
+    fn range_of(&self, light: LightId) -> Option<(DVec3, f64)> {
         let light = &self.job.scene.lights[light.0];
-        let range = light.range.filter(|_| !light.is_directional())?;
-        geometry::beyond_range(&self.placed[index].world, light.position.truncate(), range, self.eye())
+        Some(light.position.truncate()).zip(light.range.filter(|_| !light.is_directional()))
     }
 
     /// The plan. Techniques are written for reversed depth: this turns it round where another is set.

@@ -67,6 +67,7 @@ pub(super) mod cited {
         source("Kim, Kim and Turk", 2008, "A Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters");
     pub const LAMBERT: Source = source("Lambert", 1760, "Photometria");
     pub const LENGYEL: Source = source("Lengyel", 2002, "The Mechanics of Robust Stencil Shadows");
+    pub const LLOYD: Source = source("Lloyd, Wendt, Govindaraju and Manocha", 2004, "CC Shadow Volumes");
     pub const MCGUIRE: Source =
         source("McGuire, Hughes, Egan, Kilgard and Everitt", 2003, "Fast, Practical and Robust Shadows");
     pub const PHONG: Source = source("Phong", 1975, "Illumination for Computer Generated Pictures");

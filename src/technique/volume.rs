@@ -134,7 +134,7 @@ pub trait Decides {
 /// Every caster's volume alike.
 struct Alike {
     counting: Counting,
-    is_finite: bool,
+    extrusion: Extrusion,
 }
 
 impl Decides for Alike {
@@ -151,7 +151,8 @@ impl Decides for Alike {
             frame.leave_out(Decision::Caps, &caster.name, because);
         }
         // A finite volume ends in front of whatever lies beyond it.
-        Ok(Form { counting, light_cap, dark_cap: counting == Counting::Behind || self.is_finite })
+        let is_finite = self.extrusion != Extrusion::Infinite;
+        Ok(Form { counting, extrusion: self.extrusion, light_cap, dark_cap: counting == Counting::Behind || is_finite })
     }
 }
 
@@ -163,8 +164,8 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let stencil = if settings.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = Frame::new(job, stencil)?;
     frame.clips_volumes = counting != Counting::Behind;
-    let is_finite = settings.extrusion != Extrusion::Infinite;
-    Ok(finish(frame, &settings, |_, _| Ok(Alike { counting, is_finite })))
+    let extrusion = settings.extrusion;
+    Ok(finish(frame, &settings, |_, _| Ok(Alike { counting, extrusion })))
 }
 
 /// Refuses what would take minutes.
@@ -336,7 +337,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         let casters = who_casts(frame, light, index, options, by_vertex_shader);
         let held = decides.held_by_parts(frame, index);
         let made = match by_vertex_shader && held.is_empty() {
-            true => Ok(extruded::make(frame, light, index, casters, (form, options))),
+            true => Ok(extruded::make(frame, light, index, casters, form)),
             false => drawn::make(frame, light, index, (casters, &held), (form, options)),
         };
         let Made { mesh, casting, needed, begins_with } = match made {

@@ -247,12 +247,11 @@ impl Frame<'_> {
         let mut misses = vec![false; scene.lights.len()];
         self.scissors = vec![None; scene.lights.len()];
         for id in self.light_ids() {
-            let light = &scene.lights[id.0];
-            let Some(range) = light.range.filter(|_| !light.is_directional()) else { continue };
+            let Some((place, range)) = self.range_of(id) else { continue };
             if !self.common.allows(Decision::Scissor) {
                 continue;
             }
-            match geometry::range_in_view(&scene.camera, self.job.size, light.position.truncate(), range) {
+            match geometry::range_in_view(&scene.camera, self.job.size, place, range) {
                 RangeInView::All => {}
                 RangeInView::Nothing => misses[id.0] = true,
                 RangeInView::Pixels(pixels) => {

@@ -77,9 +77,10 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
     meaning: "what the frame may do without where that is proven to change nothing",
     lesson: Lesson {
         text: "What a frame costs when nothing is left out: `none`; `caps,view` allows these two alone. Labels and \
-             picture stay the same to the last bit either way. Under another `depth` than `reversed-infinite`, \
-             which cuts volumes or ties depths, only `light`, `stencil`, `clear`, `map-faces` and `scissor` are \
-             decided.\n\
+             picture stay the same either way, but that a pixel at the very edge of a shadow may round otherwise where \
+             other triangles (`away-triangles`) or other far corners (`beyond-receivers`) draw that edge. Under another \
+             `depth` than `reversed-infinite`, which cuts volumes or ties depths, only `light`, `stencil`, `clear`, \
+             `map-faces` and `scissor` are decided.\n\
              \n\
              | decision | what is left out | where |\n\
              |---|---|---|\n\
@@ -92,6 +93,8 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
              not meeting itself, with the light outside and no triangle edge-on to it |\n\
              | `caps` | both caps: z-pass counts | the caster is outside the near-clip volume |\n\
              | `light-cap`, `dark-cap` | one cap of z-fail's | the caster, or the far end, is out of view |\n\
+             | `beyond-receivers` | the far part of a volume | z-pass counts it, and what shows and receives, and \
+             the eye, end before it |\n\
              | `surfaces` | surfaces | they are out of view |\n\
              | `hidden-triangles` | triangles of surfaces | they are on the far side of a closed surface |\n\
              | `unlit-triangles` | triangles of surfaces, in a light's pass | they face away from that light |\n\
@@ -100,8 +103,9 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
              | `map-faces` | faces of a cube map | no caster shows in them |\n\
              | `scissor` | pixels of a light's passes | they are beyond the `range` of a lamp that fades |",
         formula: "caps are needed only in the near-clip volume, the hull of the near rectangle and the light: a caster \
-             wholly outside one of its planes has none",
-        sources: &[cited::LENGYEL, cited::MCGUIRE],
+             wholly outside one of its planes has none; a volume ends on a plane outside of the box around the eye and \
+             all that shows and receives, where every ray through the caster leaves it by one side",
+        sources: &[cited::LENGYEL, cited::MCGUIRE, cited::LLOYD],
     },
 };
 const OCCLUSION: Words<bool> = words(

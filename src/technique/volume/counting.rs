@@ -1,5 +1,6 @@
 //! Where volume faces count, and the raster state that makes them.
 
+use crate::geometry::Extrusion;
 use crate::plan::{ColorWrite, CountBits, LightId, Part, RasterState, Side, StencilFace};
 use crate::technique::Technique;
 use crate::technique::settings::{CountsBy, VolumeSettings};
@@ -56,10 +57,11 @@ pub enum Counting {
     Behind,
 }
 
-/// How a volume is counted, and which caps that takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How a volume is counted, how far it reaches, and which caps that takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Form {
     pub counting: Counting,
+    pub extrusion: Extrusion,
     pub light_cap: bool,
     pub dark_cap: bool,
 }

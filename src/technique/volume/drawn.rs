@@ -143,7 +143,7 @@ pub fn make(
     (casters, held): (Casters, &[bool]),
     (form, options): (Form, &VolumeSettings),
 ) -> Result<Made, LeftOut> {
-    let (mesh, parts, far_end) = outlined(frame, light, index, (casters, held), options);
+    let (mesh, parts, far_end) = outlined(frame, light, index, (casters, held), (form.extrusion, options));
     let object = frame.placed[index].object;
     if parts.light_cap_turned.end == 0 {
         let because = match casters {
@@ -168,18 +168,18 @@ fn outlined(
     light: LightId,
     index: usize,
     (casters, held): (Casters, &[bool]),
-    options: &VolumeSettings,
+    (extrusion, options): (Extrusion, &VolumeSettings),
 ) -> (DrawMesh, VolumeParts, Option<FarEnd>) {
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
-    let extruder = Extruder::new(&placed.world, position, options.extrusion);
+    let extruder = Extruder::new(&placed.world, position, extrusion);
     let mut indices = Vec::new();
     let (is_drawn, by) = (placed.object.visible, options.silhouette);
     let volume = VolumeOf { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
     let parts = frame.job.cache.volume_indices(&volume, &mut indices);
     let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
-    let far_point = FarPoint::of(&frame.job.scene.camera).filter(|_| options.extrusion == Extrusion::Infinite);
+    let far_point = FarPoint::of(&frame.job.scene.camera).filter(|_| extrusion == Extrusion::Infinite);
     let far_end = far_point.map(|far_point| {
         let corners = |run: Range<usize>| indices[run.start * 3..run.end * 3].chunks_exact(3);
         let place = |vertex: &u32| placed.world.get(*vertex as usize).copied();
@@ -197,7 +197,7 @@ fn outlined(
         let beside = (from - position).length() / scale;
         (from, FarEnd { met: far_point.count(from, casting), beside, is_point })
     });
-    let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, options.extrusion));
+    let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, extrusion));
     let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
     let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
     let mesh = DrawMesh::of_positions(format!("volume of {}", placed.object.name), vertices, indices);

@@ -35,13 +35,7 @@ pub fn serves(frame: &mut Frame, light: LightId, options: &VolumeSettings) -> bo
 }
 
 /// The volume of one caster.
-pub fn make(
-    frame: &mut Frame,
-    light: LightId,
-    index: usize,
-    casters: Casters,
-    (form, options): (Form, &VolumeSettings),
-) -> Made {
+pub fn make(frame: &mut Frame, light: LightId, index: usize, casters: Casters, form: Form) -> Made {
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
@@ -50,7 +44,7 @@ pub fn make(
     let is_closed = connectivity.is_closed() && connectivity.is_oriented() && casters == Casters::LightFacing;
     let of = if is_closed { ExtrudedForm::Closed } else { ExtrudedForm::Prisms(casters) };
     let ExtrudedVolume { corners, indices, sides, caps, turned_caps } = cache.extruded(caster, eye, of);
-    let carry = Extruder::new(&placed.world, position, options.extrusion).carry_from(eye);
+    let carry = Extruder::new(&placed.world, position, form.extrusion).carry_from(eye);
     let name = format!("volume of {}", placed.object.name);
     let mut needed = vec![NeededPart::new(Part::Side, false, &sides)];
     if form.light_cap || form.dark_cap {
