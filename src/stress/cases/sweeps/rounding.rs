@@ -29,7 +29,8 @@ pub const SEAM: Case = Case {
         (Technique::PlanarTexture, "a texel is wider than a seam"),
         (Technique::Projective, "a texel is wider than a seam"),
     ],
-    failures: &[HOLE, HOLE.of(AUTO), HOLE.of(Z_PASS), HOLE.of(Z_PASS_PLUS)],
+    // Sides that end below the floor are shorter, and their far corners round less.
+    failures: &[HOLE, HOLE.of(AUTO).at(|pixels| pixels <= 1e-5), HOLE.of(Z_PASS), HOLE.of(Z_PASS_PLUS)],
     ..PLAIN
 };
 
