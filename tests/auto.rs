@@ -1,5 +1,5 @@
-//! What `auto` leaves out: taken where it changes nothing, not taken in the scene beside it, and never a
-//! pixel of difference.
+//! What `auto` leaves out: taken where it changes nothing, not taken in the scene beside it, and without a pixel of
+//! difference, but where a volume's other far corners draw the very edge of a shadow.
 
 mod clamped;
 mod kept;
@@ -48,8 +48,8 @@ fn all_but(decision: Decision) -> String {
 }
 
 /// What a frame leaves out, all that it may, must change nothing of it: to the last bit, but that far corners of
-/// volumes that end are rounded otherwise. Then pixels may differ at edges of shadows, where neither is wrong. Gives
-/// the frame of which nothing is left out, and how many pixels were judged in the other.
+/// volumes that end are rounded otherwise. Then pixels may differ at edges of shadows, few, and neither is wrong there.
+/// Gives the frame of which nothing is left out, and how many pixels were judged in the other.
 fn assert_nothing_changes(session: &mut Session, scene: &Scene, all: &Capture) -> (Capture, u64) {
     let mut capture = |leave_out: &str| session.capture(scene, &auto(leave_out)).expect("a capture");
     let (unended, none) = (capture(&all_but(Decision::BeyondReceivers)), capture("none"));
@@ -61,11 +61,25 @@ fn assert_nothing_changes(session: &mut Session, scene: &Scene, all: &Capture) -
     };
     let of_all = errors(all);
     assert_eq!(of_all.wrong(), 0, "{}", scene.name);
-    match labels(all) == labels(&none) {
-        true => assert!(picture(all) == picture(&none), "{}: the picture differs", scene.name),
-        false => assert_eq!(errors(&none).wrong(), 0, "{}", scene.name),
+    if assert_differs_by_labels(scene, all, &none) > 0 {
+        assert_eq!(errors(&none).wrong(), 0, "{}", scene.name);
     }
     (none, of_all.compared)
+}
+
+/// Frames that show the same wherever all labels are the same, which is almost everywhere: how many pixels differ.
+fn assert_differs_by_labels(scene: &Scene, one: &Capture, other: &Capture) -> usize {
+    let (of_one, of_other) = (labels(one), labels(other));
+    let differs = |at: &usize| of_one.iter().zip(&of_other).any(|(one, other)| one[*at] != other[*at]);
+    let (one, other) = (picture(one), picture(other));
+    let pixels = (SIZE[0] * SIZE[1]) as usize;
+    let texels = one.len() / pixels;
+    let colors = |at: usize| [&one, &other].map(|picture| &picture[at * texels..(at + 1) * texels]);
+    let differing = (0..pixels).filter(differs).count();
+    let is_same = |at: usize| differs(&at) || colors(at)[0] == colors(at)[1];
+    assert!((0..pixels).all(is_same), "{}: the picture differs", scene.name);
+    assert!(differing * 500 <= pixels, "{}: {differing} labels differ", scene.name);
+    differing
 }
 
 /// What is left out of a scene, as `what of whom`; all of it, then nothing, must show the same, and be right.

@@ -91,13 +91,13 @@ impl Connectivity {
     }
 }
 
-/// Disjoint sets of triangles.
-struct Sets {
+/// Disjoint sets of triangles, or of anything that has numbers.
+pub(super) struct Sets {
     parent: Vec<u32>,
 }
 
 impl Sets {
-    fn new(count: usize) -> Sets {
+    pub(super) fn new(count: usize) -> Sets {
         Sets { parent: (0..count as u32).collect() }
     }
 
@@ -111,12 +111,13 @@ impl Sets {
     }
 
     /// The smaller root stays, so that a set is named for its first member.
-    fn join(&mut self, one: usize, other: usize) {
+    pub(super) fn join(&mut self, one: usize, other: usize) {
         let (one, other) = (self.root(one), self.root(other));
         self.parent[one.max(other)] = one.min(other) as u32;
     }
 
-    fn numbered(mut self) -> (Vec<u32>, usize) {
+    /// By member the number of its set, and how many sets there are.
+    pub(super) fn numbered(mut self) -> (Vec<u32>, usize) {
         let mut numbers = Vec::with_capacity(self.parent.len());
         let mut count = 0;
         for member in 0..self.parent.len() {

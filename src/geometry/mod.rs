@@ -30,7 +30,7 @@ mod winding;
 
 pub use blob::Blob;
 pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
-pub use clamping::ClampedEnd;
+pub use clamping::{ClampedEnd, touching};
 pub use connectivity::{Connectivity, Found};
 pub use edges::{Edge, EdgeList};
 pub use extruded::{Carry, Extruded, ExtrudedCorner, ExtrudedForm, ExtrudedVolume};

@@ -106,10 +106,13 @@ impl Extruder {
         }
     }
 
-    /// The same in single precision for what is relative to `origin`, as a vertex shader carries it: not onto a plane.
+    /// The same in single precision for what is relative to `origin`, as a vertex shader carries it.
+    ///
+    /// # Panics
+    /// If it carries onto a plane, [`Extrusion::Clamped`].
     #[must_use]
     pub fn carry_from(&self, origin: DVec3) -> Carry {
-        debug_assert!(!matches!(self.extrusion, Extrusion::Clamped(_)), "a plane's factor differs by vertex");
+        assert!(!matches!(self.extrusion, Extrusion::Clamped(_)), "a plane's factor differs by vertex");
         let light = relative::homogeneous(self.light, origin);
         // Linear in the place: where the origin goes, and what a metre makes.
         let (zero, one) = (self.carry(origin), self.carry(origin + DVec3::X));

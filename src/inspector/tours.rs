@@ -255,7 +255,7 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "What was left out",
-                "The Explain tab lists everything that was left out with its reason and its numbers. leave-out in the settings puts each back: the picture stays the same, bit by bit, only slower.",
+                "The Explain tab lists everything that was left out with its reason and its numbers. leave-out in the settings puts each back: the picture stays the same, but for single pixels at the very edge of a shadow, only slower.",
                 &[Last, Picture(PictureKind::Color), Go::Panel(Explain)],
             ),
             stop(

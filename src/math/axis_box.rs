@@ -31,6 +31,19 @@ impl AxisBox {
         AxisBox { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn joined(self, other: AxisBox) -> AxisBox {
+        let [this, other] = [self, other].map(|one| if one.is_empty() { AxisBox::around([]) } else { one });
+        AxisBox { low: this.low.min(other.low), high: this.high.max(other.high) }
+    }
+
+    /// Does it hold no point?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        !self.low.cmple(self.high).all()
+    }
+
     /// Its length from corner to corner; infinite around no point.
     #[must_use]
     pub fn diagonal(&self) -> f64 {
@@ -60,5 +73,14 @@ mod tests {
         assert_eq!(AxisBox::around(found.corners()), found);
         assert_eq!(found.diagonal(), 53.0_f64.sqrt());
         assert_eq!(AxisBox::around([]).diagonal(), f64::INFINITY);
+    }
+
+    #[test]
+    fn boxes_that_do_not_meet_have_nothing_in_common_and_that_joins_nothing() {
+        let [one, other] = [0.0, 2.0].map(|at| AxisBox::around([DVec3::splat(at), DVec3::splat(at + 1.0)]));
+        let nothing = one.common(other);
+        assert!(nothing.is_empty() && !one.is_empty() && AxisBox::around([]).is_empty());
+        assert_eq!((one.joined(nothing), nothing.joined(one)), (one, one));
+        assert_eq!(one.joined(other), AxisBox::around([DVec3::ZERO, DVec3::splat(3.0)]));
     }
 }

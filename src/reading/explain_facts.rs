@@ -5,7 +5,7 @@
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{Event, EventKind, PixelHistory};
-use crate::plan::{CountBits, DecidedBy, Part, Side};
+use crate::plan::{CountBits, DecidedBy, Decision, LeftOut, Part, Side};
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
@@ -245,7 +245,20 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let side = step.light.and_then(|light| known.capture.decided_by(light).counted_side());
     let draws_them = settings.caps[1];
     let begins_there = is_parallel && side != Some(Side::InFront) && draws_them;
+    let ends = |left: &LeftOut| left.decision == Some(Decision::BeyondReceivers);
+    let ends_early = side != Some(Side::Behind) && known.capture.left_out.iter().any(ends);
     let dark_cap = match (is_sun, is_finite) {
+        _ if ends_early && side == Some(Side::InFront) => {
+            "dark caps: volumes that are counted in front may be open where they end, beyond all that receives"
+        }
+        (true, _) if ends_early => {
+            "dark caps: the sides of a sun's volume meet in one point at infinity, and where one ends before, beyond all \
+             that receives, it is counted in front and may be open"
+        }
+        (false, _) if ends_early => {
+            "dark caps, fans over the silhouettes at infinity of those counted behind; those counted in front may be open \
+             where they end, beyond all that receives"
+        }
         (false, false) if begins_there => {
             "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there"
         }

@@ -14,7 +14,8 @@
 //! Both kinds of counting leave the same number at every surface, so they share one stencil buffer. A
 //! closed caster counts with the triangles that face the light alone. Where a count could reach 256, it
 //! is kept in a float. Each decision is recorded, and each can be forbidden (`leave-out`): then what it
-//! would have left out is drawn, and nothing must change.
+//! would have left out is drawn, and nothing must change but single pixels at a shadow's very edge, where other
+//! triangles or other far corners draw that edge.
 
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
@@ -22,10 +23,10 @@ use super::frame::{Frame, Job, Placed, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::outside::{self, VIEW_PLANES, beyond};
 use super::settings::VolumeSettings;
-use super::volume::{Counting, Decides, Form};
+use super::volume::{Counting, Decided, Decides, Form};
 use super::{PlanError, shown, volume};
 use crate::geometry::umbra::{self, Occluder};
-use crate::geometry::{ClampedEnd, Extrusion, NearClipVolume, ViewVolume, layers};
+use crate::geometry::{ClampedEnd, Extruder, Extrusion, NearClipVolume, ViewVolume, layers, touching};
 use crate::math::AxisBox;
 use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
@@ -36,12 +37,14 @@ pub(super) const DESCRIPTION: Description = Description {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
     lesson: Lesson {
         text: "The default. Each volume is counted by z-pass or by z-fail, whichever is cheaper while right, and \
-             whatever can't change the picture is left out; every decision is recorded with its reason in the \
+             whatever can't change the picture is left out, and a volume that is counted in front ends beyond all that \
+             receives; every decision is recorded with its reason in the \
              plan's text, in `manifest.json` and in the window. `stencilscope help leave-out` lists what it may \
              leave out. Where a ray of the light may meet more than 255 casting triangles it counts in floats.",
         formula: "at a surface, front - back faces in front of it = back - front faces behind it: volumes are closed \
-             and the eye is in none, so both kinds share one buffer",
-        sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::MCGUIRE],
+             and the eye is in none, so both kinds share one buffer; what is counted in front may be open beyond all \
+             that receives",
+        sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::LLOYD, cited::MCGUIRE],
     },
     plan,
     // With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
@@ -81,8 +84,34 @@ struct Questions {
     near_clip: NearClipVolume,
     /// Around the eye and all that shows and receives, within the light's range.
     looked_at: AxisBox,
+    /// Around each object.
+    boxes: Vec<AxisBox>,
     /// By object: what may hold others in its umbra.
     occluders: Vec<Option<Occluder>>,
+}
+
+/// Points whose hull holds a caster, then where they are carried; homogeneous, relative to the eye.
+struct Hull {
+    points: Vec<DVec4>,
+    near: usize,
+}
+
+impl Hull {
+    fn of(placed: &Placed, extruder: &Extruder, eye: DVec3) -> Hull {
+        let outline = || outside::outline(&placed.world);
+        let mut points: Vec<DVec4> = outline().map(|point| relative(point.extend(1.0), eye)).collect();
+        let near = points.len();
+        points.extend(outline().map(|point| relative(extruder.carry(point), eye)));
+        Hull { points, near }
+    }
+
+    fn near(&self) -> &[DVec4] {
+        &self.points[..self.near]
+    }
+
+    fn far(&self) -> &[DVec4] {
+        &self.points[self.near..]
+    }
 }
 
 impl Questions {
@@ -91,7 +120,9 @@ impl Questions {
         let [width, height] = frame.job.size.map(f64::from);
         let view = ViewVolume::new(&frame.job.scene.camera, width / height);
         let near_clip = view.near_clip(relative(position, frame.eye()));
-        let looked_at = looked_at(frame, light, &view);
+        let around = |placed: &Placed| AxisBox::around(placed.world.iter().copied());
+        let boxes: Vec<AxisBox> = frame.placed.iter().map(around).collect();
+        let looked_at = looked_at(frame, light, &view, &boxes);
         let asks = frame.common.allows(Decision::Umbra);
         let (placed, cache) = (&frame.placed, &mut frame.job.cache);
         let mut occluder = |index: usize| {
@@ -101,54 +132,137 @@ impl Questions {
             may.then(|| Occluder::new(&placed.world, mesh.triangles(), &cache.edges(mesh))).flatten()
         };
         let occluders = (0..placed.len()).map(&mut occluder).collect();
-        Questions { light, position, view, near_clip, looked_at, occluders }
+        Questions { light, position, view, near_clip, looked_at, boxes, occluders }
     }
 
     /// A caster whose umbra holds all of another.
-    fn holder(&self, frame: &Frame, index: usize) -> Option<usize> {
-        let world = &frame.placed[index].world;
-        let corners = AxisBox::around(world.iter().copied()).corners();
+    fn holder(&self, index: usize) -> Option<usize> {
+        let corners = self.boxes[index].corners();
         let holds = |occluder: &Option<Occluder>| {
             occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
         };
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
 
-    /// How far a volume must reach that is counted in front of surfaces.
-    fn extrusion(&self, frame: &mut Frame, index: usize) -> Extrusion {
-        if !frame.common.allows(Decision::BeyondReceivers) {
-            return Extrusion::Infinite;
-        }
+    /// Points around a volume of this extrusion.
+    fn hull(&self, frame: &Frame, index: usize, extrusion: Extrusion) -> Hull {
         let placed = &frame.placed[index];
-        let (object, caster) = (placed.object, AxisBox::around(placed.world.iter().copied()));
-        let Some(end) = ClampedEnd::beyond(self.looked_at, caster, self.position) else { return Extrusion::Infinite };
+        Hull::of(placed, &Extruder::new(&placed.world, self.position, extrusion), frame.eye())
+    }
+
+    /// Why a volume misses the view, where it may be left out for that.
+    fn misses_view(&self, frame: &Frame, hull: &Hull) -> Option<String> {
+        let outside = self.view.outside(&hull.points).filter(|_| frame.common.allows(Decision::View))?;
+        Some(format!("it lies {}", beyond(outside, VIEW_PLANES[outside.plane])))
+    }
+
+    /// How a caster's volume is counted that goes on to infinity.
+    fn without_end(&self, frame: &Frame, index: usize) -> Decided {
+        let object = frame.placed[index].object;
+        let allowed = |decision: Decision| frame.common.allows(decision);
+        let left_out = |why: Decision, because: String| LeftOut::new(why, &object.name, because);
+        let no_volume = |why: Decision, because: String| Decided::nothing(left_out(why, because));
+        let light = self.light.name();
+        if allowed(Decision::Caster) && !casters::can_darken(frame, index, self.light, Darkened::All) {
+            let because = format!("all that receives lies on the side of {light}, or in its plane");
+            return no_volume(Decision::Caster, because);
+        }
+        if allowed(Decision::Caster)
+            && let Some(distance) = frame.beyond_range(self.light, index)
+        {
+            let because = format!("it lies {} beyond the range of {light}", numbers::metres(distance));
+            return no_volume(Decision::Caster, because);
+        }
+        let extrusion = Extrusion::Infinite;
+        let hull = self.hull(frame, index, extrusion);
+        if let Some(because) = self.misses_view(frame, &hull) {
+            return no_volume(Decision::View, because);
+        }
+        if let Some(other) = self.holder(index) {
+            let because = format!("{} holds all of it in its umbra", frame.placed[other].object.name);
+            return no_volume(Decision::Umbra, because);
+        }
+        if let Some(outside) = self.near_clip.outside(hull.near()).filter(|_| allowed(Decision::Caps)) {
+            let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
+            let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
+            // What is not drawn has no surface where its volume begins.
+            let form = Form { counting: Counting::InFront, extrusion, light_cap: !object.visible, dark_cap: false };
+            return Decided { form: Some(form), left_out: vec![left_out(Decision::Caps, because)] };
+        }
+        let mut form = Form { counting: Counting::Behind, extrusion, light_cap: true, dark_cap: true };
+        let mut not_needed = Vec::new();
+        if let Some(outside) = self.view.outside(hull.near()).filter(|_| allowed(Decision::LightCap)) {
+            let because = format!("the caster lies {}", beyond(outside, VIEW_PLANES[outside.plane]));
+            not_needed.push(left_out(Decision::LightCap, because));
+            form.light_cap = false;
+        }
+        let directions: Vec<DVec3> = hull.far().iter().map(|point| point.truncate()).collect();
+        let far_end = self.view.outside_at_infinity(&directions);
+        if let Some(outside) = far_end.filter(|_| self.position.w != 0.0 && allowed(Decision::DarkCap)) {
+            let because = format!("at infinity it lies outside {}", VIEW_PLANES[outside.plane]);
+            not_needed.push(left_out(Decision::DarkCap, because));
+            form.dark_cap = false;
+        }
+        Decided { form: Some(form), left_out: not_needed }
+    }
+
+    /// Ends volumes beyond all that receives: those of casters that touch on one plane, and only where all of them are
+    /// counted in front.
+    fn end_volumes(&self, frame: &Frame, casters: &[usize], decided: &mut [Decided]) {
+        let counted: Vec<(usize, usize)> = (0..casters.len())
+            .filter(|place| decided[*place].form.is_some())
+            .map(|place| (place, casters[place]))
+            .collect();
+        let boxes: Vec<AxisBox> = counted.iter().map(|(_, index)| self.boxes[*index]).collect();
+        let (group_of, count) = touching(&boxes, self.looked_at);
+        let mut groups = vec![Vec::new(); count];
+        counted.iter().zip(group_of).for_each(|(caster, group)| groups[group as usize].push(*caster));
+        for group in groups {
+            let is_in_front = |(place, _): &(usize, usize)| {
+                decided[*place].form.is_some_and(|form| form.counting == Counting::InFront)
+            };
+            if !group.iter().all(is_in_front) {
+                continue;
+            }
+            let boxes: Vec<AxisBox> = group.iter().map(|(_, index)| self.boxes[*index]).collect();
+            if let Some(end) = ClampedEnd::beyond(self.looked_at, &boxes, self.position) {
+                group.iter().for_each(|(place, index)| self.end_at(end, frame, *index, &mut decided[*place]));
+            }
+        }
+    }
+
+    /// Ends the volume of a caster there.
+    fn end_at(&self, end: ClampedEnd, frame: &Frame, index: usize, decided: &mut Decided) {
+        let name = &frame.placed[index].object.name;
+        let extrusion = Extrusion::Clamped(end);
         let (axis, at) = end.place();
-        let axis = ["x", "y", "z"][axis];
+        let (axis, at) = (["x", "y", "z"][axis], numbers::metres(at));
+        if let Some(because) = self.misses_view(frame, &self.hull(frame, index, extrusion)) {
+            let because = format!("ended at {axis} = {at}, beyond all that receives, {because}");
+            *decided = Decided::nothing(LeftOut::new(Decision::View, name, because));
+            return;
+        }
         let because = format!(
-            "it ends at {axis} = {}: the eye and all that shows and receives have a {} {axis}, so nothing beyond is counted",
-            numbers::metres(at),
+            "it ends at {axis} = {at}: the eye and all that shows and receives{} have a {} {axis}, so nothing beyond is \
+             counted",
+            if frame.reached(self.light).is_some() { " within its light's range" } else { "" },
             if end.is_below() { "higher" } else { "lower" },
         );
-        frame.leave_out(Decision::BeyondReceivers, &object.name, because);
-        Extrusion::Clamped(end)
+        decided.left_out.push(LeftOut::new(Decision::BeyondReceivers, name, because));
+        decided.form.iter_mut().for_each(|form| form.extrusion = extrusion);
     }
 }
 
-/// The box around the eye, the near rectangle, and all that shows, receives and is within a light's range.
-fn looked_at(frame: &Frame, light: LightId, view: &ViewVolume) -> AxisBox {
+/// The box around the eye, the near rectangle, and all that shows, receives and is within a light's range; of the boxes
+/// around each object.
+fn looked_at(frame: &Frame, light: LightId, view: &ViewVolume, boxes: &[AxisBox]) -> AxisBox {
     let eye = frame.eye();
     let from = [eye].into_iter().chain(view.near_rectangle().map(|corner| eye + corner));
-    let shows = |index: usize| frame.pieces.iter().any(|piece| piece.object == index);
-    let receives = |(index, placed): &(usize, &Placed)| placed.object.receives && shows(*index);
-    let receiving = frame.placed.iter().enumerate().filter(receives);
-    let receiving = AxisBox::around(receiving.flat_map(|(_, placed)| placed.world.iter().copied()));
-    let reached = match frame.reached(light) {
-        Some(reach) => receiving.common(reach),
-        None => receiving,
-    };
-    let is_empty = reached.low.cmpgt(reached.high).any();
-    let corners = (!is_empty).then(|| reached.corners());
-    AxisBox::around(from.chain(corners.into_iter().flatten()))
+    let shown = frame.pieces.iter().map(|piece| piece.object);
+    let receiving = shown.filter(|index| frame.placed[*index].object.receives);
+    let receiving = receiving.fold(AxisBox::around([]), |all, index| all.joined(boxes[index]));
+    let reached = frame.reached(light).map_or(receiving, |reach| receiving.common(reach));
+    AxisBox::around(from).joined(reached)
 }
 
 impl Decides for Questions {
@@ -160,68 +274,12 @@ impl Decides for Questions {
         false
     }
 
-    fn form(&self, frame: &mut Frame, index: usize) -> Result<Form, LeftOut> {
-        let object = frame.placed[index].object;
-        let common = frame.common;
-        let allowed = |decision: Decision| common.allows(decision);
-        let no_volume = |why: Decision, because: String| Err(LeftOut::new(why, &object.name, because));
-        if allowed(Decision::Caster) && !casters::can_darken(frame, index, self.light, Darkened::All) {
-            let light = self.light.name();
-            return no_volume(
-                Decision::Caster,
-                format!("all that receives lies on the side of {light}, or in its plane"),
-            );
+    fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided> {
+        let mut decided: Vec<Decided> = casters.iter().map(|index| self.without_end(frame, *index)).collect();
+        if frame.common.allows(Decision::BeyondReceivers) {
+            self.end_volumes(frame, casters, &mut decided);
         }
-        if allowed(Decision::Caster)
-            && let Some(distance) = frame.beyond_range(self.light, index)
-        {
-            let light = self.light.name();
-            return no_volume(
-                Decision::Caster,
-                format!("it lies {} beyond the range of {light}", numbers::metres(distance)),
-            );
-        }
-        let eye = frame.eye();
-        let near: Vec<DVec4> =
-            outside::outline(&frame.placed[index].world).map(|point| (point - eye).extend(1.0)).collect();
-        let light = relative(self.position, eye);
-        let carried = |point: &DVec4| (point.truncate() * light.w - light.truncate()).extend(0.0);
-        let far: Vec<DVec4> = near.iter().map(carried).collect();
-        let whole: Vec<DVec4> = near.iter().chain(&far).copied().collect();
-        if allowed(Decision::View)
-            && let Some(outside) = self.view.outside(&whole)
-        {
-            return no_volume(Decision::View, format!("it lies {}", beyond(outside, VIEW_PLANES[outside.plane])));
-        }
-        if let Some(other) = self.holder(frame, index) {
-            return no_volume(
-                Decision::Umbra,
-                format!("{} holds all of it in its umbra", frame.placed[other].object.name),
-            );
-        }
-        if let Some(outside) = self.near_clip.outside(&near).filter(|_| allowed(Decision::Caps)) {
-            let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
-            let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
-            frame.leave_out(Decision::Caps, &object.name, because);
-            // What is not drawn has no surface where its volume begins.
-            let extrusion = self.extrusion(frame, index);
-            return Ok(Form { counting: Counting::InFront, extrusion, light_cap: !object.visible, dark_cap: false });
-        }
-        let extrusion = Extrusion::Infinite;
-        let mut form = Form { counting: Counting::Behind, extrusion, light_cap: true, dark_cap: true };
-        if let Some(outside) = self.view.outside(&near).filter(|_| allowed(Decision::LightCap)) {
-            let because = format!("the caster lies {}", beyond(outside, VIEW_PLANES[outside.plane]));
-            frame.leave_out(Decision::LightCap, &object.name, because);
-            form.light_cap = false;
-        }
-        let directions: Vec<DVec3> = far.iter().map(|point| point.truncate()).collect();
-        let far_end = self.view.outside_at_infinity(&directions);
-        if let Some(outside) = far_end.filter(|_| light.w != 0.0 && allowed(Decision::DarkCap)) {
-            let because = format!("at infinity it lies outside {}", VIEW_PLANES[outside.plane]);
-            frame.leave_out(Decision::DarkCap, &object.name, because);
-            form.dark_cap = false;
-        }
-        Ok(form)
+        decided
     }
 
     fn held_by_parts(&self, frame: &mut Frame, index: usize) -> Vec<bool> {

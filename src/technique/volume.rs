@@ -114,11 +114,8 @@ pub trait Decides {
         true
     }
 
-    /// How a caster's volume must be counted.
-    ///
-    /// # Errors
-    /// Why it needs none.
-    fn form(&self, frame: &mut Frame, caster: usize) -> Result<Form, LeftOut>;
+    /// How the volumes of these casters must be counted, indices into [`Frame::placed`]; as many.
+    fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided>;
 
     /// Of each triangle of a caster: another part of the caster holds its part in the umbra. Empty: none.
     fn held_by_parts(&self, _frame: &mut Frame, _caster: usize) -> Vec<bool> {
@@ -128,6 +125,22 @@ pub trait Decides {
     /// Could a count of these casting triangles, world space, reach 256? Only of who has an answer to it.
     fn may_overflow(&self, _casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {
         false
+    }
+}
+
+/// What is decided about a caster's volume.
+#[derive(Debug, Clone)]
+pub struct Decided {
+    /// `None` where it needs none.
+    pub form: Option<Form>,
+    /// What is not needed of it, or why all of it is not.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Decided {
+    /// It needs none, because of this.
+    pub fn nothing(left_out: LeftOut) -> Decided {
+        Decided { form: None, left_out: vec![left_out] }
     }
 }
 
@@ -142,17 +155,20 @@ impl Decides for Alike {
         self.counting
     }
 
-    fn form(&self, frame: &mut Frame, caster: usize) -> Result<Form, LeftOut> {
-        let (counting, caster) = (self.counting, frame.placed[caster].object);
-        // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
-        let light_cap = counting == Counting::Behind || !caster.visible;
-        if !light_cap {
+    fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided> {
+        let Alike { counting, extrusion } = *self;
+        let form = |caster: &usize| {
+            let caster = frame.placed[*caster].object;
+            // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
+            let light_cap = counting == Counting::Behind || !caster.visible;
             let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
-            frame.leave_out(Decision::Caps, &caster.name, because);
-        }
-        // A finite volume ends in front of whatever lies beyond it.
-        let is_finite = self.extrusion != Extrusion::Infinite;
-        Ok(Form { counting, extrusion: self.extrusion, light_cap, dark_cap: counting == Counting::Behind || is_finite })
+            let left_out = (!light_cap).then(|| LeftOut::new(Decision::Caps, &caster.name, because));
+            // A finite volume ends in front of whatever lies beyond it.
+            let dark_cap = counting == Counting::Behind || extrusion != Extrusion::Infinite;
+            let form = Form { counting, extrusion, light_cap, dark_cap };
+            Decided { form: Some(form), left_out: left_out.into_iter().collect() }
+        };
+        casters.iter().map(form).collect()
     }
 }
 
@@ -322,21 +338,16 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
 fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides: &impl Decides) -> (Vec<Volume>, bool) {
     let mut volumes = Vec::new();
     let (position, by_vertex_shader) = (frame.light_position(light), extruded::serves(frame, light, options));
-    for index in 0..frame.placed.len() {
+    let placed = frame.placed.iter().enumerate();
+    let casting = placed.filter(|(_, placed)| placed.object.casts && !placed.object.mesh.triangles().is_empty());
+    let casters: Vec<usize> = casting.map(|(index, _)| index).collect();
+    for (index, Decided { form, left_out }) in casters.iter().copied().zip(decides.forms(frame, &casters)) {
         let object = frame.placed[index].object;
-        if !object.casts || object.mesh.triangles().is_empty() {
-            continue;
-        }
-        let form = match decides.form(frame, index) {
-            Ok(form) => form,
-            Err(left_out) => {
-                frame.plan.left_out.push(left_out);
-                continue;
-            }
-        };
+        frame.plan.left_out.extend(left_out);
+        let Some(form) = form else { continue };
         let casters = who_casts(frame, light, index, options, by_vertex_shader);
         let held = decides.held_by_parts(frame, index);
-        let made = match by_vertex_shader && held.is_empty() {
+        let made = match by_vertex_shader && held.is_empty() && !form.ends_on_plane() {
             true => Ok(extruded::make(frame, light, index, casters, form)),
             false => drawn::make(frame, light, index, (casters, &held), (form, options)),
         };

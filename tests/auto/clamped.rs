@@ -1,6 +1,6 @@
 //! Volumes that end beyond all that receives.
 
-use super::{SIZE, assert_decides, auto, left_out, looking};
+use super::{SIZE, all_but, assert_decides, assert_differs_by_labels, auto, left_out, looking};
 use crate::common::random::Random;
 use crate::common::{cuboid, from_above, judged, session, square};
 use glam::{DVec3, DVec4};
@@ -40,6 +40,13 @@ fn lowest(session: &mut Session, scene: &Scene) -> f64 {
     vertices.iter().map(|vertex| vertex.y).fold(f64::INFINITY, f64::min)
 }
 
+/// Where volumes end, as it is said.
+fn ends(session: &mut Session, scene: &Scene) -> Vec<String> {
+    let plan = session.plan(scene, &auto("all")).expect("a plan");
+    let ended = plan.left_out.iter().filter(|left| left.decision == Some(Decision::BeyondReceivers));
+    ended.map(|left| left.because.clone()).collect()
+}
+
 /// How many pixels were judged, of which none is wrong.
 fn assert_right(session: &mut Session, scene: &Scene) -> u64 {
     let judged = judged(session, scene, Technique::Auto, SIZE);
@@ -75,13 +82,20 @@ fn it_ends_where_nothing_is_looked_at() {
     assert_right(&mut session, &seen);
     let reached = lowest(&mut session, &seen);
     assert!((-3.1..-3.0).contains(&reached), "{reached}");
-    let in_vain: [fn(&mut Object, &mut Light); 3] =
-        [|floor, _| floor.receives = false, |floor, _| floor.visible = false, |_, light| light.range = Some(6.0)];
-    for change in in_vain {
+    let in_vain: [(fn(&mut Object, &mut Light), f64, &str); 3] = [
+        (|floor, _| floor.receives = false, 0.0, "receives have"),
+        (|floor, _| floor.visible = false, 0.0, "receives have"),
+        (|_, light| light.range = Some(6.0), -1.0, "receives within its light's range have"),
+    ];
+    for (change, end, because) in in_vain {
         let scene = with_lower(change);
         assert_right(&mut session, &scene);
         let reached = lowest(&mut session, &scene);
-        assert!((-1.1..0.0).contains(&reached), "{reached}");
+        assert!((end - 0.1..end).contains(&reached), "{reached}");
+        assert!(ends(&mut session, &scene).iter().any(|told| told.contains(because)), "{because}");
+        let [all, unended] = ["all".to_owned(), all_but(Decision::BeyondReceivers)]
+            .map(|leave_out| session.capture(&scene, &auto(&leave_out)).expect("a capture"));
+        assert_differs_by_labels(&scene, &all, &unended);
     }
 }
 
@@ -111,6 +125,82 @@ fn rays_that_leave_by_no_side_go_on_to_infinity() {
     assert!(vertices(&mut session, &scene).iter().any(|vertex| vertex.w == 0.0));
 }
 
+/// What touches ends on one plane, or goes on to infinity: else the edges that two volumes share round apart.
+#[test]
+fn casters_that_touch_end_together_or_not_at_all() {
+    let mut session = session();
+    let room = || {
+        let mut room = cuboid("room", [-4.0, 0.0, -4.0], [4.0; 3]);
+        room.casts = false;
+        room
+    };
+    let scene = |casters: Vec<Object>, lamp: [f64; 3]| {
+        let mut scene = from_above([casters, vec![room()]].concat());
+        scene.objects.retain(|object| object.name != "floor");
+        scene.lights = vec![Light::point(lamp)];
+        looking(scene, [3.5, 3.5, 3.5], [0.0, 1.0, 0.0])
+    };
+    let (low, high) = ([0.0, 1.0], [1.0, 2.0]);
+    let cell = |name: &str, [from, to]: [f64; 2]| cuboid(name, [-0.5, from, -0.5], [0.5, to, 0.5]);
+    // The higher one would leave by a nearer wall.
+    let lamp = [-1.5, 2.1, 0.0];
+    let alone = [low, high].map(|at| ends(&mut session, &scene(vec![cell("one", at)], lamp)));
+    assert_ne!(alone[0], alone[1]);
+    let stacked = scene(vec![cell("low", low), cell("high", high)], lamp);
+    let together = ends(&mut session, &stacked);
+    assert!(together.len() == 2 && together[0] == together[1], "{together:?}");
+    assert_right(&mut session, &stacked);
+    // Apart they are on their own again.
+    let apart = ends(&mut session, &scene(vec![cell("low", [0.0, 0.9]), cell("high", high)], lamp));
+    assert!(apart.len() == 2 && apart[0] != apart[1], "{apart:?}");
+    // One that holds the eye in its shadow is counted behind, to infinity, and what touches it goes there too.
+    let shading = |low: f64| cuboid("shading", [low, 1.5, -0.5], [1.5, 2.0, 0.5]);
+    let seen_from = |casters: Vec<Object>| {
+        let mut scene = scene(casters, [0.0, 3.8, 0.0]);
+        (scene.camera.eye, scene.camera.target) = (DVec3::new(1.5, 0.6, 0.6), DVec3::new(-1.5, 0.3, -0.5));
+        scene
+    };
+    let beside = cuboid("beside", [-0.5, 1.5, -0.5], [0.5, 2.0, 0.5]);
+    let touching = seen_from(vec![shading(0.5), beside.clone()]);
+    assert_eq!(ends(&mut session, &touching), Vec::<String>::new());
+    assert_right(&mut session, &touching);
+    assert_eq!(ends(&mut session, &seen_from(vec![shading(0.6), beside])).len(), 1);
+}
+
+/// Cells of a lattice, each an object of its own: not a speck of light along their seams.
+#[test]
+fn shadows_of_casters_that_touch_have_no_seams() {
+    let mut session = session();
+    let mut random = Random::new(40);
+    let (mut ended, mut compared) = (0, 0);
+    for round in 0..40 {
+        let mut anywhere = |reach: f64| random.within(reach);
+        let (corner, steps) = (anywhere(1.0) - 0.5, anywhere(1.0).abs() + 0.1);
+        let lines = [corner, corner + steps, corner + 2.0 * steps];
+        let cell = |index: usize| {
+            let of = |axis: usize| index >> axis & 1;
+            let [low, high] = [0, 1].map(|end| [0, 1, 2].map(|axis| lines[of(axis) + end][axis]));
+            cuboid(&format!("cell {index}"), low, high)
+        };
+        let cells: Vec<Object> = (0..8).map(cell).collect();
+        let place = anywhere(4.5);
+        let (eye, target) = (anywhere(4.5), anywhere(1.0));
+        let mut scene = from_above(cells);
+        let mut room = cuboid("room", [-5.0; 3], [5.0; 3]);
+        room.casts = false;
+        scene.objects.retain(|object| object.name != "floor");
+        scene.objects.push(room);
+        scene.lights = vec![if round % 3 == 0 { Light::directional(place) } else { Light::point(place) }];
+        scene.camera = Camera { eye, target, ..scene.camera };
+        ended += ends(&mut session, &scene).len();
+        let judged = judged(&mut session, &scene, Technique::Auto, [4 * SIZE[0], 4 * SIZE[1]]);
+        let error = judged.lights[0].truth.as_ref().expect("a truth").error;
+        assert_eq!(error.wrong(), 0, "{round}: {error:?} from {:?}, lit from {place}", scene.camera);
+        compared += error.compared;
+    }
+    assert!(ended > 80 && compared > 500_000, "{ended} volumes, {compared} pixels");
+}
+
 /// Boxes about a room, seen and lit from anywhere in it: no pixel is wrong, and most volumes end.
 #[test]
 fn shadows_stay_right_wherever_volumes_end() {
@@ -123,10 +213,14 @@ fn shadows_stay_right_wherever_volumes_end() {
             let (middle, half) = (anywhere(3.0), anywhere(1.0).abs() + 0.01);
             cuboid(&format!("box {index}"), (middle - half).to_array(), (middle + half).to_array())
         });
-        let boxes: Vec<Object> = boxes.collect();
+        let mut boxes: Vec<Object> = boxes.collect();
+        // Not all of them show and receive; some are seen from without the room, and some lamps fade.
+        boxes[0].receives = round % 2 == 0;
+        boxes[1].visible = round % 5 != 1;
         let place = anywhere(4.0);
-        let light = if round % 3 == 0 { Light::directional(place) } else { Light::point(place) };
-        let (eye, target) = (anywhere(4.5), anywhere(2.0));
+        let mut light = if round % 3 == 0 { Light::directional(place) } else { Light::point(place) };
+        light.range = (round % 3 == 1).then_some(anywhere(6.0).abs().x + 2.0);
+        let (eye, target) = (anywhere(if round % 7 == 2 { 9.0 } else { 4.5 }), anywhere(2.0));
         let projection = match round % 4 {
             0 => Projection::Orthographic { half_height: 3.0 },
             _ => Projection::Perspective,

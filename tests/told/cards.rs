@@ -54,6 +54,18 @@ impl Here<'_> {
         })
     }
 
+    fn is_of_sun(&self) -> bool {
+        self.frame.capture.lights[self.light()].position.w == 0.0
+    }
+
+    /// Does a volume of the frame, of any light, end in no point at infinity, although none is asked to be finite?
+    fn some_end(&self) -> bool {
+        let is_finite = self.frame.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
+        let sides = self.frame.plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Side);
+        let mut vertices = sides.map(|draw| self.frame.plan.meshes[draw.mesh.0].vertices.data());
+        !is_finite && vertices.any(|vertices| vertices.iter().all(|[.., w]| *w != 0.0))
+    }
+
     fn triangles(&self, part: Part) -> f64 {
         self.draws(part).map(|draw| f64::from(draw.triangles.end - draw.triangles.start)).sum()
     }

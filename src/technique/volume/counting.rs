@@ -66,6 +66,13 @@ pub struct Form {
     pub dark_cap: bool,
 }
 
+impl Form {
+    /// Onto a plane no vertex shader carries it.
+    pub fn ends_on_plane(&self) -> bool {
+        matches!(self.extrusion, Extrusion::Clamped(_))
+    }
+}
+
 /// Which faces one pass draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
