@@ -9,11 +9,16 @@
 //! two that end in different places round apart.
 
 use super::connectivity::Sets;
+use super::relative;
 use crate::math::AxisBox;
+use foldhash::fast::RandomState;
 use glam::{DVec3, DVec4};
+use std::collections::HashMap;
 
 /// How far outside of the side the end lies, in parts of the box around all: more than `f32` can move it.
 const ROUNDING: f64 = 1e-4;
+/// What single precision moves a place by, and more, in parts of its distance.
+const SINGLE_PRECISION: f64 = 1e-6;
 /// A vertex that would be carried farther, in parts of the box around all, may as well go to infinity.
 const MOST_REACH: f64 = 100.0;
 
@@ -39,14 +44,13 @@ impl ClampedEnd {
             let outwards = if is_below { -1.0 } else { 1.0 };
             let side = if is_below { looked_at.low[axis] } else { looked_at.high[axis] };
             let end = ClampedEnd { axis, at: side + outwards * ROUNDING * size, is_below };
-            let mut farthest = 0.0_f64;
-            let leaves = |corner: &DVec3| {
+            // Not a number, where that overflows, is no reach either.
+            let farthest = |farthest: f64, corner: &DVec3| {
                 let reach = end.carry(*corner, light).distance(*corner);
-                farthest = farthest.max(reach);
-                // Not a number, where that overflows, is no reach either.
-                outwards * along(*corner, light)[axis] > 0.0 && reach <= MOST_REACH * size
+                let leaves = outwards * along(*corner, light)[axis] > 0.0 && reach <= MOST_REACH * size;
+                leaves.then_some(farthest.max(reach))
             };
-            corners.iter().all(leaves).then_some((farthest, end))
+            Some((corners.iter().try_fold(0.0, farthest)?, end))
         };
         let sides = [0, 1, 2].into_iter().flat_map(|axis| [(axis, true), (axis, false)]);
         sides.filter_map(end).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, end)| end)
@@ -58,6 +62,12 @@ impl ClampedEnd {
         let along = along(position, light);
         let way = (self.at - position[self.axis]) / along[self.axis];
         if way > 0.0 { position + along * way } else { position }
+    }
+
+    /// Does all of a caster lie beyond it? Then its shadow falls on nothing that is looked at.
+    #[must_use]
+    pub fn is_passed_by(&self, caster: AxisBox) -> bool {
+        if self.is_below { caster.high[self.axis] <= self.at } else { caster.low[self.axis] >= self.at }
     }
 
     /// The axis that it lies across, 0, 1 or 2 for x, y or z, and where on it, metres.
@@ -73,21 +83,33 @@ impl ClampedEnd {
     }
 }
 
-/// Casters that touch, by their boxes: for each the number of its group, and how many groups there are. What is
-/// nearer than rounding beside `looked_at` touches.
+/// Casters, each a box and the vertices in it, world space, that have a place in common as it is drawn: relative to
+/// `origin`, in single precision. Groups of their numbers, in the order of each group's first.
 #[must_use]
-pub fn touching(casters: &[AxisBox], looked_at: AxisBox) -> (Vec<u32>, usize) {
-    let gap = DVec3::splat(ROUNDING * casters.iter().fold(looked_at, |all, caster| all.joined(*caster)).diagonal());
-    let grown = |of: &AxisBox| AxisBox { low: of.low - gap, high: of.high + gap };
-    let mut by_start: Vec<usize> = (0..casters.len()).collect();
-    by_start.sort_by(|a, b| casters[*a].low.x.total_cmp(&casters[*b].low.x));
+pub fn touching(casters: &[(AxisBox, &[DVec3])], origin: DVec3) -> Vec<Vec<usize>> {
+    let grown = |(around, _): &(AxisBox, &[DVec3])| {
+        let farthest = around.corners().map(|corner| corner.distance(origin)).into_iter().fold(0.0, f64::max);
+        let rounding = DVec3::splat(SINGLE_PRECISION * farthest);
+        AxisBox { low: around.low - rounding, high: around.high + rounding }
+    };
+    let grown: Vec<AxisBox> = casters.iter().map(grown).collect();
+    let is_beside = |one: &usize| {
+        grown.iter().enumerate().any(|(other, around)| other != *one && !around.common(grown[*one]).is_empty())
+    };
     let mut sets = Sets::new(casters.len());
-    for (place, one) in by_start.iter().enumerate() {
-        let reach = grown(&casters[*one]);
-        let beside = by_start[place + 1..].iter().take_while(|other| casters[**other].low.x <= reach.high.x);
-        beside.filter(|other| !reach.common(casters[**other]).is_empty()).for_each(|other| sets.join(*one, *other));
+    let mut first_at: HashMap<[u32; 3], usize, RandomState> = HashMap::default();
+    for one in (0..casters.len()).filter(is_beside) {
+        for vertex in casters[one].1 {
+            let [x, y, z, _] = relative::point(*vertex, origin);
+            // Zero has two signs.
+            let place = [x, y, z].map(|part| (part + 0.0).to_bits());
+            sets.join(*first_at.entry(place).or_insert(one), one);
+        }
     }
-    sets.numbered()
+    let (group_of, count) = sets.numbered();
+    let mut groups = vec![Vec::new(); count];
+    group_of.iter().enumerate().for_each(|(caster, group)| groups[*group as usize].push(caster));
+    groups
 }
 
 /// The way of the light's ray through a place, of any length.
@@ -184,14 +206,14 @@ mod tests {
         assert_eq!((end.place().0, end.is_below()), (0, false));
     }
 
-    /// Alone, the higher one leaves by the nearer wall; together they end below the floor, and with one around the lamp
-    /// nowhere.
+    /// Alone, the lower one ends below the floor, and the higher one behind a wall; both behind the wall, as that is
+    /// nearer to all; and with one around the lamp nowhere.
     #[test]
     fn several_casters_leave_by_one_side() {
         let [low, high] = [[-0.5, 0.0], [1.0, 2.0]].map(|[from, to]| around([-0.5, from, -0.5], [0.5, to, 0.5]));
         let lamp = lamp(-1.5, 2.1, 0.0);
         let axis = |casters: &[AxisBox]| ClampedEnd::beyond(room(), casters, lamp).map(|end| end.place().0);
-        assert_eq!((axis(&[high]), axis(&[low])), (Some(0), Some(1)));
+        assert_eq!((axis(&[high]), axis(&[low]), axis(&[low, high])), (Some(0), Some(1), Some(0)));
         let both = ClampedEnd::beyond(room(), &[low, high], lamp).expect("an end");
         for caster in [low, high] {
             caster.corners().into_iter().for_each(|corner| {
@@ -204,11 +226,24 @@ mod tests {
 
     #[test]
     fn casters_that_touch_are_one_group_through_others_too() {
-        let along = |x: f64, y: f64| around([x, y, 0.0], [x + 1.0, y + 1.0, 1.0]);
-        let casters = [along(3.0, 0.0), along(0.0, 0.0), along(9.0, 0.0), along(2.0, 1.0), along(1.0, 1.0 + 1e-6)];
-        let room = around([-4.0; 3], [12.0; 3]);
-        assert_eq!(touching(&casters, room), (vec![0, 0, 1, 0, 0], 2));
-        assert_eq!(touching(&[along(0.0, 0.0), along(0.0, 1.1)], room), (vec![0, 1], 2));
-        assert_eq!(touching(&[], room), (vec![], 0));
+        let cubes = |of: &[[f64; 2]]| -> Vec<AxisBox> {
+            of.iter().map(|[x, y]| around([*x, *y, 0.0], [x + 1.0, y + 1.0, 1.0])).collect()
+        };
+        let groups = |of: &[[f64; 2]], origin: DVec3| {
+            let corners: Vec<_> = cubes(of).into_iter().map(|cube| (cube, cube.corners())).collect();
+            let casters: Vec<(AxisBox, &[DVec3])> =
+                corners.iter().map(|(cube, corners)| (*cube, &corners[..])).collect();
+            touching(&casters, origin)
+        };
+        let chain = [[3.0, 0.0], [0.0, 0.0], [9.0, 0.0], [2.0, 1.0], [1.0, 1.0]];
+        assert_eq!(groups(&chain, DVec3::ZERO), [vec![0, 1, 3, 4], vec![2]]);
+        // Beside each other with no vertex in common, and one in the other.
+        assert_eq!(groups(&[[0.0, 0.0], [1.0, 0.5]], DVec3::ZERO), [[0], [1]]);
+        assert_eq!(groups(&[[0.0, 0.0], [0.5, 0.5]], DVec3::ZERO), [[0], [1]]);
+        // What single precision can't tell apart is drawn at one place.
+        let near = [[0.0, 0.0], [1.0 + 1e-9, 0.0]];
+        assert_eq!(groups(&near, DVec3::splat(90.0)), [[0, 1]]);
+        assert_eq!(groups(&near, DVec3::new(1.0, 0.0, 0.0)), [[0], [1]]);
+        assert_eq!(groups(&[], DVec3::ZERO), Vec::<Vec<usize>>::new());
     }
 }

@@ -248,17 +248,6 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let ends = |left: &LeftOut| left.decision == Some(Decision::BeyondReceivers);
     let ends_early = side != Some(Side::Behind) && known.capture.left_out.iter().any(ends);
     let dark_cap = match (is_sun, is_finite) {
-        _ if ends_early && side == Some(Side::InFront) => {
-            "dark caps: volumes that are counted in front may be open where they end, beyond all that receives"
-        }
-        (true, _) if ends_early => {
-            "dark caps: the sides of a sun's volume meet in one point at infinity, and where one ends before, beyond all \
-             that receives, it is counted in front and may be open"
-        }
-        (false, _) if ends_early => {
-            "dark caps, fans over the silhouettes at infinity of those counted behind; those counted in front may be open \
-             where they end, beyond all that receives"
-        }
         (false, false) if begins_there => {
             "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there"
         }
@@ -266,10 +255,15 @@ fn triangles(known: &Known, step: &Step) -> Fact {
         (true, false) => "dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none",
         (false, false) => "dark caps, fans over the silhouettes at infinity",
     };
+    // Which light's it was is not kept.
+    let ending = match ends_early {
+        true => "; what ends before, beyond all that it is looked at on, is counted in front and open there",
+        false => "",
+    };
     let here = vec![
         format!("sides, between each silhouette edge and the same edge at the far end: {}", format::count(sides)),
         format!("light caps, the casting triangles themselves: {}", format::count(light)),
-        format!("{dark_cap}: {}", format::count(dark)),
+        format!("{dark_cap}{ending}: {}", format::count(dark)),
     ];
     fact("a closed volume = sides + light cap + dark cap", here)
 }

@@ -7,9 +7,11 @@
 //! its volume misses the view       ├─► no volume
 //! another caster's umbra holds it ─┘
 //! another part's umbra holds a part of it ───────────────► nothing of that part
-//! it holds no point of the near rectangle in its shadow ─► z-pass, without caps, to beyond all that receives
+//! it holds no point of the near rectangle in its shadow ─► z-pass, without caps, to beyond what is looked at
 //! else ─► z-fail: a light cap if it is in view itself, a dark cap if its far end is
 //! ```
+//!
+//! Then of each of z-pass's: it lies beyond what is looked at, or misses the view so far ─► no volume.
 //!
 //! Both kinds of counting leave the same number at every surface, so they share one stencil buffer. A
 //! closed caster counts with the triangles that face the light alone. Where a count could reach 256, it
@@ -37,13 +39,13 @@ pub(super) const DESCRIPTION: Description = Description {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
     lesson: Lesson {
         text: "The default. Each volume is counted by z-pass or by z-fail, whichever is cheaper while right, and \
-             whatever can't change the picture is left out, and a volume that is counted in front ends beyond all that \
-             receives; every decision is recorded with its reason in the \
+             whatever can't change the picture is left out, and a volume that is counted in front ends, where it can, \
+             beyond all that it is looked at on; every decision is recorded with its reason in the \
              plan's text, in `manifest.json` and in the window. `stencilscope help leave-out` lists what it may \
              leave out. Where a ray of the light may meet more than 255 casting triangles it counts in floats.",
         formula: "at a surface, front - back faces in front of it = back - front faces behind it: volumes are closed \
-             and the eye is in none, so both kinds share one buffer; what is counted in front may be open beyond all \
-             that receives",
+             and the eye is in none, so both kinds share one buffer; what is counted in front may end, open, beyond \
+             all that it is looked at on",
         sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::LLOYD, cited::MCGUIRE],
     },
     plan,
@@ -82,35 +84,34 @@ struct Questions {
     position: DVec4,
     view: ViewVolume,
     near_clip: NearClipVolume,
-    /// Around the eye and all that shows and receives, within the light's range.
+    /// Around the eye and all that shows and receives, within the light's range: what is looked at.
     looked_at: AxisBox,
-    /// Around each object.
+    /// Of each object points whose hull holds it, and the box around them.
+    outlines: Vec<Vec<DVec3>>,
     boxes: Vec<AxisBox>,
     /// By object: what may hold others in its umbra.
     occluders: Vec<Option<Occluder>>,
 }
 
-/// Points whose hull holds a caster, then where they are carried; homogeneous, relative to the eye.
+/// Points whose hull holds a volume; homogeneous, relative to the eye.
 struct Hull {
+    /// The caster's, then the same carried away from the light.
     points: Vec<DVec4>,
-    near: usize,
 }
 
 impl Hull {
-    fn of(placed: &Placed, extruder: &Extruder, eye: DVec3) -> Hull {
-        let outline = || outside::outline(&placed.world);
-        let mut points: Vec<DVec4> = outline().map(|point| relative(point.extend(1.0), eye)).collect();
-        let near = points.len();
-        points.extend(outline().map(|point| relative(extruder.carry(point), eye)));
-        Hull { points, near }
+    fn of(outline: &[DVec3], extruder: &Extruder, eye: DVec3) -> Hull {
+        let near = outline.iter().map(|point| relative(point.extend(1.0), eye));
+        let far = outline.iter().map(|point| relative(extruder.carry(*point), eye));
+        Hull { points: near.chain(far).collect() }
     }
 
     fn near(&self) -> &[DVec4] {
-        &self.points[..self.near]
+        &self.points[..self.points.len() / 2]
     }
 
     fn far(&self) -> &[DVec4] {
-        &self.points[self.near..]
+        &self.points[self.points.len() / 2..]
     }
 }
 
@@ -120,8 +121,9 @@ impl Questions {
         let [width, height] = frame.job.size.map(f64::from);
         let view = ViewVolume::new(&frame.job.scene.camera, width / height);
         let near_clip = view.near_clip(relative(position, frame.eye()));
-        let around = |placed: &Placed| AxisBox::around(placed.world.iter().copied());
-        let boxes: Vec<AxisBox> = frame.placed.iter().map(around).collect();
+        let outline = |placed: &Placed| outside::outline(&placed.world).into_owned();
+        let outlines: Vec<Vec<DVec3>> = frame.placed.iter().map(outline).collect();
+        let boxes: Vec<AxisBox> = outlines.iter().map(|points| AxisBox::around(points.iter().copied())).collect();
         let looked_at = looked_at(frame, light, &view, &boxes);
         let asks = frame.common.allows(Decision::Umbra);
         let (placed, cache) = (&frame.placed, &mut frame.job.cache);
@@ -132,7 +134,7 @@ impl Questions {
             may.then(|| Occluder::new(&placed.world, mesh.triangles(), &cache.edges(mesh))).flatten()
         };
         let occluders = (0..placed.len()).map(&mut occluder).collect();
-        Questions { light, position, view, near_clip, looked_at, boxes, occluders }
+        Questions { light, position, view, near_clip, looked_at, outlines, boxes, occluders }
     }
 
     /// A caster whose umbra holds all of another.
@@ -146,14 +148,13 @@ impl Questions {
 
     /// Points around a volume of this extrusion.
     fn hull(&self, frame: &Frame, index: usize, extrusion: Extrusion) -> Hull {
-        let placed = &frame.placed[index];
-        Hull::of(placed, &Extruder::new(&placed.world, self.position, extrusion), frame.eye())
+        let outline = &self.outlines[index];
+        Hull::of(outline, &Extruder::new(outline, self.position, extrusion), frame.eye())
     }
 
-    /// Why a volume misses the view, where it may be left out for that.
-    fn misses_view(&self, frame: &Frame, hull: &Hull) -> Option<String> {
-        let outside = self.view.outside(&hull.points).filter(|_| frame.common.allows(Decision::View))?;
-        Some(format!("it lies {}", beyond(outside, VIEW_PLANES[outside.plane])))
+    /// Where a volume lies outside of the view.
+    fn beside_view(&self, hull: &Hull) -> Option<String> {
+        self.view.outside(&hull.points).map(|outside| beyond(outside, VIEW_PLANES[outside.plane]))
     }
 
     /// How a caster's volume is counted that goes on to infinity.
@@ -175,8 +176,10 @@ impl Questions {
         }
         let extrusion = Extrusion::Infinite;
         let hull = self.hull(frame, index, extrusion);
-        if let Some(because) = self.misses_view(frame, &hull) {
-            return no_volume(Decision::View, because);
+        if allowed(Decision::View)
+            && let Some(beside) = self.beside_view(&hull)
+        {
+            return no_volume(Decision::View, format!("it lies {beside}"));
         }
         if let Some(other) = self.holder(index) {
             let because = format!("{} holds all of it in its umbra", frame.placed[other].object.name);
@@ -206,27 +209,20 @@ impl Questions {
         Decided { form: Some(form), left_out: not_needed }
     }
 
-    /// Ends volumes beyond all that receives: those of casters that touch on one plane, and only where all of them are
-    /// counted in front.
+    /// Ends volumes beyond all that is looked at: those of casters that touch on one plane, and only where all of them
+    /// are counted in front.
     fn end_volumes(&self, frame: &Frame, casters: &[usize], decided: &mut [Decided]) {
-        let counted: Vec<(usize, usize)> = (0..casters.len())
-            .filter(|place| decided[*place].form.is_some())
-            .map(|place| (place, casters[place]))
-            .collect();
-        let boxes: Vec<AxisBox> = counted.iter().map(|(_, index)| self.boxes[*index]).collect();
-        let (group_of, count) = touching(&boxes, self.looked_at);
-        let mut groups = vec![Vec::new(); count];
-        counted.iter().zip(group_of).for_each(|(caster, group)| groups[group as usize].push(*caster));
-        for group in groups {
-            let is_in_front = |(place, _): &(usize, usize)| {
-                decided[*place].form.is_some_and(|form| form.counting == Counting::InFront)
-            };
-            if !group.iter().all(is_in_front) {
+        let with_volume: Vec<usize> = (0..casters.len()).filter(|place| decided[*place].form.is_some()).collect();
+        let caster = |place: &usize| (self.boxes[casters[*place]], &*frame.placed[casters[*place]].world);
+        for group in touching(&with_volume.iter().map(caster).collect::<Vec<_>>(), frame.eye()) {
+            let places: Vec<usize> = group.into_iter().map(|member| with_volume[member]).collect();
+            let is_in_front = |form: Form| form.counting == Counting::InFront;
+            if !places.iter().all(|place| decided[*place].form.is_some_and(is_in_front)) {
                 continue;
             }
-            let boxes: Vec<AxisBox> = group.iter().map(|(_, index)| self.boxes[*index]).collect();
+            let boxes: Vec<AxisBox> = places.iter().map(|place| self.boxes[casters[*place]]).collect();
             if let Some(end) = ClampedEnd::beyond(self.looked_at, &boxes, self.position) {
-                group.iter().for_each(|(place, index)| self.end_at(end, frame, *index, &mut decided[*place]));
+                places.into_iter().for_each(|place| self.end_at(end, frame, casters[place], &mut decided[place]));
             }
         }
     }
@@ -234,22 +230,35 @@ impl Questions {
     /// Ends the volume of a caster there.
     fn end_at(&self, end: ClampedEnd, frame: &Frame, index: usize, decided: &mut Decided) {
         let name = &frame.placed[index].object.name;
-        let extrusion = Extrusion::Clamped(end);
         let (axis, at) = end.place();
         let (axis, at) = (["x", "y", "z"][axis], numbers::metres(at));
-        if let Some(because) = self.misses_view(frame, &self.hull(frame, index, extrusion)) {
-            let because = format!("ended at {axis} = {at}, beyond all that receives, {because}");
+        let looked_at = format!(
+            "the eye and all that shows and receives{} have a {} {axis}",
+            match frame.reached(self.light) {
+                Some(_) => format!(" within the range of {}", self.light.name()),
+                None => String::new(),
+            },
+            if end.is_below() { "higher" } else { "lower" },
+        );
+        let allowed = |decision: Decision| frame.common.allows(decision);
+        if allowed(Decision::Caster) && end.is_passed_by(self.boxes[index]) {
+            let because = format!("it lies beyond {axis} = {at}: {looked_at}");
+            *decided = Decided::nothing(LeftOut::new(Decision::Caster, name, because));
+            return;
+        }
+        let extrusion = Extrusion::Clamped(end);
+        if allowed(Decision::View)
+            && let Some(beside) = self.beside_view(&self.hull(frame, index, extrusion))
+        {
+            let because = format!("it needs to reach to {axis} = {at}, as {looked_at}, and so far it lies {beside}");
             *decided = Decided::nothing(LeftOut::new(Decision::View, name, because));
             return;
         }
-        let because = format!(
-            "it ends at {axis} = {at}: the eye and all that shows and receives{} have a {} {axis}, so nothing beyond is \
-             counted",
-            if frame.reached(self.light).is_some() { " within its light's range" } else { "" },
-            if end.is_below() { "higher" } else { "lower" },
-        );
+        let because = format!("it ends at {axis} = {at}: {looked_at}, so nothing beyond is counted");
         decided.left_out.push(LeftOut::new(Decision::BeyondReceivers, name, because));
-        decided.form.iter_mut().for_each(|form| form.extrusion = extrusion);
+        if let Some(form) = &mut decided.form {
+            form.extrusion = extrusion;
+        }
     }
 }
 

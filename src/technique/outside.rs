@@ -4,6 +4,7 @@ use crate::geometry::Outside;
 use crate::math::AxisBox;
 use crate::numbers;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Objects of more vertices are asked about by the corners of their boxes.
 const MOST_VERTICES_TO_LOOK_AT: usize = 4096;
@@ -26,9 +27,9 @@ pub fn beyond(outside: Outside, plane: &str) -> String {
 }
 
 /// Points whose hull holds an object.
-pub fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
+pub fn outline(world: &[DVec3]) -> Cow<'_, [DVec3]> {
     if world.len() <= MOST_VERTICES_TO_LOOK_AT {
-        return Box::new(world.iter().copied());
+        return Cow::Borrowed(world);
     }
-    Box::new(AxisBox::around(world.iter().copied()).corners().into_iter())
+    Cow::Owned(AxisBox::around(world.iter().copied()).corners().to_vec())
 }

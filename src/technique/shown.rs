@@ -45,7 +45,7 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
     let (eye, sees_from) = (frame.eye(), frame.eye_position());
     let placed = &frame.placed[index];
     let (object, world) = (placed.object, &placed.world);
-    let relative: Vec<DVec4> = outside::outline(world).map(|point| (point - eye).extend(1.0)).collect();
+    let relative: Vec<DVec4> = outside::outline(world).iter().map(|point| (point - eye).extend(1.0)).collect();
     if frame.common.allows(Decision::Surfaces)
         && let Some(far) = view.outside(&relative)
     {

@@ -341,7 +341,9 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
     let placed = frame.placed.iter().enumerate();
     let casting = placed.filter(|(_, placed)| placed.object.casts && !placed.object.mesh.triangles().is_empty());
     let casters: Vec<usize> = casting.map(|(index, _)| index).collect();
-    for (index, Decided { form, left_out }) in casters.iter().copied().zip(decides.forms(frame, &casters)) {
+    let forms = decides.forms(frame, &casters);
+    debug_assert_eq!(forms.len(), casters.len());
+    for (index, Decided { form, left_out }) in casters.into_iter().zip(forms) {
         let object = frame.placed[index].object;
         frame.plan.left_out.extend(left_out);
         let Some(form) = form else { continue };

@@ -15,6 +15,7 @@ use stencilscope::plan::{CountOf, DecidedBy, Part, Program, Side, Visibility};
 use stencilscope::reading::explain_facts::{Known, facts};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::scene::Projection;
+use stencilscope::technique::VolumeSettings;
 use wgpu::CompareFunction;
 
 /// A card, and what it is told of.
@@ -58,12 +59,25 @@ impl Here<'_> {
         self.frame.capture.lights[self.light()].position.w == 0.0
     }
 
-    /// Does a volume of the frame, of any light, end in no point at infinity, although none is asked to be finite?
-    fn some_end(&self) -> bool {
-        let is_finite = self.frame.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
-        let sides = self.frame.plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Side);
-        let mut vertices = sides.map(|draw| self.frame.plan.meshes[draw.mesh.0].vertices.data());
-        !is_finite && vertices.any(|vertices| vertices.iter().all(|[.., w]| *w != 0.0))
+    fn volumes(&self) -> VolumeSettings {
+        VolumeSettings::read(&self.frame.capture.settings)
+    }
+
+    /// Is it said of some volumes that they end before infinity? So it should be where one of this light does that is
+    /// not asked to, and nowhere where none of the frame does.
+    fn ends_as_told(&self, told: &str) -> bool {
+        let ends = |draw: &stencilscope::plan::Draw| {
+            draw.part == Part::Side
+                && self.frame.plan.meshes[draw.mesh.0].vertices.data().iter().all(|[.., w]| *w != 0.0)
+        };
+        let mut of_frame = self.frame.plan.passes.iter().flat_map(|pass| &pass.draws);
+        match told {
+            "" => !self.draws(Part::Side).any(ends),
+            "; what ends before, beyond all that it is looked at on, is counted in front and open there" => {
+                of_frame.any(ends)
+            }
+            _ => false,
+        }
     }
 
     fn triangles(&self, part: Part) -> f64 {

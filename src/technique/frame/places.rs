@@ -145,7 +145,7 @@ impl Frame<'_> {
         let view = ViewVolume::new(&self.job.scene.camera, width / height);
         self.placed.iter().filter(move |placed| {
             let relative: Vec<DVec4> =
-                outside::outline(&placed.world).map(|point| (point - self.eye()).extend(1.0)).collect();
+                outside::outline(&placed.world).iter().map(|point| (point - self.eye()).extend(1.0)).collect();
             let takes_part = placed.surface.is_some() || placed.object.casts;
             takes_part && view.outside(&relative).is_none()
         })

@@ -94,8 +94,8 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
              not meeting itself, with the light outside and no triangle edge-on to it |\n\
              | `caps` | both caps: z-pass counts | the caster is outside the near-clip volume |\n\
              | `light-cap`, `dark-cap` | one cap of z-fail's | the caster, or the far end, is out of view |\n\
-             | `beyond-receivers` | the far part of a volume | z-pass counts it and all that touch, and the eye \
-             and what shows and receives, within the light's range, end before it |\n\
+             | `beyond-receivers` | the far part of a volume | z-pass counts it and all casters that touch it, \
+             and the eye and what shows and receives, within the light's range, end before it |\n\
              | `surfaces` | surfaces | they are out of view |\n\
              | `hidden-triangles` | triangles of surfaces | they are on the far side of a closed surface |\n\
              | `unlit-triangles` | triangles of surfaces, in a light's pass | they face away from that light |\n\
@@ -105,7 +105,7 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
              | `scissor` | pixels of a light's passes | they are beyond the `range` of a lamp that fades |",
         formula: "caps are needed only in the near-clip volume, the hull of the near rectangle and the light: a caster \
              wholly outside one of its planes has none; a volume ends on a plane outside of the box around the eye and \
-             all that shows and receives, where every ray through the caster, and all that touch, leaves it by one side",
+             all that shows and receives, where every ray through the caster and all that touch it leaves it by one side",
         sources: &[cited::LENGYEL, cited::MCGUIRE, cited::LLOYD],
     },
 };

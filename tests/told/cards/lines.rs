@@ -112,42 +112,22 @@ pub const LINES: &[(&str, Check)] = &[
         let finite = here.frame.capture.settings["extrusion"].starts_with("finite");
         finite && number(told[0]) == here.triangles(Part::DarkCap)
     }),
-    ("dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none: {}", |here, told| {
-        here.is_of_sun() && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0 && !here.some_end()
+    ("dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none{}: {}", |here, told| {
+        here.is_of_sun() && here.ends_as_told(told[0]) && told[1] == "0" && here.triangles(Part::DarkCap) == 0.0
     }),
     (
-        "dark caps: volumes that are counted in front may be open where they end, beyond all that receives: {}",
-        |here, told| {
-            let is_in_front = here.decided_by().counted_side() == Some(Side::InFront);
-            is_in_front && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0 && here.some_end()
-        },
-    ),
-    (
-        "dark caps: the sides of a sun's volume meet in one point at infinity, and where one ends before, beyond all that \
-         receives, it is counted in front and may be open: {}",
-        |here, told| {
-            let is_mixed = here.decided_by().counted_side() == Some(Side::AsNeeded) && here.some_end();
-            is_mixed && here.is_of_sun() && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0
-        },
-    ),
-    (
-        "dark caps, fans over the silhouettes at infinity of those counted behind; those counted in front may be open \
-         where they end, beyond all that receives: {}",
-        |here, told| {
-            let is_mixed = here.decided_by().counted_side() == Some(Side::AsNeeded) && here.some_end();
-            is_mixed && !here.is_of_sun() && number(told[0]) == here.triangles(Part::DarkCap)
-        },
-    ),
-    (
-        "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there: {}",
+        "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there{}: {}",
         |here, told| {
             let is_behind = here.decided_by().counted_side() != Some(Side::InFront);
             let is_there = here.frame.capture.camera.is_parallel() && is_behind && !here.is_of_sun();
-            is_there && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0
+            is_there && here.ends_as_told(told[0]) && told[1] == "0" && here.triangles(Part::DarkCap) == 0.0
         },
     ),
-    ("dark caps, fans over the silhouettes at infinity: {}", |here, told| {
-        !here.is_of_sun() && !here.some_end() && number(told[0]) == here.triangles(Part::DarkCap)
+    ("dark caps, fans over the silhouettes at infinity{}: {}", |here, told| {
+        let is_there = here.frame.capture.camera.is_parallel()
+            && here.decided_by().counted_side() != Some(Side::InFront)
+            && here.volumes().caps[1];
+        !here.is_of_sun() && !is_there && here.ends_as_told(told[0]) && number(told[1]) == here.triangles(Part::DarkCap)
     }),
     ("{} adds ({}, {}, {}) × (material × {} + highlight){}", |here, told| {
         let index = here.light();
