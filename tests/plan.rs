@@ -1,15 +1,20 @@
 //! Plans as data: their text, their checks, and shaders, all without a GPU.
 
 use crate::common::{from_above, square};
+use glam::Vec3;
+use std::sync::Arc;
 use stencilscope::geometry::GeometryCache;
 use stencilscope::plan::{Decision, Draw, FramePlan, MeshId, Part, lint};
-use stencilscope::scene::{Light, Scene};
+use stencilscope::scene::{Group, Light, Material, MeshBuilder, Scene, Shading};
 use stencilscope::technique::{self, Choice, Job, PlanError, Technique};
 use wgpu::StencilOperation;
 
 fn plan_of(scene: &Scene, technique: Technique) -> Result<FramePlan, PlanError> {
-    let choice = Choice::new(technique);
-    technique::plan(Job { scene, size: [64, 48], choice: &choice, cache: &mut GeometryCache::default() })
+    plan_with(scene, technique, &mut GeometryCache::default())
+}
+
+fn plan_with(scene: &Scene, technique: Technique, cache: &mut GeometryCache) -> Result<FramePlan, PlanError> {
+    technique::plan(Job { scene, size: [64, 48], choice: &Choice::new(technique), cache })
 }
 
 fn scene() -> Scene {
@@ -32,6 +37,77 @@ fn a_plan_is_a_pure_function_and_so_is_its_text() {
         let [a, b] = [0, 1].map(|_| plan_of(&scene(), technique).expect("a plan"));
         assert_eq!(a, b);
         assert_eq!(a.to_string(), b.to_string());
+    }
+}
+
+/// Whatever is other than in the plan before.
+#[test]
+fn a_full_cache_gives_the_plan_of_an_empty_one() {
+    let square = square("caster", 2.0, 1.0);
+    let builder = || MeshBuilder {
+        positions: square.mesh.positions().to_vec(),
+        triangles: square.mesh.triangles().to_vec(),
+        ..MeshBuilder::default()
+    };
+    let with_mesh = |builder: MeshBuilder| {
+        let mut scene = scene();
+        let mesh = Arc::new(builder.build().expect("a mesh"));
+        scene.objects.iter_mut().filter(|object| object.name == "caster").for_each(|object| object.mesh = mesh.clone());
+        scene
+    };
+    let normals = |tilt: f32| {
+        let mut builder = builder();
+        builder.corner_normals = vec![[Vec3::new(tilt, 1.0, 0.0); 3]; 2];
+        let mut scene = with_mesh(builder);
+        scene.objects.iter_mut().for_each(|object| object.material.shading = Shading::Phong);
+        scene
+    };
+    let groups = |first: usize| {
+        let group = |triangles: std::ops::Range<usize>, shading| Group {
+            name: String::new(),
+            triangles,
+            material: Some(Material { shading, ..Material::default() }),
+            texture: None,
+        };
+        let mut builder = builder();
+        builder.corner_normals = vec![[Vec3::X; 3]; 2];
+        builder.groups = match first {
+            0 => vec![group(0..2, Shading::Phong)],
+            first => vec![group(0..first, Shading::Flat), group(first..2, Shading::Phong)],
+        };
+        with_mesh(builder)
+    };
+    let changed = |change: fn(&mut Scene)| {
+        let mut scene = scene();
+        change(&mut scene);
+        scene
+    };
+    let scenes = [
+        scene(),
+        changed(|scene| scene.lights[0].position.x += 1.0),
+        changed(|scene| scene.camera.eye.x += 1.0),
+        changed(|scene| scene.objects[0].pose.translate.y += 0.5),
+        changed(|scene| scene.objects[1].material.color = [0.5; 3]),
+        with_mesh(builder()),
+        normals(0.0),
+        normals(0.5),
+        groups(0),
+        groups(1),
+    ];
+    let sides = |plan: &FramePlan| plan.meshes.iter().filter_map(|mesh| mesh.surface.clone()).collect::<Vec<_>>();
+    for technique in Technique::ALL {
+        let mut cache = GeometryCache::default();
+        let mut seen = Vec::new();
+        for scene in scenes.iter().chain(scenes.iter().rev()) {
+            let [full, empty] = [plan_with(scene, technique, &mut cache), plan_of(scene, technique)];
+            let (full, empty) = (full.expect("a plan"), empty.expect("a plan"));
+            assert!(full == empty, "{technique:?}: {:?}", scene.objects[1]);
+            if !seen.contains(&sides(&full)) {
+                seen.push(sides(&full));
+            }
+        }
+        // What is kept must be told apart by them.
+        assert!(seen.len() >= 4, "{technique:?}: {} kinds of surfaces", seen.len());
     }
 }
 

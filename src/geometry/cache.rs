@@ -4,12 +4,13 @@
 use super::hugging::{has_edge_on, put_hugging_last};
 use super::planar::Flattened;
 use super::{
-    Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes,
+    Blob, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes,
     SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
-use crate::scene::{Mesh, Pose};
+use crate::scene::{Mesh, Pose, Shading};
 use glam::{DVec3, DVec4};
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::Arc;
 
 /// Triangles kept at once (about 60 bytes each, and as much again for each pose); a scene of more starts over with
@@ -18,6 +19,9 @@ const MOST_TRIANGLES_KEPT: usize = 2_000_000;
 
 /// Places of meshes that something short is known about.
 const MOST_PLACES_KEPT: usize = 16_384;
+
+/// Surfaces of more triangles (some 80 bytes each) are made anew for each plan.
+const MOST_SURFACE_KEPT: usize = 250_000;
 
 /// Flattened triangles kept at once, of 96 bytes each; beyond, they are made anew for each plan.
 const MOST_FLATTENED_KEPT: usize = 500_000;
@@ -37,8 +41,8 @@ pub struct GeometryCache {
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
     /// Do two of its triangles have the same corners?
     doubled: HashMap<(u64, PoseBits), bool>,
-    /// With whether the newest plan has asked for them.
-    extruded: HashMap<ExtrudedKey, (ExtrudedVolume, bool)>,
+    extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
+    surfaces: LastUsed<SurfaceKey, DrawnSurface>,
     triangles_kept: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
@@ -51,6 +55,50 @@ type PoseBits = [u64; 9];
 
 /// Mesh, place, form and origin.
 type ExtrudedKey = (u64, PoseBits, ExtrudedForm, [u64; 3]);
+
+/// Mesh, its normals, place, origin, and where each group ends and how it is shaded.
+type SurfaceKey = (u64, u64, PoseBits, [u64; 3], Vec<(usize, Shading)>);
+
+/// What of a surface is drawn alike under any light.
+#[derive(Debug, Clone)]
+pub struct DrawnSurface {
+    /// Relative to an origin.
+    pub vertices: Blob<[f32; 4]>,
+    /// The mesh's triangles.
+    pub indices: Blob<u32>,
+    /// Of each corner.
+    pub normals: Blob<[f32; 4]>,
+}
+
+/// What stays as long as the newest plan asks for it.
+#[derive(Debug)]
+struct LastUsed<K, V> {
+    /// With whether the newest plan has asked.
+    kept: HashMap<K, (V, bool)>,
+}
+
+impl<K, V> Default for LastUsed<K, V> {
+    fn default() -> Self {
+        LastUsed { kept: HashMap::new() }
+    }
+}
+
+impl<K: Eq + Hash, V: Clone> LastUsed<K, V> {
+    fn next_plan(&mut self) {
+        self.kept.retain(|_, (_, used)| std::mem::take(used));
+    }
+
+    fn get(&mut self, key: &K) -> Option<V> {
+        let (found, used) = self.kept.get_mut(key)?;
+        *used = true;
+        Some(found.clone())
+    }
+
+    fn keep(&mut self, key: K, made: V) -> V {
+        self.kept.insert(key, (made.clone(), true));
+        made
+    }
+}
 
 /// How a volume's silhouette is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,7 +142,8 @@ pub struct VolumeOf<'a> {
 impl GeometryCache {
     /// Forgets flattened casters and volumes for vertex shaders that the last plan did not ask for.
     pub fn next_plan(&mut self) {
-        self.extruded.retain(|_, (_, used)| std::mem::take(used));
+        self.extruded.next_plan();
+        self.surfaces.next_plan();
         self.flattened.retain(|_, (_, used)| std::mem::take(used));
         self.flattened_kept = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
     }
@@ -167,13 +216,30 @@ impl GeometryCache {
     pub fn extruded(&mut self, caster: Caster, origin: DVec3, form: ExtrudedForm) -> ExtrudedVolume {
         let Caster { mesh, pose, world } = caster;
         let key = (mesh.content_hash(), pose_bits(pose), form, origin.to_array().map(f64::to_bits));
-        if let Some((volume, used)) = self.extruded.get_mut(&key) {
-            *used = true;
-            return volume.clone();
+        if let Some(volume) = self.extruded.get(&key) {
+            return volume;
         }
         let volume = ExtrudedVolume::new(world, mesh.triangles(), &self.edges(mesh), origin, form);
-        self.extruded.insert(key, (volume.clone(), true));
-        volume
+        self.extruded.keep(key, volume)
+    }
+
+    /// What of a mesh is drawn alike under any light, relative to `origin` and with this shading of each group: made again
+    /// only if one of these changes.
+    pub fn surface(
+        &mut self,
+        of: Caster,
+        origin: DVec3,
+        shadings: &[Shading],
+        make: impl FnOnce() -> DrawnSurface,
+    ) -> DrawnSurface {
+        let Caster { mesh, pose, .. } = of;
+        if mesh.triangles().len() > MOST_SURFACE_KEPT {
+            return make();
+        }
+        let groups = mesh.groups().iter().map(|group| group.triangles.end).zip(shadings.iter().copied()).collect();
+        let origin = origin.to_array().map(f64::to_bits);
+        let key = (mesh.content_hash(), mesh.normals_hash(), pose_bits(pose), origin, groups);
+        self.surfaces.get(&key).unwrap_or_else(|| self.surfaces.keep(key, make()))
     }
 
     /// How `mesh` hangs together, found out on first use.

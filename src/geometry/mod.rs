@@ -29,7 +29,7 @@ mod volume;
 mod winding;
 
 pub use blob::Blob;
-pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
+pub use cache::{Caster, DrawnSurface, GeometryCache, SilhouetteBy, VolumeOf};
 pub use clamping::{ClampedEnd, touching};
 pub use connectivity::{Connectivity, Found};
 pub use edges::{Edge, EdgeList};

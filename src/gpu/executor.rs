@@ -2,13 +2,10 @@
 //! where those copies are many.
 
 use super::answer::{self, Answer};
-use super::buffers::Buffers;
 use super::collect::{Collector, Held, Memory, Output};
 use super::fragment_log::LogKeeper;
-use super::maps::Maps;
-use super::pictures::Pictures;
 use super::pipelines::Pipelines;
-use super::prepared::{Prepared, PreparedDraw};
+use super::prepared::{Kept, Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
 use super::readback::{StagedPass, Staging};
 use super::room::Room;
@@ -31,9 +28,7 @@ const MOST_BYTES: u64 = 8 << 30;
 pub struct Executor {
     pub(super) context: Arc<Context>,
     pub(super) pipelines: Pipelines,
-    buffers: Buffers,
-    pictures: Pictures,
-    maps: Maps,
+    kept: Kept,
     pub(super) log: LogKeeper,
     most_bytes: u64,
 }
@@ -59,9 +54,7 @@ impl Executor {
     pub fn new(context: Context) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
-            buffers: Buffers::default(),
-            pictures: Pictures::default(),
-            maps: Maps::default(),
+            kept: Kept::default(),
             log: LogKeeper::default(),
             context: Arc::new(context),
             most_bytes: MOST_BYTES,
@@ -88,9 +81,7 @@ impl Executor {
     /// Forgets pipelines and buffers, so that the next plan is set up from nothing.
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
-        self.buffers = Buffers::default();
-        self.pictures = Pictures::default();
-        self.maps = Maps::default();
+        self.kept = Kept::default();
         self.log = LogKeeper::default();
     }
 
@@ -101,8 +92,8 @@ impl Executor {
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let room = Room::of(self.most_bytes);
-        let Executor { context, pipelines, buffers, pictures, maps, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, maps, plan, room))
+        let Executor { context, pipelines, kept, .. } = self;
+        context.guarded(|| Prepared::new(context, pipelines, kept, plan, room))
     }
 
     /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan
@@ -111,10 +102,12 @@ impl Executor {
     /// # Errors
     /// As [`Executor::prepare`].
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        // First, as it may open another device, which has no maps.
         self.check(plan)?;
-        let room = Room::of(self.most_bytes);
-        let Executor { context, pipelines, buffers, pictures, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, &mut Maps::default(), plan, room))
+        let maps = std::mem::take(&mut self.kept.maps);
+        let prepared = self.prepare(plan);
+        self.kept.maps = maps;
+        prepared
     }
 
     /// The same for a plan between frames that are timed: nothing that it uploads is there for the next one, and what is
@@ -126,8 +119,7 @@ impl Executor {
         self.check(plan)?;
         let room = Room::of(self.most_bytes);
         let Executor { context, pipelines, .. } = self;
-        let (mut buffers, mut pictures, mut maps) = (Buffers::default(), Pictures::default(), Maps::default());
-        context.guarded(|| Prepared::new(context, pipelines, &mut buffers, &mut pictures, &mut maps, plan, room))
+        context.guarded(|| Prepared::new(context, pipelines, &mut Kept::default(), plan, room))
     }
 
     /// Finds what can't be run, and a device for what can.

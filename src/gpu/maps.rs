@@ -15,7 +15,7 @@ pub(super) struct Maps {
 /// A texture, and whether its passes have run.
 #[derive(Debug)]
 pub(super) struct KeptMap {
-    pub texture: Texture,
+    pub texture: Arc<Texture>,
     is_drawn: AtomicBool,
 }
 
@@ -43,7 +43,7 @@ impl Maps {
         &mut self,
         plan: &FramePlan,
         id: AttachmentId,
-        create: impl FnOnce() -> Texture,
+        create: impl FnOnce() -> Arc<Texture>,
     ) -> Option<Arc<KeptMap>> {
         let new = || (Arc::new(KeptMap { texture: create(), is_drawn: AtomicBool::new(false) }), true);
         let (map, used) = self.kept.entry(plan.kept_by(id)?).or_insert_with(new);

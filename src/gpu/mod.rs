@@ -5,6 +5,7 @@
 //! Pipelines    shaders and pipelines, interned by description
 //! Buffers      vertices and indices, by the hash of their content
 //! Pictures     pictures on surfaces with their levels, by the hash of their content
+//! Attachments  textures that plans draw into, handed on
 //! Maps         what lights see, kept while nothing that makes it changes
 //! features     what few plans need, asked for when one does
 //! Executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
@@ -17,6 +18,7 @@
 //! ```
 
 mod answer;
+mod attachments;
 mod buffers;
 mod collect;
 mod context;

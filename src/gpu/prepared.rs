@@ -1,6 +1,7 @@
 //! A plan with everything the GPU needs to run it: textures, pipelines, buffers, bind groups, and,
 //! once a run wants them, the buffers that snapshots are copied to. Made once, run as often as wanted.
 
+use super::attachments::Attachments;
 use super::buffers::Buffers;
 use super::maps::{KeptMap, Maps};
 use super::pictures::Pictures;
@@ -21,6 +22,24 @@ use wgpu::{
     TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
+/// What serves the next plan too, as long as the newest one uses it.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    buffers: Buffers,
+    pictures: Pictures,
+    pub maps: Maps,
+    attachments: Attachments,
+}
+
+impl Kept {
+    fn next_plan(&mut self) {
+        self.buffers.next_plan();
+        self.pictures.next_plan();
+        self.maps.next_plan();
+        self.attachments.next_plan();
+    }
+}
+
 /// A plan, ready to run.
 #[derive(Debug)]
 pub struct Prepared<'a> {
@@ -28,7 +47,7 @@ pub struct Prepared<'a> {
     /// Its device stays open as long as it is used, though a later plan may have asked for another.
     pub(super) context: Arc<Context>,
     pub(super) passes: Vec<PreparedPass>,
-    textures: Vec<Texture>,
+    textures: Vec<Arc<Texture>>,
     /// By pass: where its copies go.
     staged: Vec<OnceCell<StagedPass>>,
     pub(super) views: UniformArray,
@@ -51,7 +70,7 @@ pub(super) struct PreparedPass {
     /// What puts depths into its target before it begins.
     pub start: Option<RenderPipeline>,
     /// Where its image from the CPU goes.
-    pub image_target: Option<Texture>,
+    pub image_target: Option<Arc<Texture>>,
 }
 
 #[derive(Debug)]
@@ -71,25 +90,22 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(
         context: &Arc<Context>,
         pipelines: &mut Pipelines,
-        buffers: &mut Buffers,
-        pictures: &mut Pictures,
-        maps: &mut Maps,
+        kept: &mut Kept,
         plan: &'a FramePlan,
         mut room: Room,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
         check_size(device, plan, &mut room)?;
-        buffers.next_plan();
-        pictures.next_plan();
-        maps.next_plan();
-        let create = |index: usize| create(device, plan, AttachmentId(index));
-        let attachments = 0..plan.attachments.len();
-        let kept: Vec<Option<Arc<KeptMap>>> =
-            attachments.map(|index| maps.get(plan, AttachmentId(index), || create(index))).collect();
-        let texture = |(index, kept): (usize, &Option<Arc<KeptMap>>)| {
-            kept.as_ref().map_or_else(|| create(index), |map| map.texture.clone())
-        };
-        let textures: Vec<Texture> = kept.iter().enumerate().map(texture).collect();
+        kept.next_plan();
+        let Kept { buffers, pictures, maps, attachments } = kept;
+        let (mut kept, mut textures) = (Vec::new(), Vec::new());
+        for id in (0..plan.attachments.len()).map(AttachmentId) {
+            let wanted = described(plan, id);
+            let map = maps.get(plan, id, || Arc::new(device.create_texture(&wanted)));
+            let texture = map.as_ref().map(|map| map.texture.clone());
+            textures.push(texture.unwrap_or_else(|| attachments.get(device, plan, &wanted)));
+            kept.push(map);
+        }
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
         let lights = uniforms::lights(device, plan);
@@ -262,7 +278,8 @@ fn check_size(device: &Device, plan: &FramePlan, room: &mut Room) -> Result<(), 
     room.take(bytes)
 }
 
-fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
+/// An attachment's texture.
+fn described(plan: &FramePlan, id: AttachmentId) -> wgpu::TextureDescriptor<'_> {
     let attachment = plan.attachment(id);
     let other = match attachment.role {
         AttachmentRole::Map(_) | AttachmentRole::Count(_) => TextureUsages::TEXTURE_BINDING,
@@ -274,7 +291,7 @@ fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
         has_start && pass.targets().any(|target| target == id)
     };
     let started = if plan.passes.iter().any(is_started) { TextureUsages::COPY_DST } else { TextureUsages::empty() };
-    device.create_texture(&wgpu::TextureDescriptor {
+    wgpu::TextureDescriptor {
         label: Some(&attachment.name),
         size: wgpu::Extent3d {
             width: attachment.size[0],
@@ -287,7 +304,7 @@ fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
         format: attachment.held_format(),
         usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | other | started,
         view_formats: &[],
-    })
+    }
 }
 
 /// Where a layer that is drawn lies in its texture. A plan that draws another has not passed the lint.
@@ -304,7 +321,7 @@ pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
     })
 }
 
-fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> PreparedPass {
+fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Arc<Texture>]) -> PreparedPass {
     let target = pass.depth_stencil.as_ref();
     let view = |id: AttachmentId, layer| layer_view(&textures[id.0], held_layer(plan, id, layer));
     PreparedPass {
@@ -360,7 +377,7 @@ fn light_group(
     pipelines: &Pipelines,
     plan: &FramePlan,
     lights: &UniformArray,
-    textures: &[Texture],
+    textures: &[Arc<Texture>],
     draw: &Draw,
     light: LightId,
 ) -> BindGroup {
@@ -398,11 +415,11 @@ struct Copied {
 }
 
 impl Copied {
-    fn bytes(self, textures: &[Texture]) -> u64 {
+    fn bytes(self, textures: &[Arc<Texture>]) -> u64 {
         Staging::bytes_of(&textures[self.attachment.0], self.aspect)
     }
 
-    fn staging(self, device: &Device, textures: &[Texture]) -> Result<Staging, GpuError> {
+    fn staging(self, device: &Device, textures: &[Arc<Texture>]) -> Result<Staging, GpuError> {
         Staging::new(device, &textures[self.attachment.0], self.layer, self.aspect)
     }
 }
@@ -422,7 +439,7 @@ fn copied(plan: &FramePlan, pass: &Pass) -> [Option<Copied>; 3] {
     ]
 }
 
-fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Result<StagedPass, GpuError> {
+fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Arc<Texture>]) -> Result<StagedPass, GpuError> {
     let staging = |copied: Option<Copied>| copied.map(|copied| copied.staging(device, textures)).transpose();
     let [color, depth, stencil] = copied(plan, pass);
     Ok(StagedPass { color: staging(color)?, depth: staging(depth)?, stencil: staging(stencil)? })

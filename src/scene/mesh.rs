@@ -25,6 +25,7 @@ pub struct Mesh {
     not_taken: Vec<NotTaken>,
     dropped: usize,
     hash: u64,
+    normals_hash: u64,
 }
 
 /// A named run of a mesh's triangles, as a model file groups them.
@@ -139,6 +140,12 @@ impl Mesh {
         self.hash
     }
 
+    /// Hash of the corners' own normals, which [`Mesh::content_hash`] does not look at. Stable within a process only.
+    #[must_use]
+    pub fn normals_hash(&self) -> u64 {
+        self.normals_hash
+    }
+
     /// The same mesh with bit-identical positions as one vertex each. Any mesh is so already but one of
     /// [`MeshBuilder::build_unwelded`].
     ///
@@ -216,17 +223,20 @@ impl MeshBuilder {
         }
         kept_before.push(triangles.len());
         let groups = self.groups_after(&kept_before);
-        let mut hasher = FixedState::default().build_hasher();
-        for bytes in [bytemuck::cast_slice(&welder.positions), bytemuck::cast_slice::<[u32; 3], u8>(&triangles)] {
-            bytes.hash(&mut hasher);
-        }
+        let hash_of = |parts: &[&[u8]]| {
+            let mut hasher = FixedState::default().build_hasher();
+            parts.iter().for_each(|part| part.hash(&mut hasher));
+            hasher.finish()
+        };
+        let shape = [bytemuck::cast_slice(&welder.positions), bytemuck::cast_slice::<[u32; 3], u8>(&triangles)];
         Ok(Mesh {
+            hash: hash_of(&shape),
+            normals_hash: hash_of(&[bytemuck::cast_slice(&corner_normals)]),
             dropped: self.triangles.len() - triangles.len(),
             corner_normals: (!corner_normals.is_empty()).then_some(corner_normals),
             corner_uvs: corner_uvs.iter().any(Option::is_some).then_some(corner_uvs),
             not_taken: Vec::new(),
             positions: welder.positions,
-            hash: hasher.finish(),
             triangles,
             groups,
         })

@@ -247,6 +247,10 @@ impl Session {
                     self.executor.time(&ready, false)?;
                     ready
                 } else {
+                    // A frame comes after one of its own kind, not after rays.
+                    let before = self.executor.prepare(kept)?;
+                    self.executor.time(&before, false)?;
+                    drop(before);
                     start = Instant::now();
                     let plan =
                         technique::plan(Job { scene: &scene, size: what.size, choice: &measured.choice, cache })?;

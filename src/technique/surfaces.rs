@@ -1,6 +1,6 @@
 //! Drawn surfaces as data for the GPU: positions, normals, and which triangles face away.
 
-use crate::geometry::{Caster, Facings, GeometryCache, relative};
+use crate::geometry::{Caster, DrawnSurface, Facings, GeometryCache, relative};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
 use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
@@ -15,16 +15,26 @@ pub fn draw_mesh(
     cache: &mut GeometryCache,
 ) -> DrawMesh {
     let eye = scene.camera.eye;
-    let normals = corner_normals(object, world, shading);
-    let vertices = world.iter().map(|position| relative::point(*position, eye)).collect();
-    let indices = object.mesh.triangles().as_flattened().to_vec();
+    let mesh = &object.mesh;
+    let shadings: Vec<Shading> = mesh
+        .groups()
+        .iter()
+        .map(|group| shading.unwrap_or(group.material.unwrap_or(object.material).shading))
+        .collect();
+    let make = || DrawnSurface {
+        vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
+        indices: Blob::new(mesh.triangles().as_flattened().to_vec()),
+        normals: Blob::new(corner_normals(object, world, &shadings)),
+    };
+    let of = Caster { mesh, pose: &object.pose, world };
+    let DrawnSurface { vertices, indices, normals } = cache.surface(of, eye, &shadings, make);
     DrawMesh {
         surface: Some(SurfaceData {
-            normals: Blob::new(normals),
+            normals,
             sides: Blob::new(sides(object, world, scene, cache)),
             uvs: uvs(object, world).map(Blob::new),
         }),
-        ..DrawMesh::of_positions(&object.name, vertices, indices)
+        ..DrawMesh::of_blobs(&object.name, vertices, indices)
     }
 }
 
@@ -76,7 +86,7 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCa
 }
 
 /// Unit world-space normals of all corners, on the side from where corners run counter-clockwise.
-fn corner_normals(object: &Object, world: &[DVec3], told: Option<Shading>) -> Vec<[f32; 4]> {
+fn corner_normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> Vec<[f32; 4]> {
     let mesh = &object.mesh;
     let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
     let averaged = LazyCell::new(|| averaged_normals(mesh, &face_normals));
@@ -85,8 +95,7 @@ fn corner_normals(object: &Object, world: &[DVec3], told: Option<Shading>) -> Ve
     let orientation = world_from_object.determinant().signum();
     let normal_from_object = world_from_object.inverse().transpose() * orientation;
     let mut normals = Vec::with_capacity(mesh.triangles().len() * 3);
-    for group in mesh.groups() {
-        let shading = told.unwrap_or(group.material.unwrap_or(object.material).shading);
+    for (group, shading) in mesh.groups().iter().zip(shadings) {
         for triangle in group.triangles.clone() {
             let stored = |normal: DVec3| {
                 let usable = normal.try_normalize().or_else(|| face_normals[triangle].try_normalize());
