@@ -38,6 +38,16 @@ pub struct Counted {
     pub count: Count,
 }
 
+impl Counted {
+    /// No volume holds the surface, as the light pass reads it.
+    fn is_zero(&self) -> bool {
+        match self.count {
+            Count::Stencil(count) => i32::from(count) % self.bits.modulus() == 0,
+            Count::Float(count) => count == 0.0,
+        }
+    }
+}
+
 /// How many faces of each side, of the outside of their volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
@@ -82,7 +92,7 @@ pub enum LightPass {
     Adds,
     /// Its test kept the light out.
     Skips,
-    /// Its test let the surface through, but shading leaves it dark: it faces away from the light.
+    /// Nothing kept the light out, but it adds none: the surface faces away from it or is beyond its range.
     FacesAway,
     /// The object receives no shadows: nothing was asked.
     AsksNothing,
@@ -106,6 +116,10 @@ impl PixelHistory {
         let counted = bits.map(|bits| self.counted(light, bits));
         let pass = match self.light_pass(light, counted.as_ref()) {
             LightPass::Adds if label == Some(FACES_AWAY) => LightPass::FacesAway,
+            // What adds nothing may not be drawn at all.
+            LightPass::Skips if label == Some(FACES_AWAY) && counted.as_ref().is_some_and(Counted::is_zero) => {
+                LightPass::FacesAway
+            }
             pass => pass,
         };
         Some(match counted {
@@ -301,7 +315,9 @@ impl fmt::Display for LightPass {
         f.write_str(match self {
             LightPass::Adds => "the light pass adds the light",
             LightPass::Skips => "the light pass skips it",
-            LightPass::FacesAway => "the light pass lets it through; but it faces away from the light or is beyond its range, and stays dark",
+            LightPass::FacesAway => {
+                "nothing keeps the light out; but it faces away from the light or is beyond its range, and stays dark"
+            }
             LightPass::AsksNothing => {
                 "it would be lit only at 0; but the object receives no shadows, and the light pass adds the light"
             }

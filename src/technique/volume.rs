@@ -11,6 +11,9 @@
 //! bit-equal and the strict test is exact. Triangles that face away from the light count as
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 //! Sides that hug the surface they are thrown by are drawn a little behind their place (`counting`).
+//!
+//! Casters by topology are looked at for being closed anyway: then what of a surface can't show is not drawn, and in the
+//! light's pass not what faces away from it (`shown`).
 
 mod counting;
 mod drawn;
@@ -24,7 +27,7 @@ use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::settings::{CountsBy, VolumeSettings, WhoCasts};
-use super::{Choice, PlanError, Technique};
+use super::{Choice, PlanError, Technique, shown};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
 use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Part, Side, Visibility};
 use crate::scene::Scene;
@@ -180,8 +183,17 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let stencil = if settings.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = Frame::new(job, stencil)?;
     frame.clips_volumes = counting != Counting::Behind;
+    // What is proven closed to say who casts hides its far side, too.
+    let looks = settings.casters == WhoCasts::ByTopology;
+    if looks {
+        shown::leave_out_hidden(&mut frame);
+    }
     let extrusion = settings.extrusion;
-    Ok(finish(frame, &settings, |_, _| Ok(Alike { counting, extrusion })))
+    let begin = |frame: &mut Frame, light| {
+        frame.lit = looks.then(|| shown::lit_by(frame, light));
+        Ok(Alike { counting, extrusion })
+    };
+    Ok(finish(frame, &settings, begin))
 }
 
 /// Refuses what would take minutes.

@@ -177,7 +177,7 @@ fn a_flattened_box_raises_its_receivers_mark_once() {
 fn a_triangle_that_is_culled_or_clipped_says_why() {
     let mut session = session();
     let mut scene = from_above(vec![cuboid("box", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0])]);
-    let (_, mut plan) = frame(&mut session, &scene, Technique::ZFail, &[], SIZE);
+    let (_, mut plan) = frame(&mut session, &scene, Technique::ZFail, &[("leave-out", "none")], SIZE);
     plan.passes[0].draws.iter_mut().for_each(|draw| draw.raster.cull = Some(wgpu::Face::Back));
     let capture = session.capture_plan(&scene, &plan).expect("a capture");
     let history = session.history(&plan, &capture, INSIDE).expect("a history");
@@ -247,8 +247,13 @@ fn why_names_the_test_that_failed_and_what_nobody_asked() {
     assert!(text.contains("count 6") && text.contains("the object receives no shadows"), "{text}");
     let mut from_below = nested_boxes();
     from_below.lights = vec![Light::point(DVec3::new(0.0, -4.0, 0.0))];
-    let text = why(&from_below, Technique::ZFail, &[], INSIDE);
-    assert!(text.ends_with("but it faces away from the light or is beyond its range, and stays dark"), "{text}");
+    // Whether or not the light's pass draws what it adds nothing to.
+    for leave_out in ["all", "none"] {
+        let text = why(&from_below, Technique::ZFail, &[("leave-out", leave_out)], INSIDE);
+        let expected = "count 0, so nothing keeps the light out; but it faces away from the light or is beyond its \
+                        range, and stays dark";
+        assert!(text.ends_with(expected), "{text}");
+    }
     let mut to_the_sky = nested_boxes();
     to_the_sky.objects[0].visible = false;
     let text = why(&to_the_sky, Technique::ZFail, &[], OUTSIDE);
