@@ -82,7 +82,8 @@ fn it_ends_where_nothing_is_looked_at() {
     assert_right(&mut session, &seen);
     let reached = lowest(&mut session, &seen);
     assert!((-3.1..-3.0).contains(&reached), "{reached}");
-    let in_vain: [(fn(&mut Object, &mut Light), f64, &str); 3] = [
+    type Change = fn(&mut Object, &mut Light);
+    let in_vain: [(Change, f64, &str); 3] = [
         (|floor, _| floor.receives = false, 0.0, "receives have"),
         (|floor, _| floor.visible = false, 0.0, "receives have"),
         (|_, light| light.range = Some(6.0), -1.0, "receives within the range of light 1 have"),
