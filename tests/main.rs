@@ -13,6 +13,7 @@ mod diff;
 mod draws;
 mod explain;
 mod extruded;
+mod frames_after_others;
 #[cfg(target_os = "linux")]
 mod fuzz;
 mod gltf;

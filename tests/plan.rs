@@ -1,6 +1,6 @@
 //! Plans as data: their text, their checks, and shaders, all without a GPU.
 
-use crate::common::{from_above, square};
+use crate::common::{cuboid, from_above, square};
 use glam::Vec3;
 use std::sync::Arc;
 use stencilscope::geometry::GeometryCache;
@@ -43,10 +43,11 @@ fn a_plan_is_a_pure_function_and_so_is_its_text() {
 /// Whatever is other than in the plan before.
 #[test]
 fn a_full_cache_gives_the_plan_of_an_empty_one() {
-    let square = square("caster", 2.0, 1.0);
+    let cuboid = cuboid("caster", [-1.0, 2.0, -1.0], [1.0, 2.5, 1.0]);
+    let count = cuboid.mesh.triangles().len();
     let builder = || MeshBuilder {
-        positions: square.mesh.positions().to_vec(),
-        triangles: square.mesh.triangles().to_vec(),
+        positions: cuboid.mesh.positions().to_vec(),
+        triangles: cuboid.mesh.triangles().to_vec(),
         ..MeshBuilder::default()
     };
     let with_mesh = |builder: MeshBuilder| {
@@ -57,7 +58,7 @@ fn a_full_cache_gives_the_plan_of_an_empty_one() {
     };
     let normals = |tilt: f32| {
         let mut builder = builder();
-        builder.corner_normals = vec![[Vec3::new(tilt, 1.0, 0.0); 3]; 2];
+        builder.corner_normals = vec![[Vec3::new(tilt, 1.0, 0.0); 3]; count];
         let mut scene = with_mesh(builder);
         scene.objects.iter_mut().for_each(|object| object.material.shading = Shading::Phong);
         scene
@@ -70,10 +71,10 @@ fn a_full_cache_gives_the_plan_of_an_empty_one() {
             texture: None,
         };
         let mut builder = builder();
-        builder.corner_normals = vec![[Vec3::X; 3]; 2];
+        builder.corner_normals = vec![[Vec3::X; 3]; count];
         builder.groups = match first {
-            0 => vec![group(0..2, Shading::Phong)],
-            first => vec![group(0..first, Shading::Flat), group(first..2, Shading::Phong)],
+            0 => vec![group(0..count, Shading::Phong)],
+            first => vec![group(0..first, Shading::Flat), group(first..count, Shading::Phong)],
         };
         with_mesh(builder)
     };
@@ -93,6 +94,9 @@ fn a_full_cache_gives_the_plan_of_an_empty_one() {
         normals(0.5),
         groups(0),
         groups(1),
+        groups(2),
+        changed(|scene| scene.objects[1].pose.rotate_degrees.y += 30.0),
+        changed(|scene| scene.objects[1].pose.scale.x *= 2.0),
     ];
     let sides = |plan: &FramePlan| plan.meshes.iter().filter_map(|mesh| mesh.surface.clone()).collect::<Vec<_>>();
     for technique in Technique::ALL {

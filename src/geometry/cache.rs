@@ -20,8 +20,8 @@ const MOST_TRIANGLES_KEPT: usize = 2_000_000;
 /// Places of meshes that something short is known about.
 const MOST_PLACES_KEPT: usize = 16_384;
 
-/// Surfaces of more triangles (some 80 bytes each) are made anew for each plan.
-const MOST_SURFACE_KEPT: usize = 250_000;
+/// Triangles of surfaces kept at once, of some 80 bytes each; beyond, they are made anew for each plan.
+const MOST_SURFACES_KEPT: usize = 500_000;
 
 /// Flattened triangles kept at once, of 96 bytes each; beyond, they are made anew for each plan.
 const MOST_FLATTENED_KEPT: usize = 500_000;
@@ -43,6 +43,8 @@ pub struct GeometryCache {
     doubled: HashMap<(u64, PoseBits), bool>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
     surfaces: LastUsed<SurfaceKey, DrawnSurface>,
+    /// Triangles in all of them.
+    surfaces_kept: usize,
     triangles_kept: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
@@ -140,10 +142,11 @@ pub struct VolumeOf<'a> {
 }
 
 impl GeometryCache {
-    /// Forgets flattened casters and volumes for vertex shaders that the last plan did not ask for.
+    /// Forgets surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for.
     pub fn next_plan(&mut self) {
         self.extruded.next_plan();
         self.surfaces.next_plan();
+        self.surfaces_kept = self.surfaces.kept.values().map(|(surface, _)| surface.indices.len() / 3).sum();
         self.flattened.retain(|_, (_, used)| std::mem::take(used));
         self.flattened_kept = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
     }
@@ -224,7 +227,7 @@ impl GeometryCache {
     }
 
     /// What of a mesh is drawn alike under any light, relative to `origin` and with this shading of each group: made again
-    /// only if one of these changes.
+    /// only if one of these changes, or where too much is kept.
     pub fn surface(
         &mut self,
         of: Caster,
@@ -233,13 +236,18 @@ impl GeometryCache {
         make: impl FnOnce() -> DrawnSurface,
     ) -> DrawnSurface {
         let Caster { mesh, pose, .. } = of;
-        if mesh.triangles().len() > MOST_SURFACE_KEPT {
-            return make();
-        }
         let groups = mesh.groups().iter().map(|group| group.triangles.end).zip(shadings.iter().copied()).collect();
         let origin = origin.to_array().map(f64::to_bits);
         let key = (mesh.content_hash(), mesh.normals_hash(), pose_bits(pose), origin, groups);
-        self.surfaces.get(&key).unwrap_or_else(|| self.surfaces.keep(key, make()))
+        if let Some(surface) = self.surfaces.get(&key) {
+            return surface;
+        }
+        let (surface, kept) = (make(), self.surfaces_kept + mesh.triangles().len());
+        if kept > MOST_SURFACES_KEPT {
+            return surface;
+        }
+        self.surfaces_kept = kept;
+        self.surfaces.keep(key, surface)
     }
 
     /// How `mesh` hangs together, found out on first use.

@@ -1,50 +1,71 @@
 //! Textures of attachments, handed on from plan to plan.
 //!
 //! A frame that is set up anew, as a light moves, draws into textures like those of the frame before. New ones cost a page
-//! fault for every page that is drawn to; those of a plan that is gone are there already. What they hold is as it is where
-//! a frame runs twice: each plan clears what it reads.
+//! fault for every page that is drawn to; those of a plan that is gone are there already. What they hold is no matter: only
+//! those are handed on that the first pass which draws to them clears.
 
-use crate::plan::FramePlan;
+use crate::plan::{AttachmentId, FramePlan, Pass};
 use std::sync::Arc;
 use wgpu::{Device, Texture, TextureFormat};
 
-/// What a texture was made as.
-type Made = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFormat>>;
+/// What a texture is made as.
+type Description = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFormat>>;
 
-/// They stay as long as the newest plan uses them.
+/// Larger ones go with their plan.
+const MOST_BYTES_KEPT: u64 = 1 << 26;
+
+/// Those of the newest plan.
 #[derive(Debug, Default)]
 pub(super) struct Attachments {
-    kept: Vec<Kept>,
-}
-
-#[derive(Debug)]
-struct Kept {
-    texture: Arc<Texture>,
-    made: Made,
-    used: bool,
+    kept: Vec<(Description, Arc<Texture>)>,
 }
 
 impl Attachments {
-    /// Forgets what has not been asked for since the last call.
-    pub fn next_plan(&mut self) {
-        self.kept.retain_mut(|kept| std::mem::take(&mut kept.used));
+    /// A texture for each attachment of a plan, none of which another plan uses; where `given` has one, that one. What the
+    /// last plan leaves and this one does not need goes first.
+    pub fn hand_out<'a>(
+        &mut self,
+        device: &Device,
+        plan: &FramePlan,
+        given: &[Option<Arc<Texture>>],
+        describe: impl Fn(AttachmentId) -> wgpu::TextureDescriptor<'a>,
+    ) -> Vec<Arc<Texture>> {
+        let owned = |id| {
+            let wanted = describe(id);
+            wanted.map_label_and_view_formats(|label| label.map(str::to_owned), |formats| formats.to_vec())
+        };
+        let ids = || (0..plan.attachments.len()).map(AttachmentId);
+        let mut left = std::mem::take(&mut self.kept);
+        left.retain(|(_, texture)| Arc::strong_count(texture) == 1);
+        let mut free = |id: AttachmentId| {
+            let wanted = owned(id);
+            let found = left.iter().position(|(made, _)| *made == wanted)?;
+            Some(left.swap_remove(found).1)
+        };
+        let may_keep: Vec<bool> = ids().map(|id| given[id.0].is_none() && may_hand_on(plan, id)).collect();
+        let mut found: Vec<Option<Arc<Texture>>> = given.to_vec();
+        ids().filter(|id| may_keep[id.0]).for_each(|id| found[id.0] = free(id));
+        drop(left);
+        let create = |id| Arc::new(device.create_texture(&describe(id)));
+        let textures: Vec<Arc<Texture>> = ids().map(|id| found[id.0].take().unwrap_or_else(|| create(id))).collect();
+        self.kept = ids().filter(|id| may_keep[id.0]).map(|id| (owned(id), textures[id.0].clone())).collect();
+        textures
     }
+}
 
-    /// A texture that no other plan uses. Of a frame that another program drew, which may read what it has not cleared,
-    /// always a new one.
-    pub fn get(&mut self, device: &Device, plan: &FramePlan, wanted: &wgpu::TextureDescriptor) -> Arc<Texture> {
-        let create = || Arc::new(device.create_texture(wanted));
-        if plan.passes.iter().any(|pass| pass.recorded.is_some()) {
-            return create();
-        }
-        let made = wanted.map_label_and_view_formats(|label| label.map(str::to_owned), |formats| formats.to_vec());
-        let is_free = |kept: &Kept| !kept.used && Arc::strong_count(&kept.texture) == 1 && kept.made == made;
-        if let Some(kept) = self.kept.iter_mut().find(|kept| is_free(kept)) {
-            kept.used = true;
-            return kept.texture.clone();
-        }
-        let texture = create();
-        self.kept.push(Kept { texture: texture.clone(), made, used: true });
-        texture
-    }
+/// Is it small, and does nothing of the plan read what it held before? Not known of a frame that another program drew.
+fn may_hand_on(plan: &FramePlan, id: AttachmentId) -> bool {
+    let clears = |pass: &Pass| {
+        let has_stencil = plan.attachment(id).format.has_stencil_aspect();
+        let color = pass.color.as_ref().filter(|target| target.attachment == id);
+        let depth = pass.depth_stencil.as_ref().filter(|target| target.attachment == id);
+        color.is_none_or(|target| target.clear.is_some())
+            && depth
+                .is_none_or(|target| target.clear_depth.is_some() && (!has_stencil || target.clear_stencil.is_some()))
+    };
+    let first = plan.passes.iter().find(|pass| pass.targets().any(|target| target == id));
+    plan.held_layers(id) == 1
+        && plan.attachment_bytes(id) <= MOST_BYTES_KEPT
+        && plan.passes.iter().all(|pass| pass.recorded.is_none())
+        && first.is_some_and(clears)
 }

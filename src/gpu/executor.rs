@@ -93,7 +93,12 @@ impl Executor {
         self.check(plan)?;
         let room = Room::of(self.most_bytes);
         let Executor { context, pipelines, kept, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, kept, plan, room))
+        let prepared = context.guarded(|| Prepared::new(context, pipelines, kept, plan, room));
+        if prepared.is_err() {
+            // Whatever could not be made is not handed on.
+            self.kept.forget_attachments();
+        }
+        prepared
     }
 
     /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan

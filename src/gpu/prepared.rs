@@ -32,11 +32,15 @@ pub(super) struct Kept {
 }
 
 impl Kept {
+    /// The next plan's attachments are new.
+    pub fn forget_attachments(&mut self) {
+        self.attachments = Attachments::default();
+    }
+
     fn next_plan(&mut self) {
         self.buffers.next_plan();
         self.pictures.next_plan();
         self.maps.next_plan();
-        self.attachments.next_plan();
     }
 }
 
@@ -98,14 +102,11 @@ impl<'a> Prepared<'a> {
         check_size(device, plan, &mut room)?;
         kept.next_plan();
         let Kept { buffers, pictures, maps, attachments } = kept;
-        let (mut kept, mut textures) = (Vec::new(), Vec::new());
-        for id in (0..plan.attachments.len()).map(AttachmentId) {
-            let wanted = described(plan, id);
-            let map = maps.get(plan, id, || Arc::new(device.create_texture(&wanted)));
-            let texture = map.as_ref().map(|map| map.texture.clone());
-            textures.push(texture.unwrap_or_else(|| attachments.get(device, plan, &wanted)));
-            kept.push(map);
-        }
+        let describe = |id| described(plan, id);
+        let map = |id| maps.get(plan, id, || Arc::new(device.create_texture(&describe(id))));
+        let kept: Vec<Option<Arc<KeptMap>>> = (0..plan.attachments.len()).map(AttachmentId).map(map).collect();
+        let given: Vec<_> = kept.iter().map(|map| map.as_ref().map(|map| map.texture.clone())).collect();
+        let textures = attachments.hand_out(device, plan, &given, describe);
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
         let lights = uniforms::lights(device, plan);

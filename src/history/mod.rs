@@ -315,12 +315,15 @@ impl PixelHistory {
         self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
     }
 
-    /// What the pixel held when the light pass tested it: after the last face of the light's volumes, or
-    /// where there is none, when the light's last pass began.
+    /// What the pixel held when the light pass tested it: after the last face of the light's volumes, or where there is
+    /// none, when the light's last pass began; of what that pass does not draw, when its labels were drawn.
     fn tested_count(&self, light: usize) -> Held {
         let of_light = || self.events.iter().filter(|event| event.light == Some(light));
         let last = of_light().rfind(|event| event.is_of_volume());
-        let tested = || of_light().find(|event| event.triangle().is_some_and(|one| one.lights.is_some()));
+        let tests = |event: &&Event| {
+            event.triangle().is_some_and(|one| one.lights.is_some() || event.target == FrameTarget::Labels)
+        };
+        let tested = || of_light().filter(tests).min_by_key(|event| event.target == FrameTarget::Labels);
         last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
     }
 

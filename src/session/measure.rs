@@ -240,22 +240,20 @@ impl Session {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let (start, made);
+                // A frame comes after the one before it, not after rays.
+                let before = self.executor.prepare(kept)?;
+                self.executor.time(&before, false)?;
+                let mut made = None;
                 let ready = if moments.moves == Moves::Nothing {
-                    let ready = self.executor.prepare(kept)?;
                     measured.setups.push(Duration::ZERO);
-                    self.executor.time(&ready, false)?;
-                    ready
+                    before
                 } else {
-                    // A frame comes after one of its own kind, not after rays.
-                    let before = self.executor.prepare(kept)?;
-                    self.executor.time(&before, false)?;
                     drop(before);
-                    start = Instant::now();
+                    let start = Instant::now();
                     let plan =
                         technique::plan(Job { scene: &scene, size: what.size, choice: &measured.choice, cache })?;
-                    made = self.without_unseen(plan, &measured.choice)?;
-                    let ready = self.executor.prepare(&made)?;
+                    let plan = made.insert(self.without_unseen(plan, &measured.choice)?);
+                    let ready = self.executor.prepare(plan)?;
                     measured.setups.push(start.elapsed());
                     ready
                 };
@@ -264,6 +262,9 @@ impl Session {
                     reference.judge(&mut self.executor, &measured.choice, ready)?;
                 measured.error = [measured.error, labels].into_iter().sum();
                 measured.wrong_color += wrong_color;
+                if let Some(made) = made {
+                    plans[index] = made;
+                }
                 progress.advance();
             }
         }

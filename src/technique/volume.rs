@@ -12,8 +12,8 @@
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 //! Sides that hug the surface they are thrown by are drawn a little behind their place (`counting`).
 //!
-//! Casters by topology are looked at for being closed anyway: then what of a surface can't show is not drawn, and in the
-//! light's pass not what faces away from it (`shown`).
+//! Where casters go by topology, meshes are looked at for being closed: then what of a surface can't show is not drawn,
+//! and in the light's pass not what faces away from it (`shown`).
 
 mod counting;
 mod drawn;

@@ -254,6 +254,12 @@ fn why_names_the_test_that_failed_and_what_nobody_asked() {
                         range, and stays dark";
         assert!(text.ends_with(expected), "{text}");
     }
+    // A second light, which is added here, is none of its business.
+    from_below.lights.push(Light::point(DVec3::new(0.0, 9.0, 0.0)));
+    for counter in ["stencil", "float"] {
+        let text = why(&from_below, Technique::ZFail, &[("counter", counter)], OUTSIDE);
+        assert!(text.contains("count 0, so nothing keeps the light out; but it faces away"), "{counter}: {text}");
+    }
     let mut to_the_sky = nested_boxes();
     to_the_sky.objects[0].visible = false;
     let text = why(&to_the_sky, Technique::ZFail, &[], OUTSIDE);
