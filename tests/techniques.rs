@@ -434,3 +434,35 @@ fn coinciding_surfaces_are_lit_once() {
         assert!(one == two, "{technique:?}");
     }
 }
+
+/// Surfaces that overlap in one plane are at one depth, though they share no corner: what colours are measured against
+/// lights them once, as volumes do.
+#[test]
+fn surfaces_that_overlap_in_one_plane_are_lit_once_by_the_truth() {
+    let mut session = session();
+    let sheet = |name: &str, x: f64| square(name, 1.0, 1.0).at([x, 0.0, x]);
+    let mut scene = from_above(vec![sheet("one", -0.25), sheet("other", 0.25)]);
+    scene.lights.push(Light::directional(DVec3::Y));
+    let [truth, counted] =
+        [Technique::RayTraced, Technique::Auto].map(|technique| color_after_all(&capture(&mut session, &scene, technique)));
+    assert!(truth == counted);
+}
+
+/// The floor's volume holds nothing that receives. Who looks at casters leaves it out, who casts always draws it, and
+/// both count alike.
+#[test]
+fn what_darkens_nothing_has_no_volume_where_casters_are_looked_at() {
+    let mut session = session();
+    let scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    for technique in VOLUMES {
+        let with = |casters: &str| {
+            let mut asked = request(technique, SIZE);
+            asked.choice.set("casters", casters).expect("casters");
+            session.capture(&scene, &asked).expect("a capture")
+        };
+        let [looking, always] = ["by-topology", "all"].map(with);
+        let leaves_out = |capture: &Capture| capture.left_out.iter().any(|one| one.is(Decision::Caster, "floor"));
+        assert!(leaves_out(&looking) && !leaves_out(&always), "{technique:?}");
+        assert_eq!(label_counts(&looking), label_counts(&always), "{technique:?}");
+    }
+}

@@ -199,8 +199,10 @@ fn a_floor_with_nothing_below_it_makes_no_count_one_of_surfaces() {
         let below = capture(&mut session, &from_above(vec![whole(), cellar.clone()]), technique, &[]);
         assert_eq!(below.lights[0].count_of, Some(CountOf::Mixed), "{technique:?}");
     }
-    let floor = capture(&mut session, &from_above(vec![]), Technique::ZFail, &[]);
-    assert_eq!(floor.lights[0].count_of, Some(CountOf::Surfaces), "it alone casts");
+    for (leave_out, counted) in [("all", None), ("none", Some(CountOf::Surfaces))] {
+        let floor = capture(&mut session, &from_above(vec![]), Technique::ZFail, &[("leave-out", leave_out)]);
+        assert_eq!(floor.lights[0].count_of, counted, "it alone casts");
+    }
 }
 
 /// What by-topology took and why is in the plan.
@@ -261,7 +263,9 @@ fn clamped_counts_depend_on_order_and_end_at_255() {
         stencil(&capture(session, &from_above(nested(count)), Technique::ZFail, settings)).into_iter().max()
     };
     // The floor's own volume, below it, adds one more and takes it away again, after the limit.
-    assert_eq!(most(&mut session, 300, &ordered), Some(254));
+    for (casters, left) in [("by-topology", 255), ("all", 254)] {
+        assert_eq!(most(&mut session, 300, &[&ordered[..], &[("casters", casters)]].concat()), Some(left), "{casters}");
+    }
     let shadow_of = |session: &mut Session, count: u32, settings: &[(&str, &str)]| {
         counts(session, &from_above(nested(count)), Technique::ZFail, settings)[1]
     };

@@ -22,14 +22,10 @@ impl Buffers {
         self.kept.retain(|_, (_, used)| std::mem::take(used));
     }
 
-    /// The buffer that holds `blob`, readable as vertices, indices and storage.
+    /// The buffer that holds `blob`, readable as vertices, indices and, as far as [`check_bound`] lets it, as storage.
     pub fn get<T: bytemuck::Pod>(&mut self, device: &Device, blob: &Blob<T>) -> Result<Buffer, GpuError> {
         let contents = blob.bytes();
-        let most = device.limits().max_buffer_size.min(device.limits().max_storage_buffer_binding_size);
-        if contents.len() as u64 > most {
-            let [needed, most] = [contents.len() as u64, most].map(|bytes| format!("{bytes} bytes"));
-            return Err(GpuError::TooLarge { what: "a mesh".to_owned(), needed, most });
-        }
+        check(contents.len() as u64, device.limits().max_buffer_size)?;
         let usage = BufferUsages::VERTEX | BufferUsages::INDEX | BufferUsages::STORAGE;
         // Nothing can't be bound: it is one entry that nothing is like.
         let nothing = [u8::MAX; 16];
@@ -39,4 +35,17 @@ impl Buffers {
         *used = true;
         Ok(buffer.clone())
     }
+}
+
+/// Refuses what a shader can't read as storage.
+pub(super) fn check_bound(device: &Device, storage: &Buffer) -> Result<(), GpuError> {
+    check(storage.size(), device.limits().max_storage_buffer_binding_size)
+}
+
+fn check(bytes: u64, most: u64) -> Result<(), GpuError> {
+    if bytes <= most {
+        return Ok(());
+    }
+    let [needed, most] = [bytes, most].map(|bytes| format!("{bytes} bytes"));
+    Err(GpuError::TooLarge { what: "a mesh".to_owned(), needed, most })
 }

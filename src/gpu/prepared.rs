@@ -2,7 +2,7 @@
 //! once a run wants them, the buffers that snapshots are copied to. Made once, run as often as wanted.
 
 use super::attachments::Attachments;
-use super::buffers::Buffers;
+use super::buffers::{Buffers, check_bound};
 use super::maps::{KeptMap, Maps};
 use super::pictures::Pictures;
 use super::pipelines::{Layouts, PipelineKey, Pipelines};
@@ -152,7 +152,7 @@ impl<'a> Prepared<'a> {
                             _ => None,
                         };
                         let storage = [&vertices, &indices, &normals, &sides];
-                        let surface = surface_group(device, pipelines, storage, shown.as_ref());
+                        let surface = surface_group(device, pipelines, storage, shown.as_ref())?;
                         let is_lit = draw.program.visibility().is_some();
                         let light = pass.light.filter(|_| is_lit);
                         let light =
@@ -160,7 +160,7 @@ impl<'a> Prepared<'a> {
                         Some((surface, light))
                     }
                     _ if shader.form == Form::Kept => match &mesh.kept {
-                        Some(kept) => Some((kept_group(device, pipelines, &buffers.get(device, kept)?), None)),
+                        Some(kept) => Some((kept_group(device, pipelines, &buffers.get(device, kept)?)?, None)),
                         None => None,
                     },
                     _ => None,
@@ -347,10 +347,11 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -
     }
 }
 
-fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> BindGroup {
+fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> Result<BindGroup, GpuError> {
+    check_bound(device, kept)?;
     let entries = [BindGroupEntry { binding: 0, resource: kept.as_entire_binding() }];
     let layout = &pipelines.layouts.kept;
-    device.create_bind_group(&BindGroupDescriptor { label: Some("kept fragments"), layout, entries: &entries })
+    Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("kept fragments"), layout, entries: &entries }))
 }
 
 /// `shown`: where its corners lie in a picture, the picture, and how it is sampled.
@@ -359,7 +360,9 @@ fn surface_group(
     pipelines: &Pipelines,
     storage: [&Buffer; 4],
     shown: Option<&(Buffer, TextureView, wgpu::Sampler)>,
-) -> BindGroup {
+) -> Result<BindGroup, GpuError> {
+    let uvs = shown.map(|(uvs, ..)| uvs);
+    storage.into_iter().chain(uvs).try_for_each(|buffer| check_bound(device, buffer))?;
     let resources = storage.map(Buffer::as_entire_binding).into_iter();
     let picture = shown.map(|(uvs, view, sampler)| {
         [uvs.as_entire_binding(), BindingResource::TextureView(view), BindingResource::Sampler(sampler)]
@@ -370,7 +373,7 @@ fn surface_group(
         .collect();
     let Layouts { surface, textured_surface, .. } = &pipelines.layouts;
     let layout = if shown.is_some() { textured_surface } else { surface };
-    device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries })
+    Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries }))
 }
 
 fn light_group(

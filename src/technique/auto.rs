@@ -19,7 +19,7 @@
 //! would have left out is drawn, and nothing must change but single pixels at a shadow's very edge, where other
 //! triangles or other far corners draw that edge.
 
-use super::casters::{self, Darkened};
+use super::casters;
 use super::description::{Description, Standing};
 use super::frame::{Frame, Job, Placed, StencilUse};
 use super::lesson::{Lesson, cited};
@@ -164,9 +164,8 @@ impl Questions {
         let left_out = |why: Decision, because: String| LeftOut::new(why, &object.name, because);
         let no_volume = |why: Decision, because: String| Decided::nothing(left_out(why, because));
         let light = self.light.name();
-        if allowed(Decision::Caster) && !casters::can_darken(frame, index, self.light, Darkened::All) {
-            let because = format!("all that receives lies on the side of {light}, or in its plane");
-            return no_volume(Decision::Caster, because);
+        if let Some(left_out) = casters::darkens_nothing(frame, index, self.light) {
+            return Decided::nothing(left_out);
         }
         if allowed(Decision::Caster)
             && let Some(distance) = frame.beyond_range(self.light, index)

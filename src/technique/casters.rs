@@ -2,7 +2,7 @@
 
 use super::frame::{Frame, Placed};
 use crate::geometry::light_frame;
-use crate::plan::LightId;
+use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
 /// What an object may darken.
@@ -28,6 +28,15 @@ pub fn can_darken(frame: &Frame, index: usize, light: LightId, what: Darkened) -
     let placed = &frame.placed[index];
     let triangles = placed.object.mesh.triangles();
     light_frame::object_can_darken(&placed.world, triangles, frame.light_position(light), receivers)
+}
+
+/// Why a caster needs no volume: nothing that receives is behind it. `None` where something may be.
+pub fn darkens_nothing(frame: &Frame, index: usize, light: LightId) -> Option<LeftOut> {
+    if !frame.common.allows(Decision::Caster) || can_darken(frame, index, light, Darkened::All) {
+        return None;
+    }
+    let because = format!("all that receives lies on the side of {}, or in its plane", light.name());
+    Some(LeftOut::new(Decision::Caster, &frame.placed[index].object.name, because))
 }
 
 /// The triangles of an object in world space.

@@ -56,10 +56,14 @@ pub(super) const DESCRIPTION: Description = Description {
     standing: Standing::Apart { because: "it is the truth" },
 };
 
+/// Others are measured against its colours. So no pixel may be lit twice, where surfaces overlap in one plane neither:
+/// the stencil marks what is lit, and nothing need be proven of the scene.
+const LIT_ONCE: StencilUse = StencilUse::Always;
+
 /// Plans a frame with traced shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let (scene, size) = (job.scene, job.size);
-    let frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let frame = Frame::new(job, LIT_ONCE)?;
     let tracer = Tracer::new(scene, size).map_err(|error| PlanError::Unusable { problem: error.to_string() })?;
     let tracer = Arc::new(tracer);
     Ok(lit_by(frame, |light| Arc::new(LightRays { tracer: tracer.clone(), light })))
@@ -67,7 +71,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
 
 /// The same frame of labels that are known, one list a light, a byte a pixel: no ray is followed again.
 pub fn plan_of_labels(job: Job, labels: &[Vec<u8>]) -> Result<FramePlan, PlanError> {
-    let frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let frame = Frame::new(job, LIT_ONCE)?;
     let known = |light: LightId| labels.get(light.0).cloned().unwrap_or_default();
     Ok(lit_by(frame, |light| Arc::new(KnownLabels(known(light)))))
 }

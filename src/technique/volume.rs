@@ -12,8 +12,8 @@
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 //! Sides that hug the surface they are thrown by are drawn a little behind their place (`counting`).
 //!
-//! Where casters go by topology, meshes are looked at for being closed: then what of a surface can't show is not drawn,
-//! and in the light's pass not what faces away from it (`shown`).
+//! Where casters go by topology, they are looked at. One behind which nothing receives has no volume; and of closed
+//! surfaces, what can't show is not drawn, nor in the light's pass what faces away from it (`shown`).
 
 mod counting;
 mod drawn;
@@ -149,8 +149,11 @@ impl Decided {
 
 /// Every caster's volume alike.
 struct Alike {
+    light: LightId,
     counting: Counting,
     extrusion: Extrusion,
+    /// Casters are looked at: those that darken nothing need none.
+    looks: bool,
 }
 
 impl Decides for Alike {
@@ -159,8 +162,11 @@ impl Decides for Alike {
     }
 
     fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided> {
-        let Alike { counting, extrusion } = *self;
+        let Alike { light, counting, extrusion, looks } = *self;
         let form = |caster: &usize| {
+            if let Some(left_out) = looks.then(|| casters::darkens_nothing(frame, *caster, light)).flatten() {
+                return Decided::nothing(left_out);
+            }
             let caster = frame.placed[*caster].object;
             // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
             let light_cap = counting == Counting::Behind || !caster.visible;
@@ -191,7 +197,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let extrusion = settings.extrusion;
     let begin = |frame: &mut Frame, light| {
         frame.lit = looks.then(|| shown::lit_by(frame, light));
-        Ok(Alike { counting, extrusion })
+        Ok(Alike { light, counting, extrusion, looks })
     };
     Ok(finish(frame, &settings, begin))
 }

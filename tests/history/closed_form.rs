@@ -262,7 +262,7 @@ fn why_names_the_test_that_failed_and_what_nobody_asked() {
     }
     let mut to_the_sky = nested_boxes();
     to_the_sky.objects[0].visible = false;
-    let text = why(&to_the_sky, Technique::ZFail, &[], OUTSIDE);
+    let text = why(&to_the_sky, Technique::ZFail, &[ALL], OUTSIDE);
     assert_eq!(text, "no surface is here that a shadow could fall on");
     // What takes away comes last in one draw with what adds, and finds nothing to take from.
     let text = why(&builtin("inside"), Technique::ZFail, &[("operations", "clamp")], [100, 150]);

@@ -80,7 +80,10 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
             Technique::PlanarTexture => (None, None, "The texture of this flat receiver"),
             Technique::ShadowMap => (None, None, "it is nearer, so the light pass adds nothing"),
             Technique::Projective => (None, None, "The silhouette of another object falls here"),
-            Technique::RayTraced => (None, None, "The technique's mask says that something lies between"),
+            // Where it has lit, so that it lights nothing twice.
+            Technique::RayTraced => {
+                (None, Some("Stencil value"), "The technique's mask says that something lies between")
+            }
             Technique::None => (None, None, "No shadow of this light is made in this frame"),
         };
         assert_eq!((side, legend), (expected_side, expected_legend), "{name}");

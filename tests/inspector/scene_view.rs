@@ -49,9 +49,13 @@ pub fn draft_of(scene: &Scene) -> RunRequest {
 
 /// What a frame of a scene is made of, without a GPU.
 pub fn anatomy_of(scene: &Scene, technique: Technique) -> Arc<Anatomy> {
-    let (choice, mut cache) = (Choice::new(technique), GeometryCache::default());
-    let plan = plan(Job { scene, size: SIZE, choice: &choice, cache: &mut cache }).expect("a plan");
-    Arc::new(anatomy(scene, Some(&choice), &plan, &mut cache))
+    anatomy_by(scene, &Choice::new(technique))
+}
+
+fn anatomy_by(scene: &Scene, choice: &Choice) -> Arc<Anatomy> {
+    let mut cache = GeometryCache::default();
+    let plan = plan(Job { scene, size: SIZE, choice, cache: &mut cache }).expect("a plan");
+    Arc::new(anatomy(scene, Some(choice), &plan, &mut cache))
 }
 
 /// Panels over a scene, with its anatomy.
@@ -260,7 +264,14 @@ fn four_views_have_a_projection_each() {
 
 #[test]
 fn one_caster_can_be_looked_at_alone() {
-    let mut harness = shown();
+    let scene = box_scene();
+    // The floor, too.
+    let mut choice = Choice::new(Technique::ZFail);
+    choice.set("casters", "all").expect("a setting");
+    let mut inspector = over(&scene);
+    inspector.tell(AnatomyOf {}, Ok(anatomy_by(&scene, &choice)));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    show(&mut harness);
     harness.get_by_label("Without the volumes of what holds everything (floor): choose it to see them.");
     let all = look(&mut harness, FREE);
     harness.get_by_label("Caster shown").click();

@@ -77,13 +77,13 @@ fn wrong_caps_and_operations_are_found() {
         plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::DarkCap));
     };
     let seeds: Vec<f64> = (0..20).map(f64::from).collect();
-    for place in [("near-far", &[100.0][..]), ("light-in-torus-hole", &[0.0]), ("random", &seeds)] {
+    for place in [("light-in-torus-hole", &[0.0][..]), ("random", &seeds)] {
         assert_found(&mut session, place, Z_FAIL, Fault::Plan(&drop), "dropped dark caps");
     }
     for part in [Part::LightCap, Part::DarkCap, Part::Side] {
         let swap = |plan: &mut FramePlan| draws(plan, part).for_each(swap_operations);
         let what = format!("swapped operations of {part:?}");
-        assert_found(&mut session, ("near-far", &[100.0]), Z_FAIL, Fault::Plan(&swap), &what);
+        assert_found(&mut session, ("random", &seeds), Z_FAIL, Fault::Plan(&swap), &what);
     }
     // The sides alone are behind the floor there, and at 256 the count is known to be read as none.
     let drop = |plan: &mut FramePlan| {

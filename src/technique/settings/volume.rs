@@ -20,7 +20,8 @@ const CASTERS: Words<WhoCasts> = words(
         text: "`all` lets every triangle cast, turned towards the light: right for any mesh, at twice the volume of \
              a closed one. `light-facing` suffices for a closed mesh with the light outside, and is wrong for \
              others: holes and inner lights. `light-back-facing` keeps the other half. `by-topology` proves that \
-             `light-facing` suffices, or says what it could not prove.",
+             `light-facing` suffices, or says what it could not prove; and a caster behind which nothing receives, as \
+             a floor, has no volume then, whichever technique counts.",
         formula: "an edge bounds the shadow |m| times, with m the sum of +1 or -1 of each casting triangle at it, by \
              the way in which the triangle, turned towards the light, runs along it",
         sources: &[cited::ALDRIDGE, cited::KIM],
