@@ -443,8 +443,8 @@ fn surfaces_that_overlap_in_one_plane_are_lit_once_by_the_truth() {
     let sheet = |name: &str, x: f64| square(name, 1.0, 1.0).at([x, 0.0, x]);
     let mut scene = from_above(vec![sheet("one", -0.25), sheet("other", 0.25)]);
     scene.lights.push(Light::directional(DVec3::Y));
-    let [truth, counted] =
-        [Technique::RayTraced, Technique::Auto].map(|technique| color_after_all(&capture(&mut session, &scene, technique)));
+    let [truth, counted] = [Technique::RayTraced, Technique::Auto]
+        .map(|technique| color_after_all(&capture(&mut session, &scene, technique)));
     assert!(truth == counted);
 }
 

@@ -18,8 +18,8 @@ const ROUNDING: f64 = 6e-8;
 /// Edges that rounding moves by so many pixels are wrong without an excuse.
 const PIXELS: f64 = 0.5;
 
-/// Edges as long as this many pixels have sides that no snapping tilts far.
-const SHORT_EDGE: f64 = 1.0;
+/// Of edges as long as this many pixels, few have sides so narrow in the picture that snapping tilts them far.
+const SHORT_EDGE: f64 = 2.0;
 /// Times as large as pictures are drawn that show whether corners of sides were snapped away. Odd, so that the middle of
 /// each pixel stays the middle of one.
 const LARGER: [u32; 3] = [3, 5, 15];
@@ -197,8 +197,8 @@ fn nearest_side(facts: &Facts, object: &Object, seen: DVec3, light: DVec4) -> Op
     sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
-/// Corners snap to 1/256 of a pixel. Where a caster's edges are fractions of one, so do those of its volume's sides, narrow
-/// strips that reach far: their depth tilts, and they meet a surface beside their place.
+/// Corners snap to 1/256 of a pixel. Where a caster's edges are hardly longer than one, its volume's sides are narrow strips
+/// that reach far: as their corners snap, their depth tilts, and they meet a surface beside their place.
 fn subpixel_edges(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     if !facts.counts_volumes(light) {
