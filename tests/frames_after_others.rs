@@ -81,9 +81,23 @@ fn volumes_are_counted_alike_where_nothing_is_left_out() {
         changed(|scene| scene.objects.push(square("lid", 2.0, 0.7))),
         changed(|scene| scene.lights[0].position.y = -3.0),
         changed(|scene| scene.camera.projection = Projection::Orthographic { half_height: 4.0 }),
+        // Below the floor's plane, beside the floor.
+        changed(|scene| {
+            scene.objects[0].pose.scale *= 0.05;
+            (scene.camera.eye, scene.camera.target) = (DVec3::new(5.0, -1.0, 4.0), DVec3::new(0.0, 1.0, 0.0));
+        }),
     ];
-    let settings: [&[(&str, &str)]; 4] =
-        [&[], &[("counter", "float")], &[("diffuse", "wrapped")], &[("casters", "light-facing")]];
+    // With some of them volumes lie beside their place, are open or lose steps, and darken what they should not.
+    let settings: [&[(&str, &str)]; 8] = [
+        &[],
+        &[("counter", "float")],
+        &[("diffuse", "wrapped")],
+        &[("casters", "light-facing")],
+        &[("caps", "dark")],
+        &[("operations", "clamp")],
+        &[("extrusion", "finite:0.5"), ("far-vertices", "from-origin")],
+        &[("light-caps", "never")],
+    ];
     let mut less = 0;
     for technique in [Technique::ZFail, Technique::ZPass, Technique::ZPassPlus] {
         for (scene, settings) in scenes.iter().flat_map(|scene| settings.map(|settings| (scene, settings))) {

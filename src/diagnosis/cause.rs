@@ -231,7 +231,7 @@ impl Cause {
                  border. No setting mends it: move the light, the triangle or the eye, or split what is so long."
             }
             Cause::SubpixelEdges => {
-                "The caster's edges are hardly longer than a pixel, or shorter. The GPU moves corners to the nearest 1/256 of a pixel, \
+                "The caster's edges are two pixels long or less. The GPU moves corners to the nearest 1/256 of a pixel, \
                  which tilts a side as narrow as that, and it meets the surface beside its place. Draw a larger picture."
             }
             Cause::NotReceiving => "The scene says that this object receives no shadows. Set `receives` if it should.",

@@ -30,9 +30,11 @@ pub fn can_darken(frame: &Frame, index: usize, light: LightId, what: Darkened) -
     light_frame::object_can_darken(&placed.world, triangles, frame.light_position(light), receivers)
 }
 
-/// Why a caster needs no volume: nothing that receives is behind it. `None` where something may be.
+/// Why a caster needs no volume: nothing that receives is behind it. `None` where something may be: under wrapped light the
+/// back of the caster itself, which else is dark as it faces away.
 pub fn darkens_nothing(frame: &Frame, index: usize, light: LightId) -> Option<LeftOut> {
-    if !frame.common.allows(Decision::Caster) || can_darken(frame, index, light, Darkened::All) {
+    let is_asked = frame.common.allows(Decision::Caster) && !frame.plan.wraps_diffuse;
+    if !is_asked || can_darken(frame, index, light, Darkened::All) {
         return None;
     }
     let because = format!("all that receives lies on the side of {}, or in its plane", light.name());

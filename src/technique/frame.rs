@@ -100,7 +100,8 @@ pub struct Frame<'a> {
 pub enum StencilUse {
     /// It counts or marks.
     Always,
-    /// Nothing, but where surfaces coincide it keeps them from being lit twice.
+    /// Nothing, but where triangles have the same three corners it keeps them from being lit twice. Others that overlap in
+    /// one plane are, where their depths round alike.
     ToLightOnce,
 }
 

@@ -56,8 +56,8 @@ pub(super) const DESCRIPTION: Description = Description {
     standing: Standing::Apart { because: "it is the truth" },
 };
 
-/// Others are measured against its colours. So no pixel may be lit twice, where surfaces overlap in one plane neither:
-/// the stencil marks what is lit, and nothing need be proven of the scene.
+/// Others are measured against its colours. So no surface that receives shadows may be lit twice, not even where two
+/// overlap in one plane: the stencil marks what is lit, and nothing need be proven of the scene.
 const LIT_ONCE: StencilUse = StencilUse::Always;
 
 /// Plans a frame with traced shadows.
@@ -82,7 +82,8 @@ fn lit_by(mut frame: Frame, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> F
     for light in frame.light_ids() {
         frame.plan.lights[light.0].decided_by = DecidedBy::Labels;
         ray_pass(&mut frame, light, labels(light));
-        let purpose = "Adds the light where its rays arrived.";
+        let purpose =
+            "Adds the light where its rays arrived, and raises the stencil there, so that no pixel is lit twice.";
         frame.light_pass(light, purpose, &frame.light_by(Visibility::Labels));
     }
     frame.finish()

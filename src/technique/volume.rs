@@ -12,8 +12,8 @@
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 //! Sides that hug the surface they are thrown by are drawn a little behind their place (`counting`).
 //!
-//! Where casters go by topology, they are looked at. One behind which nothing receives has no volume; and of closed
-//! surfaces, what can't show is not drawn, nor in the light's pass what faces away from it (`shown`).
+//! Where casters go by topology, they are looked at. Of closed surfaces, what can't show is not drawn, nor in the light's
+//! pass what faces away from it (`shown`); and z-fail draws no volume of a caster behind which nothing receives.
 
 mod counting;
 mod drawn;
@@ -152,8 +152,8 @@ struct Alike {
     light: LightId,
     counting: Counting,
     extrusion: Extrusion,
-    /// Casters are looked at: those that darken nothing need none.
-    looks: bool,
+    /// A caster behind which nothing receives needs no volume: all that receives reads 0 of it either way.
+    only_what_darkens: bool,
 }
 
 impl Decides for Alike {
@@ -162,9 +162,10 @@ impl Decides for Alike {
     }
 
     fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided> {
-        let Alike { light, counting, extrusion, looks } = *self;
+        let Alike { light, counting, extrusion, only_what_darkens } = *self;
         let form = |caster: &usize| {
-            if let Some(left_out) = looks.then(|| casters::darkens_nothing(frame, *caster, light)).flatten() {
+            let idle = only_what_darkens.then(|| casters::darkens_nothing(frame, *caster, light)).flatten();
+            if let Some(left_out) = idle {
                 return Decided::nothing(left_out);
             }
             let caster = frame.placed[*caster].object;
@@ -195,9 +196,11 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         shown::leave_out_hidden(&mut frame);
     }
     let extrusion = settings.extrusion;
+    // Z-pass is wrong where the eye is in a volume, if only in a floor's.
+    let only_what_darkens = looks && counting == Counting::Behind && settings.volumes_count_right();
     let begin = |frame: &mut Frame, light| {
         frame.lit = looks.then(|| shown::lit_by(frame, light));
-        Ok(Alike { light, counting, extrusion, looks })
+        Ok(Alike { light, counting, extrusion, only_what_darkens })
     };
     Ok(finish(frame, &settings, begin))
 }

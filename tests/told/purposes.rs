@@ -310,12 +310,7 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Adds the light where the count is zero, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
-        |_, pass, _| {
-            let raises = |draw: &Draw| {
-                !draw.raster.stencil.is_enabled() || draw.raster.face(true).0.pass_op == Operation::IncrementClamp
-            };
-            tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere)
-        },
+        |_, pass, _| tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere),
     ),
     (
         "Adds the light where the count is zero in {}, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
@@ -434,7 +429,10 @@ const PURPOSES: &[(&str, Check)] = &[
         "Follows a ray from the eye through every pixel to the surface it meets, and one from the light to that point: whatever lies between keeps the light away. This is done on the CPU.",
         |_, pass, _| pass.image.is_some() && pass.draws.is_empty(),
     ),
-    ("Adds the light where its rays arrived.", |_, pass, _| asks(pass, Visibility::Labels)),
+    (
+        "Adds the light where its rays arrived, and raises the stencil there, so that no pixel is lit twice.",
+        |_, pass, _| asks(pass, Visibility::Labels) && pass.draws.iter().all(raises),
+    ),
 ];
 
 pub fn patterns() -> Vec<&'static str> {
@@ -458,4 +456,9 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
         }
     }
     wrong
+}
+
+/// What is lit is marked in the stencil, where the draw has one.
+fn raises(draw: &Draw) -> bool {
+    !draw.raster.stencil.is_enabled() || draw.raster.face(true).0.pass_op == Operation::IncrementClamp
 }

@@ -197,7 +197,7 @@ fn nearest_side(facts: &Facts, object: &Object, seen: DVec3, light: DVec4) -> Op
     sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
-/// Corners snap to 1/256 of a pixel. Where a caster's edges are hardly longer than one, its volume's sides are narrow strips
+/// Corners snap to 1/256 of a pixel. Where a caster's edges are two pixels long or less, its volume's sides are narrow strips
 /// that reach far: as their corners snap, their depth tilts, and they meet a surface beside their place.
 fn subpixel_edges(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();

@@ -29,7 +29,7 @@ impl Frame<'_> {
             false => ("depth", TextureFormat::Depth32Float),
         };
         if !self.has_stencil {
-            let because = "this technique counts and marks nothing, and no two triangles coincide";
+            let because = "this technique counts and marks nothing, and no two triangles have the same corners";
             self.leave_out(Decision::Stencil, "the frame", because);
         }
         let role = AttachmentRole::DepthStencil;

@@ -20,8 +20,8 @@ const CASTERS: Words<WhoCasts> = words(
         text: "`all` lets every triangle cast, turned towards the light: right for any mesh, at twice the volume of \
              a closed one. `light-facing` suffices for a closed mesh with the light outside, and is wrong for \
              others: holes and inner lights. `light-back-facing` keeps the other half. `by-topology` proves that \
-             `light-facing` suffices, or says what it could not prove; and a caster behind which nothing receives, as \
-             a floor, has no volume then, whichever technique counts.",
+             `light-facing` suffices, or says what it could not prove; z-fail then draws no volume of a caster \
+             behind which nothing receives, as a floor (`leave-out`: `caster`).",
         formula: "an edge bounds the shadow |m| times, with m the sum of +1 or -1 of each casting triangle at it, by \
              the way in which the triangle, turned towards the light, runs along it",
         sources: &[cited::ALDRIDGE, cited::KIM],
@@ -271,6 +271,14 @@ pub enum WhoCasts {
 }
 
 impl VolumeSettings {
+    /// Are volumes closed and where they should be, and does every face count? Then a surface that none holds reads 0 of it.
+    #[must_use]
+    pub fn volumes_count_right(&self) -> bool {
+        let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
+        let loses_steps = self.operations == CountsBy::Clamping && !self.counts_in_float;
+        self.caps == [true; 2] && !self.light_caps_never_pass && !is_misplaced && !loses_steps
+    }
+
     /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
     #[must_use]
     pub fn of_auto(common: &CommonSettings) -> VolumeSettings {
