@@ -32,7 +32,6 @@ pub const GRAZING: Case = Case {
         ACNE.is_mixed(),
         fails(DETACHED, "peter-panning", "a bias that large carries the shadow away from what throws it").at_most(0.03),
         BETWEEN.at(|degrees| degrees <= 0.1).at_most(0.36),
-        TOLD_IN_F32.at(|degrees| degrees < 5e-4).at_most(0.002),
     ],
     ..PLAIN
 };
