@@ -44,13 +44,11 @@ named_enum! {
 
 impl Finding {
     /// The finding of that number, as in an error picture.
-    #[must_use]
     pub fn from_byte(byte: u8) -> Option<Finding> {
         Finding::ALL.get(usize::from(byte)).copied()
     }
 
     /// Counts as wrong.
-    #[must_use]
     pub fn is_wrong(self) -> bool {
         matches!(self, Finding::FalseShadow | Finding::MissingShadow | Finding::WrongSurface)
     }
@@ -84,7 +82,6 @@ pub struct ErrorCounts {
 
 impl ErrorCounts {
     /// Pixels that are wrong and not excused.
-    #[must_use]
     pub fn wrong(&self) -> u64 {
         self.false_shadow + self.missing_shadow + self.wrong_surface
     }
@@ -144,7 +141,6 @@ pub struct Accuracy {
 ///
 /// # Panics
 /// If the rows are not of the truth's size, or there is no such light.
-#[must_use]
 pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> Accuracy {
     let width = truth.size[0] as usize;
     assert_eq!(rows.len(), truth.size[1] as usize, "rows of labels");
@@ -169,7 +165,6 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> 
 ///
 /// # Panics
 /// If rows or findings are not of the truth's size.
-#[must_use]
 pub fn wrong_colors(tracer: &Tracer, truth: &Truth, findings: &[Vec<u8>], picture: &[&[u8]], right: &[&[u8]]) -> u64 {
     let width = truth.size[0] as usize;
     let height = truth.size[1] as usize;

@@ -43,9 +43,6 @@ impl From<io::Error> for ReadError {
 
 /// Opens a plain file. One that another names may be anything: a device or a pipe, which opening could wait for, is
 /// refused before.
-///
-/// # Errors
-/// As [`ReadError`] says.
 pub fn open_plain(path: &Path) -> Result<File, ReadError> {
     let metadata = std::fs::metadata(path)?;
     if metadata.is_dir() {
@@ -58,9 +55,6 @@ pub fn open_plain(path: &Path) -> Result<File, ReadError> {
 }
 
 /// The bytes of a plain file of at most so many; what grows while it is read ends at the limit.
-///
-/// # Errors
-/// As [`ReadError`] says.
 pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     let file = open_plain(path)?;
     if file.metadata()?.len() > most {
@@ -102,9 +96,6 @@ static BEGUN: AtomicU64 = AtomicU64::new(0);
 
 impl WholeFile {
     /// Begins one.
-    ///
-    /// # Errors
-    /// Nothing can be written there.
     pub fn create(path: &Path) -> io::Result<WholeFile> {
         // A link to a file stays a link: what it points to is replaced.
         let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
@@ -123,18 +114,12 @@ impl WholeFile {
     }
 
     /// Writes into it. What was written has to be flushed before it is finished.
-    ///
-    /// # Errors
-    /// The system has no more handles.
     #[cfg(feature = "program")]
     pub fn writer(&self) -> io::Result<io::BufWriter<File>> {
         Ok(io::BufWriter::new(self.file.try_clone()?))
     }
 
     /// Puts it in its place.
-    ///
-    /// # Errors
-    /// It can't be moved there.
     pub fn finish(mut self) -> io::Result<()> {
         if let Some(beside) = &self.beside {
             std::fs::rename(beside, &self.target)?;
@@ -154,9 +139,6 @@ impl Drop for WholeFile {
 }
 
 /// Writes a file beside its place and renames it.
-///
-/// # Errors
-/// The file can't be written; what was there before is still there then.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = WholeFile::create(path)?;
     file.file.write_all(bytes)?;

@@ -21,7 +21,6 @@ macro_rules! named_enum {
             pub const ALL: [$Enum; [$($name),+].len()] = [$($Enum::$Variant),+];
 
             /// Its name on the command line, in files and in JSON.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
                     $($Enum::$Variant => $name,)+
@@ -29,7 +28,6 @@ macro_rules! named_enum {
             }
 
             /// The one of that name.
-            #[must_use]
             pub fn from_name(name: &str) -> Option<$Enum> {
                 $Enum::ALL.into_iter().find(|one| one.name() == name)
             }

@@ -2,7 +2,6 @@
 //! digits of a share, lengths with their unit, and stencil counts with their sign.
 
 /// A count, its thousands apart by a thin space: `47 425`.
-#[must_use]
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -16,13 +15,11 @@ pub fn count(value: u64) -> String {
 }
 
 /// Would eight bits take a count for zero, though it is not?
-#[must_use]
 pub fn reads_zero_in_eight_bits(count: f32) -> bool {
     count != 0.0 && (count.round() as i64).rem_euclid(256) == 0
 }
 
 /// A share of 1 in per cent with two digits, without the sign; exactly `0` only where it is.
-#[must_use]
 pub fn per_hundred(fraction: f64) -> String {
     let value = fraction * 100.0;
     if value == 0.0 || !value.is_finite() {
@@ -37,7 +34,6 @@ pub fn per_hundred(fraction: f64) -> String {
 }
 
 /// A share of 1 in per cent: `0.12 %`; exactly `0` only where it is.
-#[must_use]
 pub fn percent(fraction: f64) -> String {
     match per_hundred(fraction) {
         zero if zero == "0" => zero,
@@ -46,7 +42,6 @@ pub fn percent(fraction: f64) -> String {
 }
 
 /// Milliseconds without the unit, with two or three digits.
-#[must_use]
 pub fn milliseconds(value: f64) -> String {
     match value {
         _ if !value.is_finite() => "–".to_owned(),
@@ -59,26 +54,22 @@ pub fn milliseconds(value: f64) -> String {
 }
 
 /// Bytes in MiB, without the unit.
-#[must_use]
 pub fn mebibytes(bytes: u64) -> String {
     let value = bytes as f64 / f64::from(1 << 20);
     if value < 100.0 { format!("{value:.1}") } else { count(value.round() as u64) }
 }
 
 /// A length in metres with about four digits; very small and very large ones with a power of ten.
-#[must_use]
 pub fn metres(value: f64) -> String {
     length(value, "m")
 }
 
 /// The same in another unit.
-#[must_use]
 pub fn length(value: f64, unit: &str) -> String {
     format!("{} {unit}", digits(value))
 }
 
 /// About four digits of a number.
-#[must_use]
 pub fn digits(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
@@ -97,32 +88,27 @@ pub fn digits(value: f64) -> String {
 }
 
 /// Seven digits of a number that others are computed from.
-#[must_use]
 pub fn precise(value: f64) -> String {
     let digits = format!("{value:.6e}").parse().unwrap_or(value);
     if digits != 0.0 && !(1e-6..1e9).contains(&f64::abs(digits)) { format!("{digits:e}") } else { digits.to_string() }
 }
 
 /// A stored depth in the fewest digits that read back as the same bits: neighbours differ.
-#[must_use]
 pub fn depth(value: f32) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:?}") }
 }
 
 /// The name of a light for people: lights count from 1.
-#[must_use]
 pub fn light(index: usize) -> String {
     format!("light {}", index + 1)
 }
 
 /// A count that is kept in a float, with its sign.
-#[must_use]
 pub fn count_in_float(value: f32) -> String {
     if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
 }
 
 /// A stencil value as people read it: 255 is `−1 (255)`.
-#[must_use]
 pub fn signed(value: u8) -> String {
     if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
 }

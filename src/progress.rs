@@ -35,13 +35,11 @@ impl Progress {
     }
 
     /// What was turned to last; `None` while what all of them need is made.
-    #[must_use]
     pub fn item(&self) -> Option<usize> {
         self.0.item.load(Ordering::Relaxed).checked_sub(1)
     }
 
     /// Steps done, and how many there are.
-    #[must_use]
     pub fn steps(&self) -> (usize, usize) {
         (self.0.done.load(Ordering::Relaxed), self.0.of.load(Ordering::Relaxed))
     }
@@ -52,7 +50,6 @@ impl Progress {
     }
 
     /// Was it asked to stop?
-    #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.0.cancelled.load(Ordering::Relaxed)
     }

@@ -21,7 +21,6 @@ pub struct Shard {
 
 impl Shard {
     /// Has this part that piece of the run, counted from 0?
-    #[must_use]
     pub fn has(self, piece: usize) -> bool {
         piece % self.of.max(1) as usize + 1 == self.part as usize
     }
@@ -63,7 +62,6 @@ pub struct Part {
 
 impl Part {
     /// The part of a run that a shard makes.
-    #[must_use]
     pub fn new(shard: Shard, places: Vec<usize>, how: String, rows: impl IntoIterator<Item = String>) -> Part {
         Part { shard, places, run: std::iter::once(how).chain(rows).collect() }
     }
@@ -147,9 +145,6 @@ pub struct PartOf<R> {
 }
 
 /// The rows of all parts in the order of the whole run.
-///
-/// # Errors
-/// Parts that are missing, there twice, or not of one run.
 pub fn merged<R>(parts: Vec<PartOf<R>>) -> Result<Vec<R>, MergeError> {
     let mut first: Option<(String, String, Part)> = None;
     let mut names: Vec<Option<String>> = Vec::new();

@@ -42,14 +42,12 @@ pub struct Outcome {
 
 impl Outcome {
     /// Did the fragment reach the colour target?
-    #[must_use]
     pub fn passed(&self) -> bool {
         self.depth_passed == Some(true)
     }
 }
 
 /// Does the stencil test of a face pass where `stored` is held?
-#[must_use]
 pub fn stencil_passes(state: &RasterState, front_facing: bool, stored: u8) -> bool {
     let (face, FaceMasks { reference, read, .. }) = state.face(front_facing);
     compare(face.compare, reference & read, stored & read)
@@ -57,7 +55,6 @@ pub fn stencil_passes(state: &RasterState, front_facing: bool, stored: u8) -> bo
 
 /// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces make
 /// no fragments.
-#[must_use]
 pub fn test(state: &RasterState, fragment: Fragment, stored: Stored) -> Outcome {
     let (face, FaceMasks { reference, write, .. }) = state.face(fragment.front_facing);
     let stencil_passed = stencil_passes(state, fragment.front_facing, stored.stencil);

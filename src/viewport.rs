@@ -40,7 +40,6 @@ pub struct Vertex {
 impl Vertex {
     /// At a homogeneous place; `w = 0`, at infinity, for shells only: its length says where they fade. `normal` is of
     /// unit length, or zero where nothing is shaded.
-    #[must_use]
     pub fn new(at: DVec4, normal: Vec3, color: Color32) -> Vertex {
         let whole = |value: f32| (value * f32::from(i16::MAX)) as i16;
         let normal = [whole(normal.x), whole(normal.y), whole(normal.z), 0];
@@ -189,7 +188,6 @@ impl CallbackTrait for Drawing {
 
 impl Viewports {
     /// The picture that was drawn last for [`Drawing::slot`].
-    #[must_use]
     pub fn picture(&self, slot: usize) -> Option<&DrawnPicture> {
         self.pictures.get(&slot)
     }

@@ -13,7 +13,6 @@ const CREASE: f64 = 0.906;
 
 /// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says; without one another program
 /// drew it, and `scene` is what its draws tell of that.
-#[must_use]
 pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
     let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, cache)).collect();
     let aspect = f64::from(plan.size[0]) / f64::from(plan.size[1].max(1));
@@ -88,7 +87,6 @@ fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) 
 
 /// The corners of a triangle of another program's pass as places of its anatomy; `None` where it is our own, or they
 /// are no numbers.
-#[must_use]
 pub fn recorded_places(plan: &FramePlan, pass: usize, corners: [[f32; 4]; 3]) -> Option<[DVec4; 3]> {
     let pass = plan.passes.get(pass).filter(|pass| pass.recorded.is_some())?;
     let space = Space::new(plan, pass);

@@ -152,7 +152,6 @@ pub struct NearClip {
 
 impl Frustum {
     /// Is its far end one place, the light?
-    #[must_use]
     pub fn ends_at_light(&self) -> bool {
         self.far.iter().all(|corner| *corner == self.far[0])
     }

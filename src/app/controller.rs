@@ -67,9 +67,6 @@ impl Drop for Controller {
 impl Controller {
     /// Opens what is asked for. `tell` wakes whoever draws. What was remembered of the run before is recalled, and
     /// this one's kept, where `remembers` says so.
-    ///
-    /// # Errors
-    /// The system gives no thread.
     pub fn new(request: ViewRequest, tell: Tell, remembers: bool) -> Result<Controller, AppError> {
         let start = Start {
             source: request.source,
@@ -107,7 +104,6 @@ impl Controller {
     }
 
     /// Is anything being found out? How far that is changes without news.
-    #[must_use]
     pub fn is_answering(&self) -> bool {
         self.inspector.answers().is_waiting()
     }

@@ -49,7 +49,6 @@ pub struct FrameCost {
 
 impl FrameCost {
     /// Both together.
-    #[must_use]
     pub fn total(&self) -> Duration {
         self.panels + self.triangles
     }
@@ -57,9 +56,6 @@ impl FrameCost {
 
 impl Headless {
     /// Opens what is asked for in a window of `size` points that would have `scale` pixels a point.
-    ///
-    /// # Errors
-    /// The system gives no thread.
     pub fn new(request: ViewRequest, size: [f32; 2], scale: f32) -> Result<Headless, AppError> {
         let (send, news) = channel();
         let controller = Controller::new(request, Arc::new(move |news| drop(send.send(news))), false)?;
@@ -118,9 +114,6 @@ impl Headless {
     }
 
     /// Frames until the worker has nothing to do, and all is shown.
-    ///
-    /// # Errors
-    /// The worker is silent for too long.
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
@@ -147,9 +140,6 @@ impl Headless {
     }
 
     /// Runs the open scene like this, and draws frames until its capture is shown: when it was.
-    ///
-    /// # Errors
-    /// The worker is silent for too long.
     pub fn run_and_show(&mut self, draft: RunRequest) -> Result<Instant, AppError> {
         let actions = self.controller.inspector.rerun(draft);
         self.act(actions);
@@ -178,9 +168,6 @@ impl Headless {
     }
 
     /// What the window would show.
-    ///
-    /// # Errors
-    /// There is no GPU to draw with, or it is lost.
     pub fn picture(&mut self) -> Result<Picture, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,

@@ -15,7 +15,6 @@ const MOST_WAITING: usize = 8;
 
 /// Takes out of `events` those of the next frame; what is left is later. Where more than a few frames would be, that
 /// is all of them.
-#[must_use]
 pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
     let Some(end) = end_of_frame(events) else { return std::mem::take(events) };
     let mut later = &events[end..];

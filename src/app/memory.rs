@@ -14,7 +14,6 @@ fn file() -> Option<PathBuf> {
 }
 
 /// What was remembered; as at first where nothing was, or it can't be read.
-#[must_use]
 pub fn load() -> Remembered {
     let text = file().and_then(|file| std::fs::read_to_string(file).ok());
     text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()

@@ -75,9 +75,6 @@ pub enum AppError {
 }
 
 /// Shows the window until it is closed.
-///
-/// # Errors
-/// No window can be made; nothing was rendered then, and the caller may capture instead.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
     allocator::give_back_at_once();
     window::run(request)

@@ -121,7 +121,6 @@ impl Queue {
     }
 
     /// Does nothing wait?
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

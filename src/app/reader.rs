@@ -35,9 +35,6 @@ pub struct Reader {
 
 impl Reader {
     /// Answers now, or after what is under way.
-    ///
-    /// # Errors
-    /// The system gives no thread.
     pub fn read(&mut self, reading: Reading, tell: &Tell) -> Result<(), Unread> {
         if self.is_running {
             self.next = Some(reading);
@@ -55,9 +52,6 @@ impl Reader {
     }
 
     /// What was under way is done.
-    ///
-    /// # Errors
-    /// As [`Reader::read`].
     pub fn go_on(&mut self, tell: &Tell) -> Result<(), Unread> {
         self.is_running = false;
         self.next.take().map_or(Ok(()), |next| self.read(next, tell))

@@ -55,9 +55,6 @@ pub struct Surface {
 impl Surface {
     /// Opens the window and a GPU that can draw on it, the one named in part by `adapter` where
     /// there is one.
-    ///
-    /// # Errors
-    /// The system gives no window, or no GPU can draw on it.
     pub fn new(
         event_loop: &ActiveEventLoop,
         ctx: &Context,

@@ -22,9 +22,6 @@ pub struct Watch {
 
 impl Watch {
     /// Starts to look.
-    ///
-    /// # Errors
-    /// The system gives no thread.
     pub fn start(tell: Tell) -> std::io::Result<Watch> {
         let watch = Watch::default();
         let files = Arc::clone(&watch.files);

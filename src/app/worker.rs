@@ -79,9 +79,6 @@ pub struct Start {
 
 impl Worker {
     /// Starts the thread; `tell` carries its news.
-    ///
-    /// # Errors
-    /// The system gives no thread.
     pub fn start(start: Start, tell: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let (alive, ended) = channel();
@@ -100,7 +97,6 @@ impl Worker {
     }
 
     /// Gives an order; false if the worker is gone.
-    #[must_use]
     pub fn order(&self, order: Order) -> bool {
         self.orders.as_ref().is_some_and(|orders| orders.send(order).is_ok())
     }

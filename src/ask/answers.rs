@@ -50,13 +50,11 @@ impl<T> Default for Reply<T> {
 
 impl<T> Reply<T> {
     /// The answer, or the older one while there is none.
-    #[must_use]
     pub fn latest(&self) -> Option<&Arc<T>> {
         self.ready.as_ref().or(self.older.as_ref())
     }
 
     /// Steps that are done, and how many there are, while it is being answered; 0 in all while that is not known.
-    #[must_use]
     pub fn steps(&self) -> Option<(usize, usize)> {
         self.running.as_ref().map(Progress::steps)
     }
@@ -126,7 +124,6 @@ impl Answers {
     }
 
     /// What is known of a question, without asking it.
-    #[must_use]
     pub fn of<Q: Question>(&self, question: Q) -> Reply<Q::Answer> {
         self.reply::<Q>(&question.into())
     }
@@ -151,20 +148,17 @@ impl Answers {
     }
 
     /// The last answer of a kind, whatever it is of, with its question.
-    #[must_use]
     pub fn last<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         let known = self.slot(Q::KIND).known.as_ref()?;
         Some((Q::of(&known.ask)?, Q::answer(&known.answer)?))
     }
 
     /// The last answer of a kind, where it is of what is shown now.
-    #[must_use]
     pub fn current<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         self.last::<Q>().filter(|_| self.slot(Q::KIND).known.as_ref().is_some_and(|known| known.is_current))
     }
 
     /// The question of a kind that is being answered, with how far that is; or why the last one was given up.
-    #[must_use]
     pub fn under_way<Q: Question>(&self) -> Reply<Q::Answer> {
         let slot = self.slot(Q::KIND);
         let asked = slot.asked.as_ref().map(|asked| &asked.ask);
@@ -174,7 +168,6 @@ impl Answers {
     }
 
     /// The question of a kind that is being answered.
-    #[must_use]
     pub fn asked<Q: Question>(&self) -> Option<&Q> {
         Q::of(&self.slot(Q::KIND).asked.as_ref()?.ask)
     }
@@ -357,13 +350,11 @@ impl Answers {
     }
 
     /// Is anything being found out?
-    #[must_use]
     pub fn is_waiting(&self) -> bool {
         self.slots.iter().any(|slot| slot.asked.is_some())
     }
 
     /// Is anything being found out that says how far it is?
-    #[must_use]
     pub fn has_progress(&self) -> bool {
         let tells = [Kind::TruthOf, Kind::DiagnosisOf, Kind::ReportOf, Kind::FilmOf, Kind::StressOf];
         tells.iter().any(|kind| self.slot(*kind).asked.is_some())

@@ -96,7 +96,6 @@ macro_rules! questions {
 
         impl Ask {
             /// Which kind it is.
-            #[must_use]
             pub fn kind(&self) -> Kind {
                 match self { $(Ask::$name(_) => Kind::$name),* }
             }
@@ -185,9 +184,6 @@ impl ReportOf {
     const RUNS: usize = 3;
 
     /// Every technique over its default settings.
-    ///
-    /// # Errors
-    /// A setting of the grid that its technique does not know, which is a bug of the grid.
     pub fn grid() -> Result<ReportOf, ChoiceError> {
         Ok(ReportOf { choices: Choice::report_grid()?, runs: ReportOf::RUNS })
     }
@@ -206,7 +202,6 @@ pub enum Holds {
 
 impl Kind {
     /// For how long an answer holds.
-    #[must_use]
     pub fn holds(self) -> Holds {
         match self {
             Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf | Kind::ReportOf => Holds::Scene,
@@ -217,51 +212,43 @@ impl Kind {
 
     /// Is the answer of the frame before shown until that of the next is known? Others go with their frame, and give
     /// their memory back.
-    #[must_use]
     pub fn outlives_frame(self) -> bool {
         matches!(self, Kind::HistoryOf | Kind::AnatomyOf)
     }
 
     /// Is it asked by a press of a button only, as it takes long?
-    #[must_use]
     pub fn is_started_by_hand(self) -> bool {
         matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::FilmOf | Kind::StressOf)
     }
 
     /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.
-    #[must_use]
     pub fn is_short(self) -> bool {
         matches!(self, Kind::DrawsOf | Kind::HistoryOf | Kind::AnatomyOf | Kind::TestsOf)
     }
 
     /// Does it follow from the capture and its plan, with nothing to run? Then a folder's frame answers it too, and
     /// no picture waits for it.
-    #[must_use]
     pub fn is_read_from_capture(self) -> bool {
         self == Kind::ReadersOf
     }
 
     /// Is it found out only when nothing else is asked for for a while?
-    #[must_use]
     pub fn waits_for_quiet(self) -> bool {
         self == Kind::TimingOf
     }
 
     /// Is what is asked for next of no use without it, so that all long work makes way?
-    #[must_use]
     pub fn is_urgent(self) -> bool {
         self == Kind::WallsOf
     }
 
     /// Is it so much asked for by who looks on that a truth under way is begun again after it?
-    #[must_use]
     pub fn interrupts_truth(self) -> bool {
         matches!(self, Kind::DrawsOf | Kind::CaptureOf)
     }
 
     /// What is said of it when it is stopped because another picture is asked for; `None`: it goes on, or is asked
     /// for again by who wants it.
-    #[must_use]
     pub fn stopped_by_picture(self) -> Option<&'static str> {
         match self {
             Kind::DiagnosisOf => Some("stopped for another picture: diagnose again when it is the one you want"),
@@ -273,7 +260,6 @@ impl Kind {
 
 impl Ask {
     /// What is being done for it, in a few words; `None` where it is so quick that nobody has to be told.
-    #[must_use]
     pub fn doing(&self) -> Option<String> {
         match self {
             Ask::DrawsOf(_) => Some("capturing the pass draw by draw".to_owned()),

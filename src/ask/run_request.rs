@@ -37,7 +37,6 @@ pub struct ObjectChanges {
 
 impl ObjectChanges {
     /// The scene with these changes.
-    #[must_use]
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let mut scene = loaded.clone();
         for (index, pose) in &self.moved {
@@ -61,7 +60,6 @@ impl ObjectChanges {
 
 impl RunRequest {
     /// A scene as it is, at time 0.
-    #[must_use]
     pub fn of(scene: &Scene, choice: Choice, size: [u32; 2]) -> RunRequest {
         RunRequest {
             choice,
@@ -95,7 +93,6 @@ impl RunRequest {
 
     /// The scene with this camera, these lights, its objects changed, and without what is switched off; still at its
     /// start.
-    #[must_use]
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let scene = without(&self.objects.applied_to(loaded), &self.off);
         Scene { camera: self.camera, lights: self.lights.clone(), ..scene }
@@ -114,7 +111,6 @@ pub struct CarriedOver {
 impl RunRequest {
     /// This run of `before` for what the scene's file holds by now: what was changed of objects is changed of those
     /// that have the same name, and of lights where the file did not add or delete some as well.
-    #[must_use]
     pub fn carried_over(&self, before: &Scene, after: &Scene) -> CarriedOver {
         let mut dropped = Vec::new();
         let names = |scene: &Scene| scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>();
@@ -172,7 +168,6 @@ fn carried_lights(own: &[Light], before: &[Light], after: &[Light]) -> Option<Ve
 }
 
 /// A scene without some of its objects, by index.
-#[must_use]
 pub fn without(scene: &Scene, off: &BTreeSet<usize>) -> Scene {
     let mut scene = scene.clone();
     let mut index = 0;

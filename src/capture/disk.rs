@@ -55,21 +55,16 @@ pub struct WholeFrame {
 }
 
 /// Is there a capture folder at this path?
-#[must_use]
 pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
 }
 
 /// Where a capture folder holds its scene, if it does.
-#[must_use]
 pub fn scene_file(folder: &Path) -> PathBuf {
     folder.join(SCENE)
 }
 
 /// Checks that [`write()`] may put a capture at this path, before any work is done for it.
-///
-/// # Errors
-/// Something is there that may not be replaced.
 pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> {
     let is_empty_folder = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
     let folder = folder.to_owned();
@@ -89,9 +84,6 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
 
 /// Writes a capture, with its frame and scene where they are given, to `folder`, whole or not at all, and returns how
 /// many milliseconds its pictures took (also in the manifest).
-///
-/// # Errors
-/// A folder that is there already and may not be replaced, or a place that can't be written to.
 pub fn write<'a>(contents: impl Into<Contents<'a>>, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
     let contents = contents.into();
@@ -99,9 +91,6 @@ pub fn write<'a>(contents: impl Into<Contents<'a>>, folder: &Path, overwrite: bo
 }
 
 /// Writes a picture's values as a NumPy array, or those of all layers of a map; colours as numbers too.
-///
-/// # Errors
-/// A place that can't be written to.
 pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureError> {
     match images {
         [image] => files::write_array(file, image),
@@ -111,9 +100,6 @@ pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureErr
 
 /// Makes a folder whole or not at all: `fill` makes and fills it beside its place, where it is renamed to. One that
 /// it replaces is moved aside until then; whether it may be replaced is the caller's to know.
-///
-/// # Errors
-/// What `fill` says; a place that can't be written to.
 pub fn put_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());

@@ -25,7 +25,6 @@ pub enum PixelFormat {
 
 impl PixelFormat {
     /// Bytes of one texel.
-    #[must_use]
     pub fn texel_bytes(self) -> usize {
         match self {
             PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 | PixelFormat::Depth32F | PixelFormat::Count32F => 4,
@@ -75,7 +74,6 @@ impl Image {
     ///
     /// # Panics
     /// If `bytes` is too short for the rows, or `row_stride` for the texels of one.
-    #[must_use]
     pub fn from_rows(format: PixelFormat, size: [u32; 2], row_stride: usize, bytes: impl Into<Bytes>) -> Image {
         let bytes = bytes.into();
         let [width, height] = size.map(|n| n as usize);
@@ -94,7 +92,6 @@ impl Image {
     ///
     /// # Panics
     /// If `bytes` is too short.
-    #[must_use]
     pub fn packed(format: PixelFormat, size: [u32; 2], bytes: impl Into<Bytes>) -> Image {
         Image::from_rows(format, size, size[0] as usize * format.texel_bytes(), bytes)
     }
@@ -103,7 +100,6 @@ impl Image {
     ///
     /// # Panics
     /// If `texel` has not the format's length.
-    #[must_use]
     pub fn uniform(format: PixelFormat, size: [u32; 2], texel: &[u8]) -> Image {
         assert_eq!(texel.len(), format.texel_bytes());
         let row = texel.repeat(size[0] as usize);
@@ -113,7 +109,6 @@ impl Image {
     /// The same picture, with its rows in the memory of `other` wherever it has them too, and a copy of the rest;
     /// `None` where that is more than three quarters. Memory that it shares stays as a whole as long as one of the
     /// two does.
-    #[must_use]
     pub fn sharing(&self, other: &Image) -> Option<Image> {
         if (self.format, self.size) != (other.format, other.size) {
             return None;
@@ -150,13 +145,11 @@ impl Image {
     }
 
     /// What one texel is.
-    #[must_use]
     pub fn format(&self) -> PixelFormat {
         self.format
     }
 
     /// Width and height in texels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -171,7 +164,6 @@ impl Image {
     }
 
     /// Bytes that it has and `other` has not.
-    #[must_use]
     pub fn bytes_beside(&self, other: Option<&Image>) -> u64 {
         let others: Vec<Range<usize>> = other.into_iter().flat_map(Image::memory).collect();
         covered(self.memory().chain(others.iter().cloned()).collect()) - covered(others)
@@ -181,14 +173,12 @@ impl Image {
     ///
     /// # Panics
     /// If there is no such row.
-    #[must_use]
     pub fn row(&self, y: u32) -> &[u8] {
         assert!(y < self.size[1], "row {y} of {}", self.size[1]);
         self.strips[(y / self.strip_rows) as usize].row(y % self.strip_rows, self.row_bytes())
     }
 
     /// Of each so many by so many texels the one in their middle.
-    #[must_use]
     pub fn every(&self, times: u32) -> Image {
         let size = self.size.map(|side| side / times.max(1));
         let middle = |at: u32| at * times + times / 2;
@@ -203,7 +193,6 @@ impl Image {
     }
 
     /// The bytes of one texel; `None` outside the picture.
-    #[must_use]
     pub fn texel(&self, [x, y]: [u32; 2]) -> Option<&[u8]> {
         if x >= self.size[0] || y >= self.size[1] {
             return None;
@@ -213,27 +202,23 @@ impl Image {
     }
 
     /// One byte texel; `None` outside the picture or for another format.
-    #[must_use]
     pub fn byte_at(&self, at: [u32; 2]) -> Option<u8> {
         (self.format == PixelFormat::U8).then(|| self.texel(at).map(|texel| texel[0])).flatten()
     }
 
     /// One depth texel; `None` outside the picture or for another format.
-    #[must_use]
     pub fn depth_at(&self, at: [u32; 2]) -> Option<f32> {
         let texel = (self.format == PixelFormat::Depth32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
     /// One count; `None` outside the picture or for another format.
-    #[must_use]
     pub fn count_at(&self, at: [u32; 2]) -> Option<f32> {
         let texel = (self.format == PixelFormat::Count32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
     /// One colour texel as bytes; `None` outside the picture or for another format.
-    #[must_use]
     pub fn rgba_at(&self, at: [u32; 2]) -> Option<[u8; 4]> {
         let is_color = matches!(self.format, PixelFormat::Rgba8Srgb | PixelFormat::Rgba8);
         let texel = is_color.then(|| self.texel(at)).flatten()?;
@@ -241,7 +226,6 @@ impl Image {
     }
 
     /// How many texels of a byte picture have each value.
-    #[must_use]
     pub fn histogram(&self) -> [u64; 256] {
         let mut counts = [0; 256];
         if self.format == PixelFormat::U8 {

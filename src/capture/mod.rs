@@ -82,7 +82,6 @@ pub struct AdapterInfo {
 
 impl AdapterInfo {
     /// In a sentence: `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe 22.3.6 (cpu)`.
-    #[must_use]
     pub fn in_words(&self) -> String {
         let AdapterInfo { name, driver, kind } = self;
         format!("{name}, {driver} ({kind})")
@@ -217,7 +216,6 @@ pub struct CapturedLight {
 
 impl CapturedMap {
     /// Does it hold colours that light passes, and not depths?
-    #[must_use]
     pub fn holds_colors(&self) -> bool {
         self.faces.first().is_some_and(|face| face.format() == PixelFormat::Rgba8)
     }
@@ -226,7 +224,6 @@ impl CapturedMap {
 impl CapturedLight {
     /// Pixels of surfaces that face the light whose count is a multiple of 256 other than 0, which
     /// eight bits read as 0; `None` where the count is not known.
-    #[must_use]
     pub fn wrapped_pixels(&self) -> Option<u64> {
         let (count, labels) = (self.count.as_ref()?, self.shadow.as_ref()?);
         let counts = count.rows().flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned::<f32>);
@@ -302,7 +299,6 @@ pub struct Timing {
 
 impl Differs {
     /// Is it as stored, but for rounding?
-    #[must_use]
     pub fn is_nowhere(self) -> bool {
         self.depth == 0 && self.stencil == 0
     }
@@ -310,20 +306,17 @@ impl Differs {
 
 impl Capture {
     /// What decides where a light's shadow is.
-    #[must_use]
     pub fn decided_by(&self, light: usize) -> DecidedBy {
         self.lights.get(light).map_or(DecidedBy::Nothing, |light| light.decided_by)
     }
 
     /// Are shadow volumes counted for any light?
-    #[must_use]
     pub fn counts_volumes(&self) -> bool {
         self.lights.iter().any(|light| light.decided_by.counts_volumes())
     }
 
     /// The picture's aspects after step `index`; for a map pass, those of the nearest step
     /// before it that has any.
-    #[must_use]
     pub fn frame_at(&self, index: usize) -> Option<&FrameSnapshot> {
         let upto = self.steps.get(..=index)?;
         upto.iter().rev().find_map(|step| match &step.snapshot {
@@ -333,7 +326,6 @@ impl Capture {
     }
 
     /// What counts of shadow volumes count, of all lights together; `None` where that is not known.
-    #[must_use]
     pub fn count_of(&self) -> Option<CountOf> {
         let mut all = self.lights.iter().filter_map(|light| light.count_of);
         let first = all.next()?;
@@ -341,13 +333,11 @@ impl Capture {
     }
 
     /// Is the state after every draw of a step known? So it is of a step without draws.
-    #[must_use]
     pub fn holds_draws(&self, step: usize) -> bool {
         self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
     }
 
     /// Bytes of all images: what they share counts once. It looks at every image: to be asked once for each capture.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let mut seen = std::collections::BTreeSet::new();
         let mut places = Vec::new();
@@ -360,14 +350,12 @@ impl Capture {
     }
 
     /// The errors of all lights together; `None` where no truth was asked for.
-    #[must_use]
     pub fn error(&self) -> Option<ErrorCounts> {
         let of_lights = self.lights.iter().map(|light| light.truth.as_ref().map(|truth| truth.error));
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
     }
 
     /// The capture with its truth.
-    #[must_use]
     pub fn with_truth(&self, truth: &FrameTruth) -> Capture {
         let mut capture = self.clone();
         for (light, truth) in capture.lights.iter_mut().zip(&truth.lights) {
@@ -381,7 +369,6 @@ impl Capture {
 
     /// The capture with the states after the draws of a step. Together they may take much memory: where it would hold
     /// more than 128 MiB, those of other steps are dropped, and have to be asked for again.
-    #[must_use]
     pub fn with_draws(&self, draws: &StepDraws) -> Capture {
         self.with_draws_in(draws, MOST_DRAWS_BYTES)
     }
@@ -431,7 +418,6 @@ impl DrawState {
     }
 
     /// Did the draw leave everything as it was?
-    #[must_use]
     pub fn changes_nothing(&self) -> bool {
         self.aspects().all(|aspect| aspect.unchanged)
     }
@@ -439,13 +425,11 @@ impl DrawState {
 
 impl Step {
     /// Triangles submitted.
-    #[must_use]
     pub fn triangles(&self) -> u64 {
         self.draws.iter().map(|draw| draw.triangles).sum()
     }
 
     /// The one caster of all draws, if there is just one.
-    #[must_use]
     pub fn caster(&self) -> Option<&str> {
         let first = self.draws.first()?.caster.as_deref()?;
         self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)

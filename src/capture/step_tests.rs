@@ -58,7 +58,6 @@ impl TestCounts {
     pub const UNKNOWN: u8 = 8;
 
     /// What happened here at least once, as bits.
-    #[must_use]
     pub fn outcomes(self) -> u8 {
         let bit = |count: Option<u8>, bit: u8| if count.is_some_and(|count| count > 0) { bit } else { 0 };
         let known = bit(self.passed, Self::PASSED) | bit(self.depth_failed, Self::DEPTH_FAILED);
@@ -69,14 +68,12 @@ impl TestCounts {
 
 impl StepTests {
     /// How the fragments of a pixel fared; `None` outside the picture.
-    #[must_use]
     pub fn at(&self, pixel: [u32; 2]) -> Option<TestCounts> {
         let byte = |image: &Image| image.byte_at(pixel);
         Some(counts(byte(&self.fragments)?, byte(&self.depth_passes)?, byte(&self.stencil)?))
     }
 
     /// [`TestCounts::outcomes`] of every pixel.
-    #[must_use]
     pub fn outcomes(&self) -> Image {
         let rows = self.fragments.rows().zip(self.depth_passes.rows()).zip(self.stencil.rows());
         let texels = rows.flat_map(|((all, passes), verdicts)| all.iter().zip(passes).zip(verdicts));

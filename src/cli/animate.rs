@@ -71,9 +71,6 @@ fn milliseconds(text: &str) -> Result<u16, String> {
 }
 
 /// Makes the animation and says what it is.
-///
-/// # Errors
-/// A scene, option or file that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     check_target(&arguments.output, arguments.overwrite)?;
     let refused = "an animation shows whole passes";

@@ -46,9 +46,6 @@ pub struct BenchArguments {
 }
 
 /// Runs the named benchmarks.
-///
-/// # Errors
-/// A benchmark that does not exist; a scene or frame that can't be made; no GPU.
 pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     arguments.names.iter().try_for_each(|name| check_name(name))?;
     arguments.frame.refuse_draws("a benchmark times whole passes")?;

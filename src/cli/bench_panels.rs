@@ -20,9 +20,6 @@ const LIMIT_PANELS_MS: f64 = 8.0;
 const LIMIT_LIGHT_MS: f64 = 150.0;
 
 /// Without a window there are no panels.
-///
-/// # Errors
-/// Always.
 #[cfg(not(feature = "inspector"))]
 pub fn run(_: &[String], _: &SceneOptions, _: &FrameOptions) -> Result<(), CliError> {
     let _ = output::note;
@@ -30,9 +27,6 @@ pub fn run(_: &[String], _: &SceneOptions, _: &FrameOptions) -> Result<(), CliEr
 }
 
 /// Draws the panels over each scene without a window, and says what that costs.
-///
-/// # Errors
-/// A scene that can't be opened; no GPU.
 #[cfg(feature = "inspector")]
 pub fn run(scenes: &[String], scene_options: &SceneOptions, frame: &FrameOptions) -> Result<(), CliError> {
     use crate::app::headless::Headless;

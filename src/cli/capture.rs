@@ -42,9 +42,6 @@ pub struct CaptureArguments {
 }
 
 /// Captures a scene.
-///
-/// # Errors
-/// A scene, option or folder that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
     let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, timing, page } = arguments;
     if let Some(page) = page {
@@ -82,9 +79,6 @@ pub struct Writing<'a> {
 
 impl<'a> Job<'a> {
     /// Everything that can be wrong without a GPU is found here, before one is opened.
-    ///
-    /// # Errors
-    /// A scene, option or folder that can't be used.
     pub fn new(
         name: &str,
         scene_options: &SceneOptions,
@@ -99,9 +93,6 @@ impl<'a> Job<'a> {
     }
 
     /// Captures into the folder and says so.
-    ///
-    /// # Errors
-    /// No GPU; a frame that can't be made; a folder that can't be written.
     pub fn run(self) -> Result<(), CliError> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;

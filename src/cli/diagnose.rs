@@ -44,9 +44,6 @@ pub struct DiagnoseArguments {
 }
 
 /// Diagnoses a frame.
-///
-/// # Errors
-/// A scene, option or place that can't be used; no GPU; [`CliError::Wrong`] where pixels are wrong.
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let DiagnoseArguments { scene_options, frame, output: folder, .. } = arguments;
     frame.refuse_draws("a diagnosis looks at draws by itself")?;

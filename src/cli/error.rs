@@ -95,7 +95,6 @@ pub enum CliError {
 impl CliError {
     /// 1 where the answer is bad, 2 for bad input or usage, 3 where no GPU can be used or RenderDoc is not
     /// installed, 0 where nobody reads the result.
-    #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
@@ -111,7 +110,6 @@ impl CliError {
     }
 
     /// The line for standard error; `None` where there is nothing to say.
-    #[must_use]
     pub fn line(&self) -> Option<String> {
         match self {
             CliError::ClosedOutput => None,

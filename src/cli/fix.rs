@@ -19,9 +19,6 @@ pub struct Fix<'a> {
 
 impl<'a> Fix<'a> {
     /// Checks, before long work, that the file may be written.
-    ///
-    /// # Errors
-    /// It is no scene file, it is the scene itself, it is there already, or there is no such folder.
     pub fn new(file: &'a str, source: &'a str, overwrite: bool) -> Result<Fix<'a>, CliError> {
         let usage = |what: &str| Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())));
         let path = Path::new(file);
@@ -40,9 +37,6 @@ impl<'a> Fix<'a> {
     }
 
     /// Writes `loaded`, mended, with its motions; opens it again and says how many pixels are wrong then.
-    ///
-    /// # Errors
-    /// A file that can't be written or opened again; a lost GPU.
     pub fn write(
         &self,
         session: &mut Session,

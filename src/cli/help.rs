@@ -41,9 +41,6 @@ pub struct HelpArguments {
 }
 
 /// Prints what is known of a key; without one, what there is.
-///
-/// # Errors
-/// An unknown key, with the nearest one.
 pub fn run(arguments: &HelpArguments) -> Result<(), CliError> {
     match arguments.key.as_deref() {
         None => output::print(&overview()),

@@ -71,17 +71,11 @@ impl ReaderOptions {
 
 impl FrameTarget {
     /// Checks, before any work, that the folder can be written.
-    ///
-    /// # Errors
-    /// Something is there that may not be replaced.
     pub fn check(&self) -> Result<(), CliError> {
         Ok(self.output.as_deref().map_or(Ok(()), |folder| disk::check_target(folder, self.overwrite))?)
     }
 
     /// Prints and writes what was asked for.
-    ///
-    /// # Errors
-    /// It can't be printed or written.
     pub fn deliver(&self, frame: RawFrame, name: &str) -> Result<(), CliError> {
         if self.list {
             output::print(&import::list(&frame))?;
@@ -142,9 +136,6 @@ pub fn with_bar(work: impl FnOnce(&Progress) -> Result<RawFrame, ImportError>) -
 }
 
 /// Reads a capture and delivers its frame.
-///
-/// # Errors
-/// It can't be read or replayed; no module `renderdoc`; the folder can't be written.
 pub fn run(arguments: &ImportArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     let options = arguments.reader.options(&arguments.target);

@@ -97,9 +97,6 @@ enum Command {
 }
 
 /// Runs the command line `arguments`, the program's name first.
-///
-/// # Errors
-/// Whatever ended the command; [`CliError::exit_code`] says how bad it is.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let word = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();

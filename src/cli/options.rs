@@ -129,17 +129,11 @@ impl SceneOptions {
     }
 
     /// Opens the scene and applies these options; the result stands still at `--time`.
-    ///
-    /// # Errors
-    /// A scene that can't be opened; a camera or light that can't be used.
     pub fn open(&self, name: &str) -> Result<Scene, CliError> {
         Ok(self.load(name)?.at(self.moment()?))
     }
 
     /// The moment at which scenes are seen.
-    ///
-    /// # Errors
-    /// Frames from one to another were asked for.
     pub fn moment(&self) -> Result<f64, CliError> {
         match self.time {
             When::At(seconds) => Ok(seconds),
@@ -158,9 +152,6 @@ impl SceneOptions {
     }
 
     /// The same, still at time 0, with all motions.
-    ///
-    /// # Errors
-    /// As [`SceneOptions::open`].
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
         let mut scene = open(&self.spec(name))?;
         if self.z_up && !is_model(name) {
@@ -272,9 +263,6 @@ impl Subject {
     }
 
     /// The frame: run now, or as it was stored.
-    ///
-    /// # Errors
-    /// A scene that can't be drawn; a lost GPU.
     pub fn frame(self, session: &mut Session) -> Result<RunFrame, CliError> {
         match self {
             Subject::Scene(scene) => Ok(session.render(scene.scene, scene.request)?),
@@ -283,9 +271,6 @@ impl Subject {
     }
 
     /// What the frame is made from.
-    ///
-    /// # Errors
-    /// Another program drew it.
     pub fn scene(self) -> Result<SceneSubject, CliError> {
         match self {
             Subject::Scene(scene) => Ok(*scene),
@@ -299,9 +284,6 @@ impl Subject {
 
 impl FrameOptions {
     /// What to capture of `scene`, timed.
-    ///
-    /// # Errors
-    /// A technique or setting that does not exist, or is not there yet.
     pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
         Ok(CaptureRequest {
             every: self.every()?,
@@ -328,9 +310,6 @@ impl FrameOptions {
     }
 
     /// For a command that takes no snapshot of draws, and says why.
-    ///
-    /// # Errors
-    /// They were asked for.
     pub fn refuse_draws(&self, why: &str) -> Result<(), CliError> {
         match self.every()? {
             Every::Pass => Ok(()),
@@ -339,9 +318,6 @@ impl FrameOptions {
     }
 
     /// For a command without a frame to bracket, and says why.
-    ///
-    /// # Errors
-    /// It was asked for.
     pub fn refuse_external_capture(&self, why: &str) -> Result<(), CliError> {
         if self.external_capture {
             return Err(CliError::Usage(format!("`--external-capture` is for captures; {why}: leave it out")));
@@ -359,9 +335,6 @@ impl FrameOptions {
 }
 
 /// A technique by name.
-///
-/// # Errors
-/// No such technique, or none yet.
 pub fn technique_named(name: &str) -> Result<Technique, CliError> {
     let request = TechniqueRequest { name: name.to_owned(), settings: BTreeMap::new() };
     Ok(Choice::parse(&request)?.technique())

@@ -4,9 +4,6 @@ use super::CliError;
 use std::io::{ErrorKind, Write};
 
 /// Writes `text` to standard output.
-///
-/// # Errors
-/// Nobody reads it, or it can't be written.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = std::io::stdout().lock();
     let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
@@ -17,9 +14,6 @@ pub fn print(text: &str) -> Result<(), CliError> {
 }
 
 /// Checks, before long work, that a file can be made at this path.
-///
-/// # Errors
-/// There is no such folder, or it is a folder itself.
 pub fn check_target(path: &str) -> Result<(), CliError> {
     let path_of = std::path::Path::new(path);
     let folder = path_of.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -34,18 +28,12 @@ pub fn check_target(path: &str) -> Result<(), CliError> {
 }
 
 /// Writes `text` to `file`, or to standard output where there is none.
-///
-/// # Errors
-/// As [`print`]; the file can't be written.
 pub fn deliver(text: &str, file: Option<&str>) -> Result<(), CliError> {
     let Some(path) = file else { return print(text) };
     write(path, text.as_bytes())
 }
 
 /// Writes a file beside its place and renames it, so that it is there whole or not at all.
-///
-/// # Errors
-/// The file can't be written.
 pub fn write(path: &str, bytes: &[u8]) -> Result<(), CliError> {
     let failed = |source| CliError::Output { path: path.to_owned(), source };
     crate::files::write_whole(std::path::Path::new(path), bytes).map_err(failed)

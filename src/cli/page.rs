@@ -40,9 +40,6 @@ pub struct PageArguments {
 }
 
 /// Makes the page and says what it is.
-///
-/// # Errors
-/// A scene, option or file that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
     check_target(output, *overwrite)?;

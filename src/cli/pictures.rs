@@ -29,9 +29,6 @@ fn parse_scale(text: &str) -> Result<f32, String> {
 }
 
 /// Without a window there is nothing to take a picture of.
-///
-/// # Errors
-/// Always.
 #[cfg(not(feature = "inspector"))]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     let PicturesArguments { output, adapter, only, window, scale } = arguments;
@@ -40,9 +37,6 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
 }
 
 /// Draws all pictures.
-///
-/// # Errors
-/// A folder that can't be written to; no GPU.
 #[cfg(feature = "inspector")]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     let window = arguments.window.map(|side| side as f32);

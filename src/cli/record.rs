@@ -31,9 +31,6 @@ pub struct RecordArguments {
 }
 
 /// Runs a program until it has shown the frame, and delivers that.
-///
-/// # Errors
-/// The program can't be run or recorded; no module `renderdoc`; the folder can't be written.
 pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     arguments.keep.as_ref().map_or(Ok(()), |file| output::check_target(&file.to_string_lossy()))?;

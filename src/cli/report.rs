@@ -62,9 +62,6 @@ enum Merge {
 }
 
 /// Measures and prints; `command` is the command line, for the page.
-///
-/// # Errors
-/// A scene, technique or setting that can't be used; no GPU; a file that can't be written.
 pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     if let Some(Merge::Merge(arguments)) = &arguments.merge {
         return merge::run(arguments, command);

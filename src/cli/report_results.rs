@@ -33,17 +33,11 @@ impl ReportResults {
     }
 
     /// Checks, before long work, that all can be delivered.
-    ///
-    /// # Errors
-    /// As [`results::check`].
     pub fn check(&self) -> Result<(), CliError> {
         results::check(&self.targets().each_ref(), &self.plot)
     }
 
     /// Writes all that is asked for, the table where nothing is; `command` is the command line, for the page.
-    ///
-    /// # Errors
-    /// A file that can't be written; a plot that can't be drawn.
     pub fn deliver(&self, command: &str, report: &Report) -> Result<(), CliError> {
         if let Some(file) = &self.plot {
             let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };

@@ -25,9 +25,6 @@ pub fn files<'a>(forms: &[&'a Target], plot: &'a Option<String>) -> Vec<&'a str>
 }
 
 /// Checks, before long work, that all results can be delivered.
-///
-/// # Errors
-/// A file that can't be made there, two results for one file, two for standard output.
 pub fn check(forms: &[&Target], plot: &Option<String>) -> Result<(), CliError> {
     let files = files(forms, plot);
     files.iter().try_for_each(|file| output::check_target(file))?;
@@ -48,9 +45,6 @@ pub fn check(forms: &[&Target], plot: &Option<String>) -> Result<(), CliError> {
 pub type Form<'a> = (&'a Target, &'a dyn Fn() -> Result<String, CliError>);
 
 /// Makes and writes the forms that are asked for; the table where none is.
-///
-/// # Errors
-/// As [`output::deliver`], and those of the forms.
 pub fn deliver(forms: &[Form], table: impl FnOnce() -> String) -> Result<(), CliError> {
     if forms.iter().all(|(target, _)| target.is_none()) {
         return output::print(&table());

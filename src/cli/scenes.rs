@@ -12,9 +12,6 @@ pub struct ScenesArguments {
 }
 
 /// A line each, name first; or JSON.
-///
-/// # Errors
-/// The list can't be written.
 pub fn run(arguments: &ScenesArguments) -> Result<(), CliError> {
     match &arguments.json {
         None => output::print(&lines()),

@@ -111,9 +111,6 @@ fn runs_nowhere(chosen: &[&Case], is_named: bool, technique: Technique) -> CliEr
 }
 
 /// Writes JSON, Markdown and the page where they are asked for, else the table; and the plot.
-///
-/// # Errors
-/// A file that can't be written; [`CliError::Unexpected`] where a technique did not do as expected.
 pub fn deliver(
     stress: &Stress,
     command: &str,

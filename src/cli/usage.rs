@@ -4,9 +4,6 @@ use super::{CliError, output};
 use clap::error::ErrorKind;
 
 /// Help and version are results; everything else is an error line that names the mend.
-///
-/// # Errors
-/// Wrong usage; a closed standard output.
 pub fn answer(error: &clap::Error) -> Result<(), CliError> {
     let text = error.render().to_string();
     match error.kind() {

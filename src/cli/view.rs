@@ -29,9 +29,6 @@ pub struct ViewArguments {
 }
 
 /// Opens the window; with no display, or built without one, says so and captures instead.
-///
-/// # Errors
-/// As [`capture::run`]; a capture folder that can't be read.
 pub fn run(arguments: &ViewArguments) -> Result<(), CliError> {
     match no_window_because() {
         None => window::open(arguments),
@@ -112,9 +109,6 @@ pub mod window {
     }
 
     /// What opens a scene in a window, or in panels without one.
-    ///
-    /// # Errors
-    /// A scene that can't be opened; options that can't be used.
     pub fn scene_request(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<ViewRequest, CliError> {
         let loaded = scene.load(name)?;
         let capture = frame.request(&loaded)?;

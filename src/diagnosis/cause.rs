@@ -91,7 +91,6 @@ named_enum! {
 
 impl Cause {
     /// What it is and what to do, for someone who meets it for the first time.
-    #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
             Cause::EyeInVolume => {

@@ -9,9 +9,6 @@ const SCHEMA: u32 = 1;
 
 impl Diagnosis {
     /// Machine-readable. `suited` tells how techniques do on this scene; empty where that was not measured.
-    ///
-    /// # Errors
-    /// What the serialiser refuses; nothing here is known to be refused.
     pub fn to_json(&self, suited: &[Suited]) -> Result<String, serde_json::Error> {
         let suited = suited.iter().map(|one| {
             json!({

@@ -87,7 +87,6 @@ named_enum! {
 
 impl PlanEdit {
     /// The part of a volume that it draws again.
-    #[must_use]
     pub fn part(self) -> Option<Part> {
         match self {
             PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(Part::LightCap),
@@ -99,43 +98,36 @@ impl PlanEdit {
 
 impl Mend {
     /// Changes the technique.
-    #[must_use]
     pub fn technique(technique: Technique) -> Mend {
         Mend { technique: Some(technique), ..Mend::default() }
     }
 
     /// Changes one setting.
-    #[must_use]
     pub fn setting(key: &str, value: &str) -> Mend {
         Mend { settings: BTreeMap::from([(key.to_owned(), value.to_owned())]), ..Mend::default() }
     }
 
     /// Changes an object of the scene.
-    #[must_use]
     pub fn scene(object: usize, name: &str, change: ObjectChange) -> Mend {
         Mend { scene: vec![SceneEdit { object, name: name.to_owned(), change }], ..Mend::default() }
     }
 
     /// Changes the plan.
-    #[must_use]
     pub fn plan(edit: PlanEdit) -> Mend {
         Mend { plan: vec![edit], ..Mend::default() }
     }
 
     /// Draws a larger picture.
-    #[must_use]
     pub fn larger(times: u32) -> Mend {
         Mend { larger: Some(times), ..Mend::default() }
     }
 
     /// Nothing is changed.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Mend::default()
     }
 
     /// Both at once; where they differ on a setting, the other's holds.
-    #[must_use]
     pub fn and(&self, other: &Mend) -> Mend {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
@@ -151,9 +143,6 @@ impl Mend {
     }
 
     /// Makes its changes of scene and settings. Settings that another technique shares are kept.
-    ///
-    /// # Errors
-    /// A setting that the technique does not have, an object that is not there.
     pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), MendError> {
         for SceneEdit { object, name, change } in &self.scene {
             let missing = || MendError::NoObject { object: *object, name: name.clone() };
@@ -173,9 +162,6 @@ impl Mend {
     }
 
     /// Makes its changes of technique and settings alone.
-    ///
-    /// # Errors
-    /// A setting that the technique does not have.
     pub fn choose(&self, choice: &mut Choice) -> Result<(), MendError> {
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
@@ -194,7 +180,6 @@ impl Mend {
     }
 
     /// The size of the picture that it draws.
-    #[must_use]
     pub fn size(&self, size: [u32; 2]) -> [u32; 2] {
         size.map(|side| side.saturating_mul(self.larger.unwrap_or(1)))
     }
@@ -216,20 +201,17 @@ impl Mend {
     }
 
     /// Does it change nothing but technique and settings, which the window can change?
-    #[must_use]
     pub fn is_a_choice(&self) -> bool {
         self.scene.is_empty() && self.plan.is_empty() && self.larger.is_none() && !self.is_empty()
     }
 
     /// How much it changes: a setting less than an object, an object less than a technique.
-    #[must_use]
     pub fn weight(&self) -> usize {
         let [technique, larger] = [self.technique.is_some(), self.larger.is_some()].map(usize::from);
         self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * technique + 20 * larger
     }
 
     /// In words: `use z-fail`, `set casters = all`.
-    #[must_use]
     pub fn describe(&self) -> String {
         let mut words = Vec::new();
         words.extend(self.technique.map(|technique| format!("use {}", technique.name())));

@@ -63,7 +63,6 @@ impl Diagnosis {
     pub const MOST_REGIONS: usize = 12;
 
     /// What is to be said of a region that no cause fits, in a few words.
-    #[must_use]
     pub fn without_cause(&self, region: &RegionFound) -> &'static str {
         let is_missing = region.kind == RegionKind::Wrong(Finding::MissingShadow);
         match self.technique {
@@ -73,7 +72,6 @@ impl Diagnosis {
     }
 
     /// Is any pixel wrong, or darkened twice?
-    #[must_use]
     pub fn is_bad(&self) -> bool {
         !self.regions.is_empty()
     }
@@ -120,7 +118,6 @@ pub enum RegionKind {
 
 impl RegionKind {
     /// The name in JSON.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             RegionKind::Wrong(finding) => finding.name(),
@@ -204,7 +201,6 @@ pub enum MeshTrouble {
 
 impl MeshTrouble {
     /// The name in JSON and text.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             MeshTrouble::Cause(cause) => cause.name(),

@@ -44,7 +44,6 @@ named_enum! {
 
 impl FrameFault {
     /// What it is and what to do, in the program's own terms.
-    #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
             FrameFault::FarClip => {
@@ -117,7 +116,6 @@ pub struct FaultFound {
 
 impl FaultFound {
     /// Its names, its light and what its run has shown: `far-clip (light 1), part: 10 pixels left`.
-    #[must_use]
     pub fn title(&self) -> String {
         let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
         let (name, light, proof) = (self.fault.name(), self.light.name(), self.proof.name());
@@ -125,7 +123,6 @@ impl FaultFound {
     }
 
     /// What it is and what to do; of all of them where it is several.
-    #[must_use]
     pub fn meaning(&self) -> String {
         let all = std::iter::once(&self.fault).chain(&self.together_with);
         all.map(|fault| fault.meaning()).collect::<Vec<_>>().join(" ")
@@ -151,13 +148,11 @@ pub struct FrameDiagnosis {
 
 impl FrameDiagnosis {
     /// Wrong pixels of all lights.
-    #[must_use]
     pub fn wrong(&self) -> u64 {
         self.lights.iter().map(|(error, _)| error.wrong()).sum()
     }
 
     /// For people.
-    #[must_use]
     pub fn to_text(&self) -> String {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
         let mut text = format!(
@@ -210,9 +205,6 @@ impl FrameDiagnosis {
     }
 
     /// For scripts: as `diagnose --json` of a scene, with one region a light.
-    ///
-    /// # Errors
-    /// What the serialiser refuses; nothing here is known to be refused.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
         let cause = |found: &FaultFound| {
@@ -254,13 +246,11 @@ impl FrameDiagnosis {
 }
 
 /// What may be wrong with the shadows of a light at `position`, from states and volumes alone.
-#[must_use]
 pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Suspicion> {
     FrameFault::ALL.into_iter().filter_map(|fault| suspicion(fault, plan, light, position)).collect()
 }
 
 /// What speaks for a fault in a plan; `None` where nothing does.
-#[must_use]
 pub fn suspicion(fault: FrameFault, plan: &FramePlan, light: LightId, position: DVec4) -> Option<Suspicion> {
     let counting = Counting { plan, light };
     let (evidence, mended) = match fault {

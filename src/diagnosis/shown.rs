@@ -21,7 +21,6 @@ const DOT: u32 = 2;
 
 impl Diagnosis {
     /// Draws the regions over a capture that was held against the truth, numbered as in the text.
-    #[must_use]
     pub fn shown(&self, capture: &Capture) -> Picture {
         let mut picture = wrong_pixels(capture);
         for (index, region) in self.regions.iter().enumerate() {
@@ -32,7 +31,6 @@ impl Diagnosis {
 }
 
 /// The last picture of a capture in grey, with what is wrong in it in colour.
-#[must_use]
 pub fn wrong_pixels(capture: &Capture) -> Picture {
     let mut picture = Picture::filled(capture.size, colors::NOTHING);
     let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));

@@ -17,14 +17,12 @@ pub struct Suited {
 impl Suited {
     /// What is worth trying on any scene: every technique that makes shadows on the GPU as it is by default, and
     /// volumes that count in floats.
-    #[must_use]
     pub fn candidates() -> Vec<Choice> {
         let plain = Technique::rivals().into_iter().map(Choice::new);
         plain.chain(Choice::new(Technique::ZFail).counting_in_floats()).collect()
     }
 
     /// The technique with the settings that differ from its defaults: `z-fail counter=float`.
-    #[must_use]
     pub fn name(&self) -> String {
         let technique = self.choice.technique();
         let changed = technique.settings().iter().filter_map(|spec| {
@@ -35,7 +33,6 @@ impl Suited {
     }
 
     /// The fastest that has no wrong pixel: as it is by default where any is right so.
-    #[must_use]
     pub fn best(suited: &[Suited]) -> Option<&Suited> {
         let is_plain = |one: &Suited| one.choice == Choice::new(one.choice.technique());
         let right = suited.iter().filter(|one| one.wrong == 0);
@@ -46,7 +43,6 @@ impl Suited {
 impl Diagnosis {
     /// What mends the scene for good, where anything is better than what was asked for: what is advised, or the fastest
     /// technique without a wrong pixel.
-    #[must_use]
     pub fn mend_to_write(&self, suited: &[Suited]) -> Option<Mend> {
         let best = || {
             let choice = &Suited::best(suited)?.choice;
@@ -59,7 +55,6 @@ impl Diagnosis {
     }
 
     /// Does what it advises leave nothing wrong?
-    #[must_use]
     pub fn is_mended(&self) -> bool {
         self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
     }

@@ -14,7 +14,6 @@ const MOST_PLACES: usize = 8;
 impl Diagnosis {
     /// The whole diagnosis, for someone who meets these words for the first time. `suited` tells how techniques do
     /// on this scene; empty where that was not measured.
-    #[must_use]
     pub fn to_text(&self, suited: &[Suited]) -> String {
         let mut out = self.heading();
         let mut explained = BTreeSet::new();
@@ -94,7 +93,6 @@ impl Diagnosis {
     }
 
     /// The last line.
-    #[must_use]
     pub fn what_to_do(&self, suited: &[Suited]) -> String {
         if !self.is_bad() {
             return "nothing: the shadows are right".to_owned();
@@ -119,7 +117,6 @@ impl Diagnosis {
 
 impl RegionFound {
     /// What is wrong, where, and who is concerned: one line.
-    #[must_use]
     pub fn place(&self) -> String {
         let [left, top, right, bottom] = self.bounds;
         let [x, y] = self.at;
@@ -132,7 +129,6 @@ impl RegionFound {
     }
 
     /// What is wrong, and who is concerned: `missing shadow of bunny on floor`.
-    #[must_use]
     pub fn title(&self) -> String {
         let casters = names(&self.casters);
         let on = names(&self.receivers).map_or_else(String::new, |receivers| format!(" on {receivers}"));
@@ -148,7 +144,6 @@ impl RegionFound {
 
 impl Mend {
     /// What of it can be said on a command line: `-t z-fail`, `--set bias-slope=2`.
-    #[must_use]
     pub fn options(&self) -> Vec<String> {
         let technique = self.technique.map(|technique| format!("-t {}", technique.name()));
         let settings = self.settings.iter().map(|(key, value)| format!("--set {key}={value}"));

@@ -37,9 +37,6 @@ struct Document<'a> {
 
 impl Difference {
     /// Machine-readable, as the module's documentation has it.
-    ///
-    /// # Errors
-    /// What the serialiser refuses; nothing here is known to be refused.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let [a, b] = self.sides.each_ref().map(frame);
         let place = |pass: &PassDifference| json!({"name": pass.name, "light": pass.light, "index": pass.index});

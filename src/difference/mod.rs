@@ -157,9 +157,6 @@ pub struct LightDifference {
 }
 
 /// Compares two captures.
-///
-/// # Errors
-/// Pictures of different sizes.
 pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> {
     if a.size != b.size {
         return Err(DifferenceError::Sizes { sizes: [a.size, b.size] });
@@ -180,7 +177,6 @@ pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> 
 }
 
 /// How many texels of two pictures differ, bit by bit; `None` where they are of other formats or sizes.
-#[must_use]
 pub fn differing_texels(a: &Image, b: &Image) -> Option<u64> {
     if (a.format(), a.size()) != (b.format(), b.size()) {
         return None;
@@ -195,19 +191,16 @@ pub fn differing_texels(a: &Image, b: &Image) -> Option<u64> {
 
 impl Difference {
     /// Is every pass and every pixel of both the same, seen and lit alike?
-    #[must_use]
     pub fn is_none(&self) -> bool {
         self.conditions.is_empty() && self.first().is_none() && self.lights.iter().all(|light| light.aspects.is_empty())
     }
 
     /// The first pass that differs, or that only one frame has.
-    #[must_use]
     pub fn first(&self) -> Option<&PassDifference> {
         self.passes.iter().find(|pass| pass.differs())
     }
 
     /// The first pass after which texels differ.
-    #[must_use]
     pub fn first_in_pixels(&self) -> Option<&PassDifference> {
         self.passes.iter().find(|pass| pass.states().flatten().any(|aspect| aspect.pixels().is_some()))
     }
@@ -222,13 +215,11 @@ impl Frame {
 
 impl PassDifference {
     /// Does anything after it differ, or has only one frame such a pass?
-    #[must_use]
     pub fn differs(&self) -> bool {
         self.only_in().is_some() || self.states().any(|aspects| !aspects.is_empty())
     }
 
     /// The only frame that has it.
-    #[must_use]
     pub fn only_in(&self) -> Option<Side> {
         match self.index {
             [Some(_), None] => Some(Side::A),
@@ -245,7 +236,6 @@ impl PassDifference {
 
 impl AspectDifference {
     /// Where texels differ.
-    #[must_use]
     pub fn pixels(&self) -> Option<&PixelDifference> {
         match &self.found {
             Found::Pixels(pixels) => Some(pixels),
@@ -256,7 +246,6 @@ impl AspectDifference {
 
 impl AspectKind {
     /// The name in JSON, without the face or layer.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             AspectKind::Color => "color",
@@ -272,13 +261,11 @@ impl AspectKind {
     }
 
     /// Can two values be nearer to each other than two others? Labels and findings can't.
-    #[must_use]
     pub fn has_distances(self) -> bool {
         !matches!(self, AspectKind::Labels | AspectKind::Truth | AspectKind::Findings)
     }
 
     /// The face of a map, or the layer of textures.
-    #[must_use]
     pub fn layer(self) -> Option<usize> {
         match self {
             AspectKind::Map(layer) | AspectKind::Textures(layer) => Some(layer),

@@ -32,7 +32,6 @@ pub struct Shown {
 impl Difference {
     /// Draws the first pass whose pixels differ, of the captures that were compared; `None` where no pixel
     /// differs.
-    #[must_use]
     pub fn shown(&self, a: &Capture, b: &Capture) -> Option<Shown> {
         let of_pass = self.first_in_pixels().and_then(|pass| of_pass(pass, a, b));
         let (aspect, in_a, in_b) = of_pass.or_else(|| self.of_lights(a, b))?;

@@ -9,7 +9,6 @@ use crate::truth::LABEL_NAMES;
 
 impl Difference {
     /// What differs, for people: passes and lights count from 1, pixels from 0 as in `pixel --at`.
-    #[must_use]
     pub fn to_text(&self) -> String {
         let mut out = String::new();
         self.asked.iter().chain(&self.conditions).for_each(|one| out += &note(one));
@@ -35,7 +34,6 @@ impl Difference {
     }
 
     /// Where the first difference is, in a few words: `pass 2, light 1: volumes`; `None` where there is none.
-    #[must_use]
     pub fn first_place(&self) -> Option<String> {
         let of_light = |light: &LightDifference| {
             let aspect = light.aspects.first()?.aspect.title();
@@ -55,7 +53,6 @@ impl PassDifference {
 
 impl Side {
     /// `A` or `B`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Side::A => "A",
@@ -66,7 +63,6 @@ impl Side {
 
 impl AspectKind {
     /// In words: layers count from 1.
-    #[must_use]
     pub fn title(self) -> String {
         match self {
             AspectKind::Map(face) => format!("face {} of the map", face + 1),

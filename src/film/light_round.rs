@@ -20,9 +20,6 @@ pub struct LightRound {
 
 impl LightRound {
     /// Of a light of a scene that stands still, in `places` steps of the same angle; the first is where the light is.
-    ///
-    /// # Errors
-    /// The scene has no such light; it is on the axis that it would go round.
     pub fn new(scene: Scene, light: usize, places: u32) -> Result<LightRound, FilmError> {
         let lights = scene.lights.len();
         let Some(turned) = scene.lights.get(light) else { return Err(FilmError::NoLight { light, lights }) };
@@ -36,13 +33,11 @@ impl LightRound {
     }
 
     /// How many places there are.
-    #[must_use]
     pub fn places(&self) -> u32 {
         self.places
     }
 
     /// The scene with the light at a place, counted from 0.
-    #[must_use]
     pub fn scene(&self, place: u32) -> Scene {
         let mut scene = self.scene.clone();
         let Some(light) = scene.lights.get_mut(self.light).filter(|_| place > 0) else { return scene };

@@ -97,7 +97,6 @@ pub enum Shows {
 
 impl Shows {
     /// How many pictures that takes.
-    #[must_use]
     pub fn pictures(&self) -> u32 {
         match self {
             Shows::Steps(capture) => step_numbers::count(capture) as u32,
@@ -106,7 +105,6 @@ impl Shows {
     }
 
     /// Width and height of each.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
             Shows::Steps(capture) => steps::size(capture),
@@ -115,7 +113,6 @@ impl Shows {
     }
 
     /// How long each is shown unless said otherwise.
-    #[must_use]
     pub fn milliseconds(&self) -> u16 {
         match self {
             Shows::Steps(_) => STEP_MILLISECONDS,
@@ -163,9 +160,6 @@ pub struct Film {
 
 impl Film {
     /// Begins one, in place of what is at `path`.
-    ///
-    /// # Errors
-    /// Nothing to show; nothing can be written there.
     pub fn begin(shows: Shows, path: &Path, milliseconds: u16) -> Result<Film, FilmError> {
         let format = Format { size: shows.size(), pictures: shows.pictures(), milliseconds, colors: shows.colors() };
         if format.pictures == 0 {
@@ -179,15 +173,11 @@ impl Film {
     }
 
     /// How many pictures it will have.
-    #[must_use]
     pub fn pictures(&self) -> u32 {
         self.shows.pictures()
     }
 
     /// Makes the next picture; false where there is none left.
-    ///
-    /// # Errors
-    /// It can't be rendered or written.
     pub fn shoot(&mut self, render: &mut Render) -> Result<bool, FilmError> {
         if self.next == self.pictures() {
             return Ok(false);
@@ -199,9 +189,6 @@ impl Film {
     }
 
     /// Puts the film in its place, and tells how many bytes it has.
-    ///
-    /// # Errors
-    /// It can't be written; pictures are missing.
     pub fn finish(self) -> Result<u64, FilmError> {
         let Film { animation, file, path, .. } = self;
         let failed = |source| FilmError::Write { path: path.clone(), source };

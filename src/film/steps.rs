@@ -22,7 +22,6 @@ const DIM: Rgb = [0x8b, 0x92, 0xa1];
 const NOTHING: &str = "writes nothing";
 
 /// Width and height of every picture of a frame's passes: the bar is below.
-#[must_use]
 pub fn size(capture: &Capture) -> [u32; 2] {
     let [width, height] = capture.size;
     [width, height + bar_height(width)]
@@ -33,9 +32,6 @@ fn bar_height(width: u32) -> u32 {
 }
 
 /// What a pass writes, a pixel a texel; maps as large as fits in.
-///
-/// # Errors
-/// The caption can't be drawn.
 pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError> {
     let mut all = Picture::filled(size(capture), colors::BACKGROUND);
     let written = Written::by_step(capture, index);

@@ -33,7 +33,6 @@ impl<T: Debug> Debug for Data<T> {
 
 impl<T: bytemuck::Pod> Blob<T> {
     /// Hashes `data`.
-    #[must_use]
     pub fn new(data: Vec<T>) -> Blob<T> {
         Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: Data::Given(data.into()) }
     }
@@ -44,7 +43,6 @@ impl<T: bytemuck::Pod> Blob<T> {
     }
 
     /// The values.
-    #[must_use]
     pub fn data(&self) -> &[T] {
         match &self.data {
             Data::Given(values) => values,
@@ -53,25 +51,21 @@ impl<T: bytemuck::Pod> Blob<T> {
     }
 
     /// How many values there are; none is made for the answer.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
     /// Are there none?
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
     /// The same as bytes.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self.data())
     }
 
     /// Of the bytes. Stable within a process only.
-    #[must_use]
     pub fn hash(&self) -> u64 {
         self.hash
     }

@@ -36,7 +36,6 @@ pub struct ClampedEnd {
 impl ClampedEnd {
     /// The nearest end of the volumes of `casters` under a `light`, homogeneous, that is outside of `looked_at`, which
     /// holds all surfaces that their shadows may fall on, and the eye; world space. `None` where rays leave by no side.
-    #[must_use]
     pub fn beyond(looked_at: AxisBox, casters: &[AxisBox], light: DVec4) -> Option<ClampedEnd> {
         let size = casters.iter().fold(looked_at, |all, caster| all.joined(*caster)).diagonal();
         let corners: Vec<DVec3> = casters.iter().flat_map(AxisBox::corners).collect();
@@ -57,7 +56,6 @@ impl ClampedEnd {
     }
 
     /// Where a vertex of that caster goes: along the light's ray onto the plane. What is beyond it stays.
-    #[must_use]
     pub fn carry(&self, position: DVec3, light: DVec4) -> DVec3 {
         let along = along(position, light);
         let way = (self.at - position[self.axis]) / along[self.axis];
@@ -65,19 +63,16 @@ impl ClampedEnd {
     }
 
     /// Does all of a caster lie beyond it? Then its shadow falls on nothing that is looked at.
-    #[must_use]
     pub fn is_passed_by(&self, caster: AxisBox) -> bool {
         if self.is_below { caster.high[self.axis] <= self.at } else { caster.low[self.axis] >= self.at }
     }
 
     /// The axis that it lies across, 0, 1 or 2 for x, y or z, and where on it, metres.
-    #[must_use]
     pub fn place(&self) -> (usize, f64) {
         (self.axis, self.at)
     }
 
     /// Has all that is looked at higher values on that axis, not lower?
-    #[must_use]
     pub fn is_below(&self) -> bool {
         self.is_below
     }
@@ -85,7 +80,6 @@ impl ClampedEnd {
 
 /// Casters, each a box and the vertices in it, world space, that have a place in common as it is drawn: relative to
 /// `origin`, in single precision. Groups of their numbers, in the order of each group's first.
-#[must_use]
 pub fn touching(casters: &[(AxisBox, &[DVec3])], origin: DVec3) -> Vec<Vec<usize>> {
     let grown = |(around, _): &(AxisBox, &[DVec3])| {
         let farthest = around.corners().map(|corner| corner.distance(origin)).into_iter().fold(0.0, f64::max);

@@ -45,7 +45,6 @@ pub struct Connectivity {
 
 impl Connectivity {
     /// Of a mesh and its edges.
-    #[must_use]
     pub fn new(mesh: &Mesh, edges: &EdgeList) -> Connectivity {
         let positions = mesh.positions();
         let mut connectivity = Connectivity::default();
@@ -73,19 +72,16 @@ impl Connectivity {
     }
 
     /// No edge ends the surface, and none joins more than two triangles.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         self.open_edges.count == 0 && self.non_manifold_edges.count == 0
     }
 
     /// Neighbouring triangles agree on which side is out.
-    #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.inconsistent_edges.count == 0
     }
 
     /// Which component a triangle belongs to, in the order of their first triangles.
-    #[must_use]
     pub fn component_of(&self, triangle: usize) -> usize {
         self.component_of[triangle] as usize
     }

@@ -74,7 +74,6 @@ impl Incident {
 
 impl EdgeList {
     /// The edges of `triangles` over `vertex_count` vertices.
-    #[must_use]
     pub fn new(triangles: &[[u32; 3]], vertex_count: usize) -> EdgeList {
         let mut buckets = buckets_by_low_vertex(triangles, vertex_count);
         let none = Incident(triangles.len() as u32 * 2);
@@ -112,7 +111,6 @@ impl EdgeList {
     }
 
     /// In order of (low, high).
-    #[must_use]
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }

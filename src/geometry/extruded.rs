@@ -38,7 +38,6 @@ pub struct Carry {
 
 impl Carry {
     /// Is the light not in front of this plane? In the shader's order of steps.
-    #[must_use]
     pub fn carries(&self, [x, y, z, rest]: [f32; 4]) -> bool {
         let [light_x, light_y, light_z, light_w] = self.light;
         let side = x * light_x + y * light_y + z * light_z + rest * light_w;
@@ -47,7 +46,6 @@ impl Carry {
     }
 
     /// Where a vertex goes.
-    #[must_use]
     pub fn far(&self, [x, y, z, _]: [f32; 4]) -> [f32; 4] {
         let [to_x, to_y, to_z] = self.offset;
         [self.scale * x + to_x, self.scale * y + to_y, self.scale * z + to_z, self.w]
@@ -65,14 +63,12 @@ pub struct Extruded {
 
 impl Extruded {
     /// Which of these vertices go to the far end?
-    #[must_use]
     pub fn carried(&self, vertices: [u32; 3]) -> [bool; 3] {
         let is_carried = |corner: &ExtrudedCorner| self.carry.carries(corner.plane);
         vertices.map(|vertex| self.corners.data().get(vertex as usize).is_some_and(is_carried))
     }
 
     /// Where the shader puts each vertex; made when they are first asked for.
-    #[must_use]
     pub fn vertices(&self) -> Blob<[f32; 4]> {
         let Extruded { corners, carry } = self.clone();
         let place = move |corner: &ExtrudedCorner| match carry.carries(corner.plane) {
@@ -114,7 +110,6 @@ pub struct ExtrudedVolume {
 
 impl ExtrudedVolume {
     /// Of a mesh's `triangles` over `world`, with their `edges`; corners are relative to `origin`.
-    #[must_use]
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],

@@ -80,7 +80,6 @@ pub struct Facings {
 
 impl Facings {
     /// From signs known otherwise, such as the exact ones.
-    #[must_use]
     pub fn from_signs(signs: impl IntoIterator<Item = Sign>) -> Facings {
         let mut facings = Facings::default();
         facings.signs.extend(signs.into_iter().map(|sign| sign.value() as i8));
@@ -97,7 +96,6 @@ impl Facings {
     }
 
     /// One a triangle: 1, −1 or 0.
-    #[must_use]
     pub fn signs(&self) -> &[i8] {
         &self.signs[..self.signs.len().saturating_sub(1)]
     }
@@ -113,13 +111,11 @@ impl Facings {
     }
 
     /// How many triangles face the light.
-    #[must_use]
     pub fn towards(&self) -> usize {
         self.towards
     }
 
     /// How many face away from it.
-    #[must_use]
     pub fn away(&self) -> usize {
         self.away
     }
@@ -161,7 +157,6 @@ fn sign_of_run(signs: &[i8]) -> i8 {
 
 impl Planes {
     /// Of `triangles` over `world` positions.
-    #[must_use]
     pub fn new(world: &[DVec3], triangles: &[[u32; 3]]) -> Planes {
         let Some(first) = world.first() else { return Planes::default() };
         let (low, high) = world.iter().fold((*first, *first), |(low, high), p| (low.min(*p), high.max(*p)));

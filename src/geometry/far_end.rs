@@ -40,7 +40,6 @@ pub struct Fan {
 impl Fan {
     /// Of a caster and a point light, with the silhouette of its casting triangles; `None` where no direction
     /// to count along was found.
-    #[must_use]
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],
@@ -77,7 +76,6 @@ impl Fan {
     }
 
     /// How many triangles its spheres have.
-    #[must_use]
     pub fn sphere_triangles(&self) -> usize {
         OCTAHEDRON.len() * self.spheres.unsigned_abs() as usize
     }

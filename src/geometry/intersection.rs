@@ -16,7 +16,6 @@ use rayon::prelude::*;
 use std::time::Duration;
 
 /// Two triangles that meet elsewhere than in what they share, or are not proven not to.
-#[must_use]
 pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
     if triangles.is_empty() {
         return None;

@@ -15,7 +15,6 @@ use glam::{DVec3, DVec4};
 const MOST_HALVINGS: u32 = 12;
 
 /// Can a ray of the light meet more than `limit` of these triangles, world space? Yes, where a corner is no number.
-#[must_use]
 pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> bool {
     if triangles.len() <= limit {
         return false;

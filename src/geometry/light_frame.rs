@@ -60,7 +60,6 @@ impl MapStorage {
 }
 
 /// Fits a frame around the triangles that cast. `None` where nothing casts.
-#[must_use]
 pub fn fit(casters: &[[DVec3; 3]], light: DVec4, storage: &MapStorage) -> Option<LightFrame> {
     if casters.is_empty() {
         return None;
@@ -147,7 +146,6 @@ pub enum SilhouetteView {
 
 /// Clip space from world space of a picture of a caster's silhouette. `None` where a part of it is behind the light or level
 /// with it. All that is ahead of the light is at one depth.
-#[must_use]
 pub fn fit_silhouette(caster: &[DVec3], light: DVec4, view: SilhouetteView) -> Option<DMat4> {
     let from_light: Vec<DVec3> = caster.iter().map(|point| *point * light.w - light.truncate()).collect();
     let forward = from_light.iter().sum::<DVec3>().try_normalize()?;
@@ -195,7 +193,6 @@ fn frame(origin: DVec3, rotation: DMat3, clip_from_light: Vec<DMat4>) -> LightFr
 
 /// Can a triangle (relative to the light) show in a face? Conservative: false only where it lies
 /// wholly outside one of the frustum's sides or behind it.
-#[must_use]
 pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DVec3; 3]) -> bool {
     let clip = corners.map(|corner| clip_from_light * light_from_relative * corner.extend(1.0));
     let sides: [fn(DVec4) -> f64; 5] = [|c| c.w + c.x, |c| c.w - c.x, |c| c.w + c.y, |c| c.w - c.y, |c| c.w];
@@ -207,7 +204,6 @@ pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DV
 const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 
 /// Can an object darken any of `receivers`? Not where none of its triangles can; of many that is not asked.
-#[must_use]
 pub fn object_can_darken<R: Iterator<Item = DVec3>>(
     world: &[DVec3],
     triangles: &[[u32; 3]],
@@ -220,7 +216,6 @@ pub fn object_can_darken<R: Iterator<Item = DVec3>>(
 
 /// Can a triangle darken any of `receivers`? No, where all of them lie on the light's side of its
 /// plane or on it (exact signs), or where the light lies in its plane.
-#[must_use]
 pub fn can_darken(corners: [DVec3; 3], light: DVec4, mut receivers: impl Iterator<Item = DVec3>) -> bool {
     let light_side = side_of_triangle(corners, light);
     let behind = |point: DVec3| {

@@ -25,7 +25,6 @@ pub enum RangeInView {
 }
 
 /// The pixels of a picture of `size` pixels that points within `range` metres of `light` may show in.
-#[must_use]
 pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) -> RangeInView {
     let center = camera.world_from_view().transpose() * (light - camera.eye);
     let radius = range * (1.0 + MARGIN) + center.length() * MARGIN;
@@ -75,7 +74,6 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
 
 /// By how many metres all of some points lie beyond the range of a light; `None` where one may be within it.
 /// The GPU rounds places relative to `eye`.
-#[must_use]
 pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> Option<f64> {
     let AxisBox { low, high } = AxisBox::around(points.iter().copied());
     let nearest = light.clamp(low.min(high), high.max(low));
@@ -85,7 +83,6 @@ pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> O
 }
 
 /// The box that holds all that a light of that range reaches, places rounded relative to `eye`.
-#[must_use]
 pub fn reached(light: DVec3, range: f64, eye: DVec3) -> AxisBox {
     let reach = range * (1.0 + MARGIN) + (range + light.distance(eye)) * ROUNDING;
     AxisBox::around([light - reach, light + reach])

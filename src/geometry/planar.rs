@@ -29,7 +29,6 @@ pub struct Receiver {
 
 /// The planar receivers of a mesh at `world` positions; `object` are its positions before the
 /// transform. Triangles without area belong to none.
-#[must_use]
 pub fn receivers(object: &[DVec3], world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Vec<Receiver> {
     let edges_of = edges_of_triangles(triangles.len(), edges);
     let mut walk = Walk { edges, edges_of, taken: vec![false; triangles.len()] };
@@ -141,7 +140,6 @@ pub struct Flattened {
 
 impl Flattened {
     /// Equal for equal numbers, bit for bit.
-    #[must_use]
     pub fn key(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         // Every number that these hold is printed in full.
@@ -164,7 +162,6 @@ pub struct Flattener {
 
 impl Flattener {
     /// Onto `plane`, turned towards the light; `None` where the light lies in the plane.
-    #[must_use]
     pub fn new(plane: Plane, light: DVec4, clip: Clip) -> Option<Flattener> {
         let plane = if plane.at(light) < 0.0 { plane.turned() } else { plane };
         let light_height = plane.at(light);
@@ -218,7 +215,6 @@ impl Flattener {
     }
 
     /// The shadows: homogeneous world positions with `w ≥ 0`.
-    #[must_use]
     pub fn finish(self) -> Vec<[DVec4; 3]> {
         self.triangles
     }

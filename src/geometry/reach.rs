@@ -51,7 +51,6 @@ pub struct Outside {
 impl ViewVolume {
     /// What a camera sees, `aspect` being width over height. It has no far plane: a volume must not be
     /// cut there.
-    #[must_use]
     pub fn new(camera: &Camera, aspect: f64) -> ViewVolume {
         let world_from_view = camera.world_from_view();
         let sights = camera.sights(aspect);
@@ -87,26 +86,22 @@ impl ViewVolume {
     }
 
     /// The corners of the near rectangle in order round it, relative to the eye.
-    #[must_use]
     pub fn near_rectangle(&self) -> [DVec3; 4] {
         self.near_rectangle
     }
 
     /// Where points lie outside of the view: nothing between them is seen. Points are homogeneous and
     /// relative to the eye; `w = 0` is a direction.
-    #[must_use]
     pub fn outside(&self, points: &[DVec4]) -> Option<Outside> {
         outside(&self.planes, points)
     }
 
     /// Are all points of space beyond the near plane, so that it cuts nothing between them?
-    #[must_use]
     pub fn is_beyond_near(&self, points: &[DVec4]) -> bool {
         outside(&[self.planes[0].turned()], points).is_some()
     }
 
     /// The same of points at infinity: the near plane is no matter there.
-    #[must_use]
     pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<Outside> {
         let points: Vec<DVec4> = directions.iter().map(|direction| direction.extend(0.0)).collect();
         let sides = outside(&self.planes[1..], &points);
@@ -114,7 +109,6 @@ impl ViewVolume {
     }
 
     /// The space between the near rectangle and a light, homogeneous and relative to the eye.
-    #[must_use]
     pub fn near_clip(&self, light: DVec4) -> NearClipVolume {
         let near_plane = &self.planes[0];
         let height = near_plane.at(light);
@@ -141,7 +135,6 @@ impl ViewVolume {
 
 impl NearClipVolume {
     /// Where points lie outside of it; `None` where they may not.
-    #[must_use]
     pub fn outside(&self, points: &[DVec4]) -> Option<Outside> {
         match self {
             NearClipVolume::Planes(planes) => outside(planes, points),

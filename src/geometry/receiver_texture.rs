@@ -29,7 +29,6 @@ pub struct Parallelogram {
 impl Parallelogram {
     /// The receiver itself where it is one, else the smallest rectangle around it along one of
     /// its edges.
-    #[must_use]
     pub fn around(receiver: &Receiver, world: &[DVec3], triangles: &[[u32; 3]]) -> Parallelogram {
         let members = || receiver.triangles.iter().map(|triangle| triangles[*triangle as usize]);
         let mut vertices: Vec<u32> = members().flatten().collect();
@@ -54,7 +53,6 @@ impl Parallelogram {
     }
 
     /// Box space from world space for a homogeneous light; `None` where it lies in the plane.
-    #[must_use]
     pub fn box_from_world(&self, light: DVec4) -> Option<DMat4> {
         let Parallelogram { corner: b, ex, ey } = *self;
         // From the light to the corner; for a directional light against its direction.
@@ -78,7 +76,6 @@ impl Parallelogram {
 
     /// Clip space, which keeps what lies between receiver and light, from world space. Its picture has
     /// x of the box along columns and y along rows, downwards.
-    #[must_use]
     pub fn clip_from_world(&self, light: DVec4) -> Option<DMat4> {
         let clip_from_box = DMat4::from_cols(
             DVec4::new(2.0, 0.0, 0.0, 0.0),

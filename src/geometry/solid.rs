@@ -101,7 +101,6 @@ pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivit
 
 /// Is a light outside a closed mesh? Exactly, and `false` where it is on the surface. A directional
 /// light is outside anything.
-#[must_use]
 pub fn light_is_outside(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> bool {
     let is_beyond = || !AxisBox::around(world.iter().copied()).holds(light.truncate() / light.w);
     light.w == 0.0 || is_beyond() || winding_number(world, triangles, light.truncate()) == Some(0)

@@ -35,7 +35,6 @@ pub struct Topology {
 
 impl Topology {
     /// Of a mesh, whose connectivity is known.
-    #[must_use]
     pub fn new(mesh: &Mesh, connectivity: Arc<Connectivity>) -> Topology {
         let (positions, triangles) = (mesh.positions(), mesh.triangles());
         let mut topology = Topology {
@@ -55,13 +54,11 @@ impl Topology {
     }
 
     /// No edge ends the surface, and none joins more than two triangles.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         self.connectivity.is_closed()
     }
 
     /// Neighbouring triangles agree on which side is out.
-    #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.connectivity.is_oriented()
     }

@@ -34,7 +34,6 @@ impl Occluder {
     pub const MOST_TRIANGLES: usize = 64;
 
     /// A mesh, if it is convex and small. `edges` are those of `triangles`.
-    #[must_use]
     pub fn new(world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Option<Occluder> {
         if triangles.is_empty() || triangles.len() > Occluder::MOST_TRIANGLES {
             return None;
@@ -74,7 +73,6 @@ impl Occluder {
     }
 
     /// Are all these points deep in its umbra? With no points, no.
-    #[must_use]
     pub fn darkens_all(&self, points: &[DVec3], light: DVec4) -> bool {
         !points.is_empty() && points.iter().all(|point| self.darkens(*point, light))
     }
@@ -126,7 +124,6 @@ const MOST_TRIANGLES_OF_PARTS: usize = 65_536;
 const MOST_HOLDERS: usize = 8;
 
 /// Of each triangle of a mesh: its part lies wholly in the umbra of another part. Empty where none does.
-#[must_use]
 pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity, light: DVec4) -> Vec<bool> {
     if connectivity.components < 2 || triangles.len() > MOST_TRIANGLES_OF_PARTS {
         return Vec::new();

@@ -65,7 +65,6 @@ pub struct Extruder {
 
 impl Extruder {
     /// For a caster with these `world` positions.
-    #[must_use]
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
         let size = match (extrusion, light.w == 0.0) {
             (Extrusion::Finite(_) | Extrusion::FromOrigin(_), true) => {
@@ -77,20 +76,17 @@ impl Extruder {
     }
 
     /// Where the light is, if it is a point and volumes have no end.
-    #[must_use]
     pub fn infinite_from(&self) -> Option<DVec3> {
         let is_infinite = self.extrusion == Extrusion::Infinite && self.light.w != 0.0;
         is_infinite.then(|| self.light.truncate() / self.light.w)
     }
 
     /// All vertices go to one point: a directional light's point at infinity.
-    #[must_use]
     pub fn is_one_point(&self) -> bool {
         self.light.w == 0.0 && self.extrusion == Extrusion::Infinite
     }
 
     /// Where a vertex goes.
-    #[must_use]
     pub fn carry(&self, position: DVec3) -> DVec4 {
         let light = self.light.truncate();
         match self.extrusion {
@@ -110,7 +106,6 @@ impl Extruder {
     ///
     /// # Panics
     /// If it carries onto a plane, [`Extrusion::Clamped`].
-    #[must_use]
     pub fn carry_from(&self, origin: DVec3) -> Carry {
         assert!(!matches!(self.extrusion, Extrusion::Clamped(_)), "a plane's factor differs by vertex");
         let light = relative::homogeneous(self.light, origin);
@@ -168,7 +163,6 @@ impl VolumeParts {
     }
 
     /// How many triangles a volume with both caps has.
-    #[must_use]
     pub fn triangles(&self) -> usize {
         let light_caps = self.light_cap.len() + self.light_cap_turned.len();
         let dark_cap = match &self.dark_cap {

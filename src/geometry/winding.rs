@@ -20,7 +20,6 @@ pub struct Crossing {
 }
 
 /// The triangles that the line along `axis` through `point` crosses.
-#[must_use]
 pub fn crossings(world: &[DVec3], triangles: &[[u32; 3]], point: DVec3, axis: usize) -> Vec<Crossing> {
     let flat = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
     let at = flat(point);
@@ -46,7 +45,6 @@ fn side(a: DVec2, b: DVec2, point: DVec2) -> Sign {
 
 /// How often closed `triangles` wind around `point`: 0 outside, 1 inside one that has its outside
 /// out. `None` where the point is on the surface, or may be.
-#[must_use]
 pub fn winding_number(world: &[DVec3], triangles: &[[u32; 3]], point: DVec3) -> Option<i32> {
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
     // On the surface: in the plane of a triangle in whose bounds it lies.

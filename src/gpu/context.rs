@@ -30,9 +30,6 @@ pub struct Context {
 
 impl Context {
     /// Opens the first adapter whose name contains `wanted` in any case, or the fastest kind.
-    ///
-    /// # Errors
-    /// No such adapter, none that can render and copy depth with stencil, or no device.
     pub fn new(wanted: Option<&str>) -> Result<Context, GpuError> {
         let instance = instance(wgpu::InstanceDescriptor {
             backends: BACKENDS,
@@ -45,9 +42,6 @@ impl Context {
     }
 
     /// Another device on the same adapter, that can do what this one can and `needed` too.
-    ///
-    /// # Errors
-    /// The adapter can't do that, or gives no device.
     pub(super) fn with(&self, needed: Features) -> Result<Context, GpuError> {
         features::check(needed, self.adapter.features())?;
         Context::open(self.adapter.clone(), self.device.features() | needed)

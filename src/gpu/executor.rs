@@ -50,7 +50,6 @@ enum Mode {
 
 impl Executor {
     /// On a context of its own.
-    #[must_use]
     pub fn new(context: Context) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
@@ -67,13 +66,11 @@ impl Executor {
     }
 
     /// Where it runs.
-    #[must_use]
     pub fn context(&self) -> &Context {
         &self.context
     }
 
     /// What few plans need, and one so far has asked for, in plain words.
-    #[must_use]
     pub fn features(&self) -> Vec<&'static str> {
         features::names(self.context.device.features())
     }
@@ -86,9 +83,6 @@ impl Executor {
     }
 
     /// Uploads what a plan needs and makes its pipelines.
-    ///
-    /// # Errors
-    /// A plan that breaks a rule, pictures or meshes that are too large, a driver that refuses.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let room = Room::of(self.most_bytes);
@@ -103,9 +97,6 @@ impl Executor {
 
     /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan
     /// before stay.
-    ///
-    /// # Errors
-    /// As [`Executor::prepare`].
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan)?;
@@ -117,9 +108,6 @@ impl Executor {
 
     /// The same for a plan between frames that are timed: nothing that it uploads is there for the next one, and what is
     /// there stays.
-    ///
-    /// # Errors
-    /// As [`Executor::prepare`].
     pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let room = Room::of(self.most_bytes);
@@ -149,9 +137,6 @@ impl Executor {
     /// Runs the timed passes and waits for the GPU: recording, submitting, executing and, with
     /// `snapshots`, having every snapshot in memory: all at once, unlike [`Executor::capture`], which looks at a part
     /// of many before it makes the next.
-    ///
-    /// # Errors
-    /// A driver that fails; snapshots that [can't be held at once](Prepared::holds_all_snapshots).
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { Mode::Snapshots } else { Mode::Frame };
         if snapshots {
@@ -169,9 +154,6 @@ impl Executor {
 
     /// Runs the timed passes and adds up how long the GPU took for them, in milliseconds; `None`
     /// where it can't tell.
-    ///
-    /// # Errors
-    /// A driver that fails.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
         let notes = context.guarded(|| Ok(Notes::of_times(prepared, Mode::Frame)))?;
@@ -186,9 +168,6 @@ impl Executor {
     /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests;
     /// `None` for draws that do something where they fail them, for those of maps that are kept, and where
     /// there are too many to ask.
-    ///
-    /// # Errors
-    /// A driver that fails.
     pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
         // A map that stays is drawn once: a pass that does not run shows no sample of what it holds.
@@ -204,9 +183,6 @@ impl Executor {
 
     /// Runs all passes and keeps every attachment after each, in `memory`. With `bracket`, an attached
     /// graphics debugger records the frame.
-    ///
-    /// # Errors
-    /// A driver that fails; pictures that differ so much that they can't be held.
     pub fn capture(&self, mut prepared: Prepared, memory: Memory, bracket: bool) -> Result<Output, GpuError> {
         let (plan, context) = (prepared.plan, prepared.context.clone());
         let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
@@ -221,18 +197,12 @@ impl Executor {
 
     /// Runs all passes and keeps the labels of each light: what is lit, and what is in shadow. Nothing
     /// else is copied, so that the largest maps cost no memory twice.
-    ///
-    /// # Errors
-    /// A driver that fails.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, Mode::Labels, &Notes::default())?;
         answer::labels(&prepared)
     }
 
     /// The same, and the finished picture.
-    ///
-    /// # Errors
-    /// A driver that fails.
     pub fn answer(&self, prepared: Prepared) -> Result<Answer, GpuError> {
         run(&prepared, Mode::Answer, &Notes::default())?;
         Ok(Answer { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })

@@ -42,9 +42,6 @@ pub(super) fn names(open: Features) -> Vec<&'static str> {
 }
 
 /// Are all of `needed` among what an adapter offers?
-///
-/// # Errors
-/// The first that is not.
 pub(super) fn check(needed: Features, offered: Features) -> Result<(), GpuError> {
     match ON_DEMAND.iter().find(|one| needed.contains(one.feature) && !offered.contains(one.feature)) {
         Some(OnDemand { name, instead, .. }) => Err(GpuError::MissingFeature { name, instead }),

@@ -71,9 +71,6 @@ const CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0
 impl Executor {
     /// Draws the triangles of `covering` again, behind a scissor of `pixel`, and writes down their
     /// fragments there. There is `room` for so many at first, and more where they are more.
-    ///
-    /// # Errors
-    /// A driver that fails.
     pub fn log_fragments(
         &mut self,
         plan: &FramePlan,

@@ -233,7 +233,6 @@ impl<'a> Prepared<'a> {
     }
 
     /// Bytes that snapshots of the timed passes copy.
-    #[must_use]
     pub fn snapshot_bytes(&self) -> u64 {
         let bytes = |[color, depth, stencil]: [Option<Copied>; 3]| {
             let copied = color.into_iter().chain(depth).chain(stencil);
@@ -243,7 +242,6 @@ impl<'a> Prepared<'a> {
     }
 
     /// Can the snapshots of all timed passes be held at once?
-    #[must_use]
     pub fn holds_all_snapshots(&self) -> bool {
         let mut room = self.room;
         room.take(self.snapshot_bytes()).is_ok()

@@ -16,9 +16,6 @@ impl Room {
     }
 
     /// Holds so many bytes more.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`]: that is more than fits.
     pub fn take(&mut self, bytes: u64) -> Result<(), GpuError> {
         self.held = self.held.saturating_add(bytes);
         if self.held <= self.most {

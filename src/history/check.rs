@@ -101,7 +101,6 @@ impl fmt::Display for Disagreement {
 
 impl PixelHistory {
     /// Everything that is wrong with it; empty where it agrees with the GPU.
-    #[must_use]
     pub fn disagreements(&self) -> Vec<Disagreement> {
         let mut found = self.contradictions.clone();
         let is_fragment = |fate: Fate| matches!(fate, Fate::Tested { .. } | Fate::Discarded(_));

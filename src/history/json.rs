@@ -56,7 +56,6 @@ struct EventEntry {
 
 impl PixelDocument {
     /// Of a history that took so long to find out.
-    #[must_use]
     pub fn new(history: &PixelHistory, milliseconds: f64) -> PixelDocument {
         let stored = |depth, stencil| Stored { stencil: history.has_stencil.then_some(stencil), depth };
         let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();
@@ -119,7 +118,6 @@ fn word(test: Test) -> Option<&'static str> {
 
 impl Fate {
     /// Why a triangle left no fragment, in words; `None` where it did.
-    #[must_use]
     pub fn note(self) -> Option<&'static str> {
         match self {
             Fate::Tested { .. } => None,

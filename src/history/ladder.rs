@@ -44,7 +44,6 @@ pub struct Rung {
 
 impl Ladder {
     /// Does the count run from infinity inwards, and not from the eye outwards?
-    #[must_use]
     pub fn is_from_infinity(&self) -> bool {
         self.side == Side::Behind
     }
@@ -53,7 +52,6 @@ impl Ladder {
 impl PixelHistory {
     /// The ladder of a light; `None` where none of its volumes' faces is on the ray, and the near
     /// plane was not asked about here. `curve` is the capture's.
-    #[must_use]
     pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
         let of_light = |event: &&Event| event.light == Some(light) && event.is_of_volume();
         let near = || self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);

@@ -92,7 +92,6 @@ pub struct CapturedAfter {
 
 impl Held {
     /// Depth and stencil.
-    #[must_use]
     pub fn stored(self) -> Stored {
         Stored { depth: self.depth, stencil: self.stencil }
     }
@@ -200,7 +199,6 @@ pub enum Test {
 
 impl Test {
     /// Did it let the fragment through? `None` where it was not asked.
-    #[must_use]
     pub fn passed(self) -> Option<bool> {
         match self {
             Test::Passed | Test::Always => Some(true),
@@ -213,7 +211,6 @@ impl Test {
 impl TriangleEvent {
     /// Is the outside of what it belongs to seen? What faces into its volume shows it from behind, and
     /// counts the other way round.
-    #[must_use]
     pub fn shows_outside(&self) -> bool {
         self.is_front != self.faces_inwards
     }
@@ -221,7 +218,6 @@ impl TriangleEvent {
 
 impl Fate {
     /// Did the fragment pass all tests, and reach the colour target?
-    #[must_use]
     pub fn passed(self) -> bool {
         matches!(self, Fate::Tested { depth, .. } if depth.passed() == Some(true))
     }
@@ -229,7 +225,6 @@ impl Fate {
 
 impl Event {
     /// The triangle, where it was one.
-    #[must_use]
     pub fn triangle(&self) -> Option<&TriangleEvent> {
         match &self.kind {
             EventKind::Triangle(triangle) => Some(triangle),
@@ -239,7 +234,6 @@ impl Event {
 
     /// How much it added to the count of shadow volumes, in the stencil or in a float: a step round
     /// the end of the bits that are written counts as one, and so does a bit turned over.
-    #[must_use]
     pub fn counted(&self) -> i32 {
         let in_float = (self.after.count - self.before.count) as i32;
         let in_stencil = match self.operation().and_then(step_of) {
@@ -259,14 +253,12 @@ impl Event {
     }
 
     /// It changed what the pixel holds, or reached its colour: faces of shadow volumes have none.
-    #[must_use]
     pub fn does_something(&self) -> bool {
         let has_passed = self.triangle().is_some_and(|one| one.fate.passed());
         self.before != self.after || (has_passed && !self.is_of_volume())
     }
 
     /// What it was to add to the count: also where the count stopped at 0 or 255 and did not change.
-    #[must_use]
     pub fn step(&self) -> i32 {
         match self.operation() {
             None => self.counted(),
@@ -275,7 +267,6 @@ impl Event {
     }
 
     /// It is a face of a shadow volume.
-    #[must_use]
     pub fn is_of_volume(&self) -> bool {
         self.triangle().is_some_and(|one| one.part.is_of_volume())
     }
@@ -305,7 +296,6 @@ impl PixelHistory {
 
     /// Do the events make what the GPU stored, after every pass and bit for bit, and are they whole
     /// and in order? If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] tells where.
-    #[must_use]
     pub fn agrees(&self) -> bool {
         self.disagreements().is_empty()
     }
@@ -329,7 +319,6 @@ impl PixelHistory {
 
     /// On which side of the visible surface a light's volume faces count here. `None` where it has none here that
     /// would tell: what was clipped or culled counts nowhere.
-    #[must_use]
     pub fn counted_side(&self, light: usize) -> Option<Side> {
         let is_behind = |event: &Event| {
             let depth = event.triangle()?.depth;
@@ -350,7 +339,6 @@ impl PixelHistory {
     }
 
     /// Does an event of a pass change what the pixel holds, or reach its colour?
-    #[must_use]
     pub fn is_touched_by(&self, pass: usize) -> bool {
         self.events.iter().filter(|event| event.pass == pass).any(Event::does_something)
     }

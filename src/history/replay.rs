@@ -15,7 +15,6 @@ const NEW: Held = Held { depth: 0.0, stencil: 0, count: 0.0 };
 impl PixelHistory {
     /// The history of `pixel` in the frame of `plan`, which left `capture`: `covering` are the
     /// triangles over it, and `log` the fragments that the GPU made of them.
-    #[must_use]
     pub fn new(
         plan: &FramePlan,
         capture: &Capture,

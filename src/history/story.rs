@@ -8,7 +8,6 @@ use std::fmt::Write;
 use wgpu::StencilOperation;
 
 /// The name of a stencil operation in JSON and text.
-#[must_use]
 pub fn operation_name(operation: StencilOperation) -> &'static str {
     match operation {
         StencilOperation::Keep => "keep",
@@ -25,13 +24,11 @@ pub fn operation_name(operation: StencilOperation) -> &'static str {
 impl PixelHistory {
     /// The whole history in lines; passes, lights and triangles count from 1. `curve` is the
     /// capture's, and turns depths into metres.
-    #[must_use]
     pub fn story(&self, curve: &DepthCurve) -> String {
         self.story_with(curve, "")
     }
 
     /// The same with lines of more reasons, each ended by a newline, after those that events give.
-    #[must_use]
     pub fn story_with(&self, curve: &DepthCurve, reasons: &str) -> String {
         let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
@@ -81,7 +78,6 @@ impl PixelHistory {
 
     /// One event in a few words, the same on every machine: for lists that tests compare, such as
     /// `volumes: side of box, back, fails depth, stencil 0 to 1`.
-    #[must_use]
     pub fn brief(&self, event: &Event) -> String {
         let change = match event {
             Event { before, after, .. } if before.count != after.count => {
@@ -115,7 +111,6 @@ impl PixelHistory {
     }
 
     /// One event in a line.
-    #[must_use]
     pub fn line(&self, event: &Event, curve: &DepthCurve) -> String {
         match &event.kind {
             EventKind::Put => format!(

@@ -100,7 +100,6 @@ pub enum LightPass {
 
 impl PixelHistory {
     /// What decided about a light; `None` where the technique leaves no events that tell.
-    #[must_use]
     pub fn why(&self, light: usize) -> Option<Why> {
         let of_light = |event: &&Event| event.light == Some(light) && event.target != FrameTarget::Labels;
         let events = || self.events.iter().filter(of_light);
@@ -271,7 +270,6 @@ impl fmt::Display for Counted {
 
 impl Count {
     /// Does the light pass take it for lit?
-    #[must_use]
     pub fn is_zero(self) -> bool {
         matches!(self, Count::Stencil(0)) || self == Count::Float(0.0)
     }

@@ -35,9 +35,6 @@ pub struct Blobs {
 
 impl Blobs {
     /// Looks through the table.
-    ///
-    /// # Errors
-    /// A file that can't be read; a byte string that lies outside of it, or is of pieces that can't be.
     pub fn new(file: impl Read + Seek + 'static, table: Vec<Blob>) -> Result<Self, ImportError> {
         let broken = |what: String| ImportError::Folder(format!("data.bin: {what}"));
         let mut file = Box::new(file);
@@ -62,9 +59,6 @@ impl Blobs {
     }
 
     /// Takes `bytes` from what may still be made.
-    ///
-    /// # Errors
-    /// There is not so much left.
     pub fn reserve(&mut self, bytes: u64) -> Result<(), ImportError> {
         let too_large = || ImportError::TooLarge { what: format!("more than {} GiB", MOST_BYTES >> 30) };
         self.left = self.left.checked_sub(bytes).ok_or_else(too_large)?;
@@ -77,17 +71,11 @@ impl Blobs {
     }
 
     /// How long a byte string says that it is.
-    ///
-    /// # Errors
-    /// There is none of that number.
     pub fn length(&self, index: usize) -> Result<u64, ImportError> {
         self.lengths.get(index).copied().ok_or_else(|| none_of(index))
     }
 
     /// A byte string.
-    ///
-    /// # Errors
-    /// There is none of that number, it is not what the table says, or it is too long.
     pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         self.reserve(self.length(index)?)?;
         let Some(Blob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };

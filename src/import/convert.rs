@@ -54,9 +54,6 @@ pub struct Converted {
 }
 
 /// What was drawn and what was stored, called `name`.
-///
-/// # Errors
-/// There is no depth buffer to follow, it is multisampled, or nothing is drawn that can be followed.
 pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
     let stage = Stage::of(frame)?;
     let mut making = Making::new(frame, &stage);

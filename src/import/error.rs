@@ -181,7 +181,6 @@ pub enum ImportError {
 
 impl ImportError {
     /// Is something not installed here that has to be?
-    #[must_use]
     pub fn is_missing_package(&self) -> bool {
         matches!(self, ImportError::NoInterpreter { .. } | ImportError::NoModule { .. })
     }

@@ -23,9 +23,6 @@ pub struct Geometry {
 }
 
 /// Reads all instances.
-///
-/// # Errors
-/// A byte string that is not there, strides that can't be, or more than may be read.
 pub fn read(instances: &[Instance], blobs: &mut Blobs) -> Result<Geometry, ImportError> {
     let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
     let mut all =

@@ -6,7 +6,6 @@ use super::raw::{
 use std::fmt::Write;
 
 /// A line an event: its number, what it does, how many triangles, its states, and where it draws.
-#[must_use]
 pub fn list(frame: &RawFrame) -> String {
     let program = frame.program.as_ref().map_or_else(String::new, |program| format!("{program}, "));
     let RawFrame { adapter, recorder, events, .. } = frame;

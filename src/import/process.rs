@@ -67,9 +67,6 @@ pub struct Run {
 
 impl Run {
     /// Starts `python SCRIPT FOLDER ARGUMENTS…`.
-    ///
-    /// # Errors
-    /// There is no such interpreter, or no place for the folder.
     pub fn start(python: &str, script: &str, arguments: &[OsString], limits: Limits) -> Result<Self, ImportError> {
         let temporary = |source| ImportError::Write { file: std::env::temp_dir(), source };
         let folder = tempfile::TempDir::with_prefix("stencilscope-").map_err(temporary)?;

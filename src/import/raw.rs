@@ -94,7 +94,6 @@ pub enum RawFormat {
 
 impl RawFormat {
     /// The largest depth where depth is stored as an integer: 2^bits − 1.
-    #[must_use]
     pub fn largest_depth(&self) -> Option<u32> {
         match self {
             RawFormat::D16 => Some(0xffff),
@@ -104,13 +103,11 @@ impl RawFormat {
     }
 
     /// Does a texel have depth?
-    #[must_use]
     pub fn has_depth(&self) -> bool {
         self.largest_depth().is_some() || matches!(self, RawFormat::D32F | RawFormat::D32FS8)
     }
 
     /// Does a texel have stencil?
-    #[must_use]
     pub fn has_stencil(&self) -> bool {
         matches!(self, RawFormat::D24S8 | RawFormat::D32FS8 | RawFormat::S8)
     }

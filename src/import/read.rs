@@ -28,18 +28,12 @@ const MOST_EVENTS: usize = 100_000;
 const MOST_TEXTURES: usize = 100_000;
 
 /// Reads the folder.
-///
-/// # Errors
-/// A file that is missing, broken or larger than what is read.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
     let open = |name: &str| open_plain(&folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
     read_from(open("frame.json")?, open("data.bin")?)
 }
 
 /// Reads its two files.
-///
-/// # Errors
-/// As [`read`].
 pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Result<RawFrame, ImportError> {
     let document = self::document(document)?;
     let api = Api::from_name(&document.api).ok_or_else(|| broken(format!("it is of the API `{}`", document.api)))?;

@@ -45,16 +45,12 @@ pub struct Recording {
 
 impl Recording {
     /// The program's name.
-    #[must_use]
     pub fn program(&self) -> &str {
         self.command.first().map_or("", String::as_str)
     }
 }
 
 /// Reads the frame of a RenderDoc capture.
-///
-/// # Errors
-/// The file can't be read or replayed; the interpreter has no module; a limit is reached.
 pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<RawFrame, ImportError> {
     // RenderDoc has one error for all of these.
     let reason = match std::fs::metadata(file) {
@@ -75,9 +71,6 @@ pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<Raw
 }
 
 /// Runs a program until it has shown a frame, ends it, and reads that frame.
-///
-/// # Errors
-/// The program can't be run, ends before, or never gets there; and as [`import`].
 pub fn record(recording: &Recording, options: &Options, progress: &Progress) -> Result<RawFrame, ImportError> {
     // The program has its own time; what RenderDoc needs to start and to write comes on top.
     let time = Duration::from_secs(recording.seconds.saturating_add(process::GRACE));

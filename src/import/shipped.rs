@@ -36,15 +36,11 @@ pub const SHIPPED: &[Shipped] = &[
 
 impl Shipped {
     /// The one of that name.
-    #[must_use]
     pub fn named(name: &str) -> Option<&'static Shipped> {
         SHIPPED.iter().find(|shipped| shipped.name == name)
     }
 
     /// Its frame.
-    ///
-    /// # Errors
-    /// It can't be read, which is a bug.
     pub fn open(&self) -> Result<WholeFrame, ImportError> {
         let frame = read_from(self.document, Cursor::new(self.data))?;
         let Converted { plan, capture, scene, .. } = convert(&frame, self.name)?;

@@ -94,7 +94,6 @@ pub enum Panel {
 
 impl Panel {
     /// On its tab.
-    #[must_use]
     pub fn title(self) -> &'static str {
         match self {
             Panel::Passes => "Passes",
@@ -150,7 +149,6 @@ impl Overlay {
         [Overlay::Silhouettes, Overlay::Volumes, Overlay::Tests, Overlay::Receivers, Overlay::Names];
 
     /// In the menu.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Overlay::Silhouettes => "Silhouettes",
@@ -162,7 +160,6 @@ impl Overlay {
     }
 
     /// What one sees.
-    #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
             Overlay::Silhouettes => "The edges of casters that bound their shadow, of the shown light",
@@ -174,7 +171,6 @@ impl Overlay {
     }
 
     /// Does it follow from what the frame is made of in space?
-    #[must_use]
     pub fn needs_anatomy(self) -> bool {
         self != Overlay::Tests
     }
@@ -219,7 +215,6 @@ impl ExportKind {
     ];
 
     /// In the menu.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             ExportKind::Picture => "Shown picture (PNG)…",
@@ -235,7 +230,6 @@ impl ExportKind {
     }
 
     /// What is written.
-    #[must_use]
     pub fn explanation(self) -> &'static str {
         match self {
             ExportKind::Picture => "The shown picture in its colours, a pixel a texel",

@@ -69,7 +69,6 @@ impl Default for Inspector {
 
 impl Inspector {
     /// With nothing open; `scenes` are the built-in ones that its dialog offers.
-    #[must_use]
     pub fn new(scenes: Vec<SceneEntry>) -> Inspector {
         Inspector {
             model: Model::default(),
@@ -170,7 +169,6 @@ impl Inspector {
     }
 
     /// What is known of frame and scene.
-    #[must_use]
     pub fn answers(&self) -> &Answers {
         &self.model.answers
     }
@@ -206,7 +204,6 @@ impl Inspector {
     }
 
     /// How the open scene is to be run now.
-    #[must_use]
     pub fn draft(&self) -> Option<Box<RunRequest>> {
         self.model.scene.as_ref().map(|scene| Box::new(scene.draft.clone()))
     }
@@ -218,7 +215,6 @@ impl Inspector {
     }
 
     /// What was run for the capture that is shown; `None` for a capture folder.
-    #[must_use]
     pub fn plan(&self) -> Option<&Arc<FramePlan>> {
         self.model.frame.plan.as_ref()
     }
@@ -229,7 +225,6 @@ impl Inspector {
     }
 
     /// What is to be remembered until the window is opened again.
-    #[must_use]
     pub fn remembered(&self) -> Remembered {
         let layout = self.dock.layout();
         Remembered { theme: self.model.theme, recent: self.model.recent.clone(), layout }
@@ -266,7 +261,6 @@ impl Inspector {
     }
 
     /// Runs the open scene like this; what has to be done for it.
-    #[must_use]
     pub fn rerun(&mut self, draft: RunRequest) -> Vec<Action> {
         let mut actions = Vec::new();
         self.model.replace_draft(draft, &mut actions);
@@ -274,13 +268,11 @@ impl Inspector {
     }
 
     /// How many stops the tour of a technique has.
-    #[must_use]
     pub fn stops_of(technique: Technique) -> usize {
         tour::stops_of(technique)
     }
 
     /// Goes to a stop of the tour of a technique; what has to be done for it.
-    #[must_use]
     pub fn go_to_stop(&mut self, technique: Technique, stop: usize) -> Vec<Action> {
         let mut actions = Vec::new();
         self.tours.go_to_stop_of(&mut self.model, technique, stop, &mut actions);
@@ -288,7 +280,6 @@ impl Inspector {
     }
 
     /// What an export of `kind` writes now; `None` where there is nothing of it.
-    #[must_use]
     pub fn export(&mut self, kind: ExportKind) -> Option<ExportData> {
         export::data(&mut self.panels.picture, &mut self.model, kind)
     }
@@ -349,14 +340,12 @@ impl Inspector {
     }
 
     /// Index of the selected event in the history of the picked pixel.
-    #[must_use]
     pub fn selected_event(&self) -> Option<usize> {
         let history = self.model.history_of_frame()?;
         self.model.selected_in(&history)
     }
 
     /// Makes shadows of the open scene as `choice` says; what has to be done for it.
-    #[must_use]
     pub fn choose(&mut self, choice: Choice) -> Vec<Action> {
         let mut actions = Vec::new();
         self.model.choose(choice, &mut actions);
@@ -364,7 +353,6 @@ impl Inspector {
     }
 
     /// The capture that is shown, with all that is known of it by now.
-    #[must_use]
     pub fn capture(&self) -> Option<&Arc<Capture>> {
         self.model.frame.capture.as_ref()
     }
@@ -377,7 +365,6 @@ impl Inspector {
     }
 
     /// Is anything being done?
-    #[must_use]
     pub fn is_busy(&self) -> bool {
         self.model.activity.job.is_some()
     }
@@ -395,13 +382,11 @@ impl Inspector {
     }
 
     /// The errors that are shown.
-    #[must_use]
     pub fn errors(&self) -> &[String] {
         &self.model.activity.errors
     }
 
     /// Index of the selected step.
-    #[must_use]
     pub fn step(&self) -> usize {
         self.model.selection.step
     }
@@ -412,7 +397,6 @@ impl Inspector {
     }
 
     /// Index of the selected draw of that step; `None`: the step as a whole.
-    #[must_use]
     pub fn draw(&self) -> Option<usize> {
         self.model.selection.draw
     }
@@ -423,28 +407,24 @@ impl Inspector {
     }
 
     /// The pictures that are shown; none where nothing is drawn yet.
-    #[must_use]
     pub fn shown_images(&self) -> Vec<Arc<Image>> {
         let shown = |capture: &Arc<Capture>| self.model.shown(capture);
         self.model.frame.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
     }
 
     /// The picked pixel of the picture.
-    #[must_use]
     pub fn picked(&self) -> Option<[u32; 2]> {
         self.model.selection.pick
     }
 
     /// The texel that a pixel reads of the shadow map in its tab: index of the face, column and row. `None`
     /// where it reads none, or the tab was not shown for this frame yet.
-    #[must_use]
     pub fn map_texel_of(&self, pixel: [u32; 2]) -> Option<(usize, [u32; 2])> {
         let readers = self.panels.shadow_map.readers(&self.model)?;
         readers.texel_of(pixel).map(|texel| (texel.face, texel.at))
     }
 
     /// The depth that the shadow map in its tab is compared with at a pixel; `None` as for its texel.
-    #[must_use]
     pub fn map_depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         self.panels.shadow_map.readers(&self.model)?.depth_of(pixel)
     }
@@ -455,7 +435,6 @@ impl Inspector {
     }
 
     /// The kind of picture that is shown.
-    #[must_use]
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.model.frame.capture.as_ref()?;
         self.model.shown(capture).map(|shown| shown.kind)
@@ -472,7 +451,6 @@ impl Inspector {
     }
 
     /// How large texels are shown.
-    #[must_use]
     pub fn zoom(&self) -> Zoom {
         self.model.view.zoom
     }
@@ -484,7 +462,6 @@ impl Inspector {
     }
 
     /// Is the scene playing?
-    #[must_use]
     pub fn is_playing(&self) -> bool {
         self.model.selection.playing.is_some()
     }

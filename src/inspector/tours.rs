@@ -45,7 +45,6 @@ pub struct Stop {
 
 impl Stop {
     /// How shadows are made at this stop.
-    #[must_use]
     pub fn technique(&self, tour: &Tour) -> Technique {
         let own = self.go.iter().find_map(|go| if let Go::Technique(technique) = go { Some(*technique) } else { None });
         own.unwrap_or(tour.technique)
@@ -71,7 +70,6 @@ const fn stop(title: &'static str, text: &'static str, go: &'static [Go]) -> Sto
 }
 
 /// The tour of a technique, with its index.
-#[must_use]
 pub fn tour_of(technique: Technique) -> Option<(usize, &'static Tour)> {
     TOURS.iter().enumerate().find(|(_, tour)| tour.technique == technique)
 }

@@ -13,14 +13,12 @@ pub struct AxisBox {
 
 impl AxisBox {
     /// The smallest box that holds all points.
-    #[must_use]
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> AxisBox {
         let none = AxisBox { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.into_iter().fold(none, |all, point| AxisBox { low: all.low.min(point), high: all.high.max(point) })
     }
 
     /// Is a point in it, or on its border?
-    #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
         self.low.cmple(point).all() && self.high.cmpge(point).all()
     }
@@ -39,19 +37,16 @@ impl AxisBox {
     }
 
     /// Does it hold no point?
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.low.cmple(self.high).all()
     }
 
     /// Its length from corner to corner; infinite around no point.
-    #[must_use]
     pub fn diagonal(&self) -> f64 {
         (self.high - self.low).length()
     }
 
     /// Its eight corners.
-    #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
             let of = |axis: usize| if corner >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] };

@@ -62,7 +62,6 @@ pub struct DepthCurve {
 
 impl LengthUnit {
     /// Where there is room for a letter.
-    #[must_use]
     pub fn letter(self) -> &'static str {
         match self {
             LengthUnit::Metre => "m",
@@ -73,31 +72,26 @@ impl LengthUnit {
 
 impl DepthMapping {
     /// Is greater nearer?
-    #[must_use]
     pub fn is_reversed(self) -> bool {
         self == DepthMapping::ReversedInfinite
     }
 
     /// Does it have a far plane?
-    #[must_use]
     pub fn is_finite(self) -> bool {
         matches!(self, DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp)
     }
 
     /// Are depths beyond near and far clamped instead of clipped?
-    #[must_use]
     pub fn clamps(self) -> bool {
         self == DepthMapping::StandardFiniteClamp
     }
 
     /// The depth where nothing was drawn.
-    #[must_use]
     pub fn clear_depth(self) -> f32 {
         if self.is_reversed() { 0.0 } else { 1.0 }
     }
 
     /// With its numbers. `far` counts for finite mappings, `epsilon` for the one of that name.
-    #[must_use]
     pub fn curve(self, near: f64, far: f64, epsilon: f64) -> DepthCurve {
         let offset = match self {
             DepthMapping::ReversedInfinite => 0.0,
@@ -112,7 +106,6 @@ impl DepthMapping {
 
     /// With the numbers of a parallel camera, which are those of no other mapping: from 0 to 1 between `near` and
     /// `end`, or from 1 to 0. Only a finite mapping has a far plane there.
-    #[must_use]
     pub fn linear_curve(self, near: f64, end: f64) -> DepthCurve {
         let scale = if self.is_reversed() { -1.0 / (end - near) } else { 1.0 / (end - near) };
         let offset = if self.is_reversed() { -end * scale } else { -near * scale };
@@ -123,26 +116,22 @@ impl DepthMapping {
 
 impl DepthCurve {
     /// What z of clip space is made of: factors of view z (negative ahead) and of w.
-    #[must_use]
     pub fn z_row(&self) -> DVec2 {
         if self.is_linear { DVec2::new(-self.scale, self.offset) } else { DVec2::new(-self.offset, self.scale) }
     }
 
     /// Ends where nothing must be clipped: volumes that go on are clamped there.
-    #[must_use]
     pub fn keeps_volumes(&self) -> bool {
         self.is_linear && !self.mapping.is_finite()
     }
 
     /// The formula, for people: `0 + 0.05 / distance`.
-    #[must_use]
     pub fn formula(&self) -> String {
         let times = if self.is_linear { "*" } else { "/" };
         format!("{} + {} {times} distance", self.offset, self.scale)
     }
 
     /// Distance along the view axis; `None` for the depth of what was not drawn.
-    #[must_use]
     pub fn distance(&self, depth: f32) -> Option<f64> {
         let above = f64::from(depth) - self.offset;
         (depth != self.mapping.clear_depth())
@@ -150,7 +139,6 @@ impl DepthCurve {
     }
 
     /// The depth of a distance, before it is rounded.
-    #[must_use]
     pub fn depth(&self, distance: f64) -> f64 {
         self.offset + if self.is_linear { self.scale * distance } else { self.scale / distance }
     }

@@ -23,7 +23,6 @@ pub enum Sign {
 
 impl Sign {
     /// −1, 0 or 1.
-    #[must_use]
     pub fn value(self) -> i32 {
         match self {
             Sign::Negative => -1,
@@ -39,7 +38,6 @@ impl Sign {
     }
 
     /// Of `to − from`, however close they are.
-    #[must_use]
     pub fn between(from: f64, to: f64) -> Sign {
         if to > from {
             Sign::Positive
@@ -58,7 +56,6 @@ impl Sign {
 /// Positive where `point` is in front of the triangle `a b c`: seen from it, the corners run
 /// counter-clockwise. `point` has `w = 1`, or `w = 0` for a direction. Exact, but for overflow
 /// and underflow of products of three coordinates.
-#[must_use]
 pub fn side_of_triangle([a, b, c]: [DVec3; 3], point: DVec4) -> Sign {
     if point.w == 0.0 {
         return side_of_direction([a, b, c], point.truncate());
@@ -70,14 +67,12 @@ pub fn side_of_triangle([a, b, c]: [DVec3; 3], point: DVec4) -> Sign {
 
 /// Positive where `point` is to the left of the line from `a` to `b`. Exact, but for overflow and
 /// underflow of products of two coordinates.
-#[must_use]
 pub fn side_of_line([a, b]: [DVec2; 2], point: DVec2) -> Sign {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     Sign::of(orient2d(coord(a), coord(b), coord(point)))
 }
 
 /// The exact sign of a sum of products of two numbers each, but for overflow and underflow.
-#[must_use]
 pub fn sign_of_sum(products: &[(f64, f64)]) -> Sign {
     let mut sum = Expansion::default();
     products.iter().for_each(|(a, b)| sum.add_product(*a, *b, 1.0));

@@ -13,21 +13,18 @@ pub struct Plane {
 
 impl Plane {
     /// The plane through a point with a normal of any length but 0.
-    #[must_use]
     pub fn through(point: DVec3, normal: DVec3) -> Plane {
         let normal = normal.normalize();
         Plane { normal, offset: -normal.dot(point) }
     }
 
     /// Signed distance of a point with `w = 1`; `normal · D` of a direction with `w = 0`.
-    #[must_use]
     pub fn at(&self, point: DVec4) -> f64 {
         self.normal.dot(point.truncate()) + self.offset * point.w
     }
 
     /// Signed distance of a point, and 0 where rounding can't tell it from the plane: what lies in one
     /// plane with others must not be above them by a unit in the last place.
-    #[must_use]
     pub fn height(&self, point: DVec3) -> f64 {
         let height = self.at(point.extend(1.0));
         let products = (self.normal * point).abs().element_sum() + self.offset.abs();
@@ -35,7 +32,6 @@ impl Plane {
     }
 
     /// The same plane with its normal turned round.
-    #[must_use]
     pub fn turned(&self) -> Plane {
         Plane { normal: -self.normal, offset: -self.offset }
     }

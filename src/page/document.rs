@@ -115,9 +115,6 @@ struct Palette {
 }
 
 /// The document of a frame.
-///
-/// # Errors
-/// A frame with numbers that are none.
 pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<String> {
     let mut arrays = Arrays::default();
     let document = Document {

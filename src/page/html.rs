@@ -28,7 +28,6 @@ pub const TEMPLATE: &str = include_str!("../../assets/page/page.html");
 pub const STYLE: &str = include_str!("../../assets/page/style.css");
 
 /// The modules, each after those that it imports.
-#[must_use]
 pub fn modules() -> Vec<Asset> {
     vec![
         asset!("arrays.js"),
@@ -66,7 +65,6 @@ pub fn page(title: &str, document: &str) -> String {
 }
 
 /// All modules as one.
-#[must_use]
 pub fn script() -> String {
     let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
     let of_module =

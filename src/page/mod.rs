@@ -42,18 +42,12 @@ pub enum PageError {
 }
 
 /// The page of a frame.
-///
-/// # Errors
-/// A frame with numbers that are none.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
     Ok(html::page(&title, &document::json(capture, plan)?))
 }
 
 /// Writes the page of a frame, and says how many bytes it has.
-///
-/// # Errors
-/// As [`html`]; a file that can't be written.
 pub fn write(capture: &Capture, plan: &Arc<FramePlan>, path: &Path) -> Result<u64, PageError> {
     let text = html(capture, plan)?;
     let failed = |source| PageError::Write { path: path.display().to_string(), source };

@@ -21,7 +21,6 @@ pub enum Colors {
 
 impl Colors {
     /// What becomes of a colour.
-    #[must_use]
     pub fn kept(self, color: Rgb) -> Rgb {
         let step = u16::from(2 * ROUNDED_BY + 1);
         match self {
@@ -81,9 +80,6 @@ pub struct AnimatedPng<W: Write> {
 
 impl<W: Write> AnimatedPng<W> {
     /// Begins one.
-    ///
-    /// # Errors
-    /// No pixels, no pictures, nothing can be written.
     pub fn new(out: W, format: Format) -> Result<AnimatedPng<W>, AnimationError> {
         let mut encoder = png::Encoder::new(out, format.size[0], format.size[1]);
         encoder.set_color(png::ColorType::Rgb);
@@ -97,9 +93,6 @@ impl<W: Write> AnimatedPng<W> {
     }
 
     /// Adds the next picture.
-    ///
-    /// # Errors
-    /// It has another size, is one too many, or can't be written.
     pub fn add(&mut self, picture: &Picture) -> Result<(), AnimationError> {
         let (expected, found) = (self.format.size, picture.size());
         if expected != found {
@@ -122,9 +115,6 @@ impl<W: Write> AnimatedPng<W> {
     }
 
     /// Ends it.
-    ///
-    /// # Errors
-    /// Pictures are missing; it can't be written.
     pub fn finish(self) -> Result<(), AnimationError> {
         Ok(self.writer.finish()?)
     }

@@ -42,7 +42,6 @@ const STENCIL_MINUS_MOST: Rgb = [0xff, 0xe3, 0xe5];
 
 /// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
 /// each turn; 255 (−1) downwards in reds, lighter further away.
-#[must_use]
 pub fn stencil(value: u8) -> Rgb {
     match value {
         0 => NOTHING,
@@ -59,14 +58,12 @@ pub fn stencil(value: u8) -> Rgb {
 }
 
 /// The colour of a label; a value that is none is drawn as its stencil colour would be.
-#[must_use]
 pub fn label(value: u8) -> Rgb {
     LABELS.get(usize::from(value)).copied().unwrap_or_else(|| stencil(value))
 }
 
 /// The colour of a finding's number, as in error pictures; a number that is none is drawn as its stencil
 /// colour would be.
-#[must_use]
 pub fn finding(value: u8) -> Rgb {
     [AGREES, FALSE_SHADOW, MISSING_SHADOW, WRONG_SURFACE, EDGE_BAND, NOTHING]
         .get(usize::from(value))
@@ -79,7 +76,6 @@ pub const READS_ZERO: Rgb = [0xff, 0x2b, 0xf2];
 
 /// The colour of a count: that of the stencil's palette, whose cycle goes on in its last turn beyond
 /// 127. What eight bits would take for zero has a colour that nothing else has.
-#[must_use]
 pub fn count(count: f32) -> Rgb {
     if numbers::reads_zero_in_eight_bits(count) {
         return READS_ZERO;
@@ -105,19 +101,16 @@ static ENCODED: LazyLock<[u8; 256]> = LazyLock::new(|| {
 });
 
 /// How a share of light, linear bytes, is shown on the screen.
-#[must_use]
 pub fn linear([red, green, blue]: Rgb) -> Rgb {
     [red, green, blue].map(|share| ENCODED[usize::from(share)])
 }
 
 /// Grey for a place between near (0) and far (1): near is light.
-#[must_use]
 pub fn near_far(place: f32) -> Rgb {
     [(238.0 - 196.0 * place.clamp(0.0, 1.0)) as u8; 3]
 }
 
 /// From one colour (0) to another (1), in sRGB.
-#[must_use]
 pub fn between(from: Rgb, to: Rgb, share: f32) -> Rgb {
     std::array::from_fn(|channel| {
         let [from, to] = [from, to].map(|color| f32::from(color[channel]));

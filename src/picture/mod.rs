@@ -37,19 +37,16 @@ pub struct Picture {
 
 impl Picture {
     /// One colour everywhere.
-    #[must_use]
     pub fn filled(size: [u32; 2], color: Rgb) -> Picture {
         Picture { size, pixels: vec![color; size[0] as usize * size[1] as usize] }
     }
 
     /// Width and height in pixels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// One pixel; `None` outside.
-    #[must_use]
     pub fn at(&self, [x, y]: [u32; 2]) -> Option<Rgb> {
         (x < self.size[0]).then(|| self.pixels.get(self.index([x, y])).copied()).flatten()
     }
@@ -72,7 +69,6 @@ impl Picture {
     }
 
     /// As large as fits into `most`: made smaller by averaging, or enlarged so that a pixel becomes a square.
-    #[must_use]
     pub fn fitted(&self, most: [u32; 2]) -> Picture {
         let [width, height] = self.size.map(|side| side.max(1));
         let times = (most[0] / width).min(most[1] / height);
@@ -139,16 +135,12 @@ impl Picture {
     }
 
     /// Width and height that a number takes.
-    #[must_use]
     pub fn number_size(number: usize, dot: u32) -> [u32; 2] {
         let digits = number.to_string().len() as u32;
         [(digits * DIGIT_WIDTH + 1) * dot, (DIGIT_HEIGHT + 2) * dot]
     }
 
     /// The picture as a PNG file.
-    ///
-    /// # Errors
-    /// A picture without pixels.
     pub fn to_png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.size[0], self.size[1]);

@@ -42,9 +42,6 @@ fn tree(svg: &str) -> Result<Tree, SvgError> {
 }
 
 /// An SVG with `scale` pixels a point. What it leaves open is black.
-///
-/// # Errors
-/// No SVG, or too many pixels.
 pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
     let tree = tree(svg)?;
     let size = [tree.size().width(), tree.size().height()].map(|side| (side * scale).ceil());
@@ -60,15 +57,11 @@ pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
 }
 
 /// How wide what an SVG shows is, points.
-///
-/// # Errors
-/// No SVG.
 pub fn width(svg: &str) -> Result<f32, SvgError> {
     Ok(tree(svg)?.root().abs_bounding_box().width())
 }
 
 /// Text as XML: markup escaped, characters that XML can't hold replaced.
-#[must_use]
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -24,39 +24,33 @@ pub struct DrawMesh {
 
 impl DrawMesh {
     /// A mesh that is drawn by position only; see [`relative`](crate::geometry::relative) for its vertices.
-    #[must_use]
     pub fn of_positions(name: impl Into<String>, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
         DrawMesh::of_blobs(name, Blob::new(vertices), Blob::new(indices))
     }
 
     /// The same of data that may be shared.
-    #[must_use]
     pub fn of_blobs(name: impl Into<String>, vertices: Blob<[f32; 4]>, indices: Blob<u32>) -> DrawMesh {
         DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, kept: None }
     }
 
     /// A mesh whose vertices a vertex shader carries away from a light.
-    #[must_use]
     pub fn of_extruded(name: impl Into<String>, extruded: Extruded, indices: Blob<u32>) -> DrawMesh {
         let vertices = extruded.vertices();
         DrawMesh { extruded: Some(extruded), ..DrawMesh::of_blobs(name, vertices, indices) }
     }
 
     /// Column and row of a pixel in one word, as [`DrawMesh::kept`] has it.
-    #[must_use]
     pub fn pixel_word([x, y]: [u32; 2]) -> u32 {
         x | y << 16
     }
 
     /// Is a fragment of a triangle there after the shader, as far as is known?
-    #[must_use]
     pub fn keeps(&self, pixel: [u32; 2], triangle: u32) -> bool {
         let wanted = [DrawMesh::pixel_word(pixel), triangle];
         self.kept.as_ref().is_none_or(|kept| kept.data().binary_search(&wanted).is_ok())
     }
 
     /// How many triangles it has.
-    #[must_use]
     pub fn triangles(&self) -> u32 {
         (self.indices.len() / 3) as u32
     }
@@ -100,7 +94,6 @@ pub struct PlanTexture {
 
 impl PlanTexture {
     /// Bytes that all its levels take.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let half = |side: u32, level: u32| u64::from((side >> level).max(1));
         let [width, height] = self.picture.size();

@@ -11,20 +11,17 @@ impl CountBits {
     pub const EIGHT: CountBits = CountBits(8);
 
     /// Those that a write mask has, from the lowest on; all where it has gaps, as no count then fits.
-    #[must_use]
     pub fn of_mask(mask: u32) -> CountBits {
         let ones = (mask as u8).trailing_ones() as u8;
         if (1..8).contains(&ones) && mask == (1 << ones) - 1 { CountBits(ones) } else { CountBits::EIGHT }
     }
 
     /// How many different counts they hold.
-    #[must_use]
     pub fn modulus(self) -> i32 {
         1 << self.0
     }
 
     /// Do they hold a sum as this byte although it is another number? Of eight bits, the upper half reads as negative.
-    #[must_use]
     pub fn hold_otherwise(self, sum: i32, byte: u8) -> bool {
         let least = if self == CountBits::EIGHT { -128 } else { 0 };
         sum.rem_euclid(self.modulus()) == i32::from(byte) && !(least..self.modulus()).contains(&sum)

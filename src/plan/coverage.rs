@@ -96,7 +96,6 @@ pub struct FragmentLog {
 impl FramePlan {
     /// Does a pass draw into the picture, or test against its depth and stencil? Passes of shadow
     /// maps and textures have pixels of their own.
-    #[must_use]
     pub fn is_of_picture(&self, pass: &Pass) -> bool {
         let is_map = |id| matches!(self.attachment(id).role, super::AttachmentRole::Map(_));
         let color = pass.color.iter().map(|target| target.attachment);
@@ -105,7 +104,6 @@ impl FramePlan {
     }
 
     /// Does a pass draw into a float count?
-    #[must_use]
     pub fn counts_in_float(&self, pass: &Pass) -> bool {
         let role = pass.color.as_ref().map(|target| self.attachment(target.attachment).role);
         matches!(role, Some(super::AttachmentRole::Count(_)))
@@ -113,7 +111,6 @@ impl FramePlan {
 
     /// Every triangle of every pass of the picture that lies over the centre of `pixel` or within a
     /// pixel of it, in the order in which the GPU draws them.
-    #[must_use]
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
         let mut search = Search { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
         let mut covering = Vec::new();

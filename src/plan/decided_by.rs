@@ -60,7 +60,6 @@ pub enum CountOf {
 
 impl CountOf {
     /// `bodies`, `surfaces`, `bodies and surfaces`.
-    #[must_use]
     pub fn what(self) -> &'static str {
         match self {
             CountOf::Bodies => "bodies",
@@ -70,7 +69,6 @@ impl CountOf {
     }
 
     /// In a sentence, for whoever reads a count.
-    #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
             CountOf::Bodies => {
@@ -91,19 +89,16 @@ impl CountOf {
 
 impl DecidedBy {
     /// Are shadow volumes counted, in whatever way?
-    #[must_use]
     pub fn counts_volumes(self) -> bool {
         self.counted_side().is_some()
     }
 
     /// Are they counted in a float for each pixel, and not in eight bits?
-    #[must_use]
     pub fn counts_in_floats(self) -> bool {
         matches!(self, DecidedBy::FloatCount { .. })
     }
 
     /// The side on which shadow volumes count; `None` where none are counted.
-    #[must_use]
     pub fn counted_side(self) -> Option<Side> {
         match self {
             DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side } => Some(side),
@@ -119,7 +114,6 @@ impl DecidedBy {
 
 impl Side {
     /// `behind`, as in "faces behind the surface".
-    #[must_use]
     pub fn preposition(self) -> &'static str {
         match self {
             Side::InFront => "in front of",

@@ -5,7 +5,6 @@ use super::{Attachment, AttachmentId, FramePlan, PlanMap};
 impl PlanMap {
     /// Where a face lies in the map's texture, which has only those that are drawn; `None` for one that is left
     /// out, or that the map does not have.
-    #[must_use]
     pub fn held_layer(&self, face: u32) -> Option<u32> {
         let before = self.faces.get(..=face as usize)?;
         before.last()?.map(|_| before.iter().flatten().count() as u32 - 1)
@@ -19,7 +18,6 @@ impl FramePlan {
     }
 
     /// Where a layer of an attachment lies in its texture; `None` where it is left out.
-    #[must_use]
     pub fn held_layer(&self, id: AttachmentId, layer: u32) -> Option<u32> {
         match self.map_in(id) {
             Some(map) => map.held_layer(layer),
@@ -31,7 +29,6 @@ impl FramePlan {
     ///
     /// # Panics
     /// If the id is of another plan.
-    #[must_use]
     pub fn held_layers(&self, id: AttachmentId) -> u32 {
         let drawn = |map: &PlanMap| (map.faces.iter().flatten().count() as u32).max(1);
         self.map_in(id).map_or_else(|| self.attachment(id).layers, drawn)

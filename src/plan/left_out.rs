@@ -40,14 +40,12 @@ impl LeftOut {
     }
 
     /// A pass that did not run, since what it makes is there from the frame before.
-    #[must_use]
     pub fn kept(pass: &Pass) -> LeftOut {
         let of = pass.light.map_or_else(|| "the frame".to_owned(), LightId::name);
         LeftOut::named(Decision::Kept, &pass.name, of, "nothing that makes it has changed since")
     }
 
     /// Triangles that a light gives nothing.
-    #[must_use]
     pub fn unlit(count: u64, light: LightId, has_range: bool) -> LeftOut {
         let of = format!("the pass of {}", light.name());
         let mut left_out = LeftOut::counted(Decision::UnlitTriangles, count, of, "it adds nothing to them");
@@ -56,13 +54,11 @@ impl LeftOut {
     }
 
     /// Is it this that was left out of that object, light or pass?
-    #[must_use]
     pub fn is(&self, decision: Decision, of: &str) -> bool {
         self.decision == Some(decision) && self.of == of
     }
 
     /// Is it the one of that name that was left out?
-    #[must_use]
     pub fn names(&self, decision: Decision, name: &str) -> bool {
         self.decision == Some(decision) && self.name.as_deref() == Some(name)
     }

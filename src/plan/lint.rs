@@ -18,7 +18,6 @@ pub struct LintError {
 }
 
 /// Every broken rule, in the order of passes.
-#[must_use]
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
     let in_range = |mesh: &DrawMesh| {
         let vertex_count = mesh.vertices.len();

@@ -60,7 +60,6 @@ pub struct LightId(pub usize);
 
 impl LightId {
     /// For people, counted from 1: `light 1`.
-    #[must_use]
     pub fn name(self) -> String {
         crate::numbers::light(self.0)
     }
@@ -155,7 +154,6 @@ pub struct PlanView {
 
 impl PlanView {
     /// An eye where the vertices are relative to.
-    #[must_use]
     pub fn at_origin() -> Vec4 {
         Vec4::W
     }
@@ -261,7 +259,6 @@ pub struct Pass {
 
 impl Pass {
     /// May its draws change a pixel?
-    #[must_use]
     pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
         let holds = |[left, top, columns, rows]: [u32; 4]| {
             (left..left.saturating_add(columns)).contains(&x) && (top..top.saturating_add(rows)).contains(&y)
@@ -270,7 +267,6 @@ impl Pass {
     }
 
     /// Does it count the volumes that hold the near plane, as z-pass-plus begins? It sees them from the light.
-    #[must_use]
     pub fn counts_at_near_plane(&self) -> bool {
         self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
     }
@@ -329,7 +325,6 @@ pub struct Draw {
 
 impl Draw {
     /// Which part one of its triangles is: of caps that a vertex shader carries, light cap or dark cap.
-    #[must_use]
     pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> Part {
         match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
             (Part::Caps, Some([true, ..])) => Part::DarkCap,
@@ -339,7 +334,6 @@ impl Draw {
     }
 
     /// A draw of a whole mesh by position only, as into the stencil.
-    #[must_use]
     pub fn of_positions(
         name: impl Into<String>,
         part: Part,
@@ -386,13 +380,11 @@ named_enum! {
 
 impl Part {
     /// Is it a part of a shadow volume?
-    #[must_use]
     pub fn is_of_volume(self) -> bool {
         matches!(self, Part::Side | Part::LightCap | Part::DarkCap | Part::Caps)
     }
 
     /// Is it this part, or does it hold it?
-    #[must_use]
     pub fn includes(self, part: Part) -> bool {
         self == part || (self == Part::Caps && matches!(part, Part::LightCap | Part::DarkCap))
     }
@@ -450,7 +442,6 @@ pub enum Visibility {
 
 impl Visibility {
     /// Shaders branch on what the light's map is like.
-    #[must_use]
     pub(crate) fn branches_on_light(self) -> bool {
         matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
     }
@@ -466,7 +457,6 @@ impl Visibility {
     ];
 
     /// Does it read the light's map?
-    #[must_use]
     pub fn reads_map(self) -> bool {
         matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
     }
@@ -474,7 +464,6 @@ impl Visibility {
 
 impl Program {
     /// Every one.
-    #[must_use]
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
@@ -485,7 +474,6 @@ impl Program {
 
     /// Which side of the range of depths a fragment lies on that the shader throws away: where depth
     /// is clamped, nothing else clips at near and far (`discard` in the shaders' files).
-    #[must_use]
     pub fn discards(self, depth: f32) -> Option<Clip> {
         match self {
             Program::Ambient { from_near: true } if depth < 0.0 => Some(Clip::Near),
@@ -495,19 +483,16 @@ impl Program {
     }
 
     /// Does it show the picture on a surface, where there is one?
-    #[must_use]
     pub fn shows_texture(self) -> bool {
         matches!(self, Program::Ambient { .. } | Program::Light(_))
     }
 
     /// Reads nothing but positions and the draw's flat colour.
-    #[must_use]
     pub fn is_flat(self) -> bool {
         matches!(self, Program::Position | Program::Flat)
     }
 
     /// What it asks how much light arrives; `None` for programs that do not light.
-    #[must_use]
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
@@ -548,13 +533,11 @@ impl FramePlan {
     ///
     /// # Panics
     /// If the id is of another plan; [`lint::check`] finds that beforehand.
-    #[must_use]
     pub fn attachment(&self, id: AttachmentId) -> &Attachment {
         &self.attachments[id.0]
     }
 
     /// Triangles that the frame submits; mask passes are not part of it.
-    #[must_use]
     pub fn triangles(&self) -> u64 {
         let draws = self.timed_passes().flat_map(|pass| &pass.draws);
         draws.map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
@@ -562,7 +545,6 @@ impl FramePlan {
 
     /// Bytes of GPU memory that the frame needs for attachments, vertices, indices and pictures on surfaces. What only
     /// mask passes need is left out.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let (mut attachments, mut blobs, mut textures) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         for pass in self.timed_passes() {

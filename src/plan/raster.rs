@@ -64,7 +64,6 @@ pub enum ColorWrite {
 
 impl RasterState {
     /// Draws surfaces first: nearest wins, both sides, reversed depth.
-    #[must_use]
     pub fn surface() -> RasterState {
         RasterState {
             depth_compare: CompareFunction::Greater,
@@ -81,7 +80,6 @@ impl RasterState {
     }
 
     /// Draws again exactly where a surface is already visible, without changing depth.
-    #[must_use]
     pub fn visible_surface(color: ColorWrite) -> RasterState {
         RasterState { depth_compare: CompareFunction::Equal, depth_write: false, color, ..RasterState::surface() }
     }
@@ -125,7 +123,6 @@ impl RasterState {
     }
 
     /// The tests and operations of a face, and its reference and masks.
-    #[must_use]
     pub fn face(&self, is_front: bool) -> (&StencilFace, FaceMasks) {
         let wgpu::StencilState { front, back, read_mask, write_mask } = &self.stencil;
         let shared = FaceMasks { reference: self.stencil_reference, read: *read_mask as u8, write: *write_mask as u8 };
@@ -133,7 +130,6 @@ impl RasterState {
     }
 
     /// As states whose reference and masks hold for both faces: itself, or one of each face.
-    #[must_use]
     pub fn by_face(&self) -> Vec<RasterState> {
         let Some(back) = self.back else {
             return vec![RasterState { back: None, ..self.clone() }];
@@ -148,7 +144,6 @@ impl RasterState {
     }
 
     /// Does a fragment that fails a test leave everything as it was?
-    #[must_use]
     pub fn acts_only_where_it_passes(&self) -> bool {
         let keeps = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write == 0 || [face.fail_op, face.depth_fail_op] == [StencilOperation::Keep; 2]
@@ -157,7 +152,6 @@ impl RasterState {
     }
 
     /// Can a draw with this state change the stored stencil?
-    #[must_use]
     pub fn writes_stencil(&self) -> bool {
         let writes = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write != 0

@@ -40,14 +40,12 @@ pub struct Viewport {
 
 impl Viewport {
     /// All of a target, and all depths.
-    #[must_use]
     pub fn whole(size: [u32; 2]) -> Viewport {
         let [width, height] = size.map(|side| side as f32);
         Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
     }
 
     /// The stored depth of a clip depth.
-    #[must_use]
     pub fn stored(&self, depth: f64) -> f64 {
         let [near, far] = self.depth.map(f64::from);
         near + (far - near) * depth
@@ -65,7 +63,6 @@ pub struct StartContent {
 
 impl Attachment {
     /// The largest depth as an integer, where the format stores depths as integers: 2^bits − 1.
-    #[must_use]
     pub fn depth_steps(&self) -> Option<u32> {
         match self.format {
             TextureFormat::Depth16Unorm => Some(0xffff),
@@ -76,7 +73,6 @@ impl Attachment {
 
     /// The format that the GPU is given: depths of 16 and 24 bits can't be copied everywhere, so they are kept as the
     /// floats next to them, of which each is another.
-    #[must_use]
     pub fn held_format(&self) -> TextureFormat {
         match self.format {
             TextureFormat::Depth16Unorm | TextureFormat::Depth24Plus => TextureFormat::Depth32Float,
@@ -87,13 +83,11 @@ impl Attachment {
 
     /// How far a depth that is computed anew may be from the one that was stored: sixteen steps of its format, or of 24
     /// bits. OpenGL's clip space begins at −w, and a corner's depth is rounded once more on its way to ours.
-    #[must_use]
     pub fn depth_rounding(&self) -> f32 {
         16.0 / self.depth_steps().unwrap_or(0xff_ffff) as f32
     }
 
     /// A depth as it is stored: the nearest that the format has.
-    #[must_use]
     pub fn stored_depth(&self, depth: f32) -> f32 {
         match self.depth_steps() {
             Some(steps) => (depth * steps as f32).round_ties_even() / steps as f32,
@@ -104,7 +98,6 @@ impl Attachment {
 
 impl Program {
     /// Is it another program's shader? Vertices are in clip space then, and go through as they are.
-    #[must_use]
     pub fn is_recorded(self) -> bool {
         matches!(self, Program::Recorded { .. })
     }
@@ -112,7 +105,6 @@ impl Program {
 
 impl Pass {
     /// Where its draws land in a target of that size.
-    #[must_use]
     pub fn viewport(&self, size: [u32; 2]) -> Viewport {
         self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
     }
@@ -120,7 +112,6 @@ impl Pass {
 
 impl Draw {
     /// May its shader discard fragments without it being known which? `mesh` is the draw's.
-    #[must_use]
     pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
         matches!(self.program, Program::Recorded { may_discard: May::Yes | May::Unknown, .. }) && mesh.kept.is_none()
     }

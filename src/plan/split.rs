@@ -7,13 +7,11 @@ impl FramePlan {
     /// Splits every pass at its draws: the first part clears what the pass clears, the others keep
     /// what is there. The pictures after the last part of a pass are those after the pass. A pass
     /// of one draw, or of none, stays as it is.
-    #[must_use]
     pub fn split_at_draws(&self) -> FramePlan {
         self.split_where(|_| true)
     }
 
     /// The frame up to pass `index` and no further, of which only that pass is split.
-    #[must_use]
     pub fn split_pass_at_draws(&self, index: usize) -> FramePlan {
         let mut plan = self.split_where(|pass| pass == index);
         let parts = self.passes.get(index).map_or(0, |pass| pass.draws.len().max(1));

@@ -26,7 +26,6 @@ named_enum! {
 }
 
 /// The state as lines that one would write in `api`, in the order depth, stencil, raster, colour.
-#[must_use]
 pub fn lines(raster: &RasterState, api: Api) -> Vec<String> {
     match api {
         Api::WebGpu => web_gpu(raster),
@@ -36,7 +35,6 @@ pub fn lines(raster: &RasterState, api: Api) -> Vec<String> {
 }
 
 /// What a fragment of this draw does, in a sentence for each buffer.
-#[must_use]
 pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
     let mut said = Vec::new();
     if pass.depth_stencil.is_some() {

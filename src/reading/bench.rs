@@ -115,7 +115,6 @@ fn sign(compare: CompareFunction) -> Option<&'static str> {
 }
 
 /// A function's name.
-#[must_use]
 pub fn name(compare: CompareFunction) -> &'static str {
     COMPARES.iter().find(|(one, ..)| *one == compare).map_or("", |(_, name, _)| name)
 }

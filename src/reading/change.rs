@@ -193,7 +193,6 @@ fn ground(colors: &Image) -> Image {
 }
 
 /// A signed number; `None` of 0.
-#[must_use]
 pub fn signed(by: i8) -> Option<String> {
     match by {
         0 => None,

@@ -150,7 +150,6 @@ struct Matrices {
 
 impl Place {
     /// Of a pixel of a capture, with the depth that its picture ends with.
-    #[must_use]
     pub fn of(capture: &Capture, pixel: [u32; 2]) -> Place {
         let matrices = Matrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -216,7 +215,6 @@ impl VertexPlaces {
     }
 
     /// In lines, for `pixel --vertex`.
-    #[must_use]
     pub fn text(&self) -> String {
         let vertices: String = self.vertices.iter().map(Vertex::text).collect();
         self.camera.text() + &vertices + &chain_text(&self.chain)
@@ -225,13 +223,11 @@ impl VertexPlaces {
 
 impl Vertex {
     /// `vertex 3 of floor`.
-    #[must_use]
     pub fn name(&self) -> String {
         format!("vertex {} of {}", self.index, self.object)
     }
 
     /// Name and value of each space, in order, and where it lies in the view.
-    #[must_use]
     pub fn rows(&self, digits: u32) -> [(&'static str, String); 6] {
         let divided = |values: Option<[f64; 3]>| match values {
             Some(values) => vector(&values, digits),
@@ -354,7 +350,6 @@ impl Spherical {
 
 impl Place {
     /// In lines, for `pixel --coordinates`.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut text = self.camera.text();
         match self.point {
@@ -389,21 +384,18 @@ fn chain_text(chain: &[Step]) -> String {
 
 impl Coordinates {
     /// Name and values of each space, in order.
-    #[must_use]
     pub fn rows(&self) -> [(&'static str, &[f64]); 5] {
         [("world", &self.world), ("eye", &self.eye), ("clip", &self.clip), ("NDC", &self.ndc), ("window", &self.window)]
     }
 }
 
 /// Numbers between commas, with so many digits.
-#[must_use]
 pub fn vector(values: &[f64], digits: u32) -> String {
     let texts: Vec<String> = values.iter().map(|value| number(*value, digits)).collect();
     texts.join(", ")
 }
 
 /// A row of a matrix in columns of one width.
-#[must_use]
 pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
     let width = digits as usize + 5;
     row.map(|value| format!("{:>width$}", number(value, digits))).concat()

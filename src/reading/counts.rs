@@ -11,13 +11,11 @@ pub type Tally = BTreeMap<i64, u64>;
 pub use crate::numbers::reads_zero_in_eight_bits;
 
 /// What eight bits would hold of it.
-#[must_use]
 pub fn in_eight_bits(count: f32) -> u8 {
     (count.round() as i64).rem_euclid(256) as u8
 }
 
 /// A count with its sign; digits after the point only where it has some.
-#[must_use]
 pub fn text(count: f32) -> String {
     if count.fract() != 0.0 || !count.is_finite() {
         return count.to_string().replace('-', "−");
@@ -27,7 +25,6 @@ pub fn text(count: f32) -> String {
 }
 
 /// How many texels have each count.
-#[must_use]
 pub fn tally(image: &Image) -> Tally {
     let mut tally = Tally::new();
     // Neighbours mostly agree: a run is looked up once.
@@ -47,7 +44,6 @@ pub fn tally(image: &Image) -> Tally {
 
 /// The light whose counts a step leaves finished, with those: the last of its passes that count. What
 /// earlier ones left is not kept.
-#[must_use]
 pub fn finished_by(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
     let light = capture.steps.get(index).filter(|step| counts(step))?.light?;
     let is_last = !capture.steps[index + 1..].iter().any(|step| counts(step) && step.light == Some(light));
@@ -59,7 +55,6 @@ fn counts(step: &crate::capture::Step) -> bool {
 }
 
 /// The counts that are known after a step: of the light that was finished last.
-#[must_use]
 pub fn known_after(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
     (0..=index).rev().find_map(|earlier| finished_by(capture, earlier))
 }

@@ -45,7 +45,6 @@ pub struct DepthScale {
 
 impl DepthMeasure {
     /// Of the camera's depth buffer.
-    #[must_use]
     pub fn of_camera(capture: &Capture) -> DepthMeasure {
         let DepthCurve { mapping, offset, scale, is_linear, .. } = capture.depth;
         let clear = mapping.clear_depth();
@@ -57,7 +56,6 @@ impl DepthMeasure {
 
     /// Of a face of a light's shadow map; `None` where there is none or its matrix tells no distance, as
     /// those of other programs, which are not known.
-    #[must_use]
     pub fn of_map(capture: &Capture, light: usize, face: usize) -> Option<DepthMeasure> {
         let map = capture.lights.get(light)?.map.as_ref().filter(|_| capture.origin.is_none())?;
         DepthMeasure::of_matrix(*map.clip_from_light.get(face)?, capture.depth.mapping.clear_depth())
@@ -88,7 +86,6 @@ impl DepthMeasure {
     }
 
     /// What `depth` stands for; `None` where nothing was drawn and the measure is a distance.
-    #[must_use]
     pub fn value(self, depth: f32) -> Option<f64> {
         let stored = f64::from(depth);
         match self {
@@ -100,14 +97,12 @@ impl DepthMeasure {
     }
 
     /// How much one step of the stored `f32` is worth at `depth`, in metres.
-    #[must_use]
     pub fn step_at(self, depth: f32) -> Option<f64> {
         // Towards 0 floats are finer, so the coarser neighbour is the one above.
         self.between(f64::from(depth), f64::from(depth.next_up()), depth)
     }
 
     /// One step of a fixed-point buffer of `bits` bits, 31 at most, which stores `floor((2^k − 1) · depth)`.
-    #[must_use]
     pub fn fixed_step_at(self, depth: f32, bits: u32) -> Option<f64> {
         let steps = f64::from((1_u32 << bits) - 1);
         let stored = (f64::from(depth) * steps).floor();
@@ -129,7 +124,6 @@ impl DepthMeasure {
     }
 
     /// The smallest and largest value in `image`; `None` where there is none.
-    #[must_use]
     pub fn range_of(self, image: &Image) -> Option<[f64; 2]> {
         let mut range: Option<[f64; 2]> = None;
         for row in image.rows() {
@@ -147,7 +141,6 @@ impl DepthMeasure {
 
 impl DepthScale {
     /// Where a stored depth is between the ends, from near (0) to far (1); `None` where there is no surface.
-    #[must_use]
     pub fn place(self, depth: f32) -> Option<f32> {
         let value = self.measure.value(depth)?;
         let [low, high] = self.range;

@@ -42,7 +42,6 @@ pub struct Known<'a> {
 }
 
 /// The facts of a step, the most important first.
-#[must_use]
 pub fn facts(known: &Known) -> Vec<Fact> {
     let Some(step) = known.capture.steps.get(known.step) else { return Vec::new() };
     let has = |part: Part| step.draws.iter().any(|draw| draw.part == part);

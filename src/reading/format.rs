@@ -3,19 +3,16 @@
 pub use crate::numbers::{count, depth, digits, length, light, metres, precise};
 
 /// `count(value)` with the word in the right number: `1 draw`, `2 draws`.
-#[must_use]
 pub fn counted(value: u64, noun: &str) -> String {
     format!("{} {noun}{}", count(value), if value == 1 { "" } else { "s" })
 }
 
 /// `Light 1`, as a title.
-#[must_use]
 pub fn light_title(index: usize) -> String {
     format!("Light {}", index + 1)
 }
 
 /// Milliseconds, or a dash where they were not measured.
-#[must_use]
 pub fn milliseconds(value: Option<f64>) -> String {
     match value {
         None => "–".to_owned(),
@@ -26,7 +23,6 @@ pub fn milliseconds(value: Option<f64>) -> String {
 }
 
 /// A size in memory: `7.1 MB`.
-#[must_use]
 pub fn bytes(value: u64) -> String {
     match value {
         0..1_000 => format!("{value} B"),
@@ -37,7 +33,6 @@ pub fn bytes(value: u64) -> String {
 }
 
 /// Shares of red, green and blue light: `20 % 0 % 100 %`.
-#[must_use]
 pub fn shares([red, green, blue, _]: [u8; 4]) -> String {
     let share = |byte: u8| format!("{:.0} %", f32::from(byte) / 2.55);
     [red, green, blue].map(share).join("  ")

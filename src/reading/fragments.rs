@@ -48,7 +48,6 @@ pub struct Fragments {
 
 impl Fragments {
     /// Of the picture after a frame, with those that look the map of `light` up; `None` where nothing is drawn.
-    #[must_use]
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Fragments> {
         let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
         let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| Drawn::new(capture, plan, light));
@@ -56,13 +55,11 @@ impl Fragments {
     }
 
     /// Are planes and normals those of the triangles that were drawn?
-    #[must_use]
     pub fn are_drawn(&self) -> bool {
         self.drawn.is_some()
     }
 
     /// The one at a pixel; `None` where no surface is.
-    #[must_use]
     pub fn at(&self, at: [u32; 2]) -> Option<Fragment> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         let most = SAME_SURFACE * world.distance(self.surface.eye);
@@ -76,14 +73,12 @@ impl Fragments {
 
     /// Where the surface of a pixel is, without its normal, and whether it looks the light's map up; `None` where no
     /// surface is.
-    #[must_use]
     pub fn place(&self, at: [u32; 2]) -> Option<(DVec3, bool)> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         Some((world, self.drawn.as_ref().and_then(|drawn| drawn.place(at)).is_none_or(|place| place.reads)))
     }
 
     /// Where the corners of a pixel lie on a plane, in order round it; `None` where one sees nothing of it.
-    #[must_use]
     pub fn corners(&self, [x, y]: [u32; 2], fragment: &Fragment) -> Option<[DVec3; 4]> {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
@@ -253,7 +248,6 @@ pub struct Surface {
 
 impl Surface {
     /// Of the camera of a capture.
-    #[must_use]
     pub fn new(capture: &Capture) -> Surface {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
@@ -267,7 +261,6 @@ impl Surface {
     }
 
     /// World position of the surface at the middle of a pixel; `None` where there is none.
-    #[must_use]
     pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
         let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
         Some(self.eye + self.sight([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))

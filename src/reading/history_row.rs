@@ -51,7 +51,6 @@ pub enum Outcome {
 
 impl Cells {
     /// The cells of an event.
-    #[must_use]
     pub fn of(history: &PixelHistory, event: &Event, capture: &Capture) -> Cells {
         let (change, has_changed) = change(history, event, &capture.depth);
         let number = steps::number(capture, event.pass);
@@ -82,7 +81,6 @@ impl Cells {
     }
 
     /// The row in words, with every sign that it shows.
-    #[must_use]
     pub fn name(&self) -> String {
         let mut name = format!("{}: {}", self.pass, self.what);
         let mut add = |separator: &str, text: &str| {
@@ -107,13 +105,11 @@ impl Cells {
 }
 
 /// The whole event in words; the face that words are set in has no arrow.
-#[must_use]
 pub fn line(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> String {
     history.line(event, curve).replace('→', "to")
 }
 
 /// The part of a face and the object it belongs to: `dark cap` and `torus 2`.
-#[must_use]
 pub fn named(one: &TriangleEvent) -> (String, String) {
     let caster = || one.caster.clone().unwrap_or_else(|| one.draw_name.clone());
     match one.part {
@@ -127,7 +123,6 @@ pub fn named(one: &TriangleEvent) -> (String, String) {
 }
 
 /// Which side of what a triangle belongs to is seen.
-#[must_use]
 pub fn side(one: &TriangleEvent) -> &'static str {
     if one.shows_outside() { "front" } else { "back" }
 }
@@ -145,7 +140,6 @@ fn outcome(fate: Fate) -> Outcome {
 }
 
 /// The sign of a test beside its colour.
-#[must_use]
 pub fn sign(test: Test) -> &'static str {
     match test {
         Test::Passed => "✓",
@@ -156,7 +150,6 @@ pub fn sign(test: Test) -> &'static str {
 }
 
 /// A stencil operation in a few letters; wrapping or clamping is in the row's whole line.
-#[must_use]
 pub fn short(operation: StencilOperation) -> &'static str {
     match operation {
         StencilOperation::Keep => "keep",
@@ -169,7 +162,6 @@ pub fn short(operation: StencilOperation) -> &'static str {
 }
 
 /// A stencil value with its sign, and without the stored byte beside it.
-#[must_use]
 pub fn signed(value: u8) -> String {
     numbers::signed(value).split(' ').next().unwrap_or_default().to_owned()
 }

@@ -56,7 +56,6 @@ pub struct Stretch {
 
 /// Places everything on the ray within `room` points, if need be by folding more rungs; `near` is the near plane's
 /// distance in metres, `selected` a rung, `open` rungs that are not to be folded. Also the height of a line.
-#[must_use]
 pub fn place(
     ladder: &Ladder,
     near: f64,
@@ -105,7 +104,6 @@ pub fn place(
 
 /// The count along the ray: from where counting begins as far as the surface; where faces count on both sides of
 /// it, along all of the ray.
-#[must_use]
 pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let mut count = ladder.start;

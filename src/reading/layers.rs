@@ -31,7 +31,6 @@ pub struct Layer {
 
 impl MapContent {
     /// Of a light's map; `None` where there is none.
-    #[must_use]
     pub fn of(capture: &Capture, light: usize) -> Option<MapContent> {
         let light = capture.lights.get(light)?;
         let map = light.map.as_ref()?;
@@ -43,13 +42,11 @@ impl MapContent {
     }
 
     /// Of the first light that has a map.
-    #[must_use]
     pub fn of_capture(capture: &Capture) -> Option<MapContent> {
         (0..capture.lights.len()).find_map(|light| MapContent::of(capture, light))
     }
 
     /// On the button of [`PictureKind::Map`](super::shown::PictureKind::Map).
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             MapContent::Depth => "Shadow map",
@@ -59,7 +56,6 @@ impl MapContent {
     }
 
     /// What one sees in it.
-    #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
             MapContent::Depth => "Depth as the light sees it",
@@ -69,7 +65,6 @@ impl MapContent {
     }
 
     /// What a layer is called in the Pixel panel.
-    #[must_use]
     pub fn one(self) -> &'static str {
         match self {
             MapContent::Depth => "map",
@@ -79,7 +74,6 @@ impl MapContent {
     }
 
     /// What a light's map is called as a whole, in a sentence.
-    #[must_use]
     pub fn whole(self) -> &'static str {
         match self {
             MapContent::Depth => "shadow map",
@@ -90,7 +84,6 @@ impl MapContent {
 }
 
 /// The layers of a light's map, in order; empty where there is none.
-#[must_use]
 pub fn layers(capture: &Capture, light: usize) -> Vec<Layer> {
     let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
     let count = map.map_or(0, |map| map.faces.len());

@@ -4,7 +4,6 @@ use crate::plan::LeftOut;
 
 /// Each reason with what was left out for it, in the order of the frame. One thing is decided again for every light, and
 /// for many objects with one reason: once is enough to read.
-#[must_use]
 pub fn by_reason(left_out: &[LeftOut]) -> Vec<(&str, Vec<String>)> {
     let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
     for entry in left_out {

@@ -42,7 +42,6 @@ pub struct MapDecision {
 
 impl MapDecision {
     /// Of a pixel under a light; `None` where it reads no texel.
-    #[must_use]
     pub fn of(capture: &Capture, readers: &MapReaders, light: usize, pixel: [u32; 2]) -> Option<MapDecision> {
         let map = capture.lights.get(light)?.map.as_ref()?;
         let clear = capture.depth.mapping.clear_depth();
@@ -70,33 +69,28 @@ impl MapDecision {
     }
 
     /// How many of the texels let the light pass.
-    #[must_use]
     pub fn lit(&self) -> usize {
         self.compared.iter().filter(|one| one.is_lit).count()
     }
 
     /// A depth as stored, and how far from the light that is.
-    #[must_use]
     pub fn depth_words(&self, depth: f32) -> String {
         let metres = self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
         metres.map_or_else(|| format::depth(depth), |metres| format!("{} ({metres})", format::depth(depth)))
     }
 
     /// What the middle texel stores, in words.
-    #[must_use]
     pub fn stored_words(&self) -> String {
         if self.middle.is_caster { self.depth_words(self.middle.stored) } else { "no caster".to_owned() }
     }
 
     /// Where the texel is: `412, 300 of face −x`.
-    #[must_use]
     pub fn place_words(&self) -> String {
         let [x, y] = self.middle.texel.at;
         if self.face.is_empty() { format!("{x}, {y}") } else { format!("{x}, {y} of face {}", self.face) }
     }
 
     /// What follows from the comparison, in a few words.
-    #[must_use]
     pub fn outcome(&self) -> String {
         let all = self.compared.len();
         match (all, self.lit()) {
@@ -109,7 +103,6 @@ impl MapDecision {
     }
 
     /// Why the pixel is dark or lit, in a sentence.
-    #[must_use]
     pub fn sentence(&self) -> String {
         let place = self.place_words();
         let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);

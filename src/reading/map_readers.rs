@@ -33,7 +33,6 @@ pub struct MapReaders {
 
 impl MapReaders {
     /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
-    #[must_use]
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
         // Where another program's map looks is not known.
         let lookup = Lookup::new(capture, plan, light).filter(|_| capture.origin.is_none())?;
@@ -50,13 +49,11 @@ impl MapReaders {
     }
 
     /// Are normals those that the shader had? Else they are guessed from depths.
-    #[must_use]
     pub fn knows_normals(&self) -> bool {
         self.fragments.are_drawn()
     }
 
     /// The texel that a pixel reads, the middle one of several; `None` where it reads none.
-    #[must_use]
     pub fn texel_of(&self, [x, y]: [u32; 2]) -> Option<MapTexel> {
         let index = (y as usize).checked_mul(self.size[0] as usize)? + x as usize;
         let [face, column, row] = (*self.first.get(index).filter(|_| x < self.size[0])?)?;
@@ -69,7 +66,6 @@ impl MapReaders {
     }
 
     /// The pixels that read a texel.
-    #[must_use]
     pub fn of_texel(&self, texel: MapTexel) -> Vec<[u32; 2]> {
         let reads = |first: [i16; 3]| {
             let is_in = |first: i16, at: u32, side: u32| {
@@ -88,7 +84,6 @@ impl MapReaders {
     }
 
     /// The depth that the map's texels are compared with at a pixel; `None` where it reads none.
-    #[must_use]
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (_, clip) = self.lookup.place(&fragment)?;
@@ -96,7 +91,6 @@ impl MapReaders {
     }
 
     /// The texels that a pixel is compared with, row by row, and its depth at each; none where it reads none.
-    #[must_use]
     pub fn compared(&self, pixel: [u32; 2]) -> Vec<(MapTexel, f64)> {
         let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
         let found = found.and_then(|fragment| Some((fragment, self.lookup.place(&fragment)?)));
@@ -120,7 +114,6 @@ impl MapReaders {
 
     /// What a pixel covers of the map: its four corners on the plane of its surface, carried into the face that it
     /// reads, in texels and in order round it. `None` where it reads none, or a corner has no place there.
-    #[must_use]
     pub fn footprint(&self, pixel: [u32; 2]) -> Option<(usize, [DVec2; 4])> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (face, _) = self.lookup.place(&fragment)?;
@@ -136,7 +129,6 @@ impl MapReaders {
 
     /// Where a texel lies on the plane of the surface that a pixel shows: its four corners, world space, in order
     /// round it. `None` where the pixel reads none, or the plane is edge-on to the light.
-    #[must_use]
     pub fn texel_on_surface(&self, texel: MapTexel, pixel: [u32; 2]) -> Option<[DVec3; 4]> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let pushed = self.lookup.push(texel.face, &fragment)?;
@@ -158,7 +150,6 @@ impl MapReaders {
     }
 
     /// How wide a texel of a face is at a pixel's surface, metres; `None` where the face does not see it.
-    #[must_use]
     pub fn texel_width(&self, face: usize, pixel: [u32; 2]) -> Option<f64> {
         self.lookup.width(face, self.fragments.at(pixel)?.world)
     }

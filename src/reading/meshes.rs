@@ -15,7 +15,6 @@ pub struct ObjectMesh {
 }
 
 /// The pictures on an object, and how they lie on it, a line each.
-#[must_use]
 pub fn pictures(object: &Object) -> Vec<String> {
     let line = |texture: &Texture| {
         let [width, height] = texture.picture.size();
@@ -31,13 +30,11 @@ pub fn pictures(object: &Object) -> Vec<String> {
 }
 
 /// Is there nothing to tell of it but that it is closed?
-#[must_use]
 pub fn is_whole(topology: &Topology) -> bool {
     findings(topology).is_empty()
 }
 
 /// `closed`, or all that is found.
-#[must_use]
 pub fn line(topology: &Topology) -> String {
     let mut parts: Vec<String> = findings(topology).into_iter().map(|(text, _)| text).collect();
     if topology.is_closed() {
@@ -47,7 +44,6 @@ pub fn line(topology: &Topology) -> String {
 }
 
 /// What the findings do to which technique, a paragraph each.
-#[must_use]
 pub fn effects(topology: &Topology) -> String {
     let mut paragraphs: Vec<&str> = findings(topology).into_iter().map(|(_, effect)| effect).collect();
     if topology.is_closed() && topology.is_oriented() {

@@ -25,14 +25,12 @@ impl From<usize> for Moment {
 
 impl Moment {
     /// `step 2`, `draw 3 of step 2`, `the mask of light 1`.
-    #[must_use]
     pub fn words(self, capture: &Capture) -> String {
         let step = steps::words(capture, self.step);
         self.draw.map_or_else(|| step.clone(), |draw| format!("draw {} of {step}", draw + 1))
     }
 
     /// Does the capture know the state at this moment?
-    #[must_use]
     pub fn is_held(self, capture: &Capture) -> bool {
         let Some(index) = self.draw else { return true };
         let draws = draws(capture, self.step);
@@ -45,7 +43,6 @@ impl Moment {
     }
 
     /// The picture's aspects. Where the draw's are not known, those after the step.
-    #[must_use]
     pub fn frame(self, capture: &Capture) -> Option<&FrameSnapshot> {
         match self.state(capture).map(|state| &state.snapshot) {
             Some(Snapshot::Frame(frame)) => Some(frame),
@@ -54,13 +51,11 @@ impl Moment {
     }
 
     /// The light whose labels the draw writes, with those.
-    #[must_use]
     pub fn labels(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
         self.own(capture, FrameTarget::Labels)
     }
 
     /// The light whose count the draw changes, with that.
-    #[must_use]
     pub fn count(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
         self.own(capture, FrameTarget::Count)
     }
@@ -73,7 +68,6 @@ impl Moment {
     }
 
     /// The layer of a light's map that the draw draws into, with its texels.
-    #[must_use]
     pub fn layer(self, capture: &Capture) -> Option<(usize, usize, &Arc<Image>)> {
         let state = self.state(capture)?;
         match &state.snapshot {
@@ -83,7 +77,6 @@ impl Moment {
     }
 
     /// The moment one draw later; `None` at the end.
-    #[must_use]
     pub fn next(self, capture: &Capture) -> Option<Moment> {
         let following = self.draw.map(|draw| draw + 1).filter(|draw| *draw < draws(capture, self.step).len());
         let in_step = following.map(|draw| Moment { draw: Some(draw), ..self });
@@ -94,7 +87,6 @@ impl Moment {
     }
 
     /// The moment one draw earlier; `None` at the start.
-    #[must_use]
     pub fn previous(self, capture: &Capture) -> Option<Moment> {
         let last = |step: usize| draws(capture, step).len().checked_sub(1);
         match self.draw.or_else(|| last(self.step)).and_then(|draw| draw.checked_sub(1)) {

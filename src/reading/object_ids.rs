@@ -19,7 +19,6 @@ pub struct ObjectIds {
 
 impl ObjectIds {
     /// Of the objects of `anatomy`, seen as in `capture`.
-    #[must_use]
     pub fn new(anatomy: &Anatomy, capture: &Capture) -> ObjectIds {
         let ids = draw(anatomy, capture);
         let [width, height] = capture.size.map(|side| side as usize);

@@ -16,7 +16,6 @@ pub struct TestOutcomes {
 
 impl TestOutcomes {
     /// Of a step's tests.
-    #[must_use]
     pub fn new(tests: StepTests) -> TestOutcomes {
         let outcomes = Arc::new(tests.outcomes());
         let histogram = outcomes.histogram();

@@ -5,13 +5,11 @@ use crate::scene::Sight;
 use glam::{DVec2, DVec3};
 
 /// The line of sight through the middle of a pixel.
-#[must_use]
 pub fn sight(capture: &Capture, at: [u32; 2]) -> Sight {
     sight_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }
 
 /// The line of sight through any position in texels.
-#[must_use]
 pub fn sight_at(capture: &Capture, at: [f64; 2]) -> Sight {
     let [width, height] = capture.size.map(f64::from);
     let place = DVec2::new(at[0] / width * 2.0 - 1.0, 1.0 - at[1] / height * 2.0);
@@ -19,7 +17,6 @@ pub fn sight_at(capture: &Capture, at: [f64; 2]) -> Sight {
 }
 
 /// The surface at a pixel by the end of the frame, world space; `None` where there is none.
-#[must_use]
 pub fn surface(capture: &Capture, at: [u32; 2]) -> Option<DVec3> {
     let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
     let distance = capture.depth.distance(frame.depth.image.depth_at(at)?)?;
@@ -33,7 +30,6 @@ fn in_view(capture: &Capture, world: glam::DVec4) -> DVec3 {
 }
 
 /// Which way out of the picture a point is that is not before the eye: right and down, of length 1.
-#[must_use]
 pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
     let view = in_view(capture, world);
     // Right behind the eye any way is as good.
@@ -42,7 +38,6 @@ pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
 }
 
 /// Where a homogeneous point of the world is in the picture, texels; `None` where it is not before the eye.
-#[must_use]
 pub fn texel_of(capture: &Capture, world: glam::DVec4) -> Option<[f64; 2]> {
     let camera = &capture.camera;
     let [width, height] = capture.size.map(f64::from);

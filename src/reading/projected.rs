@@ -32,7 +32,6 @@ pub struct Projector {
 
 impl Projector {
     /// Of the camera of a capture.
-    #[must_use]
     pub fn new(capture: &Capture) -> Projector {
         Projector::guarded(capture, GUARD)
     }
@@ -59,7 +58,6 @@ impl Projector {
     }
 
     /// What is seen of a segment between homogeneous positions, in texels.
-    #[must_use]
     pub fn segment(&self, ends: [DVec4; 2]) -> Option<[DVec2; 2]> {
         let [mut from, mut to] = ends.map(|end| self.clip_from_world * end);
         for plane in self.planes {
@@ -79,7 +77,6 @@ impl Projector {
 
     /// What is seen of a triangle: a convex polygon in texels, with how near it is at each corner, in proportion to 1
     /// over the distance along the view; of a parallel view, from 2 at the near plane to 1 where depth ends. Empty where nothing is.
-    #[must_use]
     pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
         let corners = corners.map(|corner| self.clip_from_world * corner);
         let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
@@ -107,7 +104,6 @@ impl Projector {
 
 /// Corners of what is seen of a triangle, in texels of the capture's picture. `corners` are
 /// homogeneous and relative to the eye. Empty where nothing of it is before the eye.
-#[must_use]
 pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     let world = |corner: [f32; 4]| {
         let relative = DVec4::from_array(corner.map(f64::from));
@@ -119,7 +115,6 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
 
 /// What lies before the near plane, in clip space: near is where depth is 1, or 0; depth that is clamped has
 /// no such end, but of a parallel view, where nothing else ends it.
-#[must_use]
 pub fn near_plane(capture: &Capture) -> DVec4 {
     match (capture.depth.mapping.clamps() && !capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
         (true, _) => DVec4::W,
@@ -129,7 +124,6 @@ pub fn near_plane(capture: &Capture) -> DVec4 {
 }
 
 /// The part of a polygon on one side of a plane through the origin.
-#[must_use]
 pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (index, &corner) in polygon.iter().enumerate() {

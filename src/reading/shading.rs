@@ -98,7 +98,6 @@ struct Terms {
 
 impl Shaded {
     /// Of the surface that a pixel's history ends with; `None` where there is none, or another program drew it.
-    #[must_use]
     pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Shaded> {
         if capture.origin.is_some() {
             return None;
@@ -177,7 +176,6 @@ impl Shaded {
     }
 
     /// A line for the surface, and one a light.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!(
             "  {}, {} shading: normal {}, colour {}; without light {}\n",
@@ -357,7 +355,6 @@ fn wide(value: [f32; 4]) -> DVec4 {
 }
 
 /// Four digits behind the point at most.
-#[must_use]
 pub fn digits(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -365,7 +362,6 @@ pub fn digits(value: f64) -> String {
 }
 
 /// `0.25, 0.5, 1`.
-#[must_use]
 pub fn three(values: [f64; 3]) -> String {
     values.map(digits).join(", ")
 }

@@ -52,7 +52,6 @@ impl PictureKind {
     ];
 
     /// On its button over a capture.
-    #[must_use]
     pub fn name(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Color => "Colour",
@@ -68,7 +67,6 @@ impl PictureKind {
     }
 
     /// What one sees in it.
-    #[must_use]
     pub fn meaning(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Color => "The picture so far",
@@ -84,13 +82,11 @@ impl PictureKind {
     }
 
     /// Is it of some frames only: of those with counts in floats, or with a light's map?
-    #[must_use]
     pub fn is_of_some_frames(self) -> bool {
         matches!(self, PictureKind::Count | PictureKind::Map)
     }
 
     /// Why there is none at a step.
-    #[must_use]
     pub fn why_missing(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Stencil if !has_stencil(capture) => "This frame has no stencil buffer",
@@ -103,7 +99,6 @@ impl PictureKind {
     }
 
     /// Can it be shown only once the truth is known?
-    #[must_use]
     pub fn needs_truth(self) -> bool {
         matches!(self, PictureKind::Truth | PictureKind::Error)
     }
@@ -225,7 +220,6 @@ impl PictureView {
     }
 
     /// Is a picture wished for that can be shown only once the truth is known?
-    #[must_use]
     pub fn wants_truth(&self) -> bool {
         self.kind.is_some_and(PictureKind::needs_truth)
     }
@@ -252,7 +246,6 @@ impl PictureView {
     }
 
     /// The picture to show at a moment: the kind wished for, or what stands in for it.
-    #[must_use]
     pub fn shown(&self, capture: &Capture, at: impl Into<Moment>) -> Option<Shown> {
         let at = at.into();
         self.shown_as(capture, at, self.kind_at(capture, at)?)
@@ -260,7 +253,6 @@ impl PictureView {
 
     /// The kind of picture to show at a moment: the one wished for; its twin, as a light's counts are kept in one of
     /// two places; or what the step writes.
-    #[must_use]
     pub fn kind_at(&self, capture: &Capture, at: Moment) -> Option<PictureKind> {
         let kinds = available(capture, at);
         let lacks_truth = self.wants_truth() && self.truth_to_show(capture).is_none();
@@ -278,7 +270,6 @@ impl PictureView {
     }
 
     /// The picture of this kind at a moment.
-    #[must_use]
     pub fn shown_as(&self, capture: &Capture, at: Moment, kind: PictureKind) -> Option<Shown> {
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words(capture));
@@ -332,7 +323,6 @@ impl PictureView {
     }
 
     /// The light whose truth is shown, and that truth: of the frame, or of the one before.
-    #[must_use]
     pub fn truth_to_show<'a>(&'a self, capture: &'a Capture) -> Option<(usize, &'a CapturedTruth)> {
         if has_truth(capture) {
             let light = self.light_with(capture, |light| light.truth.is_some())?;
@@ -398,20 +388,17 @@ impl PictureView {
 
 impl Shown {
     /// Does it show colours that a light's map lets through?
-    #[must_use]
     pub fn is_let_through(&self) -> bool {
         self.kind == PictureKind::Map && self.images.first().is_some_and(|image| image.format() == PixelFormat::Rgba8)
     }
 }
 
 /// Is the truth of this frame known?
-#[must_use]
 pub fn has_truth(capture: &Capture) -> bool {
     capture.lights.iter().any(|light| light.truth.is_some())
 }
 
 /// The kind of picture that a step writes: what it changed, colour before stencil before depth.
-#[must_use]
 pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     let frame = match &capture.steps.get(step)?.snapshot {
         Snapshot::Map { .. } => return Some(PictureKind::Map),
@@ -430,7 +417,6 @@ pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
 }
 
 /// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.
-#[must_use]
 pub fn available(capture: &Capture, at: impl Into<Moment>) -> Vec<PictureKind> {
     let at = at.into();
     let frame = at.frame(capture);

@@ -104,7 +104,6 @@ struct ShareTexel {
 
 impl TexelReaders {
     /// Of the picture after the frame of `plan`.
-    #[must_use]
     pub fn new(capture: &Capture, plan: &Arc<FramePlan>) -> TexelReaders {
         let reader = |light: usize| match capture.decided_by(light) {
             _ if capture.origin.is_some() => None,
@@ -118,7 +117,6 @@ impl TexelReaders {
     }
 
     /// For each light what the pixel read of it; `None` where it read nothing.
-    #[must_use]
     pub fn at(&self, capture: &Capture, pixel: [u32; 2]) -> Vec<Option<TexelsRead>> {
         let of_light = |(light, reader): (usize, &Reader)| match reader {
             Reader::Map(readers) => {
@@ -141,7 +139,6 @@ impl TexelReaders {
 
 impl TexelsRead {
     /// The reason in a line, what was read in lines below it.
-    #[must_use]
     pub fn text(&self, light: usize) -> String {
         let because = match self {
             TexelsRead::ShadowMap(read) => &read.because,

@@ -52,7 +52,6 @@ pub struct TextureDecision {
 
 impl TextureDecision {
     /// Of a pixel under a light; `None` where it looks no texture up, or it is not known which is its own.
-    #[must_use]
     pub fn of(capture: &Capture, fragments: &Fragments, light: usize, pixel: [u32; 2]) -> Option<TextureDecision> {
         let content = MapContent::of(capture, light).filter(|content| *content != MapContent::Depth)?;
         // Whose own a layer is, draws tell.
@@ -92,7 +91,6 @@ impl TextureDecision {
     }
 
     /// At least half of the light arrives: its label is lit.
-    #[must_use]
     pub fn is_lit(&self) -> bool {
         self.lets_through[3] >= BLOCKED_BELOW
     }

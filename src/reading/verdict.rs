@@ -38,7 +38,6 @@ enum ByHistory {
 }
 
 /// The verdict with the reason that the pixel's history gives.
-#[must_use]
 pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verdict {
     let why = match history.why(light) {
         Some(why) => format!("{}.", capitalized(&why.to_string())),
@@ -53,7 +52,6 @@ pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verd
 }
 
 /// The verdict of a light with what its shadow map stores, where that decided it; what another light's stores says nothing.
-#[must_use]
 pub fn by_map(verdict: Verdict, decision: &MapDecision, light: usize) -> Verdict {
     match verdict.by_history {
         ByHistory::Map if decision.light == light => Verdict { reason: decision.sentence(), ..verdict },
@@ -62,7 +60,6 @@ pub fn by_map(verdict: Verdict, decision: &MapDecision, light: usize) -> Verdict
 }
 
 /// What happened at pixel `at` under `light`.
-#[must_use]
 pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
     let label = capture.lights.get(light).and_then(|light| light.shadow.as_ref()?.byte_at(at));
     let name = format::light(light);
@@ -110,7 +107,6 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
 }
 
 /// Why a light is dark or not, as far as what decides about it tells; of counts no more than that they decided.
-#[must_use]
 pub fn reason(decided_by: DecidedBy, is_dark: bool) -> &'static str {
     match (decided_by, is_dark) {
         (DecidedBy::StencilCount { .. } | DecidedBy::FloatCount { .. }, true) => {
@@ -278,7 +274,6 @@ fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {
 }
 
 /// The stencil value at `at` when the labels of `light` were decided.
-#[must_use]
 pub fn tested_count(capture: &Capture, light: usize, at: [u32; 2]) -> Option<u8> {
     let is_mask = |step: &&crate::capture::Step| {
         step.light == Some(light)

@@ -51,7 +51,6 @@ impl Written {
     }
 
     /// By a step: its map, its finished count, its mask, or the first of colour, stencil and depth that it changed.
-    #[must_use]
     pub fn by_step(capture: &Capture, index: usize) -> Option<Written> {
         let step = capture.steps.get(index)?;
         match &step.snapshot {
@@ -72,7 +71,6 @@ impl Written {
     }
 
     /// By a draw; `None` too where the state after it is not known.
-    #[must_use]
     pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<Written> {
         let after = capture.steps.get(step)?.draws.get(draw)?.after.as_ref()?;
         let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
@@ -109,7 +107,6 @@ impl Written {
     }
 
     /// Its texels in their colours; depths over their whole range.
-    #[must_use]
     pub fn picture(&self) -> Picture {
         let image = &self.image;
         let in_color = |color: &dyn Fn([u32; 2]) -> Option<Rgb>| {

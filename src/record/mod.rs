@@ -55,7 +55,6 @@ use std::path::Path;
 pub const VARIABLE: &str = "STENCILSCOPE_RECORD";
 
 /// An instance of wgpu whose frames can be recorded.
-#[must_use]
 pub fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
     wgpu::Instance::from_custom(wrap::Instance::recorded_by(descriptor, || Box::new(Recorder::default())))
 }
@@ -82,9 +81,6 @@ pub fn frame(
 
 /// Records the next frame that the program begins on a device, and writes it to `folder` as a capture folder. Whether that
 /// went well is said on standard error, in a line: nobody waits for it.
-///
-/// # Errors
-/// The device is of another instance than [`instance`] makes; a frame or a series is asked for already.
 pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
     let (shared, recorder) = recorder_of(device)?;
     recorder.wish(shared, folder.to_owned())
@@ -92,9 +88,6 @@ pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordErro
 
 /// Records every frame that begins from now on, until [`stop`]: each in a folder of its own within `folder`, `frame-0000`
 /// and on. What each cost is said on standard error, in a line; after a folder that can't be written it goes no further.
-///
-/// # Errors
-/// The device is of another instance than [`instance`] makes; a frame or a series is asked for already.
 pub fn start(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
     let (shared, recorder) = recorder_of(device)?;
     recorder.start_series(shared, folder.to_owned())
@@ -102,9 +95,6 @@ pub fn start(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
 
 /// Records no further frame, and says what became of each since [`start`]. A frame that has begun is still written when it
 /// ends, and said on standard error.
-///
-/// # Errors
-/// The device is of another instance than [`instance`] makes.
 pub fn stop(device: &wgpu::Device) -> Result<Vec<OfSeries>, RecordError> {
     Ok(recorder_of(device)?.1.stop_series())
 }

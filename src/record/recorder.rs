@@ -199,9 +199,6 @@ pub struct OfClosure<'a>(&'a Recorder);
 
 impl OfClosure<'_> {
     /// Writes what was recorded.
-    ///
-    /// # Errors
-    /// Nothing that can be followed was drawn; the folder can't be written.
     pub fn end(self, shared: &Shared) -> Result<Recorded, RecordError> {
         let running = self.0.take(|running| running.end == End::Closure).ok_or(RecordError::Busy)?;
         running.write(shared, &mut Tools::default())
@@ -220,9 +217,6 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Recorder {
     /// Wishes for the next frame that begins.
-    ///
-    /// # Errors
-    /// A frame, or a series, is wished for already.
     pub fn wish(&self, shared: &Shared, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |_| Wish::one(folder, 0))
     }
@@ -243,9 +237,6 @@ impl Recorder {
     }
 
     /// Wishes for each frame that begins from now on.
-    ///
-    /// # Errors
-    /// A frame, or a series, is wished for already.
     pub fn start_series(&self, shared: &Shared, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |series| {
             *series = Series { number: series.number + 1, ..Series::default() };
@@ -289,9 +280,6 @@ impl Recorder {
     }
 
     /// Begins a frame that a closure draws.
-    ///
-    /// # Errors
-    /// A frame is being recorded; the folder can't be written.
     pub fn begin(&self, folder: PathBuf) -> Result<OfClosure<'_>, RecordError> {
         let mut turn = self.stage.turn().ok_or(RecordError::Busy)?;
         if turn.running.is_some() {

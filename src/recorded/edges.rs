@@ -15,7 +15,6 @@ pub struct OpenEdges {
 
 impl OpenEdges {
     /// Of draws of a plan.
-    #[must_use]
     pub fn of<'a>(plan: &FramePlan, draws: impl Iterator<Item = &'a Draw>) -> OpenEdges {
         let mut seen: BTreeSet<[Corner; 3]> = BTreeSet::new();
         let mut sums: BTreeMap<[Corner; 2], i64> = BTreeMap::new();
@@ -45,13 +44,11 @@ impl OpenEdges {
     }
 
     /// How many there are.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.edges.len()
     }
 
     /// Triangles that close them: of each connected run of edges a fan round its middle.
-    #[must_use]
     pub fn caps(&self) -> Vec<[[f32; 4]; 3]> {
         let mut root: BTreeMap<Corner, Corner> = BTreeMap::new();
         fn find(root: &BTreeMap<Corner, Corner>, corner: Corner) -> Corner {

@@ -5,7 +5,6 @@ use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
 
 /// Which places lie behind another as a light at `position` sees them, or at infinity.
-#[must_use]
 pub fn far_ends(places: &[Option<DVec4>], position: DVec4) -> Vec<bool> {
     /// Places are on one ray where their directions differ by no more, in parts.
     const SAME: f64 = 1e-4;

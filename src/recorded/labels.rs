@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 /// A byte a pixel, as techniques say it: lit, in shadow, or background where no surface was drawn. `None` where no pass
 /// of the light asks the stencil.
-#[must_use]
 pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
     let asks = |pass: &Pass| {
         let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);

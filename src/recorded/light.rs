@@ -42,7 +42,6 @@ struct Line {
 }
 
 /// Where a light is; `None` where no volumes tell.
-#[must_use]
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     let lines = thinned(lines(plan, light));
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;

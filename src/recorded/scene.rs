@@ -15,7 +15,6 @@ use std::sync::Arc;
 const SAME_PLACE: f64 = 1e-4;
 
 /// The scene that a frame is of, seen by `camera`, in `lights`. Objects are named by their draws.
-#[must_use]
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
     let surfaces = draws(plan, |draw| draw.part == Part::Surface && draw.raster.depth_write);
     let volumes = draws(plan, |draw| draw.part.is_of_volume());
@@ -60,7 +59,6 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
 
 /// The draws of shadow volumes with their passes, and the index of the object of `scene` that throws each: most of a
 /// volume's corners that are not at infinity are its caster's.
-#[must_use]
 pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Draw, usize)> {
     let mut corners = Corners::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {

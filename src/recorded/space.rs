@@ -22,13 +22,11 @@ pub struct Space {
 
 impl Space {
     /// Of a pass of the picture.
-    #[must_use]
     pub fn new(plan: &FramePlan, pass: &Pass) -> Space {
         Space { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
     }
 
     /// A vertex as a homogeneous point of view space: w is 1, or 0 where it is a direction. `None` where it is no number.
-    #[must_use]
     pub fn place(&self, vertex: [f32; 4]) -> Option<DVec4> {
         let [x, y, z, w] = vertex.map(f64::from);
         let [left, top, width, height] = self.viewport.area.map(f64::from);
@@ -48,7 +46,6 @@ impl Space {
     }
 
     /// The vertex of a homogeneous place of view space: the inverse of [`Space::place`].
-    #[must_use]
     pub fn clip(&self, place: DVec4) -> [f32; 4] {
         let [left, top, width, height] = self.viewport.area.map(f64::from);
         let [columns, rows] = self.size;
@@ -62,7 +59,6 @@ impl Space {
     }
 
     /// The vertices of a draw's mesh.
-    #[must_use]
     pub fn places(&self, plan: &FramePlan, draw: &Draw) -> Vec<Option<DVec4>> {
         plan.meshes[draw.mesh.0].vertices.data().iter().map(|vertex| self.place(*vertex)).collect()
     }

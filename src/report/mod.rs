@@ -188,7 +188,6 @@ impl TryFrom<Document> for Report {
 
 impl Report {
     /// Rows with what follows from them filled in: [`Row::wrong_fraction`] and [`Row::pareto`].
-    #[must_use]
     pub fn new(adapter: AdapterInfo, rows: Vec<Row>) -> Report {
         let mut report = Report { adapter, rows, part: None };
         for row in &mut report.rows {
@@ -199,9 +198,6 @@ impl Report {
     }
 
     /// Reports of all parts of a run, each with its file's name, as of one run.
-    ///
-    /// # Errors
-    /// Parts that are missing, there twice, or not of one run.
     pub fn merged(parts: Vec<(String, Report)>) -> Result<Report, MergeError> {
         let adapter = parts.first().map(|(_, report)| report.adapter.clone()).ok_or(MergeError::Nothing)?;
         let part = |(name, Report { adapter, rows, part }): (String, Report)| PartOf {
@@ -228,13 +224,11 @@ impl Report {
     }
 
     /// Is it of a sweep?
-    #[must_use]
     pub fn is_swept(&self) -> bool {
         self.rows.iter().any(|row| row.sweep.is_some())
     }
 
     /// Indices of a scene's rows: of a sweep technique by technique, each from value to value.
-    #[must_use]
     pub fn rows_of(&self, scene: &str) -> Vec<usize> {
         let mut rows: Vec<usize> = (0..self.rows.len()).filter(|index| self.rows[*index].scene == scene).collect();
         let names: Vec<String> = rows.iter().map(|index| self.rows[*index].name()).collect();
@@ -246,7 +240,6 @@ impl Report {
     }
 
     /// The scenes, in the order in which they first appear.
-    #[must_use]
     pub fn scenes(&self) -> Vec<&str> {
         let mut scenes: Vec<&str> = Vec::new();
         for row in &self.rows {
@@ -258,50 +251,37 @@ impl Report {
     }
 
     /// The JSON form, indented.
-    ///
-    /// # Errors
-    /// The encoder fails.
     pub fn to_json(&self) -> Result<String, ReportError> {
         Ok(serde_json::to_string_pretty(self)?)
     }
 
     /// Reads the JSON form.
-    ///
-    /// # Errors
-    /// No JSON, fields missing, or another schema.
     pub fn from_json(text: &str) -> Result<Report, ReportError> {
         Ok(serde_json::from_str(text)?)
     }
 
     /// One line a row, with a heading line (RFC 4180).
-    #[must_use]
     pub fn to_csv(&self) -> String {
         csv::csv(self)
     }
 
     /// A table for the terminal, below 140 columns.
-    #[must_use]
     pub fn to_table(&self) -> String {
         table::text(self)
     }
 
     /// A table in Markdown.
-    #[must_use]
     pub fn to_markdown(&self) -> String {
         table::markdown(self)
     }
 
     /// The plot for paper, as SVG.
-    #[must_use]
     #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
         svg::svg(&if self.is_swept() { plot::sweep(self) } else { plot::layout(self, &plot::Page::PAPER) })
     }
 
     /// The plot for paper, as PNG with two pixels a point.
-    ///
-    /// # Errors
-    /// More charts than memory has room for.
     #[cfg(feature = "program")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
@@ -310,16 +290,12 @@ impl Report {
 
 impl plot::Plot {
     /// On paper, as SVG.
-    #[must_use]
     #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
         svg::svg(self)
     }
 
     /// On paper, as PNG with two pixels a point.
-    ///
-    /// # Errors
-    /// More charts than memory has room for.
     #[cfg(feature = "program")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
@@ -335,37 +311,31 @@ fn beats(one: &Row, other: &Row) -> bool {
 
 impl Row {
     /// Is it of the same scene, at the same value of a sweep?
-    #[must_use]
     pub fn is_beside(&self, other: &Row) -> bool {
         self.scene == other.scene && self.sweep == other.sweep
     }
 
     /// What a frame costs, milliseconds: the median, with its set-up where the scene moves.
-    #[must_use]
     pub fn cost_ms(&self) -> f64 {
         self.moving.map_or(self.frame_ms.median, |moving| moving.total_ms)
     }
 
     /// Frames a second, by that.
-    #[must_use]
     pub fn fps(&self) -> f64 {
         1000.0 / self.cost_ms()
     }
 
     /// Wrong pixels of all kinds.
-    #[must_use]
     pub fn wrong(&self) -> u64 {
         self.false_shadow + self.missing_shadow + self.wrong_surface
     }
 
     /// Has it both a usable time and something that was compared?
-    #[must_use]
     pub fn is_measured(&self) -> bool {
         self.problem().is_none()
     }
 
     /// Why the row can't be ranked or drawn, in a few words.
-    #[must_use]
     pub fn problem(&self) -> Option<&'static str> {
         if self.compared == 0 {
             return Some("no pixel was compared");
@@ -378,13 +348,11 @@ impl Row {
     }
 
     /// Technique and label: `shadow-map 1024`.
-    #[must_use]
     pub fn name(&self) -> String {
         if self.label.is_empty() { self.technique.clone() } else { format!("{} {}", self.technique, self.label) }
     }
 
     /// The row in a few words: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
-    #[must_use]
     pub fn summary(&self) -> String {
         let wrong = match self.wrong_fraction {
             0.0 => "none wrong".to_owned(),
@@ -394,7 +362,6 @@ impl Row {
     }
 
     /// The row in a few lines, for people who point at it.
-    #[must_use]
     pub fn details(&self) -> String {
         let count = numbers::count;
         let times = self.frame_ms;

@@ -32,7 +32,6 @@ least as fast and at least as right (Pareto front).";
 
 impl Report {
     /// The page.
-    #[must_use]
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let adapter = &self.adapter;
         let of_plot = match self.is_swept() {

@@ -84,25 +84,21 @@ pub struct Rect {
 
 impl Rect {
     /// Do the two share more than an edge?
-    #[must_use]
     pub fn overlaps(&self, other: &Rect) -> bool {
         (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
     }
 
     /// Does it hold all of `other`?
-    #[must_use]
     pub fn holds(&self, other: &Rect) -> bool {
         (0..2).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
     /// Width in points.
-    #[must_use]
     pub fn width(&self) -> f64 {
         self.max[0] - self.min[0]
     }
 
     /// Height in points.
-    #[must_use]
     pub fn height(&self) -> f64 {
         self.max[1] - self.min[1]
     }
@@ -234,7 +230,6 @@ pub struct Plot {
 
 /// Estimated width of words in points: those of Helvetica and its like, a little more than most
 /// faces need. What is laid out with it stays apart in whichever face it is drawn.
-#[must_use]
 pub fn text_width(text: &str, size: f64) -> f64 {
     let width = |c: char| match c {
         'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | '!' => 0.28,
@@ -264,7 +259,6 @@ impl Text {
     }
 
     /// What the words cover, by [`text_width`].
-    #[must_use]
     pub fn rect(&self) -> Rect {
         let width = text_width(&self.text, self.size);
         let left = match self.anchor {
@@ -278,7 +272,6 @@ impl Text {
 }
 
 /// Lays out the plot of `report`.
-#[must_use]
 pub fn layout(report: &Report, page: &Page) -> Plot {
     let width = page.width.max(LEAST_CHART_WIDTH);
     let scenes: Vec<(&str, Vec<usize>)> = report

@@ -52,19 +52,16 @@ pub struct Standing {
 
 impl Body {
     /// Of this radius, metres.
-    #[must_use]
     pub fn new(radius: f64) -> Body {
         Body { radius, eye: EYE.max(STEP + radius * 1.5) }
     }
 
     /// Where the eye of a body is.
-    #[must_use]
     pub fn eye_of(&self, feet: DVec3) -> DVec3 {
         feet + DVec3::Y * self.eye
     }
 
     /// The body whose eye is here: on its feet where the ground is nearer to the eye than they would be, else in the air.
-    #[must_use]
     pub fn under(&self, eye: DVec3, walls: &Walls) -> Standing {
         let feet = eye - DVec3::Y * self.eye;
         let ground = self.ground(walls, feet, [feet.y, eye.y]);
@@ -78,7 +75,6 @@ impl Body {
 
     /// How a body stands that wishes to go by `by` over the ground, some seconds later; with `collides` off, walls do not
     /// stop it, and only the ground holds it. What is no number moves nobody.
-    #[must_use]
     pub fn walk(&self, from: Standing, by: DVec3, seconds: f64, (walls, collides): (&Walls, bool)) -> Standing {
         let by = by.with_y(0.0);
         if !(by.is_finite() && from.feet.is_finite() && seconds.is_finite() && seconds > 0.0) {

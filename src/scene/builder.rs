@@ -39,7 +39,6 @@ pub struct SceneBuilder {
 
 impl SceneBuilder {
     /// A scene of that name, without anything in it.
-    #[must_use]
     pub fn new(name: impl Into<String>) -> SceneBuilder {
         SceneBuilder {
             name: name.into(),
@@ -97,7 +96,6 @@ impl SceneBuilder {
     }
 
     /// The scene, at time 0.
-    #[must_use]
     pub fn build(self) -> Scene {
         let SceneBuilder { name, ambient, camera, lights, objects, .. } = self;
         let points: Vec<DVec3> = match (&camera, &lights) {

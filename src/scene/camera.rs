@@ -76,7 +76,6 @@ pub struct Camera {
 impl Camera {
     /// An eye that looks at a target with a field of view of 45 degrees, its near plane 5 cm away and no far
     /// plane. Y is up, or −z where it looks straight down or up.
-    #[must_use]
     pub fn looking(eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Camera {
         let (eye, target) = (eye.into(), target.into());
         let ahead = (target - eye).normalize_or_zero();
@@ -112,25 +111,21 @@ impl Camera {
     }
 
     /// Are lines of sight parallel?
-    #[must_use]
     pub fn is_parallel(&self) -> bool {
         !self.projection.is_pinhole()
     }
 
     /// World space from view space, directions only.
-    #[must_use]
     pub fn world_from_view(&self) -> DMat3 {
         projection::view_from_world_rotation(self.target - self.eye, self.up).transpose()
     }
 
     /// Where lines of sight meet, homogeneous, world space: the eye, or where they are parallel the direction towards it.
-    #[must_use]
     pub fn eye_position(&self) -> DVec4 {
         self.relative_eye() + (self.eye * self.relative_eye().w).extend(0.0)
     }
 
     /// The same relative to the eye point.
-    #[must_use]
     pub fn relative_eye(&self) -> DVec4 {
         match self.projection {
             Projection::Perspective => DVec4::W,
@@ -140,19 +135,16 @@ impl Camera {
 
     /// Where a count may be taken for all lines of sight: the eye, or of a parallel camera, whose lines begin at the near
     /// plane, the middle of that.
-    #[must_use]
     pub fn counting_place(&self) -> DVec3 {
         if self.is_parallel() { self.eye + self.sights(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
     }
 
     /// The name of [`Camera::counting_place`], for people.
-    #[must_use]
     pub fn counting_place_name(&self) -> &'static str {
         if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
     }
 
     /// The lines of sight of a picture of this width over height.
-    #[must_use]
     pub fn sights(&self, aspect: f64) -> Sights {
         let half = self.half_height();
         Sights {
@@ -165,7 +157,6 @@ impl Camera {
     }
 
     /// Half of what the picture shows upwards, metres: at distance 1 of a pinhole, at any of a parallel projection.
-    #[must_use]
     pub fn half_height(&self) -> f64 {
         match self.projection {
             Projection::Perspective => (self.fov_y_degrees.to_radians() / 2.0).tan(),
@@ -174,19 +165,16 @@ impl Camera {
     }
 
     /// Half of what the picture shows upwards at a distance along the view's axis, metres.
-    #[must_use]
     pub fn half_height_at(&self, distance: f64) -> f64 {
         self.half_height() * if self.is_parallel() { 1.0 } else { distance }
     }
 
     /// The same where the target is.
-    #[must_use]
     pub fn half_height_at_target(&self) -> f64 {
         self.half_height_at((self.target - self.eye).length())
     }
 
     /// How depth is measured: of a parallel projection it grows with the distance, from `near` to `far`.
-    #[must_use]
     pub fn clip_from_view(&self, aspect: f64, depth: &DepthCurve) -> DMat4 {
         match self.projection {
             Projection::Perspective => projection::perspective(self.fov_y_degrees, aspect, depth),
@@ -201,7 +189,6 @@ impl Camera {
     /// The same camera somewhere else, for tests and benchmarks of what must hold from any place: eye,
     /// target and near plane are moved by up to 1.2 and 0.3 of their distance, and to between a tenth and ten
     /// times. One `seed` always gives one place.
-    #[must_use]
     pub fn anywhere(&self, seed: u64) -> Camera {
         // Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators".
         let mut state = seed;
@@ -221,7 +208,6 @@ impl Camera {
 
 impl Sights {
     /// The one through a point of the picture, by x and y from −1 to 1, right and up.
-    #[must_use]
     #[inline]
     pub fn through(&self, at: DVec2) -> Sight {
         let place = at * self.half;
@@ -233,7 +219,6 @@ impl Sights {
     }
 
     /// World direction of the view's axis.
-    #[must_use]
     pub fn axis(&self) -> DVec3 {
         -self.world_from_view.z_axis
     }
@@ -241,7 +226,6 @@ impl Sights {
 
 impl Sight {
     /// The point at a distance along the view's axis, relative to the eye.
-    #[must_use]
     pub fn at(&self, distance: f64) -> DVec3 {
         self.from + self.along * distance
     }
@@ -258,13 +242,11 @@ impl Projection {
     pub const CAVALIER: f64 = 1.0;
 
     /// Do lines of sight meet in the eye?
-    #[must_use]
     pub fn is_pinhole(&self) -> bool {
         *self == Projection::Perspective
     }
 
     /// Which kind it is: one of [`Projection::NAMES`].
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Projection::Perspective => "perspective",
@@ -274,7 +256,6 @@ impl Projection {
     }
 
     /// How far to the right and up in the picture a metre of depth moves things, metres.
-    #[must_use]
     pub fn shear(self) -> DVec2 {
         match self {
             Projection::Oblique { angle_degrees, factor, .. } => DVec2::from_angle(angle_degrees.to_radians()) * factor,

@@ -62,14 +62,12 @@ fn tree_of(object: &Object) -> WallTree {
 
 impl Walls {
     /// Of these triangles; one with a corner that is no number is none.
-    #[must_use]
     pub fn new(triangles: impl IntoIterator<Item = [DVec3; 3]>) -> Walls {
         Walls { trees: vec![Arc::new(WallTree::new(triangles))] }
     }
 
     /// Where a sphere gets that starts at `from` and would go by `by`. One that starts in a wall and can't be
     /// pushed out of it goes freely until it is out.
-    #[must_use]
     pub fn walk(&self, from: DVec3, by: DVec3, radius: f64) -> DVec3 {
         if !(by.is_finite() && from.is_finite() && radius > 0.0) {
             return from;
@@ -111,7 +109,6 @@ impl Walls {
     }
 
     /// Is there no triangle?
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.trees.iter().all(|tree| tree.is_empty())
     }

@@ -32,7 +32,6 @@ use problem::Problem;
 use std::path::{Path, PathBuf};
 
 /// The models and pictures that a scene file names; none where it can't be read, which loading it tells.
-#[must_use]
 pub fn models_of(path: &Path) -> Vec<PathBuf> {
     let table = read_text(path, "scene file").ok().and_then(|text| text.parse::<toml::Table>().ok());
     let objects = table.as_ref().and_then(|table| table.get("objects")?.as_array());

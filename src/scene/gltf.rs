@@ -62,9 +62,6 @@ fn named(given: Option<&str>, otherwise: impl FnOnce() -> String) -> String {
 }
 
 /// Reads a file.
-///
-/// # Errors
-/// A file that can't be read, that breaks the format's rules, that needs what is not done or has nothing to show.
 pub fn load(file: &Path) -> Result<Loaded, SceneError> {
     let document = Document::open(file)?;
     read(&document, file).map_err(|reason| SceneError::Read { file: file.to_owned(), reason })
@@ -79,9 +76,6 @@ pub(in crate::scene) struct Opened {
 
 /// One mesh of a file among others, which share what room pictures have; the file's only one without a pointer. `last`
 /// is the file that was opened last.
-///
-/// # Errors
-/// As [`load`]; a pointer to nothing, or to what has no surface.
 pub(in crate::scene) fn load_mesh(
     file: &Path,
     pointer: Option<&str>,

@@ -26,13 +26,11 @@ pub struct Light {
 
 impl Light {
     /// A white point light at `position`.
-    #[must_use]
     pub fn point(position: impl Into<DVec3>) -> Light {
         Light::white(position.into().extend(1.0))
     }
 
     /// A white directional light that shines from the direction `towards`.
-    #[must_use]
     pub fn directional(towards: impl Into<DVec3>) -> Light {
         Light::white(towards.into().extend(0.0))
     }
@@ -42,20 +40,17 @@ impl Light {
     }
 
     /// `w = 0`: shines from one direction everywhere.
-    #[must_use]
     pub fn is_directional(&self) -> bool {
         self.position.w == 0.0
     }
 
     /// What it sends out: linear RGB times intensity; nothing while it is switched off.
-    #[must_use]
     pub fn emitted(&self) -> [f32; 3] {
         if self.is_on { self.color.map(|channel| channel * self.intensity) } else { [0.0; 3] }
     }
 
     /// The position that geometry is computed with: a direction is scaled by a power of two, which
     /// rounds nothing, to a length near 1, so that products of it stay in range.
-    #[must_use]
     pub fn homogeneous(&self) -> DVec4 {
         if !self.is_directional() {
             return self.position;

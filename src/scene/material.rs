@@ -19,7 +19,6 @@ impl Shading {
     pub const ALL: [Shading; 3] = [Shading::Flat, Shading::Gouraud, Shading::Phong];
 
     /// As in scene files and settings.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Shading::Flat => "flat",
@@ -54,13 +53,11 @@ pub struct Material {
 
 impl Material {
     /// A dull surface with one normal a triangle.
-    #[must_use]
     pub fn matte(color: [f32; 3]) -> Material {
         Material { color, ..Material::default() }
     }
 
     /// A smooth surface with a highlight.
-    #[must_use]
     pub fn glossy(color: [f32; 3]) -> Material {
         Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, ..Material::default() }
     }

@@ -78,40 +78,34 @@ pub enum MeshError {
 
 impl Mesh {
     /// Distinct positions, object space.
-    #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
     /// Corners as indices into [`Mesh::positions`], counter-clockwise seen from the front.
-    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
     /// Object-space normals of each triangle's corners, not necessarily of unit length, where
     /// the file gave them.
-    #[must_use]
     pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
         self.corner_normals.as_deref()
     }
 
     /// Where each triangle's corners lie in a picture, where the file says so: 0, 0 is its lower left corner, 1, 1 its
     /// upper right.
-    #[must_use]
     pub fn corner_uvs(&self) -> Option<&[Option<[Vec2; 3]>]> {
         self.corner_uvs.as_deref()
     }
 
     /// Does every one of these triangles know where it lies in a picture?
-    #[must_use]
     pub fn has_uvs(&self, triangles: &Range<usize>) -> bool {
         let of_these = self.corner_uvs.as_ref().and_then(|uvs| uvs.get(triangles.clone()));
         of_these.is_some_and(|uvs| uvs.iter().all(Option::is_some))
     }
 
     /// What its file asks for and nothing here does.
-    #[must_use]
     pub fn not_taken(&self) -> &[NotTaken] {
         &self.not_taken
     }
@@ -122,35 +116,28 @@ impl Mesh {
     }
 
     /// At least one, unless the mesh has no triangle.
-    #[must_use]
     pub fn groups(&self) -> &[Group] {
         &self.groups
     }
 
     /// How many triangles were left out because two of their corners coincide.
-    #[must_use]
     pub fn dropped_triangles(&self) -> usize {
         self.dropped
     }
 
     /// Hash of positions and triangles: what was computed from one mesh holds for any other with
     /// the same hash. Stable within a process only.
-    #[must_use]
     pub fn content_hash(&self) -> u64 {
         self.hash
     }
 
     /// Hash of the corners' own normals, which [`Mesh::content_hash`] does not look at. Stable within a process only.
-    #[must_use]
     pub fn normals_hash(&self) -> u64 {
         self.normals_hash
     }
 
     /// The same mesh with bit-identical positions as one vertex each. Any mesh is so already but one of
     /// [`MeshBuilder::build_unwelded`].
-    ///
-    /// # Errors
-    /// As [`MeshBuilder::build`]: never, for a mesh that was built.
     pub fn welded(&self) -> Result<Mesh, MeshError> {
         let builder = MeshBuilder {
             positions: self.positions.clone(),
@@ -163,7 +150,6 @@ impl Mesh {
     }
 
     /// Smallest and largest corner of the bounding box; `None` without vertices.
-    #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let first = *self.positions.first()?;
         Some(self.positions.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p))))
@@ -187,18 +173,12 @@ pub struct MeshBuilder {
 
 impl MeshBuilder {
     /// Welds bit-identical positions, drops unused vertices and triangles without area by index.
-    ///
-    /// # Errors
-    /// A coordinate that is not finite, an index out of range, too many vertices.
     pub fn build(self) -> Result<Mesh, MeshError> {
         self.build_with(false)
     }
 
     /// The same without welding, as a renderer that trusts a file's indices has it: for showing what that
     /// does to shadows. Scenes and models never are.
-    ///
-    /// # Errors
-    /// As [`MeshBuilder::build`].
     pub fn build_unwelded(self) -> Result<Mesh, MeshError> {
         self.build_with(true)
     }

@@ -88,7 +88,6 @@ impl Scene {
     /// The scene `seconds` after its start: objects spun, and lights and objects moved along
     /// their orbits and on their pendulums. Motions are kept, so `scene.at(a)` is not the start of `at(b)`: always
     /// call it on the scene as loaded.
-    #[must_use]
     pub fn at(&self, seconds: f64) -> Scene {
         let mut moved = self.clone();
         for object in &mut moved.objects {
@@ -101,7 +100,6 @@ impl Scene {
     }
 
     /// Does anything move?
-    #[must_use]
     pub fn is_animated(&self) -> bool {
         let objects = self.objects.iter().map(|object| &object.motion);
         let lights = self.lights.iter().map(|light| &light.motion);

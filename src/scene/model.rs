@@ -52,9 +52,6 @@ pub struct Models {
 
 impl Models {
     /// The mesh in a file, of a glTF file the one that `pointer` names. A name without a known ending is an OBJ's.
-    ///
-    /// # Errors
-    /// A file that can't be read, with the mend.
     #[cfg_attr(not(feature = "program"), expect(unused_variables, reason = "only glTF files have pointers"))]
     pub fn mesh(&mut self, file: &Path, pointer: Option<&str>) -> Result<Mesh, SceneError> {
         match Format::of(file) {
@@ -77,9 +74,6 @@ fn of_one_mesh(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError>
 }
 
 /// The scene of a model: completed by light, camera and floor where its file has none.
-///
-/// # Errors
-/// As [`Models::mesh`] and [`model_scene::model_scene`].
 pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let scene = match Format::of(file) {
         #[cfg(feature = "program")]

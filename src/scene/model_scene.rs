@@ -33,9 +33,6 @@ pub enum UpAxis {
 
 /// Completes a model to a scene: a point light, a camera and, with `floor`, a level square that
 /// casts and receives like any object. One whose z axis is up is turned before.
-///
-/// # Errors
-/// A mesh without triangles, or one so large or small that single precision can't show it.
 pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
     let material = Material { color: TERRACOTTA, specular: 0.12, shininess: 24.0, shading, ..Material::default() };
@@ -47,9 +44,6 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
 }
 
 /// The scene of a glTF file. One without lights or a camera gets them, and one that has neither is a bare model.
-///
-/// # Errors
-/// As [`model_scene`].
 #[cfg(feature = "program")]
 pub(super) fn gltf_scene(name: &str, loaded: gltf::Loaded, floor: bool) -> Result<Scene, SceneError> {
     let gltf::Loaded { objects, lights, camera, not_taken, .. } = loaded;

@@ -35,7 +35,6 @@ pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Resu
 }
 
 /// The libraries of a model, and the pictures that they show; none of what can't be read, which loading tells.
-#[must_use]
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     let Ok(raw) = read_old_text(file, "OBJ model") else { return Vec::new() };
     let named = raw.lines().filter_map(|line| line.trim().strip_prefix("mtllib"));

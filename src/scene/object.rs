@@ -31,7 +31,6 @@ pub struct Object {
 
 impl Object {
     /// An unmoving object at the origin that casts, receives and is visible.
-    #[must_use]
     pub fn new(name: impl Into<String>, mesh: Arc<Mesh>, material: Material) -> Object {
         Object {
             name: name.into(),
@@ -47,7 +46,6 @@ impl Object {
     }
 
     /// As [`Object::new`], of the default material.
-    #[must_use]
     pub fn of(name: impl Into<String>, mesh: impl Into<Arc<Mesh>>) -> Object {
         Object::new(name, mesh.into(), Material::default())
     }
@@ -80,13 +78,11 @@ impl Object {
     }
 
     /// The picture on a group of its mesh: its own material's, or the object's where it has none.
-    #[must_use]
     pub fn texture_of<'a>(&'a self, group: &'a Group) -> Option<&'a Texture> {
         if group.material.is_some() { group.texture.as_ref() } else { self.texture.as_ref() }
     }
 
     /// The welded vertices in world space. Every user of a vertex reads this one rounding.
-    #[must_use]
     pub fn world_positions(&self) -> Vec<DVec3> {
         if self.pose == Pose::default() {
             return self.mesh.positions().to_vec();
@@ -129,7 +125,6 @@ impl Pose {
     }
 
     /// The matrix of this pose.
-    #[must_use]
     pub fn world_from_object(&self) -> DMat4 {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
     }
@@ -142,7 +137,6 @@ impl Pose {
     }
 
     /// In the same place, turned so that what was its z axis is up.
-    #[must_use]
     pub fn with_z_up(&self) -> Pose {
         self.turned_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
     }
@@ -197,7 +191,6 @@ pub struct Swing {
 
 impl Motion {
     /// Neither spins nor orbits nor swings.
-    #[must_use]
     pub fn is_still(&self) -> bool {
         self.spin_degrees_per_second == DVec3::ZERO
             && self.orbit.is_none_or(|orbit| orbit.degrees_per_second == 0.0)
@@ -205,7 +198,6 @@ impl Motion {
     }
 
     /// The pose `seconds` later.
-    #[must_use]
     pub fn apply(&self, pose: &Pose, seconds: f64) -> Pose {
         let translate = self.orbit.map_or(pose.translate, |orbit| orbit.point_at(pose.translate, seconds));
         let rotate_degrees = pose.rotate_degrees + self.spin_degrees_per_second * seconds;
@@ -217,7 +209,6 @@ impl Motion {
     }
 
     /// The homogeneous light position `seconds` later; a direction turns about the axis.
-    #[must_use]
     pub fn apply_to_light(&self, position: DVec4, seconds: f64) -> DVec4 {
         let orbited = self.orbit.map_or(position, |orbit| orbit.light_at(position, seconds));
         let Some((pivot, turn)) = self.turn_of_swing(seconds) else { return orbited };

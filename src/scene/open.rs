@@ -20,7 +20,6 @@ pub struct OpenSpec {
 
 impl OpenSpec {
     /// `name` with a floor under it if it is a model, whose y axis is up.
-    #[must_use]
     pub fn new(name: impl Into<String>) -> OpenSpec {
         OpenSpec { name: name.into(), floor: true, up: UpAxis::Y }
     }
@@ -28,7 +27,6 @@ impl OpenSpec {
 
 /// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models, and their
 /// libraries and pictures.
-#[must_use]
 pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     if Builtin::named(&spec.name).is_some() {
         return Vec::new();
@@ -55,13 +53,11 @@ impl Kind {
 }
 
 /// Does this path end as those of files that scenes are read from?
-#[must_use]
 pub fn is_scene_file(path: &Path) -> bool {
     Kind::of(path).is_some()
 }
 
 /// Does this name a bare model, whose up axis is anybody's guess? A glTF file's is y.
-#[must_use]
 pub fn is_model(name: &str) -> bool {
     let format = Format::of(Path::new(name)).filter(|_| Builtin::named(name).is_none());
     matches!(format, Some(Format::Obj | Format::Ply))

@@ -92,7 +92,6 @@ impl PartialEq for Picture {
 
 impl Picture {
     /// A picture of these sRGB texels; `None` where their number is not that of the size, or none.
-    #[must_use]
     pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[u8; 4]>) -> Option<Picture> {
         let is_sized = size.iter().all(|side| (1..=MOST_SIDE).contains(side))
             && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]);
@@ -103,17 +102,11 @@ impl Picture {
     }
 
     /// Reads a PNG or a JPEG.
-    ///
-    /// # Errors
-    /// As [`PictureError`] says; sizes are refused before memory is taken for them.
     pub fn load(path: &Path) -> Result<Picture, PictureError> {
         Picture::load_within(path, MOST_TEXELS)
     }
 
     /// The same of at most so many texels.
-    ///
-    /// # Errors
-    /// As [`Picture::load`].
     pub fn load_within(path: &Path, most: u64) -> Result<Picture, PictureError> {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Picture::decode(name, &read_plain(path, MOST_FILE)?, most)
@@ -138,43 +131,36 @@ impl Picture {
     }
 
     /// Its file's name, for people.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Width and height in texels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// sRGB and alpha, row by row from the top.
-    #[must_use]
     pub fn texels(&self) -> &[[u8; 4]] {
         &self.texels
     }
 
     /// Of the texels. Stable within a process only.
-    #[must_use]
     pub fn hash(&self) -> u64 {
         self.hash
     }
 
     /// Does it have an alpha other than 1, which nobody looks at?
-    #[must_use]
     pub fn has_alpha(&self) -> bool {
         self.texels.iter().any(|texel| texel[3] != u8::MAX)
     }
 
     /// How many levels its pyramid has, itself among them.
-    #[must_use]
     pub fn level_count(&self) -> u32 {
         self.size[0].max(self.size[1]).ilog2() + 1
     }
 
     /// The levels above it, from half its size down to one texel.
-    #[must_use]
     pub fn levels(&self) -> &[Level] {
         self.levels.get_or_init(|| {
             let mut levels: Vec<Level> = Vec::new();
@@ -198,7 +184,6 @@ impl Picture {
 
     /// Linear RGB at a place of the picture (0, 0 at its lower left, 1, 1 at its upper right), on a level that may lie
     /// between two.
-    #[must_use]
     pub fn linear_at(&self, uv: [f64; 2], level: f64, clamps: bool) -> [f64; 3] {
         let level = level.clamp(0.0, f64::from(self.level_count() - 1));
         let [near, far] = [level.floor(), level.floor() + 1.0].map(|index| self.smooth_at(uv, index as u32, clamps));
@@ -207,7 +192,6 @@ impl Picture {
     }
 
     /// Column and row of the texel of the picture itself that a place lies in.
-    #[must_use]
     pub fn texel_at(&self, [u, v]: [f64; 2], clamps: bool) -> [u32; 2] {
         let [width, height] = self.size.map(i64::from);
         let inside = |at: f64, count: i64| wrapped((at * count as f64).floor() as i64, count, clamps) as u32;
@@ -215,7 +199,6 @@ impl Picture {
     }
 
     /// The average of all of it, linear.
-    #[must_use]
     pub fn mean(&self) -> [f64; 3] {
         self.linear_at([0.5; 2], f64::from(self.level_count()), false)
     }
@@ -258,9 +241,6 @@ impl Default for Pictures {
 
 impl Pictures {
     /// The picture in a file.
-    ///
-    /// # Errors
-    /// As [`Picture::load`]; too many of them.
     pub fn load(&mut self, path: &Path) -> Result<Arc<Picture>, PictureError> {
         if let Some(known) = self.known.get(path) {
             return Ok(Arc::clone(known));

@@ -38,7 +38,6 @@ impl Default for Surroundings {
 
 impl Surroundings {
     /// Of these points; `None` where there are none, or where their extents can't be measured.
-    #[must_use]
     pub fn of<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<Surroundings> {
         let mut points = points.into_iter();
         let first = *points.next()?;
@@ -48,33 +47,28 @@ impl Surroundings {
 
     /// The sum of the bounding box's three extents, the measure of every distance here; 1 where
     /// the points are all in one place.
-    #[must_use]
     pub fn extent(&self) -> f64 {
         let sum = (self.high - self.low).element_sum();
         if sum > 0.0 { sum } else { 1.0 }
     }
 
     /// The lowest height.
-    #[must_use]
     pub fn lowest(&self) -> f64 {
         self.low.y
     }
 
     /// The middle of the bounding box.
-    #[must_use]
     pub fn middle(&self) -> DVec3 {
         self.low / 2.0 + self.high / 2.0
     }
 
     /// A white point light above in front.
-    #[must_use]
     pub fn light(&self) -> Light {
         let towards_light = TOWARDS_LIGHT.normalize();
         Light::point(self.middle() + towards_light * LIGHT_DISTANCE * self.extent())
     }
 
     /// A camera that has all of `points` in view, in a picture wider than high.
-    #[must_use]
     pub fn camera<'a>(&self, points: impl IntoIterator<Item = &'a DVec3>) -> Camera {
         let back = TOWARDS_EYE.normalize();
         let right = DVec3::Y.cross(back).normalize();

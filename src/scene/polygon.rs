@@ -29,7 +29,6 @@ pub fn strip(count: usize) -> impl Iterator<Item = [usize; 3]> {
 }
 
 /// The normal of a triangle, of unit length; zero where it has no area.
-#[must_use]
 pub fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }

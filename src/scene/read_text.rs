@@ -18,9 +18,6 @@ pub fn read_text(file: &Path, kind: &str) -> Result<String, SceneError> {
 
 /// The same of a file in any encoding that has ASCII's letters where ASCII has them, as files of old programs are: what is
 /// no UTF-8 is read as Latin-1, which tells names apart as the file does.
-///
-/// # Errors
-/// As [`read_text`], but for bytes that are no UTF-8.
 pub fn read_old_text(file: &Path, kind: &str) -> Result<String, SceneError> {
     read(file, kind, |bytes| Some(decoded(bytes)))
 }

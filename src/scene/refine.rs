@@ -8,9 +8,6 @@ use std::collections::{BinaryHeap, HashMap};
 impl Mesh {
     /// The mesh with at least so many triangles: its longest edge is halved, and each triangle beside it, until there are
     /// enough. What is closed stays closed, and no place moves.
-    ///
-    /// # Errors
-    /// More vertices than a mesh may have.
     pub fn refined(&self, least: usize) -> Result<Mesh, MeshError> {
         let mut making = Making::of(self);
         while making.triangles.len() < least && making.split_longest() {}

@@ -10,26 +10,17 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// A level rectangle around the origin that faces up, `size` along x and z.
-///
-/// # Errors
-/// As [`MeshBuilder::build`], for sizes that are not finite; so for all shapes.
 pub fn quad(size: [f64; 2]) -> Result<Mesh, MeshError> {
     let [x, z] = size.map(|n| n / 2.0);
     triangles(&[[-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z], [-x, 0.0, -z]], &[[0, 1, 2], [0, 2, 3]])
 }
 
 /// A closed box around the origin.
-///
-/// # Errors
-/// As [`quad`].
 pub fn cuboid(size: [f64; 3]) -> Result<Mesh, MeshError> {
     cuboid_builder(size).build()
 }
 
 /// A box around the origin seen from inside: a room.
-///
-/// # Errors
-/// As [`quad`].
 pub fn room(size: [f64; 3]) -> Result<Mesh, MeshError> {
     let mut builder = cuboid_builder(size);
     builder.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
@@ -37,9 +28,6 @@ pub fn room(size: [f64; 3]) -> Result<Mesh, MeshError> {
 }
 
 /// A closed ball around the origin, `around` segments along the equator and `rings` from pole to pole.
-///
-/// # Errors
-/// As [`quad`].
 pub fn sphere(radius: f64, around: u32, rings: u32) -> Result<Mesh, MeshError> {
     let latitude = |ring: u32| PI * (f64::from(ring) / f64::from(rings) - 0.5);
     let between = (1..rings).map(latitude).map(|angle| DVec2::from_angle(angle) * radius);
@@ -51,9 +39,6 @@ pub fn sphere(radius: f64, around: u32, rings: u32) -> Result<Mesh, MeshError> {
 
 /// A closed ring around the y axis: its tube's radius is `minor`, and the tube's middle runs
 /// `major` from the axis.
-///
-/// # Errors
-/// As [`quad`].
 pub fn torus(major: f64, minor: f64, around: u32, along_tube: u32) -> Result<Mesh, MeshError> {
     let angle = |step: u32| TAU * f64::from(step) / f64::from(along_tube);
     let profile: Vec<DVec2> =
@@ -62,9 +47,6 @@ pub fn torus(major: f64, minor: f64, around: u32, along_tube: u32) -> Result<Mes
 }
 
 /// A closed regular tetrahedron around the origin with its corners `radius` away, one of them up.
-///
-/// # Errors
-/// As [`quad`].
 pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
     let base_radius = radius * 8f64.sqrt() / 3.0;
     let base = (0..3).map(|corner| {
@@ -77,9 +59,6 @@ pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
 }
 
 /// A closed upright cylinder around the origin.
-///
-/// # Errors
-/// As [`quad`].
 pub fn cylinder(radius: f64, height: f64, around: u32) -> Result<Mesh, MeshError> {
     let half = height / 2.0;
     let profile = [[0.0, -half], [radius, -half], [radius, half], [0.0, half]].map(DVec2::from_array);
@@ -89,9 +68,6 @@ pub fn cylinder(radius: f64, height: f64, around: u32) -> Result<Mesh, MeshError
 /// A profile of (radius, height) points turned around the y axis in `around` steps; `closed`
 /// joins its last point to the first. Points on the axis are poles. The surface faces right of
 /// the profile.
-///
-/// # Errors
-/// As [`quad`].
 pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     let rings: Vec<Ring> = profile.iter().map(|point| Ring::new(*point, around, &mut builder.positions)).collect();
@@ -109,9 +85,6 @@ pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, Mes
 }
 
 /// A parallelogram with a corner there and these two edges; it faces along their cross product.
-///
-/// # Errors
-/// As [`quad`].
 pub fn parallelogram(corner: DVec3, edges: [DVec3; 2]) -> Result<Mesh, MeshError> {
     let [x, y] = edges;
     let mut builder = MeshBuilder::default();
@@ -121,9 +94,6 @@ pub fn parallelogram(corner: DVec3, edges: [DVec3; 2]) -> Result<Mesh, MeshError
 
 /// Closed solid stairs: from the origin `steps` up and along x, each `rise` high and `run` deep, and
 /// `width` wide with the origin's z in the middle.
-///
-/// # Errors
-/// As [`quad`].
 pub fn stairs(steps: u32, rise: f64, run: f64, width: f64) -> Result<Mesh, MeshError> {
     let tread = |step: u32, x: u32| [f64::from(x) * run, f64::from(step + 1) * rise];
     let treads = (0..steps).flat_map(|step| [tread(step, step), tread(step, step + 1)]);
@@ -146,9 +116,6 @@ pub fn stairs(steps: u32, rise: f64, run: f64, width: f64) -> Result<Mesh, MeshE
 /// A closed upright plate with openings: its faces are cut into a grid by the lines at `xs` and
 /// `ys`, both rising, and the cells that `is_open(column, row)` names are left out. `thickness`
 /// along z, the origin's z in the middle.
-///
-/// # Errors
-/// As [`quad`].
 pub fn plate(
     xs: &[f64],
     ys: &[f64],
@@ -184,9 +151,6 @@ pub fn plate(
 
 /// A tube around a path in a plane of constant z, with its radius at each point; both ends are
 /// open. `around` segments, of which the first faces +z.
-///
-/// # Errors
-/// As [`quad`].
 pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     for (index, (point, radius)) in path.iter().enumerate() {
@@ -209,9 +173,6 @@ pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
 
 /// Several meshes as one, each moved by an offset. Where they meet in the same vertices they are
 /// joined.
-///
-/// # Errors
-/// As [`quad`].
 pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     for (mesh, offset) in parts {
@@ -223,9 +184,6 @@ pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<
 }
 
 /// Points and triangles as given.
-///
-/// # Errors
-/// As [`MeshBuilder::build`].
 pub fn triangles(points: &[[f64; 3]], indices: &[[u32; 3]]) -> Result<Mesh, MeshError> {
     let positions = points.iter().map(|point| DVec3::from_array(*point)).collect();
     MeshBuilder { positions, triangles: indices.to_vec(), ..MeshBuilder::default() }.build()

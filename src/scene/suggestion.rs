@@ -4,7 +4,6 @@
 const LIKE: f64 = 0.75;
 
 /// The lower-case name that is most like `word` in any case, if one is much like it.
-#[must_use]
 pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
     let word = word.to_lowercase();
     let rated = names.iter().map(|name| (strsim::jaro_winkler(&word, name), *name));
@@ -12,7 +11,6 @@ pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
 }
 
 /// A mend for a name that is not known: the nearest one, else all of them.
-#[must_use]
 pub fn suggestion(word: &str, names: &[&str]) -> String {
     match nearest(word, names) {
         Some(near) => format!("did you mean `{near}`?"),

@@ -39,9 +39,6 @@ impl Scene {
     }
 
     /// With so many lights: the first ones; further ones are these in turn, turned about the casters' vertical axis.
-    ///
-    /// # Errors
-    /// It has no light.
     pub fn with_lights(&self, count: usize) -> Result<Scene, VaryError> {
         if self.lights.is_empty() {
             return Err(VaryError::None("light"));
@@ -62,9 +59,6 @@ impl Scene {
 
     /// With so many casters: the first ones; further ones are copies of these in turn, on a spiral around them. What
     /// casts no shadow stays.
-    ///
-    /// # Errors
-    /// It has no caster.
     pub fn with_casters(&self, count: usize) -> Result<Scene, VaryError> {
         let casters: Vec<&Object> = self.casters().collect();
         if casters.is_empty() {
@@ -90,9 +84,6 @@ impl Scene {
     }
 
     /// With casters of at least so many triangles together, of the same shapes, each in its share.
-    ///
-    /// # Errors
-    /// It has no caster, or one of more triangles.
     pub fn with_triangles(&self, count: usize) -> Result<Scene, VaryError> {
         let has: usize = self.casters().map(|object| object.mesh.triangles().len()).sum();
         match has {

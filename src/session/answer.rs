@@ -60,24 +60,17 @@ impl RunFrame {
     }
 
     /// What it is of.
-    ///
-    /// # Errors
-    /// Another program drew it, and its draws do not tell.
     pub fn scene(&self) -> Result<&Scene, SessionError> {
         self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoLights)
     }
 
     /// What it was made from, and how.
-    ///
-    /// # Errors
-    /// Another program drew it.
     pub fn made(&self) -> Result<(&Scene, &CaptureRequest), SessionError> {
         let request = self.source.as_ref().and_then(|source| source.request.as_ref()).ok_or(SessionError::NoScene)?;
         Ok((self.scene()?, request))
     }
 
     /// What a capture folder of it holds.
-    #[must_use]
     pub fn contents(&self) -> Contents<'_> {
         let scene = self.source.as_ref().map(|source| &source.scene);
         Contents { capture: &self.capture, plan: Some(&self.plan), scene }
@@ -87,9 +80,6 @@ impl RunFrame {
 impl Session {
     /// Answers a question about `frame`, or about `scene` as it was opened, if there is one. What takes many turns, a report or stress
     /// cases, is made by who can let other work come between.
-    ///
-    /// # Errors
-    /// There is no frame; what is asked for can't be drawn, traced or found; [`SessionError::Cancelled`].
     pub fn answer(
         &mut self,
         ask: &Ask,

@@ -10,9 +10,6 @@ use std::sync::Arc;
 impl Session {
     /// The signed count of each light's volumes where the technique counts them in the stencil: the same frame is run
     /// again with a float target. None of a technique that counts nothing, or on an adapter that can't blend floats.
-    ///
-    /// # Errors
-    /// A scene or setting that can't be planned, a lost GPU.
     pub fn counts(&mut self, scene: &Scene, capture: &Capture) -> Result<Vec<Option<Arc<Image>>>, SessionError> {
         // Another program's frame is not ours to run with another counter.
         if capture.origin.is_some() {

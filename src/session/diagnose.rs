@@ -107,9 +107,6 @@ impl Session {
     }
 
     /// The frame with a mend made, and the plan that left it: to show before and after.
-    ///
-    /// # Errors
-    /// A mend that can't be made, a scene that can't be drawn, a lost GPU.
     pub fn capture_mended(
         &mut self,
         scene: &Scene,

@@ -31,9 +31,6 @@ impl Session {
     }
 
     /// The states after the draws of a step of `capture`, which `plan` left.
-    ///
-    /// # Errors
-    /// A step that the frame does not have; a pass whose draws are too many for the memory, a lost GPU.
     pub fn step_draws(&mut self, plan: &FramePlan, capture: &Capture, step: usize) -> Result<StepDraws, SessionError> {
         if step >= capture.steps.len() {
             return Err(SessionError::NoSuchStep { step, steps: capture.steps.len() });

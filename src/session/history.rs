@@ -30,9 +30,6 @@ pub struct HistoryCost {
 
 impl Session {
     /// Everything that happened to `pixel` in the frame of `plan`, which left `capture`.
-    ///
-    /// # Errors
-    /// A pixel outside the picture; a lost GPU.
     pub fn history(
         &mut self,
         plan: &FramePlan,
@@ -43,9 +40,6 @@ impl Session {
     }
 
     /// Times the histories of `count` pixels, spread evenly over the picture; at least one.
-    ///
-    /// # Errors
-    /// As [`Session::capture`].
     pub fn history_cost(
         &mut self,
         scene: &Scene,

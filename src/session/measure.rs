@@ -114,9 +114,6 @@ impl Session {
     /// machine down for a while slows all alike. Not all are held at once: the larger ones are set up
     /// anew for each of their frames, outside its time. Those for which there is no [room](Session::set_room) are left
     /// out.
-    ///
-    /// # Errors
-    /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`].
     pub fn measure(
         &mut self,
         scene: &Scene,
@@ -128,9 +125,6 @@ impl Session {
 
     /// The same, with `between` called while the truth is traced and between any two steps after it:
     /// what it does is in no measured time.
-    ///
-    /// # Errors
-    /// As [`Session::measure`].
     pub fn measure_between(
         &mut self,
         scene: &Scene,
@@ -192,9 +186,6 @@ impl Session {
 
     /// Measures every choice on a scene that moves: what a frame must be set up with anew is timed beside it, and what lasts
     /// from frame to frame is kept, by each choice for itself. Errors are those of all frames together.
-    ///
-    /// # Errors
-    /// As [`Session::measure`].
     pub fn measure_moving(
         &mut self,
         scene: &Scene,

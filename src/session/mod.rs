@@ -65,7 +65,6 @@ pub struct CaptureRequest {
 
 impl CaptureRequest {
     /// An untimed capture with a snapshot after every pass.
-    #[must_use]
     pub fn new(choice: Choice, size: [u32; 2]) -> CaptureRequest {
         CaptureRequest { choice, size, timing_runs: 0, every: Every::Pass, external_capture: false }
     }
@@ -147,7 +146,6 @@ pub enum SessionError {
 
 impl SessionError {
     /// There is no GPU to run on: something to install, not to correct.
-    #[must_use]
     pub fn is_missing_adapter(&self) -> bool {
         matches!(self, SessionError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
     }
@@ -178,9 +176,6 @@ pub struct CaptureCost {
 
 impl Session {
     /// Opens the GPU whose name contains `adapter` (in any case), or the fastest kind there is.
-    ///
-    /// # Errors
-    /// No usable adapter, with what to install.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
         let context = Context::new(adapter)?;
         Ok(Session {
@@ -214,21 +209,16 @@ impl Session {
     }
 
     /// The GPU that it runs on.
-    #[must_use]
     pub fn adapter(&self) -> &AdapterInfo {
         &self.executor.context().info
     }
 
     /// What the GPU was asked for beyond what every frame uses, in plain words: nothing until a plan needs it.
-    #[must_use]
     pub fn features(&self) -> Vec<&'static str> {
         self.executor.features()
     }
 
     /// The frame as data, without running it; with `occlusion=queries` it runs once to see what shows.
-    ///
-    /// # Errors
-    /// A scene that can't be drawn; with queries, a lost GPU.
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = Job { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
         let plan = technique::plan(job)?;
@@ -259,17 +249,11 @@ impl Session {
 
     /// Renders `scene` and keeps every attachment after every pass, or after every draw. Only the
     /// frame with a snapshot after every pass is timed.
-    ///
-    /// # Errors
-    /// A scene that the technique can't draw, a picture larger than the adapter allows, a lost GPU.
     pub fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
         Ok(self.capture_with_plan(scene, request)?.0)
     }
 
     /// Renders a scene, and keeps all that can be asked about.
-    ///
-    /// # Errors
-    /// As [`Session::capture`].
     pub fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
         let (capture, plan) = self.capture_with_plan(&scene, &request)?;
         let source = Some(Arc::new(FrameSource { scene, request: Some(request) }));
@@ -277,9 +261,6 @@ impl Session {
     }
 
     /// The same, with the plan that it ran: what [`Session::history`] asks about.
-    ///
-    /// # Errors
-    /// As [`Session::capture`].
     pub fn capture_with_plan(
         &mut self,
         scene: &Scene,
@@ -307,9 +288,6 @@ impl Session {
 
     /// Runs an already made plan, such as a good one with one thing changed, and keeps what it
     /// left. `scene` gives the camera and lights that the capture tells of.
-    ///
-    /// # Errors
-    /// A plan that can't run, a lost GPU.
     pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare(plan)?;
         let output = self.executor.capture(prepared, Memory::Mapped, false)?;
@@ -317,9 +295,6 @@ impl Session {
     }
 
     /// Times the frame with and without snapshots, in turn, after a warm-up of each.
-    ///
-    /// # Errors
-    /// As [`Session::capture`].
     pub fn capture_cost(
         &mut self,
         scene: &Scene,
@@ -383,7 +358,6 @@ impl Session {
 }
 
 /// The middle of durations in milliseconds (the mean of the middle two); `None` of none.
-#[must_use]
 pub fn median_ms(durations: &[Duration]) -> Option<f64> {
     median(durations.iter().copied().map(milliseconds).collect())
 }

@@ -9,9 +9,6 @@ use crate::progress::Progress;
 impl Session {
     /// Computes each draw of another program's frame anew, from what was stored before it, and notes at how many pixels
     /// that leaves something else than was stored.
-    ///
-    /// # Errors
-    /// A plan that can't run, a lost GPU; [`SessionError::Cancelled`].
     pub fn held_against_itself(
         &mut self,
         plan: &FramePlan,

@@ -8,7 +8,6 @@ use std::time::Duration;
 
 /// Rows of one scene, in the order measured, labelled by what sets them apart `among` all choices of the run;
 /// [`Report::new`](crate::report::Report::new) fills in what depends on the other rows.
-#[must_use]
 pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among: &[Choice]) -> Vec<Row> {
     let row = |one: &Measured| {
         let frames: Vec<f64> = one.frames.iter().copied().map(milliseconds).collect();

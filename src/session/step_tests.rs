@@ -17,9 +17,6 @@ use wgpu::{CompareFunction, Face, StencilOperation};
 
 impl Session {
     /// How the fragments of a step of `plan`, or of one of its draws, fare in the tests.
-    ///
-    /// # Errors
-    /// A step without draws into the picture; a lost GPU.
     pub fn step_tests(
         &mut self,
         plan: &FramePlan,

@@ -73,9 +73,6 @@ impl Session {
     }
 
     /// Makes all rows that are left.
-    ///
-    /// # Errors
-    /// As [`Session::stress`].
     pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<Row>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());
@@ -88,9 +85,6 @@ impl Session {
     }
 
     /// Runs values of a case with `fault` in them, judged like any others: shows what would be found.
-    ///
-    /// # Errors
-    /// As [`Session::stress`].
     pub fn stress_faulty(
         &mut self,
         case: &Case,

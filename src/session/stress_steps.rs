@@ -23,7 +23,6 @@ pub struct StressSteps {
 impl StressSteps {
     /// All values of `cases`, with pictures of `size` pixels but for those that have a size of their
     /// own; with `only`, no other techniques.
-    #[must_use]
     pub fn new(cases: &[&'static Case], only: &[Technique], size: [u32; 2]) -> StressSteps {
         let mut left = VecDeque::new();
         for (case_index, case) in cases.iter().enumerate() {
@@ -46,7 +45,6 @@ impl StressSteps {
     }
 
     /// Those of one part of the run: each technique of each case, with all of its values, is made by one.
-    #[must_use]
     pub fn of(mut self, shard: Shard) -> (StressSteps, Part) {
         let name = |Step { case, entrant, value, size: [width, height] }: &Step| {
             format!("{} · {entrant} · {value} · {width}×{height}", case.name)
@@ -72,13 +70,11 @@ impl StressSteps {
     }
 
     /// How many rows are still to be made.
-    #[must_use]
     pub fn left(&self) -> usize {
         self.left.len()
     }
 
     /// Index and name of the case that the next row is of; `None` at the end.
-    #[must_use]
     pub fn next_case(&self) -> Option<(usize, &'static str)> {
         self.left.front().map(|([case, _], step)| (*case, step.case.name))
     }
@@ -87,9 +83,6 @@ impl StressSteps {
 impl Session {
     /// Makes the next row; `None` at the end. What the session does between two rows changes none of
     /// them.
-    ///
-    /// # Errors
-    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU.
     pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<Row>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
         if steps.place.is_none_or(|[case, _]| case != place[0]) {

@@ -17,9 +17,6 @@ const LONG: Duration = Duration::from_millis(500);
 impl Session {
     /// Runs every candidate on a scene: the right ones first, of these the fastest. What can't draw the scene
     /// is left out.
-    ///
-    /// # Errors
-    /// A scene that can't be traced; [`SessionError::Cancelled`].
     pub fn suited(&mut self, scene: &Scene, size: [u32; 2], progress: &Progress) -> Result<Vec<Suited>, SessionError> {
         let traced = self.traced(scene, size, progress)?;
         let choices = Suited::candidates();

@@ -123,7 +123,6 @@ pub struct Block {
 
 impl Sweep {
     /// What it is called on the command line.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Sweep::Size(_) => "size",
@@ -135,9 +134,6 @@ impl Sweep {
     }
 
     /// A scene at each value. Over map sizes, techniques without maps are left out: nothing changes for them.
-    ///
-    /// # Errors
-    /// A scene without what is swept over, or with more of it.
     pub fn blocks(&self, scene: &Scene, what: &Measurement) -> Result<Vec<Block>, VaryError> {
         let swept = |value: f64, text: String| Some(Swept { name: self.name().to_owned(), value, text });
         let counted = |value: &usize| swept(*value as f64, numbers::count(*value as u64));

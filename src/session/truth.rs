@@ -58,9 +58,6 @@ impl Key {
 
 impl Session {
     /// The ground truth of a capture of `scene`, and how the technique differs from it.
-    ///
-    /// # Errors
-    /// A scene that no ray can be followed for; [`SessionError::Cancelled`] if `progress` was.
     pub fn truth(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<FrameTruth, SessionError> {
         let traced = self.traced_for(scene, capture, progress)?;
         let size = capture.size;
@@ -81,9 +78,6 @@ impl Session {
     }
 
     /// A capture of `scene` with its truth.
-    ///
-    /// # Errors
-    /// As [`Session::truth`].
     pub fn judged(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<Capture, SessionError> {
         Ok(capture.with_truth(&self.truth(scene, capture, progress)?))
     }
@@ -174,9 +168,6 @@ pub struct TruthCost {
 }
 
 /// Times the truth of a scene, after a warm-up; it takes no GPU.
-///
-/// # Errors
-/// A scene that no ray can be followed for.
 pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCost, SessionError> {
     let mut cost = TruthCost { sorting: Vec::new(), following: Vec::new(), rays: 0 };
     for run in 0..=runs {

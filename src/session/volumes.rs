@@ -41,7 +41,6 @@ pub struct VolumeCost {
 }
 
 /// Times each step `runs` times after a warm-up, each time for another light; it takes no GPU.
-#[must_use]
 pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
     let (world, triangles) = (mesh.positions(), mesh.triangles());
     let mut cost = VolumeCost { triangles: triangles.len(), ..VolumeCost::default() };

@@ -92,7 +92,6 @@ pub enum Surprise {
 
 impl Failure {
     /// A failure that shows at every value, anyhow.
-    #[must_use]
     pub const fn new(of: Entrant, name: &'static str, because: &'static str) -> Failure {
         let symptom = Symptom { name, kind: Kind::Either, most: 1.0 };
         Failure { of, because, at: |_| true, symptom, must_show: true }
@@ -105,7 +104,6 @@ impl Failure {
     }
 
     /// It shows at these values only.
-    #[must_use]
     pub const fn at(self, at: fn(f64) -> bool) -> Failure {
         Failure { at, ..self }
     }
@@ -152,7 +150,6 @@ impl Failure {
 }
 
 /// What texels do along a shadow's edge, for techniques that are never promised to be right.
-#[must_use]
 pub fn texels(technique: Technique) -> Option<(Symptom, &'static str)> {
     let Standing::Rival { texels, .. } = technique.description().standing else { return None };
     let (most, because) = texels?;
@@ -161,7 +158,6 @@ pub fn texels(technique: Technique) -> Option<(Symptom, &'static str)> {
 
 impl Expected {
     /// In JSON and tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.symptom().map_or("right", |symptom| symptom.name)
     }

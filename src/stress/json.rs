@@ -30,9 +30,6 @@ const SCHEMA: u32 = 1;
 
 impl Stress {
     /// Machine-readable; `assets/help/json.md` says what each field means.
-    ///
-    /// # Errors
-    /// Numbers that JSON can't hold.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let rows = self.rows.iter().map(RowEntry::new).collect();
         let summary = self.summary().iter().map(SummaryEntry::new).collect();
@@ -180,9 +177,6 @@ pub enum StressReadError {
 
 impl Stress {
     /// Reads what [`Stress::to_json`] writes.
-    ///
-    /// # Errors
-    /// No JSON, fields missing, another schema, or cases of another version.
     pub fn from_json(text: &str) -> Result<Stress, StressReadError> {
         let ReadDocument { schema, adapter, size, shard: part, rows } = serde_json::from_str(text)?;
         if schema != SCHEMA {

@@ -49,9 +49,6 @@ pub struct Stress {
 
 impl Stress {
     /// Those of all parts of a run, each with its file's name, as of one run.
-    ///
-    /// # Errors
-    /// Parts that are missing, there twice, or not of one run.
     pub fn merged(parts: Vec<(String, Stress)>) -> Result<Stress, MergeError> {
         let (adapter, size) = parts.first().map(|(_, of)| (of.adapter.clone(), of.size)).ok_or(MergeError::Nothing)?;
         let part = |(name, Stress { adapter, rows, part, .. }): (String, Stress)| PartOf {
@@ -65,20 +62,17 @@ impl Stress {
     }
 
     /// One entry a case and technique, in the order of the rows.
-    #[must_use]
     pub fn summary(&self) -> Vec<Summary> {
         summary(&self.rows)
     }
 
     /// Is anything unexpected?
-    #[must_use]
     pub fn is_unexpected(&self) -> bool {
         self.summary().iter().any(|summary| summary.verdict == Verdict::Unexpected)
     }
 }
 
 /// One entry a case and technique, in the order of the rows.
-#[must_use]
 pub fn summary(rows: &[Row]) -> Vec<Summary> {
     let mut groups: Vec<Vec<&Row>> = Vec::new();
     for row in rows {
@@ -143,13 +137,11 @@ pub struct StressRows {
 
 impl StressRows {
     /// Of these rows.
-    #[must_use]
     pub fn new(rows: Vec<Row>) -> StressRows {
         StressRows { summaries: summary(&rows), rows }
     }
 
     /// These, and `newer`: rows of a case that was run again go.
-    #[must_use]
     pub fn followed_by(&self, newer: &StressRows) -> StressRows {
         let is_again = |row: &&Row| newer.rows.iter().any(|new| new.case == row.case);
         StressRows::new(self.rows.iter().filter(|row| !is_again(row)).chain(&newer.rows).cloned().collect())

@@ -95,21 +95,16 @@ pub struct Entrant {
 
 impl Entrant {
     /// A technique with its defaults.
-    #[must_use]
     pub const fn of(technique: Technique) -> Entrant {
         Entrant { technique, settings: &[] }
     }
 
     /// A technique with other settings.
-    #[must_use]
     pub const fn with(technique: Technique, settings: &'static [(&'static str, &'static str)]) -> Entrant {
         Entrant { technique, settings }
     }
 
     /// As the session wants it.
-    ///
-    /// # Errors
-    /// A setting that does not exist: a bug of the case.
     pub fn choice(&self) -> Result<Choice, ChoiceError> {
         let mut choice = Choice::new(self.technique);
         self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
@@ -125,7 +120,6 @@ impl fmt::Display for Entrant {
 }
 
 /// Why a technique is expected to be right where no failure of it is known.
-#[must_use]
 pub fn right_because(technique: Technique) -> &'static str {
     match technique.description().standing {
         Standing::Rival { right_because, .. } => right_because,
@@ -135,25 +129,21 @@ pub fn right_because(technique: Technique) -> &'static str {
 
 impl Case {
     /// The case of that name.
-    #[must_use]
     pub fn named(name: &str) -> Option<&'static Case> {
         cases::all().find(|case| case.name == name)
     }
 
     /// Is a row at this value quick and small enough to share a machine with other work?
-    #[must_use]
     pub fn is_light(&self, value: f64) -> bool {
         self.heavy_above.is_none_or(|most| value <= most)
     }
 
     /// The values at which it is.
-    #[must_use]
     pub fn light_values(&self) -> Vec<f64> {
         self.values.iter().copied().filter(|value| self.is_light(*value)).collect()
     }
 
     /// Who runs, in the order of the table.
-    #[must_use]
     pub fn entrants(&self) -> Vec<Entrant> {
         let is_left_out = |technique: &Technique| self.without.iter().any(|(without, _)| without == technique);
         let usual = Technique::rivals().into_iter().filter(|technique| !is_left_out(technique)).map(Entrant::of);
@@ -161,9 +151,6 @@ impl Case {
     }
 
     /// The scene of a value.
-    ///
-    /// # Errors
-    /// A broken mesh: a bug of the case.
     pub fn scene(&self, value: f64) -> Result<Scene, MeshError> {
         match self.drives {
             Drives::Scene(scene) | Drives::Motion(scene) => scene(value),
@@ -172,9 +159,6 @@ impl Case {
     }
 
     /// A technique as this case runs it at a value.
-    ///
-    /// # Errors
-    /// A setting that does not exist: a bug of the case.
     pub fn choice(&self, entrant: &Entrant, value: f64) -> Result<Choice, ChoiceError> {
         let mut choice = entrant.choice()?;
         if let Drives::Setting(key, _) = self.drives
@@ -186,19 +170,16 @@ impl Case {
     }
 
     /// How many frames of a row are timed, after a warm-up.
-    #[must_use]
     pub fn timed_frames(&self) -> usize {
         if self.timed { TIMED_FRAMES } else { 1 }
     }
 
     /// Does a technique run at a value?
-    #[must_use]
     pub fn runs(&self, entrant: &Entrant, value: f64) -> bool {
         self.up_to.iter().all(|(other, last, _)| other != entrant || value <= *last)
     }
 
     /// Why that is expected of a technique, in one line.
-    #[must_use]
     pub fn because(&self, entrant: &Entrant) -> &'static str {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant);
         let texels = || expect::texels(entrant.technique).map(|(_, because)| because);
@@ -206,7 +187,6 @@ impl Case {
     }
 
     /// What is expected of a technique at a value.
-    #[must_use]
     pub fn expected_at(&self, entrant: &Entrant, value: f64) -> Expected {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant && (failure.at)(value));
         match (failure, expect::texels(entrant.technique)) {
@@ -218,7 +198,6 @@ impl Case {
 
     /// What is expected of a technique at some value: the failure that must show, else the one that
     /// may, else to be right.
-    #[must_use]
     pub fn expected(&self, entrant: &Entrant) -> Expected {
         let at = || self.values.iter().map(|value| self.expected_at(entrant, *value));
         let must = at().find(|expected| matches!(expected, Expected::Fails(_)));

@@ -13,7 +13,6 @@ reason that the case tells. *Other forms* are techniques with other settings.";
 
 impl Stress {
     /// The page.
-    #[must_use]
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let opening = origin.opening("Driven to the extreme", "Share of wrong pixels against the number of each sweep");
         let [width, height] = self.size;

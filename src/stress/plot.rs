@@ -34,7 +34,6 @@ const MOST_VALUES: usize = 100;
 
 impl Stress {
     /// All sweeps that were run, in charts.
-    #[must_use]
     pub fn to_plot(&self) -> Plot {
         let mut cases: Vec<&'static Case> = self.rows.iter().filter_map(|row| Case::named(row.case)).collect();
         cases.dedup_by_key(|case| case.name);

@@ -63,19 +63,16 @@ impl Least {
     pub const USUAL: Least = Least { lit: 0.01, shadow: 0.002, because: "" };
 
     /// Nothing need be lit.
-    #[must_use]
     pub const fn all_dark(because: &'static str) -> Least {
         Least { lit: 0.0, because, ..Least::USUAL }
     }
 
     /// Nothing need be in shadow.
-    #[must_use]
     pub const fn all_lit(because: &'static str) -> Least {
         Least { shadow: 0.0, because, ..Least::USUAL }
     }
 
     /// There may be nothing to compare.
-    #[must_use]
     pub const fn nothing(because: &'static str) -> Least {
         Least { lit: 0.0, shadow: 0.0, because }
     }
@@ -83,13 +80,11 @@ impl Least {
 
 impl Row {
     /// Do so many pixels differ along edges that excusing them hides an error?
-    #[must_use]
     pub fn is_blurred(&self) -> bool {
         self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
     }
 
     /// Why this is not what was expected.
-    #[must_use]
     pub fn surprise(&self) -> Option<Surprise> {
         if self.is_little_to_see() {
             return Some(Surprise::LittleToSee);
@@ -128,7 +123,6 @@ impl Row {
     }
 
     /// What came of it.
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
         match (self.surprise(), self.expected, self.error.wrong()) {
             (Some(_), ..) => Verdict::Unexpected,
@@ -150,7 +144,6 @@ impl Row {
 }
 
 /// A parameter's value: short, and in powers of ten where it is far from 1.
-#[must_use]
 pub fn value_text(value: f64) -> String {
     // Steps of a motion are sums of tenths: what is beyond six digits is their rounding.
     let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };

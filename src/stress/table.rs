@@ -7,7 +7,6 @@ use std::fmt;
 
 impl Stress {
     /// Case by case: who holds, who breaks where, and whether that was known.
-    #[must_use]
     pub fn to_table(&self) -> String {
         let summaries = self.summary();
         let width = summaries.iter().map(|summary| summary.entrant.to_string().len()).max().unwrap_or(0);
@@ -36,7 +35,6 @@ impl Stress {
 
     /// Cases down, the usual techniques across: a dot where one holds, else where it breaks and how
     /// that is called. Other forms stand in a last column.
-    #[must_use]
     pub fn to_markdown(&self) -> String {
         let summaries = self.summary();
         let mut names: Vec<&str> = summaries.iter().map(|summary| summary.case).collect();
@@ -86,7 +84,6 @@ fn range(case: &str) -> String {
 
 impl Summary {
     /// Where it breaks.
-    #[must_use]
     pub fn found_text(&self) -> String {
         let breaks = self.breaks_at.map(|at| format!("breaks at {}", value_text(at)));
         let blurred = self.blurred_at.filter(|at| self.breaks_at != Some(*at));
@@ -100,7 +97,6 @@ impl Summary {
     }
 
     /// What came of it: why it is unexpected, or by which failures it was known to fail.
-    #[must_use]
     pub fn verdict_text(&self) -> String {
         let shown: Vec<&str> = self.shown.iter().map(|(_, name)| *name).collect();
         match (self.surprise, &shown[..]) {

@@ -31,7 +31,6 @@ const LEAST_TIMED: f64 = 1e4;
 
 impl Trend {
     /// Of one technique's rows, in the order of their values; `None` where they are too few to tell.
-    #[must_use]
     pub fn course(&self, rows: &[&Row]) -> Option<Course> {
         match self {
             Trend::ConvergesTo(_) => converges(rows),

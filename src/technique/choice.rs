@@ -48,7 +48,6 @@ pub struct Choice {
 
 impl Choice {
     /// As a scene file names it: the technique, and the settings that are not as they are by default.
-    #[must_use]
     pub fn to_request(&self) -> TechniqueRequest {
         let changed = self.technique().settings().iter().filter_map(|spec| {
             let value = self.settings().get(spec.key)?;
@@ -58,16 +57,12 @@ impl Choice {
     }
 
     /// `technique` with its defaults.
-    #[must_use]
     pub fn new(technique: Technique) -> Choice {
         let settings = technique.settings().iter().map(|spec| (spec.key.to_owned(), spec.default.to_owned()));
         Choice { technique, settings: settings.collect() }
     }
 
     /// Checks names and values of a request.
-    ///
-    /// # Errors
-    /// An unknown technique or key, with the nearest name; a value that is not offered.
     pub fn parse(request: &TechniqueRequest) -> Result<Choice, ChoiceError> {
         let technique = Technique::from_name(&request.name).ok_or_else(|| {
             let names: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
@@ -81,9 +76,6 @@ impl Choice {
     }
 
     /// Changes one setting.
-    ///
-    /// # Errors
-    /// An unknown key, or a value that is not offered; nothing is changed then.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
         let technique = self.technique.name();
         let specs = self.technique.settings();
@@ -102,25 +94,21 @@ impl Choice {
     }
 
     /// Which technique.
-    #[must_use]
     pub fn technique(&self) -> Technique {
         self.technique
     }
 
     /// Key and value of every setting.
-    #[must_use]
     pub fn settings(&self) -> &Values {
         &self.settings
     }
 
     /// The settings that every technique has, as types.
-    #[must_use]
     pub fn common(&self) -> CommonSettings {
         CommonSettings::read(&self.settings)
     }
 
     /// The settings of a technique that counts volumes, as types; `None` of another.
-    #[must_use]
     pub fn volumes(&self) -> Option<VolumeSettings> {
         match self.technique {
             Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => Some(VolumeSettings::read(&self.settings)),
@@ -135,14 +123,12 @@ impl Choice {
     }
 
     /// Texels along each side of maps, textures or silhouettes; `None` where the technique has none.
-    #[must_use]
     pub fn texels(&self) -> Option<u32> {
         let spec = self.technique.settings().iter().find(|spec| spec.key == settings::SIZE)?;
         spec.of(&self.settings).parse().ok()
     }
 
     /// Technique and size: `shadow-map 1024`.
-    #[must_use]
     pub fn short_name(&self) -> String {
         let technique = self.technique().name();
         self.texels().map_or_else(|| technique.to_owned(), |texels| format!("{technique} {texels}"))
@@ -150,7 +136,6 @@ impl Choice {
 
     /// This choice with shadow volumes counted in floats, and not in eight bits; `None` where they are, or where the
     /// technique has no such setting.
-    #[must_use]
     pub fn counting_in_floats(&self) -> Option<Choice> {
         let mut in_floats = self.clone();
         let [key, value] = VolumeSettings::in_floats();
@@ -160,7 +145,6 @@ impl Choice {
 
     /// The ground truth in the same shading: its picture is what this choice's should be. How depth is stored is left as
     /// it is by default, since it shades nothing, and what it cuts away should be there.
-    #[must_use]
     pub fn truth_in_same_shading(&self) -> Choice {
         let mut truth = Choice::new(Technique::RayTraced);
         let same = settings::SHADING_KEYS.into_iter().filter_map(|key| self.settings.get_key_value(key));
@@ -169,7 +153,6 @@ impl Choice {
     }
 
     /// Why a setting does nothing as the others are; `None` where it does something.
-    #[must_use]
     pub fn without_effect(&self, key: &str) -> Option<&'static str> {
         let of_planar = || (self.technique == Technique::Planar).then(|| PlanarSettings::read(&self.settings));
         CommonSettings::without_effect(&self.settings, key)

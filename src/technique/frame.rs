@@ -107,9 +107,6 @@ pub enum StencilUse {
 
 impl<'a> Frame<'a> {
     /// Places objects and lights, and makes the attachments.
-    ///
-    /// # Errors
-    /// A camera, light or object that can't be drawn, or too many lights.
     pub fn new(job: Job<'a>, stencil: StencilUse) -> Result<Frame<'a>, PlanError> {
         let scene = job.scene;
         job.cache.next_plan();

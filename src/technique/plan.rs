@@ -9,16 +9,12 @@ use super::{auto, none, planar, planar_texture, projective, ray_traced, shadow_m
 use crate::plan::FramePlan;
 
 /// Plans one frame.
-///
-/// # Errors
-/// A camera or light that can't be used, or too many lights.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     (job.choice.technique().description().plan)(job)
 }
 
 impl Technique {
     /// All that is said of it.
-    #[must_use]
     pub const fn description(self) -> &'static Description {
         match self {
             Technique::None => &none::DESCRIPTION,
@@ -35,13 +31,11 @@ impl Technique {
     }
 
     /// What it does, in one sentence.
-    #[must_use]
     pub fn summary(self) -> &'static str {
         self.description().summary
     }
 
     /// Those that make shadows on the GPU, in the order of stress tables.
-    #[must_use]
     pub fn rivals() -> Vec<Technique> {
         let place = |technique: Technique| match technique.description().standing {
             Standing::Rival { place, .. } => Some((place, technique)),
@@ -55,9 +49,6 @@ impl Technique {
 
 impl Choice {
     /// What a report compares by default: every row of every technique.
-    ///
-    /// # Errors
-    /// A row that a technique's settings refuse: a bug, which a test finds.
     pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
         let mut grid = Vec::new();
         for technique in Technique::ALL {

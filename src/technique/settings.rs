@@ -25,7 +25,6 @@ const COMMON: [SettingSpec; 6] = common::with_own([]);
 
 impl Technique {
     /// Its settings, in the order in which they are shown.
-    #[must_use]
     pub fn settings(self) -> &'static [SettingSpec] {
         match self {
             Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,

@@ -418,7 +418,6 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
 }
 
 /// Which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no volumes.
-#[must_use]
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
     let who = choice.volumes().map_or(WhoCasts::Always(Casters::All), |settings| settings.casters);
     match who {

@@ -60,7 +60,6 @@ pub enum Label {
 
 impl Label {
     /// As stored in masks.
-    #[must_use]
     pub fn byte(self) -> u8 {
         match self {
             Label::Lit => truth::LIT,
@@ -71,7 +70,6 @@ impl Label {
     }
 
     /// The label that is stored so.
-    #[must_use]
     pub fn from_byte(byte: u8) -> Option<Label> {
         [Label::Lit, Label::Shadow, Label::Background, Label::FacesAway].into_iter().find(|label| label.byte() == byte)
     }
@@ -87,17 +85,11 @@ pub struct Rendered {
 
 impl Rendered {
     /// Renders `scene` on the best adapter there is, with a picture of `size` pixels.
-    ///
-    /// # Errors
-    /// No adapter, with what to install; a scene or setting that can't be drawn.
     pub fn new(scene: &Scene, choice: Choice, size: [u32; 2]) -> Result<Rendered, SessionError> {
         Rendered::on(Session::new(None)?, scene, &CaptureRequest::new(choice, size))
     }
 
     /// The same on a session of your own, which [`Rendered::into_session`] gives back.
-    ///
-    /// # Errors
-    /// A scene or setting that can't be drawn; a lost GPU.
     pub fn on(mut session: Session, scene: &Scene, request: &CaptureRequest) -> Result<Rendered, SessionError> {
         let (capture, plan) = session.capture_with_plan(scene, request)?;
         Ok(Rendered { session, plan, capture })
@@ -126,9 +118,6 @@ impl Rendered {
     /// whole.at([160, 120]).label(0, Label::Lit).agrees();
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    ///
-    /// # Errors
-    /// A plan that can't run, a lost GPU.
     pub fn of_plan(mut session: Session, scene: &Scene, plan: FramePlan) -> Result<Rendered, SessionError> {
         let capture = session.capture_plan(scene, &plan)?;
         Ok(Rendered { session, plan, capture })
@@ -136,27 +125,21 @@ impl Rendered {
 
     /// A frame that another program drew: what `record` or an import made of it, or a capture folder holds.
     /// Its world is that of its clip space, so that it is asked about pixels, not about points.
-    ///
-    /// # Errors
-    /// No adapter, with what to install.
     pub fn recorded(plan: FramePlan, capture: Capture) -> Result<Rendered, SessionError> {
         Ok(Rendered { session: Session::new(None)?, plan, capture })
     }
 
     /// The session, for the next scene.
-    #[must_use]
     pub fn into_session(self) -> Session {
         self.session
     }
 
     /// Everything that the frame left.
-    #[must_use]
     pub fn capture(&self) -> &Capture {
         &self.capture
     }
 
     /// The frame as data.
-    #[must_use]
     pub fn plan(&self) -> &FramePlan {
         &self.plan
     }
@@ -175,7 +158,6 @@ impl Rendered {
 
     /// The pixel that shows a point of the world, or what hides it: column and row from the top left; `None` where the
     /// point is outside of the picture, or nearer than the near plane.
-    #[must_use]
     pub fn pixel_of(&self, point: impl Into<DVec3>) -> Option<[u32; 2]> {
         let (view, camera) = (View::of(&self.capture), &self.capture.camera);
         let (at, distance) = view.pixel_and_distance(point.into());
@@ -237,13 +219,11 @@ impl Rendered {
     /// assert!((texel.gap.expect("metres") - 1.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn map_texel_of(&self, light: usize, point: impl Into<DVec3>) -> Option<MapTexel> {
         places::texel_of(&self.capture, light, point.into())
     }
 
     /// The first pixel, row by row, that has a label under a light.
-    #[must_use]
     pub fn first_labelled(&self, light: usize, label: Label) -> Option<[u32; 2]> {
         let labels = self.capture.lights.get(light)?.shadow.as_ref()?;
         let find = |(y, row): (u32, &[u8])| {

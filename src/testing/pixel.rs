@@ -17,7 +17,6 @@ pub struct Pixel<'a> {
 
 impl Pixel<'_> {
     /// Everything that happened to it.
-    #[must_use]
     pub fn history(&self) -> &PixelHistory {
         &self.history
     }
@@ -175,7 +174,6 @@ impl Pixel<'_> {
     /// below.map_depth(0, texel.stored);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn map_texel(&self, light: usize) -> Option<MapTexel> {
         texel_of(self.capture, light, self.surface()?)
     }

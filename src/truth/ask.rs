@@ -37,7 +37,6 @@ pub struct Met {
 
 impl Tracer {
     /// What is seen at a point of the picture; the first pixel's centre is (0.5, 0.5).
-    #[must_use]
     pub fn seen_at(&self, point: [f64; 2]) -> Option<SeenSurface> {
         let [surface] = self.surfaces_at([point]);
         surface.map(|surface| SeenSurface {
@@ -49,19 +48,16 @@ impl Tracer {
     }
 
     /// Where the ray of sight through a point of the picture begins: on the near plane, world space.
-    #[must_use]
     pub fn near_point(&self, point: [f64; 2]) -> DVec3 {
         self.view.eye + self.view.ray(point).at(self.view.near)
     }
 
     /// How far a world position is along the view's axis, metres.
-    #[must_use]
     pub fn depth_of(&self, position: DVec3) -> f64 {
         (position - self.view.eye).dot(self.view.axis())
     }
 
     /// The name of a triangle's object.
-    #[must_use]
     pub fn name(&self, place: Place) -> &str {
         self.world.object_name(place.object)
     }
@@ -70,7 +66,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such object.
-    #[must_use]
     pub fn object_name(&self, object: usize) -> &str {
         self.world.object_name(object)
     }
@@ -80,7 +75,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    #[must_use]
     pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<Met> {
         let of = &self.lights[light];
         let mut found = Vec::new();
@@ -100,7 +94,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    #[must_use]
     pub fn between_points(&self, light: usize, point: DVec3) -> Vec<Met> {
         let farthest = self.light_distance(light, point);
         let mut all = self.along(light, point);
@@ -113,7 +106,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    #[must_use]
     pub fn along(&self, light: usize, point: DVec3) -> Vec<Met> {
         let of = &self.lights[light];
         let away = -self.towards(light, point);
@@ -139,7 +131,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    #[must_use]
     pub fn light_distance(&self, light: usize, point: DVec3) -> f64 {
         let position = self.lights[light].position;
         if position.w == 0.0 { f64::INFINITY } else { (position.truncate() - point).length() }
@@ -149,7 +140,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    #[must_use]
     pub fn towards(&self, light: usize, point: DVec3) -> DVec3 {
         let position = self.lights[light].position;
         (position.truncate() - point * position.w).normalize_or_zero()
@@ -159,7 +149,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    #[must_use]
     pub fn light_position(&self, light: usize) -> DVec4 {
         self.lights[light].position
     }

@@ -82,7 +82,6 @@ pub struct Truth {
 
 impl Truth {
     /// The label of a light at a pixel.
-    #[must_use]
     pub fn label(&self, light: usize, [x, y]: [u32; 2]) -> u8 {
         self.labels[light][y as usize * self.size[0] as usize + x as usize]
     }
@@ -132,9 +131,6 @@ impl Tracer {
     pub const MOST_POINTS: usize = Bundle::MOST;
 
     /// Places a scene's triangles and sorts them as the eye and each light see them.
-    ///
-    /// # Errors
-    /// A camera, light or object that no ray can be followed for.
     pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Tracer, TruthError> {
         let problem = |problem: &str| TruthError { problem: problem.to_owned() };
         scene.camera.check().map_err(problem)?;
@@ -168,14 +164,12 @@ impl Tracer {
     }
 
     /// Width and height of the picture.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// How many rays a truth follows: one of sight a pixel, and for each light one to every surface
     /// point that faces it and receives shadows.
-    #[must_use]
     pub fn rays(truth: &Truth) -> u64 {
         let is_followed = |label: &&u8| matches!(**label, LIT | SHADOW);
         let of_light = truth.labels.iter().map(|labels| labels.iter().filter(is_followed).count() as u64);
@@ -183,14 +177,12 @@ impl Tracer {
     }
 
     /// Labels of every pixel for every light; `None` if it was cancelled.
-    #[must_use]
     pub fn trace(&self, progress: &Progress) -> Option<Truth> {
         let lights: Vec<usize> = (0..self.lights.len()).collect();
         self.trace_lights(&lights, progress)
     }
 
     /// The same for some of the lights, in the order given.
-    #[must_use]
     pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
         let [width, height] = self.size.map(|n| n as usize);
         let bands: Vec<usize> = (0..height).step_by(BAND).collect();
@@ -215,7 +207,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there are more points, or no such light.
-    #[must_use]
     pub fn labels_at<const N: usize>(&self, light: usize, points: [[f64; 2]; N]) -> [u8; N] {
         let mut labels = [BACKGROUND; N];
         self.label_surfaces(&self.lights[light], &self.surfaces_at(points), &mut labels);
@@ -226,7 +217,6 @@ impl Tracer {
     ///
     /// # Panics
     /// If there are more points.
-    #[must_use]
     pub fn visible_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<Place>; N] {
         self.surfaces_at(points).map(|surface| surface.map(|surface| self.world.place(surface.triangle)))
     }

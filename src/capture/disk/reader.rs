@@ -13,9 +13,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads a capture folder with the frame that it is of.
-///
-/// # Errors
-/// As [`read`]; a frame or a scene that is broken.
 pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     let capture = read(folder)?;
     let plan = frame::read(folder, &capture)?;
@@ -25,9 +22,6 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
 }
 
 /// Reads a capture folder, but for the frame that it is of.
-///
-/// # Errors
-/// A file that is missing, broken or of another size than the manifest says.
 pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let file = folder.join(MANIFEST);
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };

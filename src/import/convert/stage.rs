@@ -30,9 +30,6 @@ pub(super) struct Stage {
 
 impl Stage {
     /// The picture is where most triangles are drawn with depth and colours; other depth buffers are maps.
-    ///
-    /// # Errors
-    /// There is no depth buffer; the picture's is multisampled.
     pub fn of(frame: &RawFrame) -> Result<Stage, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();

@@ -13,7 +13,6 @@ use egui::{
 const HANDLE: [f32; 2] = [14.0, 36.0];
 
 /// The part of `rect` that the compared picture takes.
-#[must_use]
 pub fn part(rect: Rect, compare: &Compare) -> Rect {
     let x = rect.left() + rect.width() * compare.at;
     if compare.flipped { rect.with_min_x(x) } else { rect.with_max_x(x) }

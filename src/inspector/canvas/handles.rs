@@ -24,7 +24,6 @@ pub enum Grip {
 
 impl Grip {
     /// For people: `Light 1`.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Grip::Light(index) => format::light_title(index),
@@ -45,7 +44,6 @@ pub struct Anchor {
 }
 
 /// Where a light's handle is at a moment, world space.
-#[must_use]
 pub fn place_of_light(light: &Light, time: f64, anchor: Anchor) -> DVec3 {
     let position = light.motion.apply_to_light(light.position, time);
     match position.w == 0.0 {
@@ -55,7 +53,6 @@ pub fn place_of_light(light: &Light, time: f64, anchor: Anchor) -> DVec3 {
 }
 
 /// The light's homogeneous position at the scene's start once its handle was moved at a moment.
-#[must_use]
 pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: Anchor) -> DVec4 {
     let turned = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
     let back = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z)).transpose();

@@ -66,7 +66,6 @@ pub struct Canvas<'a> {
 }
 
 /// The widget of the picture's own canvas.
-#[must_use]
 pub fn picture_id() -> Id {
     Id::unique(PICTURE)
 }
@@ -254,7 +253,6 @@ pub fn crosshair(painter: &egui::Painter, texel: Rect) {
 }
 
 /// A square a pixel, as one mesh.
-#[must_use]
 pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_MARKS).max(1)) {

@@ -41,7 +41,6 @@ pub struct Lines {
 
 impl Lines {
     /// The silhouettes of the casters of a light.
-    #[must_use]
     pub fn silhouettes(anatomy: &Anatomy, capture: &Capture, light: usize) -> Lines {
         let projector = Projector::new(capture);
         let mut lines = Lines::default();
@@ -56,7 +55,6 @@ impl Lines {
     }
 
     /// The edges of the shadow volumes of a light, each once a part.
-    #[must_use]
     pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> Lines {
         let projector = Projector::new(capture);
         let mut lines = Lines::default();
@@ -85,7 +83,6 @@ impl Lines {
 
     /// The multiplicities that can be read: in the middle of their edges where those are long enough, lie in
     /// `seen`, and do not lie on one another.
-    #[must_use]
     pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
         let mut numbers: Vec<(Pos2, i32)> = Vec::new();
         let mut taken = Taken::default();
@@ -104,7 +101,6 @@ impl Lines {
     }
 
     /// The multiplicity of the nearest edge that does not count once, where one is so near to `at`, points.
-    #[must_use]
     pub fn number_near(&self, placement: Placement, at: Pos2, reach: f32) -> Option<i32> {
         let near = self.counting(placement).map(|(ends, multiplicity)| (distance(ends, at), multiplicity));
         let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
@@ -121,7 +117,6 @@ impl Lines {
     }
 
     /// The lines on the screen, with soft edges.
-    #[must_use]
     pub fn mesh(&self, placement: Placement, theme: &Theme, pixels_per_point: f32) -> Arc<Mesh> {
         let mut mesh = Mesh::default();
         for (ends, kind) in &self.lines {
@@ -164,7 +159,6 @@ fn distance([from, to]: [Pos2; 2], at: Pos2) -> f32 {
 }
 
 /// A multiplicity with its sign: `+2`.
-#[must_use]
 pub fn multiplicity(value: i32) -> String {
     format!("{}{}", if value < 0 { "−" } else { "+" }, value.unsigned_abs())
 }
@@ -228,7 +222,6 @@ impl PlacedLines {
 }
 
 /// The middle of a texel on the screen.
-#[must_use]
 pub fn middle(placement: Placement, at: [u32; 2]) -> Pos2 {
     let Rect { min, max } = placement.rect_of(at);
     pos2((min.x + max.x) / 2.0, (min.y + max.y) / 2.0)

@@ -19,7 +19,6 @@ impl Placement {
     pub const ZOOM_LIMITS: [f32; 2] = [1.0 / 64.0, 256.0];
 
     /// Places a picture of `size` in `panel`.
-    #[must_use]
     pub fn new(view: &PictureView, size: [u32; 2], panel: Rect, pixels_per_point: f32) -> Placement {
         let texels = vec2(size[0] as f32, size[1] as f32);
         let (scale, middle) = match view.zoom {
@@ -36,19 +35,16 @@ impl Placement {
     }
 
     /// Screen pixels a texel.
-    #[must_use]
     pub fn pixels(&self, pixels_per_point: f32) -> f32 {
         self.scale * pixels_per_point
     }
 
     /// The texel position under a screen position; may lie outside the picture.
-    #[must_use]
     pub fn texel_position(&self, at: Pos2) -> Vec2 {
         (at - self.origin) / self.scale
     }
 
     /// The texel under a screen position.
-    #[must_use]
     pub fn texel(&self, at: Pos2) -> Option<[u32; 2]> {
         let position = self.texel_position(at);
         let inside = position.x >= 0.0 && position.y >= 0.0;
@@ -57,14 +53,12 @@ impl Placement {
     }
 
     /// The screen rectangle of a texel.
-    #[must_use]
     pub fn rect_of(&self, [x, y]: [u32; 2]) -> Rect {
         let min = self.origin + vec2(x as f32, y as f32) * self.scale;
         Rect::from_min_size(min, Vec2::splat(self.scale))
     }
 
     /// The screen rectangle of the whole picture.
-    #[must_use]
     pub fn rect(&self) -> Rect {
         Rect::from_min_size(self.origin, vec2(self.size[0] as f32, self.size[1] as f32) * self.scale)
     }

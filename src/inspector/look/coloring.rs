@@ -48,7 +48,6 @@ pub enum Coloring {
 
 impl Coloring {
     /// Of a shown picture, depths over `range`.
-    #[must_use]
     pub fn of_shown(shown: &Shown, range: [f64; 2]) -> Coloring {
         match shown.kind {
             PictureKind::Color => Coloring::Srgb,
@@ -63,7 +62,6 @@ impl Coloring {
     }
 
     /// Of a picture of what changed.
-    #[must_use]
     pub fn of_change(kind: ChangeKind) -> Coloring {
         match kind {
             ChangeKind::Count => Coloring::CountChange,
@@ -73,7 +71,6 @@ impl Coloring {
     }
 
     /// The colour that a texel is drawn in; `None` outside the picture.
-    #[must_use]
     pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
         match self {
             Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
@@ -95,7 +92,6 @@ impl Coloring {
 
     /// The texel's number for a cell that holds `columns` characters a line; `None` outside the
     /// picture. Colours have a line a channel.
-    #[must_use]
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
@@ -128,32 +124,27 @@ impl Coloring {
     }
 
     /// Lines that a texel's number takes.
-    #[must_use]
     pub fn lines(self) -> usize {
         if matches!(self, Coloring::Srgb | Coloring::Linear | Coloring::ColorChange) { 3 } else { 1 }
     }
 }
 
 /// The ink of one bit of a value.
-#[must_use]
 pub fn bit_color(value: u8, bit: u8) -> Color32 {
     palette::BITS[usize::from(value >> bit & 1)]
 }
 
 /// A colour where it changed.
-#[must_use]
 pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
     if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
 }
 
 /// How a share of light, linear bytes, is shown on the screen.
-#[must_use]
 pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
     palette::opaque(colors::linear([r, g, b]))
 }
 
 /// The colour of a count that went up or down: deep for one, lighter the further it went; see-through where it did not.
-#[must_use]
 pub fn count_color(by: i8) -> Color32 {
     let strength = match by.unsigned_abs() {
         0 => return Color32::TRANSPARENT,
@@ -165,7 +156,6 @@ pub fn count_color(by: i8) -> Color32 {
 }
 
 /// The colour of a surface that came nearer or went farther away.
-#[must_use]
 pub fn depth_color(by: f32) -> Color32 {
     match by {
         0.0 => Color32::TRANSPARENT,
@@ -177,7 +167,6 @@ pub fn depth_color(by: f32) -> Color32 {
 }
 
 /// The grey of a stored depth: near is light.
-#[must_use]
 pub fn depth(scale: DepthScale, depth: f32) -> Color32 {
     scale.place(depth).map_or(palette::NO_SURFACE, palette::near_far)
 }

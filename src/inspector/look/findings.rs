@@ -40,7 +40,6 @@ pub enum Pattern {
 }
 
 /// How a finding is drawn and called.
-#[must_use]
 pub fn style(finding: Finding) -> Style {
     let (name, meaning, color, pattern) = match finding {
         Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, Pattern::Plain),
@@ -101,7 +100,6 @@ impl Pattern {
 
 /// The colour of a finding's number, without hatching; a number that is none is drawn as its
 /// stencil colour would be.
-#[must_use]
 pub fn color(byte: u8) -> Color32 {
     Finding::from_byte(byte).map_or_else(|| palette::stencil(byte), |finding| style(finding).color)
 }
@@ -119,7 +117,6 @@ fn weight(byte: u8) -> u8 {
 }
 
 /// The picture of findings, `block` × `block` of them as one texel: the worst of them.
-#[must_use]
 pub fn colored(image: &Image, block: usize) -> ColorImage {
     let block = block.max(1);
     let [width, height] = image.size().map(|side| (side as usize).div_ceil(block));
@@ -150,7 +147,6 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
 }
 
 /// How a technique did for one light, in a sentence.
-#[must_use]
 pub fn sentence(error: &ErrorCounts, worst: Option<&Region>) -> String {
     // A line of the sentence must not end inside a number.
     let count = |value: u64| format::count(value).replace('\u{2009}', "\u{a0}");

@@ -32,19 +32,16 @@ pub(super) const fn opaque([red, green, blue]: Rgb) -> Color32 {
 
 /// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
 /// each turn; 255 (−1) downwards in reds, lighter further away.
-#[must_use]
 pub fn stencil(value: u8) -> Color32 {
     opaque(colors::stencil(value))
 }
 
 /// The colour of a label; a value that is none is drawn as its stencil colour would be.
-#[must_use]
 pub fn label(value: u8) -> Color32 {
     opaque(colors::label(value))
 }
 
 /// Grey for a place between near (0) and far (1): near is light.
-#[must_use]
 pub fn near_far(place: f32) -> Color32 {
     opaque(colors::near_far(place))
 }
@@ -68,7 +65,6 @@ pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
 pub const BITS: [Color32; 2] = [Color32::from_rgb(0x1b, 0x2a, 0x3d), Color32::from_rgb(0xf0, 0xe4, 0x42)];
 
 /// What becomes of a pixel's fragments, as bits of [`crate::capture::TestCounts`]; see-through where there are none.
-#[must_use]
 pub fn outcome(outcomes: u8) -> Color32 {
     use crate::capture::TestCounts as Counts;
     match outcomes {
@@ -83,7 +79,6 @@ pub fn outcome(outcomes: u8) -> Color32 {
 }
 
 /// The ink of a receiver: 1 on it, 2 at its outline; see-through elsewhere.
-#[must_use]
 pub fn receiver(ink: u8) -> Color32 {
     let color = Color32::from_rgb(0x56, 0xb4, 0xe9);
     match ink {
@@ -94,7 +89,6 @@ pub fn receiver(ink: u8) -> Color32 {
 }
 
 /// How many fragments reached a pixel: dark for none, clearly more for one, then lighter, about twice as many a step.
-#[must_use]
 pub fn overdraw(fragments: u8) -> Color32 {
     const RAMP: [(u8, u8, u8); 6] = [
         (0x35, 0x55, 0x9c),
@@ -115,7 +109,6 @@ pub fn overdraw(fragments: u8) -> Color32 {
 }
 
 /// Black or white, whichever is read more easily on `background`.
-#[must_use]
 pub fn ink_on(background: Color32) -> Color32 {
     let [red, green, blue, _] = background.to_array().map(f32::from);
     let light = 0.299 * red + 0.587 * green + 0.114 * blue;
@@ -123,7 +116,6 @@ pub fn ink_on(background: Color32) -> Color32 {
 }
 
 /// The colour of a count.
-#[must_use]
 pub fn count(count: f32) -> Color32 {
     opaque(colors::count(count))
 }

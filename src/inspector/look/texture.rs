@@ -286,7 +286,6 @@ fn depth_bars(image: &Image, measure: DepthMeasure, [low, high]: [f64; 2]) -> De
 }
 
 /// The picture in its colours, texel by texel, for a file.
-#[must_use]
 pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     let colored = colored(image, coloring, u32::MAX);
     let [width, height] = image.size();
@@ -312,7 +311,6 @@ pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring, column
 }
 
 /// A colour over another: a colour is multiplied by its alpha already.
-#[must_use]
 pub fn over(color: Color32, under: Rgb) -> Rgb {
     let [red, green, blue, alpha] = color.to_array();
     let stays = |under: u8| (u16::from(under) * u16::from(255 - alpha) / 255) as u8;

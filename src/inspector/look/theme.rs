@@ -104,20 +104,17 @@ pub const LIGHT: Theme = Theme {
 };
 
 /// The theme that `ui` is drawn in.
-#[must_use]
 pub fn of(ui: &Ui) -> &'static Theme {
     in_visuals(ui.visuals())
 }
 
 /// The theme that goes with egui's own colours.
-#[must_use]
 pub fn in_visuals(visuals: &egui::Visuals) -> &'static Theme {
     if visuals.dark_mode { &DARK } else { &LIGHT }
 }
 
 impl Theme {
     /// The colour of a part of a shadow volume; `None` for what has none of its own.
-    #[must_use]
     pub fn part(&self, part: Part) -> Option<Color32> {
         match part {
             Part::Side => Some(self.side),
@@ -201,13 +198,11 @@ fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
 }
 
 /// A number or an address: the monospaced face.
-#[must_use]
 pub fn number(text: impl Into<String>) -> RichText {
     RichText::new(text).font(number_font(SMALL_SIZE))
 }
 
 /// The monospaced face in a size, in points.
-#[must_use]
 pub fn number_font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Monospace)
 }
@@ -218,7 +213,6 @@ pub fn switch_word(ui: &Ui, word: &str, is_on: bool) -> RichText {
 }
 
 /// A side note.
-#[must_use]
 pub fn note(text: impl Into<String>) -> RichText {
     RichText::new(text).size(SMALL_SIZE).weak()
 }

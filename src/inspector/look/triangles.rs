@@ -10,7 +10,6 @@ use egui::epaint::{ImageData, Mesh, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TexturesDelta};
 
 /// The texture of letters, as a first frame of egui makes it; its first texel is white.
-#[must_use]
 pub fn letters(textures: &TexturesDelta) -> ColorImage {
     let mut letters = ColorImage::filled([1, 1], Color32::WHITE);
     for delta in textures.set.get(&TextureId::default()).into_iter().flatten() {

@@ -20,7 +20,6 @@ pub struct Segment<'a> {
 
 impl<'a> Segment<'a> {
     /// One that can be pressed.
-    #[must_use]
     pub fn new(label: &'a str, explanation: &'a str) -> Segment<'a> {
         Segment { label, explanation, is_enabled: true, is_seen: false, changed: "" }
     }
@@ -128,7 +127,6 @@ pub fn keep_arrows(ui: &Ui, response: &Response) {
 }
 
 /// Do arrows move the widget with the focus itself?
-#[must_use]
 pub fn has_own_arrows(ctx: &egui::Context, focus: Option<egui::Id>) -> bool {
     focus.is_some() && focus == ctx.data(|data| data.get_temp(own_arrows()))
 }

@@ -30,7 +30,6 @@ impl Animation {
 
 impl Model {
     /// Does anything move in the open scene?
-    #[must_use]
     pub fn is_animated(&self) -> bool {
         self.scene.as_ref().is_some_and(|scene| scene.animated)
     }

@@ -31,13 +31,11 @@ impl ShownFrame {
 
 impl Model {
     /// Can it be asked what only a run of the frame tells? Not of a folder that holds pictures alone.
-    #[must_use]
     pub fn can_ask(&self) -> bool {
         self.scene.is_some() || self.frame.plan.is_some()
     }
 
     /// Where the frame comes from, if another program drew it.
-    #[must_use]
     pub fn origin(&self) -> Option<&Origin> {
         self.frame.capture.as_ref()?.origin.as_ref()
     }

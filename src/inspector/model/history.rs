@@ -13,7 +13,6 @@ pub const PATIENCE: f64 = 0.12;
 
 impl Model {
     /// Wants the history of the picked pixel; nothing where no pixel is picked, or there are pictures alone.
-    #[must_use]
     pub fn want_history(&self) -> Reply<PixelHistory> {
         match self.selection.pick.filter(|_| self.can_ask() && self.frame.capture.is_some()) {
             Some(at) => self.answers.want(HistoryOf { at }),
@@ -22,7 +21,6 @@ impl Model {
     }
 
     /// Wants the history of the picked pixel; seconds until it is late, while it is waited for and not late yet.
-    #[must_use]
     pub fn want_history_until(&self) -> Option<f64> {
         let reply = self.want_history();
         let is_waited_for = self.selection.pick.is_some() && reply.ready.is_none() && reply.failed.is_none();
@@ -30,7 +28,6 @@ impl Model {
     }
 
     /// The history of the picked pixel, or of the one that was picked just before, of the same frame.
-    #[must_use]
     pub fn history_of_frame(&self) -> Option<Arc<PixelHistory>> {
         let reply = self.want_history();
         let is_late = is_late(&reply);
@@ -39,14 +36,12 @@ impl Model {
     }
 
     /// Index of the event of the selected triangle.
-    #[must_use]
     pub fn selected_in(&self, history: &PixelHistory) -> Option<usize> {
         history.events.iter().position(|event| self.selection.has_event(event))
     }
 }
 
 /// What is shown is of another pixel or frame, and has been for a while.
-#[must_use]
 pub fn is_late(reply: &Reply<PixelHistory>) -> bool {
     reply.ready.is_none() && reply.waits_for >= PATIENCE
 }

@@ -56,7 +56,6 @@ pub enum NoBefore {
 
 impl NoBefore {
     /// In a sentence, with what to do.
-    #[must_use]
     pub fn sentence(self) -> &'static str {
         match self {
             NoBefore::First => "Nothing comes before the first step: its buffers start cleared. Select a later one.",
@@ -89,7 +88,6 @@ pub enum With {
 
 impl Compare {
     /// Beside step `step`: the one before it, or the one after the first.
-    #[must_use]
     pub fn new(step: usize) -> Compare {
         Compare { with: With::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
     }
@@ -97,7 +95,6 @@ impl Compare {
 
 impl With {
     /// In a few words.
-    #[must_use]
     pub fn words(self, capture: &Capture) -> String {
         match self {
             With::Step(step) => step_words(capture, step),
@@ -107,7 +104,6 @@ impl With {
 }
 
 /// `step 2 · volumes`, `the mask of light 1`.
-#[must_use]
 pub fn step_words(capture: &Capture, step: usize) -> String {
     match steps::number(capture, step) {
         Some(_) => format!("step {}", steps::title(capture, step)),
@@ -129,7 +125,6 @@ pub struct Modes {
 }
 
 /// Has this kind of picture a state before and after each step?
-#[must_use]
 pub fn has_phases(kind: PictureKind) -> bool {
     matches!(kind, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
 }
@@ -150,7 +145,6 @@ pub fn before(capture: &Capture, at: Moment) -> Result<Moment, NoBefore> {
 
 impl Model {
     /// The picture that is shown: of the selected moment, or of the one before it.
-    #[must_use]
     pub fn shown(&self, capture: &Capture) -> Option<Shown> {
         let now = self.view.shown(capture, self.moment());
         match self.modes.phase {
@@ -177,7 +171,6 @@ impl Model {
     }
 
     /// Does something that is shown need the state before the selected draw, which is not known?
-    #[must_use]
     pub fn lacks_draw_before(&self) -> bool {
         let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoBefore::NotKnown);
         self.modes.phase != Phase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
@@ -193,7 +186,6 @@ impl Model {
 
     /// What stands beside the picture first: the step before it, or of a picture of the whole frame, which no step
     /// changes, that of another technique.
-    #[must_use]
     pub fn first_comparison(&self) -> Compare {
         let compare = Compare::new(self.selection.step);
         let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
@@ -251,7 +243,6 @@ impl Model {
     }
 
     /// The counts to show a pixel of: of the light whose picture is shown, or else of the step's.
-    #[must_use]
     pub fn counts_to_show<'a>(&self, capture: &'a Capture) -> Option<(usize, &'a Arc<Image>)> {
         let at = self.moment();
         if self.view.shown(capture, at).is_some_and(|shown| shown.kind == PictureKind::Count) {
@@ -294,7 +285,6 @@ pub fn full_range(textures: &mut PictureCache, shown: &Shown) -> [f64; 2] {
 }
 
 /// How many texels differ, in a sentence.
-#[must_use]
 pub fn sentence(texels: Option<u64>, all: u64) -> String {
     match texels {
         None => "Pictures of different kinds: nothing to count.".to_owned(),

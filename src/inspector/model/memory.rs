@@ -28,7 +28,6 @@ impl ThemeChoice {
     }
 
     /// In egui's words.
-    #[must_use]
     pub fn in_egui(self) -> egui::Theme {
         match self {
             ThemeChoice::Dark => egui::Theme::Dark,

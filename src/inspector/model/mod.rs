@@ -140,7 +140,6 @@ impl Model {
     }
 
     /// The kind of picture that is shown at the selected moment.
-    #[must_use]
     pub fn kind(&self) -> Option<PictureKind> {
         self.view.kind_at(self.frame.capture.as_ref()?, self.moment())
     }

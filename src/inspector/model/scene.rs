@@ -45,13 +45,11 @@ impl OpenScene {
     }
 
     /// The light that the scene was opened with which is this one of the draft now.
-    #[must_use]
     pub fn light_opened(&self, index: usize) -> Option<&Light> {
         self.opened.lights.get(self.lights_opened.get(index).copied()??)
     }
 
     /// The object of an index as the draft has it.
-    #[must_use]
     pub fn object(&self, index: usize) -> Option<Object> {
         let changes = &self.draft.objects;
         match self.loaded.get(index) {
@@ -64,13 +62,11 @@ impl OpenScene {
     }
 
     /// How many objects it has, those that were added among them.
-    #[must_use]
     pub fn object_count(&self) -> usize {
         self.loaded.len() + self.draft.objects.added.len()
     }
 
     /// The middle of an object of the draft's, object space.
-    #[must_use]
     pub fn middle_of(&self, index: usize, object: &Object) -> DVec3 {
         self.middles.get(index).copied().unwrap_or_else(|| middle(&object.mesh))
     }

@@ -68,7 +68,6 @@ impl Selection {
     }
 
     /// Is the event that of the selected triangle?
-    #[must_use]
     pub fn has_event(&self, event: &Event) -> bool {
         self.triangle.is_some() && key(event) == self.triangle
     }
@@ -80,26 +79,22 @@ fn key(event: &Event) -> Option<TriangleKey> {
 
 impl Model {
     /// How many steps make the frame.
-    #[must_use]
     pub fn steps(&self) -> usize {
         self.frame.capture.as_ref().map_or(0, |capture| steps::count(capture))
     }
 
     /// The steps of the frame before and after the selected one.
-    #[must_use]
     pub fn neighbours(&self) -> [Option<usize>; 2] {
         let of = |find: fn(&Capture, usize) -> Option<usize>| find(self.frame.capture.as_ref()?, self.selection.step);
         [of(steps::previous), of(steps::next)]
     }
 
     /// What is selected.
-    #[must_use]
     pub fn selected(&self) -> Moment {
         Moment { step: self.selection.step, draw: self.selection.draw }
     }
 
     /// What is shown: what is selected, or what was shown before while that is not known.
-    #[must_use]
     pub fn moment(&self) -> Moment {
         let selected = self.selected();
         let is_held = self.frame.capture.as_ref().is_none_or(|capture| selected.is_held(capture));
@@ -225,7 +220,6 @@ impl Model {
 
 /// The step of `now` that means what step `index` of `before` meant: the last stays the last,
 /// a pass of the same name and light is the same. Where none is, the last: the whole frame.
-#[must_use]
 pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     let last = now.steps.len().saturating_sub(1);
     let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
@@ -237,7 +231,6 @@ pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
 }
 
 /// A pick moved within a picture of this size; without one, from its middle.
-#[must_use]
 pub fn moved(pick: Option<[u32; 2]>, by: [i32; 2], size: [u32; 2]) -> [u32; 2] {
     let from = pick.unwrap_or(size.map(|side| side / 2));
     [0, 1].map(|axis| from[axis].saturating_add_signed(by[axis]).min(size[axis].saturating_sub(1)))

@@ -62,13 +62,11 @@ impl Undo {
     }
 
     /// Is there a step to undo?
-    #[must_use]
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
     /// Is there a step to redo?
-    #[must_use]
     pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }

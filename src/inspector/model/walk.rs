@@ -58,7 +58,6 @@ impl Default for Walk {
 
 impl Weight {
     /// On the ground, and nothing has changed about it.
-    #[must_use]
     pub fn is_at_rest(&self, walls: &Arc<Walls>) -> bool {
         let is_same = self.within.as_ref().is_some_and(|within| Arc::ptr_eq(within, walls));
         is_same && self.standing.is_some_and(|standing| standing.is_on_ground)
@@ -67,7 +66,6 @@ impl Weight {
 
 impl Walk {
     /// Does one walk?
-    #[must_use]
     pub fn is_on(&self) -> bool {
         self.is_on
     }

@@ -58,7 +58,6 @@ struct Marked {
 
 impl ShadowMapPanel {
     /// Which texel each pixel reads, of the shown frame and light, where the tab was shown.
-    #[must_use]
     pub fn readers(&self, model: &Model) -> Option<Arc<MapReaders>> {
         model.answers.of(ReadersOf { light: self.light }).ready
     }

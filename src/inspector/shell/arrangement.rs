@@ -30,7 +30,6 @@ pub struct Drag {
 
 impl Drag {
     /// The one that is under way.
-    #[must_use]
     pub fn under_way(tree: &Tree<Panel>, ui: &egui::Ui) -> Option<Drag> {
         let tile = tree.dragged_id(ui)?;
         Some(Drag { tile, before: tree.clone(), pointer: ui.input(|input| input.pointer.interact_pos()) })
@@ -55,7 +54,6 @@ impl Drag {
 }
 
 /// Is every panel there once?
-#[must_use]
 pub fn is_whole(tree: &Tree<Panel>) -> bool {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
@@ -187,7 +185,6 @@ fn least(tiles: &Tiles<Panel>, tile: TileId) -> Vec2 {
 
 /// Gives every group at least what it needs, where a window of this size has that. What was there before, to be put
 /// back once the tiles are drawn: in a larger window the shares are as they were.
-#[must_use]
 pub fn fit(tree: &mut Tree<Panel>, size: Vec2) -> Vec<(TileId, Shares)> {
     let mut before = Vec::new();
     if let Some(root) = tree.root {

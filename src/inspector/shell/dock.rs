@@ -51,7 +51,6 @@ pub struct Dock {
 
 impl Dock {
     /// As first shown.
-    #[must_use]
     pub fn new() -> Dock {
         Dock::first(false)
     }
@@ -80,7 +79,6 @@ impl Dock {
     }
 
     /// Where the panels are; `None` while they are where they were at first.
-    #[must_use]
     pub fn layout(&self) -> Option<Layout> {
         self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
     }

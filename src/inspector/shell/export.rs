@@ -33,7 +33,6 @@ pub struct ExportDialog {
 
 impl ExportDialog {
     /// With a name that says what it is; none where there is nothing of this kind.
-    #[must_use]
     pub fn new(kind: ExportKind, model: &Model) -> Option<ExportDialog> {
         if is_film(kind) && model.answers.asked::<FilmOf>().is_some() {
             return None;
@@ -100,7 +99,6 @@ fn runnable(model: &Model) -> Option<RunRequest> {
 }
 
 /// What `kind` means now; none where there is nothing of it.
-#[must_use]
 pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Option<ExportData> {
     if kind == ExportKind::Report {
         return measured(model).cloned().map(|report| ExportData::Report(Box::new(report)));

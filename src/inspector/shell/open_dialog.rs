@@ -30,7 +30,6 @@ pub struct OpenDialog {
 
 impl OpenDialog {
     /// Offers these.
-    #[must_use]
     pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
     }

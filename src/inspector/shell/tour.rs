@@ -163,7 +163,6 @@ fn do_stop(model: &mut Model, go: Go, capture: &Capture) {
 }
 
 /// How many stops the tour of a technique has.
-#[must_use]
 pub fn stops_of(technique: Technique) -> usize {
     tour_of(technique).map_or(0, |(_, tour)| tour.stops.len())
 }

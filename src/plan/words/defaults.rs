@@ -63,7 +63,6 @@ const DIRECT_3D: &[&str] = &[
 ];
 
 /// The lines that need not be said.
-#[must_use]
 pub fn defaults(api: Api) -> &'static [&'static str] {
     match api {
         Api::WebGpu => WEB_GPU,

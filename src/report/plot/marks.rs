@@ -81,7 +81,6 @@ const fn look(technique: Technique) -> Style {
 pub static UNKNOWN: Style = style("", Mark::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
 
 /// The look of a technique; a neutral one for a name that is not known.
-#[must_use]
 pub fn style_of(technique: &str) -> &'static Style {
     STYLES.iter().find(|style| style.technique == technique).unwrap_or(&UNKNOWN)
 }
@@ -89,7 +88,6 @@ pub fn style_of(technique: &str) -> &'static Style {
 impl Mark {
     /// Corners of the shape around the origin, y downwards; all shapes have about the area of a
     /// disc of this radius, and every corner is seen from the middle.
-    #[must_use]
     pub fn outline(self, radius: f64) -> Vec<[f64; 2]> {
         let regular = |corners: u32, turn: f64, size: f64| {
             let corner = move |index: u32| {

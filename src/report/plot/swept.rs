@@ -24,7 +24,6 @@ const NAME_HEIGHT: f64 = 13.0;
 const NO_TIMES: [f64; 2] = [1.0, 100.0];
 
 /// Lays out the page of a report that is a sweep.
-#[must_use]
 pub fn sweep(report: &Report) -> Plot {
     let scenes = report.scenes();
     let name = report.rows.iter().find_map(|row| Some(row.sweep.as_ref()?.name.clone())).unwrap_or_default();

@@ -97,15 +97,11 @@ pub const ALL: &[Builtin] = &[
 
 impl Builtin {
     /// The one of that name.
-    #[must_use]
     pub fn named(name: &str) -> Option<&'static Builtin> {
         ALL.iter().find(|builtin| builtin.name == name)
     }
 
     /// Makes the scene.
-    ///
-    /// # Errors
-    /// A broken mesh: a bug of the scene.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         (self.build)().map_err(|source| SceneError::Mesh { name: self.name.to_owned(), source })
     }

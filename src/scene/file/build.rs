@@ -32,9 +32,6 @@ const OF_OBLIQUE: [&str; 2] = [
 const DEFAULT_NEAR: f64 = 0.01;
 
 /// `name` is the scene's unless the table gives one; meshes are looked for in `folder`.
-///
-/// # Errors
-/// The first value that can't be used.
 pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Problem> {
     let mut builder = ObjectBuilder {
         folder,

@@ -14,19 +14,16 @@ pub struct Problem {
 
 impl Problem {
     /// `reason` holds for what stands at `span`.
-    #[must_use]
     pub fn new(span: Range<usize>, reason: impl Into<String>) -> Problem {
         Problem { at: span.start, reason: reason.into() }
     }
 
     /// What the TOML reader found.
-    #[must_use]
     pub fn of_toml(error: &toml::de::Error) -> Problem {
         Problem { at: error.span().map_or(0, |span| span.start), reason: in_words(error.message()) }
     }
 
     /// Counted from 1.
-    #[must_use]
     pub fn line_in(&self, text: &str) -> usize {
         let before = text.as_bytes().get(..self.at).unwrap_or(text.as_bytes());
         before.iter().filter(|byte| **byte == b'\n').count() + 1

@@ -36,9 +36,6 @@ pub enum SaveError {
 
 /// Writes a scene. New models are called `stem-object.obj`; meshes that are there as files already are `known`, each with
 /// its file's name.
-///
-/// # Errors
-/// What the serialiser refuses; nothing here is known to be refused.
 pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Result<SavedScene, SaveError> {
     let mut beside = Beside { stem, files: Vec::new(), meshes: known, pictures: Vec::new() };
     let mut objects = Vec::with_capacity(scene.objects.len());

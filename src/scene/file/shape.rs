@@ -24,9 +24,6 @@ const SHAPES: [(&str, &[&str]); 8] = [
 const MOST_SEGMENTS: u32 = 4096;
 
 /// The mesh of a shape.
-///
-/// # Errors
-/// An unknown shape, a parameter that is missing, of another shape, or out of range.
 pub fn mesh(table: &ShapeTable) -> Result<Mesh, Problem> {
     let name = table.shape.get_ref().as_str();
     let names = SHAPES.map(|(name, _)| name);

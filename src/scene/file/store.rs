@@ -30,9 +30,6 @@ pub enum StoreError {
 }
 
 /// Writes `scene` to `file`; a model that it was opened from (`source`) is named and not written again.
-///
-/// # Errors
-/// A name that is none of a scene file, a model in the way, a place that can't be written to.
 pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), StoreError> {
     if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("toml")) {
         return Err(StoreError::NoSceneFile(file.display().to_string().escape_debug().to_string()));

@@ -65,9 +65,6 @@ impl Document {
     }
 
     /// The whole numbers of an accessor.
-    ///
-    /// # Errors
-    /// As [`Document::numbers`].
     pub fn indices(&self, index: Index<Accessor>) -> Told<Vec<u32>> {
         Ok(self.numbers::<1>(index)?.iter().map(|number| *number as u32).collect())
     }

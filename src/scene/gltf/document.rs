@@ -47,9 +47,6 @@ pub struct Document {
 
 impl Document {
     /// Reads a file and its buffers.
-    ///
-    /// # Errors
-    /// A file that can't be read, that breaks the format's rules or that needs what is not done.
     pub fn open(file: &Path) -> Result<Document, SceneError> {
         let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
         let bytes = read_plain(file, MOST_BYTES).map_err(|error| told(error.to_string()))?;

@@ -110,9 +110,6 @@ impl Turns {
     }
 
     /// How a light that hangs on a node moves; one that is nowhere turns too.
-    ///
-    /// # Errors
-    /// As [`Turns::of_object`].
     pub fn of_light(&self, node: usize) -> Told<Motion> {
         Ok(Motion { orbit: self.of(node)?.map(|turn| turn.orbit()), ..Motion::default() })
     }

@@ -241,7 +241,6 @@ fn numbers<'a>(mut text: &'a str, into: &mut Vec2) -> &'a str {
 
 /// The material of a library for surfaces that have normals of their own (`Phong`) or not. One that has a picture and
 /// no colour shows the picture as it is.
-#[must_use]
 pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Material {
     let default = Material::default();
     let within = |low: f32, value: f64, high: f32| (value as f32).clamp(low, high);

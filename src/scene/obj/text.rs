@@ -59,9 +59,6 @@ pub struct LineProblem {
 const PART: usize = 1 << 18;
 
 /// Reads and checks a file.
-///
-/// # Errors
-/// The first broken vertex or normal, else the first broken face.
 pub fn read(raw: &str) -> Result<Contents, LineProblem> {
     read_in_parts(raw, PART)
 }

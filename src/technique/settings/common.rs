@@ -183,7 +183,6 @@ impl CommonSettings {
 
     /// May it be left out? Depth that is not reversed and infinite cuts volumes off, or lets surfaces tie that
     /// are apart: what hides nothing elsewhere may decide a pixel there.
-    #[must_use]
     pub fn allows(&self, decision: Decision) -> bool {
         use Decision::{Clear, Light, MapFaces, Scissor, Stencil};
         let asks_no_depth = matches!(decision, Light | Stencil | Clear | MapFaces | Scissor);

@@ -144,7 +144,6 @@ pub struct MapSettings {
 
 impl MapSettings {
     /// As they are set: of a choice, or in a capture.
-    #[must_use]
     pub fn read(values: &Values) -> MapSettings {
         MapSettings {
             size: MAP_SIZE.read(values) as u32,
@@ -240,7 +239,6 @@ pub struct TextureSettings {
 
 impl TextureSettings {
     /// Of receivers' textures.
-    #[must_use]
     pub fn of_receivers(values: &Values) -> TextureSettings {
         let (is_single_pass, projects_backwards) = (true, false);
         TextureSettings {
@@ -254,7 +252,6 @@ impl TextureSettings {
     }
 
     /// Of casters' silhouettes.
-    #[must_use]
     pub fn of_silhouettes(values: &Values) -> TextureSettings {
         TextureSettings {
             size: SILHOUETTE_SIZE.read(values) as u32,

@@ -103,7 +103,6 @@ pub struct PlanarSettings {
 
 impl PlanarSettings {
     /// As they are set.
-    #[must_use]
     pub fn read(values: &Values) -> PlanarSettings {
         let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
         PlanarSettings {

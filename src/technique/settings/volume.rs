@@ -272,7 +272,6 @@ pub enum WhoCasts {
 
 impl VolumeSettings {
     /// Are volumes closed and where they should be, and does every face count? Then a surface that none holds reads 0 of it.
-    #[must_use]
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
         let loses_steps = self.operations == CountsBy::Clamping && !self.counts_in_float;
@@ -280,7 +279,6 @@ impl VolumeSettings {
     }
 
     /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
-    #[must_use]
     pub fn of_auto(common: &CommonSettings) -> VolumeSettings {
         let by_topology = common.allows(Decision::AwayTriangles);
         let casters = if by_topology { WhoCasts::ByTopology } else { WhoCasts::Always(Casters::All) };
@@ -288,7 +286,6 @@ impl VolumeSettings {
     }
 
     /// As they are set.
-    #[must_use]
     pub fn read(values: &Values) -> VolumeSettings {
         VolumeSettings {
             casters: CASTERS.read(values),
@@ -311,7 +308,6 @@ impl VolumeSettings {
     }
 
     /// The bits that faces write and the light pass reads: parity is in one.
-    #[must_use]
     pub fn mask(&self) -> u8 {
         if self.operations == CountsBy::Inverting { 1 } else { self.bits }
     }

@@ -139,7 +139,6 @@ fn go(model: &mut Model, search: &StepSearch) {
 }
 
 /// Do a pass or its draws contain all words?
-#[must_use]
 pub fn matches(step: &crate::capture::Step, words: &str) -> bool {
     let light = step.light.map_or_else(|| "scene".to_owned(), format::light);
     let draws = step.draws.iter().flat_map(|draw| [draw.name.as_str(), draw.part.name()]);

@@ -33,7 +33,6 @@ pub struct Drawing {
 
 impl Drawing {
     /// Draws the triangles: some tenths of a second where there are wireframes.
-    #[must_use]
     pub fn finish(&self) -> Picture {
         let mut picture = self.picture.clone();
         for primitive in &self.triangles {
@@ -47,7 +46,6 @@ impl Drawing {
 
 /// `shown`, which is one image, as it is drawn, but for the pick, handles, legends and cards. The divider stands over
 /// the texel over which it stands in the window.
-#[must_use]
 pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,

@@ -25,7 +25,6 @@ const MOST_VALUES: usize = 12;
 const MOST_MISREAD: usize = 4;
 
 /// What the legend takes of a picture of this size, points.
-#[must_use]
 pub fn room(rect: Rect, shown: &Shown) -> f32 {
     if fits(rect, shown.kind) { width(rect, shown.kind) + 12.0 } else { 0.0 }
 }

@@ -6,7 +6,6 @@ use crate::reading::shown::{PictureKind, Shown};
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, vec2};
 
 /// `Mask, light 1`.
-#[must_use]
 pub fn title(shown: &Shown) -> String {
     let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
     let kind = match shown.kind {

@@ -22,7 +22,6 @@ pub fn button(ui: &mut Ui, model: &mut Model) {
 }
 
 /// What of the picture is free for cards in its corners: while one walks, what is under the banner.
-#[must_use]
 pub fn under_banner(model: &Model, rect: Rect) -> Rect {
     if model.walk.is_on() { rect.with_min_y((rect.top() + BANNER_HEIGHT + 8.0).min(rect.bottom())) } else { rect }
 }

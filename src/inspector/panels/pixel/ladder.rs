@@ -28,7 +28,6 @@ const COUNT_ROOM: f32 = 40.0;
 const OPENED_AT_ONCE: usize = 100;
 
 /// Does this frame count volumes, so that there is a ladder?
-#[must_use]
 pub fn is_shown(told: &Told, capture: &Capture) -> bool {
     told.history.is_some() && capture.counts_volumes()
 }

@@ -31,13 +31,11 @@ impl Rows {
 }
 
 /// Does everything stand closer in a panel of this size?
-#[must_use]
 pub fn is_tight(size: egui::Vec2) -> bool {
     size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
 }
 
 /// The rows of a history of `events`, where so many points are left for it and for the ladder below it.
-#[must_use]
 pub fn rows(left: f32, events: usize, has_ladder: bool) -> Rows {
     let all = events.min(MOST_ROWS);
     let [wished, least] = if has_ladder { [LADDER, LEAST_LADDER] } else { [0.0; 2] };

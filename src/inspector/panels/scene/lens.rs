@@ -46,13 +46,11 @@ impl Projection {
     ];
 
     /// In the chooser.
-    #[must_use]
     pub fn name(self) -> &'static str {
         Projection::ALL.iter().find(|(one, ..)| *one == self).map_or("", |(_, name, _)| name)
     }
 
     /// Is depth drawn at an angle?
-    #[must_use]
     pub fn is_oblique(self) -> bool {
         matches!(self, Projection::Cavalier | Projection::Cabinet)
     }
@@ -93,20 +91,17 @@ impl PaneView {
     }
 
     /// View space from world directions.
-    #[must_use]
     pub fn rotation(&self) -> DMat3 {
         let pitch = self.pitch.clamp(-90.0, 90.0).to_radians();
         DMat3::from_rotation_x(pitch) * DMat3::from_rotation_y(-self.yaw.to_radians())
     }
 
     /// How far a perspective view's eye is from the middle, metres.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         self.height / 2.0 / (self.fov_y.to_radians() / 2.0).tan()
     }
 
     /// The view in a rectangle of the screen.
-    #[must_use]
     pub fn lens(&self, rect: Rect) -> Lens {
         let length = match self.projection {
             Projection::Cavalier => 1.0,
@@ -148,13 +143,11 @@ pub struct Lens {
 
 impl Lens {
     /// View space from world space.
-    #[must_use]
     pub fn view(&self, world: DVec3) -> DVec3 {
         self.rotation * (world - self.center)
     }
 
     /// Where it is looked from, world space; the direction towards the viewer, with `w = 0`, in parallel views.
-    #[must_use]
     pub fn viewer(&self) -> DVec4 {
         let world = self.rotation.transpose();
         match self.eye {
@@ -164,7 +157,6 @@ impl Lens {
     }
 
     /// What the GPU draws by: clip space, with reversed depth, of places relative to `origin`, all within `reach` of it.
-    #[must_use]
     pub fn on_gpu(&self, origin: DVec3, reach: f64) -> View {
         let view = DMat4::from_mat3(self.rotation) * DMat4::from_translation(origin - self.center);
         let [x, y] = (2.0 * self.scale / self.size).to_array();
@@ -192,13 +184,11 @@ impl Lens {
     }
 
     /// The largest z of view space that is drawn.
-    #[must_use]
     pub fn near(&self) -> f64 {
         self.eye.map_or(f64::INFINITY, |eye| eye * (1.0 - NEAR))
     }
 
     /// Where a point of view space is on the screen; it is not nearer than [`Lens::near`].
-    #[must_use]
     pub fn project(&self, view: DVec3) -> Pos2 {
         let at = match self.eye {
             Some(eye) => view.truncate() * (eye / (eye - view.z)),
@@ -208,14 +198,12 @@ impl Lens {
     }
 
     /// Where a point of the world is on the screen; `None` behind the eye.
-    #[must_use]
     pub fn place(&self, world: DVec3) -> Option<Pos2> {
         let view = self.view(world);
         (view.z <= self.near()).then(|| self.project(view))
     }
 
     /// Both ends of a line on the screen, cut where it goes behind the eye.
-    #[must_use]
     pub fn line(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {
         let [a, b] = ends.map(|end| self.view(end));
         let near = self.near();
@@ -230,7 +218,6 @@ impl Lens {
     }
 
     /// The move in the plane parallel to the view that carries a point `at` by so much on the screen.
-    #[must_use]
     pub fn moved(&self, at: DVec3, by: Vec2) -> DVec3 {
         let away = self.eye.map_or(1.0, |eye| ((eye - self.view(at).z) / eye).max(NEAR));
         let view = DVec3::new(f64::from(by.x), -f64::from(by.y), 0.0) / self.scale * away;
@@ -239,7 +226,6 @@ impl Lens {
 
     /// The move along `axis`, of unit length, that carries a point `at` by about so much on the screen; none
     /// where the axis is seen from its end.
-    #[must_use]
     pub fn moved_along(&self, at: DVec3, axis: DVec3, by: Vec2) -> DVec3 {
         let step = 8.0 / self.scale;
         let Some([from, to]) = self.line([at, at + axis * step]) else { return DVec3::ZERO };

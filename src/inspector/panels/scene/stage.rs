@@ -69,7 +69,6 @@ pub struct Stage {
 
 /// Which objects hold the others: rooms, walls, floors. They may be as large as they like, and must not
 /// hide what they hold.
-#[must_use]
 pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
     let size =
         |points: &mut dyn Iterator<Item = DVec3>| bounds(points).map_or(0.0, |(low, high)| (high - low).length());
@@ -81,7 +80,6 @@ pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
 }
 
 /// The middle and half of what there is to see: all objects but those that hold the others.
-#[must_use]
 pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
     let held = anatomy.objects.iter().zip(holders).filter(|(object, holds)| !**holds && is_seen(object));
     let camera = &anatomy.camera;
@@ -93,7 +91,6 @@ pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
 }
 
 /// What a view shows at first: all that there is to see, and of lamps and camera those that are near it.
-#[must_use]
 pub fn framed(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
     let (middle, radius) = sphere(anatomy, holders);
     let lamps = anatomy.lights.iter().filter(|light| light.position.w != 0.0);
@@ -119,7 +116,6 @@ fn is_seen(object: &PlacedObject) -> bool {
 
 impl Stage {
     /// Of `anatomy`, in the colours of `theme`.
-    #[must_use]
     pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
@@ -182,7 +178,6 @@ impl Stage {
     }
 
     /// What is drawn of one triangle of `light`'s volumes, or of no light's: corners of a polygon, world space.
-    #[must_use]
     pub fn polygon(&self, corners: [DVec4; 3], light: Option<&PlacedLight>) -> Vec<DVec3> {
         let ended = light.map_or(corners.map(|corner| corner - (self.middle * corner.w).extend(0.0)), |light| {
             corners.map(|corner| self.ended(corner, light))
@@ -432,7 +427,6 @@ impl Build<'_> {
 }
 
 /// A colour between two, `share` of the way to the second.
-#[must_use]
 pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
     from.lerp_to_gamma(to, share)
 }

@@ -54,14 +54,12 @@ pub struct Choice {
 impl Choice {
     /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
     /// where they are asked for by name.
-    #[must_use]
     pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
         let holds = holders.get(caster).is_some_and(|holds| *holds);
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
     }
 
     /// Is the frustum of a light's map shown, or of the silhouette of one caster in it?
-    #[must_use]
     pub fn has_frustum(self, light: usize, caster: Option<usize>) -> bool {
         let is_other = caster.is_some_and(|caster| self.caster.is_some_and(|one| one != caster));
         self.light.is_none_or(|one| one == light) && !is_other

@@ -31,7 +31,6 @@ impl Pane {
     pub const ALL: [Pane; 4] = [Pane::Top, Pane::Free, Pane::Front, Pane::Right];
 
     /// On buttons and in names of widgets.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Pane::Free => "Free",
