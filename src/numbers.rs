@@ -103,9 +103,13 @@ pub fn light(index: usize) -> String {
     format!("light {}", index + 1)
 }
 
-/// A count that is kept in a float, with its sign.
+/// A count that is kept in a float, with its sign; digits after the point only where it has some.
 pub fn count_in_float(value: f32) -> String {
-    if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
+    if value.fract() != 0.0 || !value.is_finite() {
+        return value.to_string().replace('-', "−");
+    }
+    let sign = if value < 0.0 { "−" } else { "" };
+    format!("{sign}{}", count(value.abs() as u64))
 }
 
 /// A stencil value as people read it: 255 is `−1 (255)`.
@@ -125,6 +129,14 @@ mod tests {
             assert_eq!(depth(value).parse(), Ok(value));
         }
         assert_eq!(depth(0.025), "0.025");
+    }
+
+    #[test]
+    fn counts_in_floats_have_a_sign_and_thousands() {
+        assert_eq!(count_in_float(0.0), "0");
+        assert_eq!(count_in_float(-1.0), "−1");
+        assert_eq!(count_in_float(1234.0), "1\u{2009}234");
+        assert_eq!(count_in_float(-0.5), "−0.5");
     }
 
     #[test]

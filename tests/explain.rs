@@ -126,8 +126,8 @@ fn the_lights_formula_is_the_one_in_use() {
 /// The Shadow map tab may show one light while the pixel is told of under another: its texel is no reason there.
 #[test]
 fn what_one_lights_map_stores_is_no_reason_under_another() {
+    use stencilscope::history::Verdict;
     use stencilscope::reading::map_readers::MapReaders;
-    use stencilscope::reading::verdict::{by_map, verdict};
     let mut session = session();
     let scene = Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
     let (capture, plan) = session.capture_with_plan(&scene, &request(Technique::ShadowMap, SIZE)).expect("a capture");
@@ -135,9 +135,9 @@ fn what_one_lights_map_stores_is_no_reason_under_another() {
     let mut told = 0;
     for at in (0..SIZE[1]).step_by(11).flat_map(|y| (0..SIZE[0]).step_by(13).map(move |x| [x, y])) {
         let Some(decision) = MapDecision::of(&capture, &readers, 0, at) else { continue };
-        let of_other = verdict(&capture, 1, at);
-        assert_eq!(by_map(of_other.clone(), &decision, 1), of_other);
-        told += usize::from(by_map(verdict(&capture, 0, at), &decision, 0).reason == decision.sentence());
+        let by_map = |light| Verdict::of(&capture, light, at).with_texels(decision.light, || decision.sentence());
+        assert_eq!(by_map(1), Verdict::of(&capture, 1, at));
+        told += usize::from(by_map(0).reason() == decision.sentence());
     }
     assert!(told > 20, "{told}");
 }

@@ -26,7 +26,7 @@ const MAY_USE: [(&str, &[&str]); 37] = [
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress", "files"]),
     ("wrap", &[]),
     ("gpu", &["math", "scene", "plan", "capture", "wrap"]),
-    ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
+    ("history", &["math", "numbers", "geometry", "plan", "technique", "capture", "stencil_machine", "truth"]),
     ("difference", &["capture", "accuracy", "numbers", "picture", "truth"]),
     (
         "diagnosis",

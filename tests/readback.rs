@@ -9,7 +9,7 @@ use stencilscope::glam;
 use stencilscope::scene::{Light, Scene, SceneBuilder};
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::{Choice, Technique};
-use stencilscope::testing::{Label, Rendered};
+use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -65,11 +65,11 @@ fn a_point_is_found_in_the_picture_and_its_shadow_is_that_of_geometry() {
     let mut frame = rendered(Technique::ZFail);
     // The box stands over x and z from −0.5 to 0.5; the second sun moves its shadow by its height, to −1 … −2.5.
     for (point, first, second) in [
-        ([0.0, 0.0, 0.45], Label::Shadow, Label::Lit),
-        ([0.7, 0.0, 0.0], Label::Lit, Label::Lit),
-        ([-1.5, 0.0, 0.0], Label::Lit, Label::Shadow),
-        ([-2.7, 0.0, 0.0], Label::Lit, Label::Lit),
-        ([0.0, 2.0, 0.0], Label::Lit, Label::Lit),
+        ([0.0, 0.0, 0.45], PixelLabel::Shadow, PixelLabel::Lit),
+        ([0.7, 0.0, 0.0], PixelLabel::Lit, PixelLabel::Lit),
+        ([-1.5, 0.0, 0.0], PixelLabel::Lit, PixelLabel::Shadow),
+        ([-2.7, 0.0, 0.0], PixelLabel::Lit, PixelLabel::Lit),
+        ([0.0, 2.0, 0.0], PixelLabel::Lit, PixelLabel::Lit),
     ] {
         frame.at_point(point).agrees().label(0, first).label(1, second);
     }

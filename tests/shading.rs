@@ -6,7 +6,7 @@ use stencilscope::reading::shading::Shaded;
 use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::{Light, Material, Object, Projection, Scene, SceneBuilder, Shading, shapes};
 use stencilscope::technique::{Choice, Technique};
-use stencilscope::testing::{Label, Rendered};
+use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -36,7 +36,7 @@ fn assert_terms_make_the_picture(frame: &mut Rendered, what: &str) {
         let Some(found) = shaded(frame, [x, y]) else { continue };
         let last = frame.capture().frame_at(frame.capture().steps.len() - 1).expect("a picture");
         let stored = last.color.image.rgba_at([x, y]).expect("a pixel");
-        let arriving = found.lights.iter().filter(|light| light.label == Some("lit"));
+        let arriving = found.lights.iter().filter(|light| light.label == Some(PixelLabel::Lit));
         let lights: Vec<[f64; 3]> = arriving.map(|light| light.adds).collect();
         for channel in 0..3 {
             let sum = found.unlit[channel] + lights.iter().map(|adds| adds[channel]).sum::<f64>();
@@ -130,7 +130,7 @@ fn a_light_at_45_degrees_has_the_cosine_of_45_degrees() {
     let light = &found.lights[0];
     near([light.cosine, light.diffuse, light.highlight], [FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0]);
     near(light.adds, [0.25 * FRAC_1_SQRT_2, 0.5 * FRAC_1_SQRT_2, 0.0]);
-    assert_eq!((light.label, light.fading, light.is_turned_away), (Some("lit"), 1.0, false));
+    assert_eq!((light.label, light.fading, light.is_turned_away), (Some(PixelLabel::Lit), 1.0, false));
     let line = "light 1: cosine N·L 0.7071; (0.5, 0.5, 0.5) × fading 1 × ((0.5, 1, 0) × diffuse 0.7071 + highlight 0) = \
                 (0.1768, 0.3536, 0); it arrives";
     assert!(found.text().contains(line), "{}", found.text());
@@ -144,7 +144,7 @@ fn pixel_tells_the_cosine_and_explains_each_key() {
         Technique::ZFail,
         &[("shading", "gouraud")],
     );
-    let [x, y] = frame.first_labelled(0, Label::Lit).expect("light");
+    let [x, y] = frame.first_labelled(0, PixelLabel::Lit).expect("light");
     let found = shaded(&mut frame, [x, y]).expect("a surface");
     let at = format!("{x},{y}");
     let arguments = ["pixel", "spheres", "-t", "z-fail", "--set", "shading=gouraud", "--size", "96x72", "--at", &at];

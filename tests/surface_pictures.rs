@@ -16,7 +16,7 @@ use stencilscope::scene::{
 };
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::{Choice, Technique};
-use stencilscope::testing::Rendered;
+use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -308,7 +308,7 @@ fn the_terms_of_a_pixel_with_a_picture_add_up_to_its_colour() {
                 // Where a level is many texels larger than a pixel is wide, how a GPU tells how wide shows.
                 blurred += u32::from(term.level > 0.0);
                 let stored = last_color(&frame, [x, y]);
-                let lit = found.lights.iter().filter(|light| light.label == Some("lit"));
+                let lit = found.lights.iter().filter(|light| light.label == Some(PixelLabel::Lit));
                 let lights: Vec<[f64; 3]> = lit.map(|light| light.adds).collect();
                 for channel in 0..3 {
                     let sum = found.unlit[channel] + lights.iter().map(|adds| adds[channel]).sum::<f64>();

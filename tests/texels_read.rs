@@ -8,7 +8,7 @@ use stencilscope::reading::texels_read::TexelReaders;
 use stencilscope::reading::texture_decision::TextureDecision;
 use stencilscope::scene::builtin::Builtin;
 use stencilscope::technique::{Choice, Technique};
-use stencilscope::testing::{Label, Rendered};
+use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -34,11 +34,11 @@ fn json(arguments: &[&str]) -> Value {
 fn pixel_names_the_texel_that_testing_reads_with_both_depths_bias_and_side() {
     for mapping in ["reversed-infinite", "standard-finite"] {
         let mut frame = rendered("table", Technique::ShadowMap, &[("depth", mapping)]);
-        for label in [Label::Shadow, Label::Lit] {
+        for label in [PixelLabel::Shadow, PixelLabel::Lit] {
             // Not the first: that one lies on an edge.
             let mask = frame.capture().lights[0].shadow.clone().expect("a mask");
             let all = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
-            let found: Vec<[u32; 2]> = all.filter(|at| mask.byte_at(*at) == Some(label.byte())).collect();
+            let found: Vec<[u32; 2]> = all.filter(|at| mask.byte_at(*at) == Some(label as u8)).collect();
             let [x, y] = found[found.len() / 2];
             let expected = frame.at([x, y]).map_texel(0).expect("the map shows it");
             let depth = format!("depth={mapping}");
@@ -59,7 +59,7 @@ fn pixel_names_the_texel_that_testing_reads_with_both_depths_bias_and_side() {
                 let metres = |key: &str| texel[key].as_f64().expect("metres");
                 assert!((metres("surface_metres") - metres("stored_metres") - gap).abs() < 1e-3, "{texel}, gap {gap}");
             }
-            let is_lit = label == Label::Lit;
+            let is_lit = label == PixelLabel::Lit;
             assert_eq!((texel["is_lit"].as_bool(), read["lit"].as_u64()), (Some(is_lit), Some(u64::from(is_lit))));
             let side = if mapping == "reversed-infinite" { "surface >= stored" } else { "surface <= stored" };
             assert_eq!(read["lit_where"], side);
@@ -118,9 +118,9 @@ fn what_textures_let_through_is_what_labels_say() {
                     let sum: f64 = layer.texels.iter().map(|texel| texel.share).sum();
                     assert!((sum - 1.0).abs() < 1e-9, "{layer:?}");
                 }
-                match mask.byte_at(pixel).and_then(Label::from_byte) {
-                    Some(Label::Lit) => labels[0] += 1,
-                    Some(Label::Shadow) => labels[1] += 1,
+                match mask.byte_at(pixel).and_then(PixelLabel::from_byte) {
+                    Some(PixelLabel::Lit) => labels[0] += 1,
+                    Some(PixelLabel::Shadow) => labels[1] += 1,
                     _ => continue,
                 }
                 off += u32::from(found.gpu_says.is_some());
@@ -136,8 +136,8 @@ fn what_textures_let_through_is_what_labels_say() {
 fn of_a_texture_pixel_lists_texels_with_their_weights_and_explains_each_key() {
     for (technique, kind) in [("planar-texture", "receiver-texture"), ("projective", "silhouettes")] {
         let mut frame = rendered("table", Technique::from_name(technique).expect("a technique"), &[]);
-        let [x, y] = frame.first_labelled(0, Label::Shadow).expect("a shadow");
-        frame.at([x, y]).label(0, Label::Shadow);
+        let [x, y] = frame.first_labelled(0, PixelLabel::Shadow).expect("a shadow");
+        frame.at([x, y]).label(0, PixelLabel::Shadow);
         let at = format!("{x},{y}");
         let document = json(&["table", "-t", technique, "--at", &at]);
         crate::help::assert_json_is_explained("pixel", &document);

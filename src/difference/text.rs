@@ -5,7 +5,7 @@ use super::{
     Texel, TexelDifference,
 };
 use crate::numbers;
-use crate::truth::LABEL_NAMES;
+use crate::truth::PixelLabel;
 
 impl Difference {
     /// What differs, for people: passes and lights count from 1, pixels from 0 as in `pixel --at`.
@@ -159,7 +159,7 @@ fn texel(aspect: AspectKind, TexelDifference { at, values, by }: &TexelDifferenc
 fn value_text(aspect: AspectKind, value: Texel) -> String {
     match (aspect, value) {
         (AspectKind::Labels | AspectKind::Truth, Texel::Byte(label)) => {
-            LABEL_NAMES.get(usize::from(label)).map_or_else(|| format!("label {label}"), |name| (*name).to_owned())
+            PixelLabel::from_byte(label).map_or_else(|| format!("label {label}"), |label| label.name().to_owned())
         }
         (AspectKind::Findings, Texel::Byte(byte)) => match crate::accuracy::Finding::from_byte(byte) {
             Some(finding) => finding.name().replace('_', " "),

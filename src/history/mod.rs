@@ -19,6 +19,7 @@ mod json;
 mod ladder;
 mod replay;
 mod story;
+mod verdict;
 mod why;
 
 pub use check::Disagreement;
@@ -27,6 +28,7 @@ pub use ladder::{Ladder, Rung};
 #[cfg(feature = "program")]
 pub(crate) use replay::{asks, count_of, counts_in, target_of};
 pub use story::operation_name;
+pub use verdict::{Evidence, TestedCount, Verdict, reason};
 pub use why::{Count, Counted, Faces, Flattened, LightPass, Why};
 
 use crate::capture::{Capture, FrameTarget, Snapshot};

@@ -11,7 +11,7 @@ use crate::math::depth::DepthCurve;
 use crate::picture::colors;
 use crate::plan::{Attachment, AttachmentRole, CountOf, DecidedBy, FramePlan, LeftOut};
 use crate::reading::depth::DepthMeasure;
-use crate::reading::{layers, steps, verdict};
+use crate::reading::{layers, steps};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -208,7 +208,7 @@ fn light_entry(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &
         decided_by: of.decided_by,
         counts: of.count_of.map(CountOf::what),
         bits: history::counts_in(plan).get(light).copied().flatten().map(|bits| bits.modulus().unsigned_abs().ilog2()),
-        reasons: [false, true].map(|is_dark| verdict::reason(of.decided_by, is_dark)),
+        reasons: [false, true].map(|is_dark| history::reason(of.decided_by, is_dark)),
         faces: faces.collect(),
         mask: of.shadow.as_ref().map(|labels| image(labels, arrays)),
         count: of.count.as_ref().map(|count| image(count, arrays)),

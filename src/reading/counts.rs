@@ -1,27 +1,15 @@
 //! Counts of shadow volumes that are kept in floats: signed, and without eight bits' limits.
 
 use crate::capture::{Capture, FrameTarget, Image, Snapshot};
-use crate::reading::format;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// How many texels have each count, rounded.
 pub type Tally = BTreeMap<i64, u64>;
 
-pub use crate::numbers::reads_zero_in_eight_bits;
-
 /// What eight bits would hold of it.
 pub fn in_eight_bits(count: f32) -> u8 {
     (count.round() as i64).rem_euclid(256) as u8
-}
-
-/// A count with its sign; digits after the point only where it has some.
-pub fn text(count: f32) -> String {
-    if count.fract() != 0.0 || !count.is_finite() {
-        return count.to_string().replace('-', "−");
-    }
-    let sign = if count < 0.0 { "−" } else { "" };
-    format!("{sign}{}", format::count(count.abs() as u64))
 }
 
 /// How many texels have each count.
@@ -62,14 +50,7 @@ pub fn known_after(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn counts_have_a_sign_and_thousands() {
-        assert_eq!(text(0.0), "0");
-        assert_eq!(text(-1.0), "−1");
-        assert_eq!(text(1234.0), "1\u{2009}234");
-        assert_eq!(text(-0.5), "−0.5");
-    }
+    use crate::numbers::reads_zero_in_eight_bits;
 
     #[test]
     fn what_eight_bits_take_for_zero_stands_out() {

@@ -5,6 +5,7 @@
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{Event, EventKind, PixelHistory};
+use crate::numbers;
 use crate::plan::{CountBits, DecidedBy, Decision, LeftOut, Part, Side};
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
@@ -12,7 +13,7 @@ use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
 use crate::scene::Light;
 use crate::technique::{CountsBy, VolumeSettings};
-use crate::truth::{LABEL_NAMES, LIT, SHADOW};
+use crate::truth::{LIT, PixelLabel, SHADOW};
 use std::collections::BTreeSet;
 
 /// A rule, and what it comes to here.
@@ -200,7 +201,7 @@ fn counted(known: &Known, light: Option<usize>) -> Vec<String> {
         let all: u64 = tally.values().sum();
         let most = tally.keys().next_back().copied().unwrap_or(0);
         let marked = all - tally.get(&0).copied().unwrap_or(0);
-        return vec![told(marked, all), format!("the highest count is {}", counts::text(most as f32))];
+        return vec![told(marked, all), format!("the highest count is {}", numbers::count_in_float(most as f32))];
     }
     let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) else {
         return Vec::new();
@@ -355,7 +356,8 @@ fn labels(known: &Known, step: &Step) -> Fact {
     if let Some(light) = known.capture.lights.get(index) {
         if let Some(shadow) = &light.shadow {
             let counts = shadow.histogram();
-            let told = LABEL_NAMES.iter().zip(counts).map(|(word, count)| format!("{} {word}", format::count(count)));
+            let told = PixelLabel::ALL.into_iter().zip(counts);
+            let told = told.map(|(label, count)| format!("{} {}", format::count(count), label.name()));
             here.push(told.collect::<Vec<_>>().join(", "));
         }
         match &light.truth {

@@ -38,7 +38,6 @@ pub mod shown;
 pub mod steps;
 pub mod texels_read;
 pub mod texture_decision;
-pub mod verdict;
 pub mod written;
 
 pub use map_readers::{MapReaders, MapTexel};

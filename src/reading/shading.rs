@@ -8,7 +8,7 @@ use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
 use crate::reading::fragments::Surface;
 use crate::reading::pick_ray::sight_at;
 use crate::scene::Shading;
-use crate::truth::{FACES_AWAY, LABEL_NAMES};
+use crate::truth::PixelLabel;
 use glam::{DVec2, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
@@ -78,7 +78,7 @@ pub struct LightTerms {
     /// Linear RGB that it adds where it arrives.
     pub adds: [f64; 3],
     /// What the technique says: `lit`, `in shadow`, `faces away`; `None`: it has no mask.
-    pub label: Option<&'static str>,
+    pub label: Option<PixelLabel>,
 }
 
 /// A place of a surface, relative to the eye, with its unit normal.
@@ -158,7 +158,7 @@ impl Shaded {
                 highlight: found.highlight,
                 fading: found.fading,
                 adds,
-                label: label.and_then(|label| LABEL_NAMES.get(usize::from(label)).copied()),
+                label: label.and_then(PixelLabel::from_byte),
             }
         };
         Some(Shaded {
@@ -211,7 +211,7 @@ impl LightTerms {
             format!(" (at the corners, where light is computed and then mixed: {})", three(cosines))
         });
         let cosine = format!("cosine N·L {}{cosines}", digits(self.cosine));
-        if self.label == Some(LABEL_NAMES[usize::from(FACES_AWAY)]) && self.adds == [0.0; 3] {
+        if self.label == Some(PixelLabel::FacesAway) && self.adds == [0.0; 3] {
             return format!("{cosine}: it adds nothing, as the surface faces away or is out of its range");
         }
         let sum = format!(
@@ -227,9 +227,9 @@ impl LightTerms {
             return format!("{cosine}; it sends out nothing: it is off, or black");
         }
         let arrives = match self.label {
-            Some("lit") => "it arrives",
-            Some("in shadow") => "it would be added, but this is in shadow",
-            Some("faces away") => "the surface faces away from it",
+            Some(PixelLabel::Lit) => "it arrives",
+            Some(PixelLabel::Shadow) => "it would be added, but this is in shadow",
+            Some(PixelLabel::FacesAway) => "the surface faces away from it",
             _ => "nobody says whether it arrives",
         };
         format!("{cosine}; {sum}; {arrives}")

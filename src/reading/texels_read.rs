@@ -3,13 +3,13 @@
 //! a contract with scripts.
 
 use crate::capture::Capture;
+use crate::history::Verdict;
 use crate::numbers;
 use crate::plan::{DecidedBy, FramePlan};
 use crate::reading::fragments::Fragments;
 use crate::reading::map_decision::{Compared, MapDecision};
 use crate::reading::map_readers::MapReaders;
 use crate::reading::texture_decision::{LayerRead, TextureDecision};
-use crate::reading::verdict::{by_map, verdict};
 use crate::technique::MapSettings;
 use serde::Serialize;
 use std::fmt::Write;
@@ -167,7 +167,7 @@ impl DepthsCompared {
         };
         let settings = MapSettings::read(&capture.settings);
         DepthsCompared {
-            because: by_map(verdict(capture, light, pixel), decision, light).reason,
+            because: Verdict::of(capture, light, pixel).with_texels(decision.light, || decision.sentence()).reason(),
             face: decision.middle.texel.face,
             texels: decision.compared.iter().map(texel).collect(),
             lit: decision.lit(),
@@ -226,7 +226,7 @@ impl LightLetThrough {
             lets_through: one.lets_through,
         };
         LightLetThrough {
-            because: verdict(capture, decision.light, pixel).reason,
+            because: Verdict::of(capture, decision.light, pixel).reason(),
             layers: decision.layers.iter().map(layer).collect(),
             lets_through: decision.lets_through,
             gpu_says: decision.gpu_says,

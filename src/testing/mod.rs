@@ -8,7 +8,7 @@
 //! ```
 //! use stencilscope::scene::builtin::Builtin;
 //! use stencilscope::technique::{Choice, Technique};
-//! use stencilscope::testing::{Label, Rendered};
+//! use stencilscope::testing::{PixelLabel, Rendered};
 //!
 //! let scene = Builtin::named("tetrahedron").expect("a name").scene()?;
 //! let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [320, 240])?;
@@ -17,8 +17,8 @@
 //! frame.at([160, 120]).stencil_after("volumes", 0).distance(3.395, 0.01);
 //!
 //! // Inside its shadow: the side it is entered through, then the far end.
-//! let shadowed = frame.first_labelled(0, Label::Shadow).expect("a shadow");
-//! frame.at(shadowed).label(0, Label::Shadow).agrees();
+//! let shadowed = frame.first_labelled(0, PixelLabel::Shadow).expect("a shadow");
+//! frame.at(shadowed).label(0, PixelLabel::Shadow).agrees();
 //! assert!(frame.at(shadowed).history().events.iter().any(|event| event.is_of_volume()));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -33,6 +33,7 @@
 mod pixel;
 mod places;
 
+pub use crate::truth::PixelLabel;
 pub use pixel::Pixel;
 pub use places::MapTexel;
 
@@ -41,39 +42,8 @@ use crate::plan::FramePlan;
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session, SessionError};
 use crate::technique::Choice;
-use crate::truth;
 use glam::{DVec2, DVec3};
 use places::View;
-
-/// What a technique says of a light at a pixel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Label {
-    /// The light reaches the surface.
-    Lit,
-    /// Something lies between.
-    Shadow,
-    /// No surface is here.
-    Background,
-    /// The light is on the surface's other side, or its range ends before it.
-    FacesAway,
-}
-
-impl Label {
-    /// As stored in masks.
-    pub fn byte(self) -> u8 {
-        match self {
-            Label::Lit => truth::LIT,
-            Label::Shadow => truth::SHADOW,
-            Label::Background => truth::BACKGROUND,
-            Label::FacesAway => truth::FACES_AWAY,
-        }
-    }
-
-    /// The label that is stored so.
-    pub fn from_byte(byte: u8) -> Option<Label> {
-        [Label::Lit, Label::Shadow, Label::Background, Label::FacesAway].into_iter().find(|label| label.byte() == byte)
-    }
-}
 
 /// A rendered scene, to be asked about its pixels.
 #[derive(Debug)]
@@ -102,7 +72,7 @@ impl Rendered {
     /// use stencilscope::scene::builtin::Builtin;
     /// use stencilscope::session::{CaptureRequest, Session};
     /// use stencilscope::technique::{Choice, Technique};
-    /// use stencilscope::testing::{Label, Rendered};
+    /// use stencilscope::testing::{PixelLabel, Rendered};
     ///
     /// let scene = Builtin::named("tetrahedron").expect("a name").scene()?;
     /// let request = CaptureRequest::new(Choice::new(Technique::ZFail), [320, 240]);
@@ -112,10 +82,10 @@ impl Rendered {
     /// // Without light caps the volume is open, and the tetrahedron itself is in shadow.
     /// plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::LightCap));
     /// let mut broken = Rendered::of_plan(session, &scene, plan)?;
-    /// broken.at([160, 120]).label(0, Label::Shadow).agrees();
+    /// broken.at([160, 120]).label(0, PixelLabel::Shadow).agrees();
     ///
     /// let mut whole = Rendered::on(broken.into_session(), &scene, &request)?;
-    /// whole.at([160, 120]).label(0, Label::Lit).agrees();
+    /// whole.at([160, 120]).label(0, PixelLabel::Lit).agrees();
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn of_plan(mut session: Session, scene: &Scene, plan: FramePlan) -> Result<Rendered, SessionError> {
@@ -171,7 +141,7 @@ impl Rendered {
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
     /// use stencilscope::technique::{Choice, Technique};
-    /// use stencilscope::testing::{Label, Rendered};
+    /// use stencilscope::testing::{PixelLabel, Rendered};
     ///
     /// let scene = SceneBuilder::new("a board over a floor")
     ///     .object(Object::of("floor", shapes::quad([8.0; 2])?))
@@ -181,8 +151,8 @@ impl Rendered {
     ///     .build();
     /// let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [65, 65])?;
     /// // Under the board, and beside it.
-    /// frame.at_point([0.3, 0.0, 0.3]).label(0, Label::Shadow);
-    /// frame.at_point([0.7, 0.0, 0.3]).label(0, Label::Lit);
+    /// frame.at_point([0.3, 0.0, 0.3]).label(0, PixelLabel::Shadow);
+    /// frame.at_point([0.7, 0.0, 0.3]).label(0, PixelLabel::Lit);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -224,10 +194,10 @@ impl Rendered {
     }
 
     /// The first pixel, row by row, that has a label under a light.
-    pub fn first_labelled(&self, light: usize, label: Label) -> Option<[u32; 2]> {
+    pub fn first_labelled(&self, light: usize, label: PixelLabel) -> Option<[u32; 2]> {
         let labels = self.capture.lights.get(light)?.shadow.as_ref()?;
         let find = |(y, row): (u32, &[u8])| {
-            let x = row.iter().position(|byte| *byte == label.byte())?;
+            let x = row.iter().position(|byte| *byte == label as u8)?;
             Some([x as u32, y])
         };
         (0..).zip(labels.rows()).find_map(find)

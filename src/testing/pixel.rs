@@ -1,6 +1,6 @@
 //! Assertions on a pixel.
 
-use super::Label;
+use super::PixelLabel;
 use super::places::{MapTexel, View, texel_of};
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{Event, PixelHistory};
@@ -83,7 +83,7 @@ impl Pixel<'_> {
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
     /// use stencilscope::technique::{Choice, Technique};
-    /// use stencilscope::testing::{Label, Rendered};
+    /// use stencilscope::testing::{PixelLabel, Rendered};
     ///
     /// // 256 boards in a pile: eight bits would read their count as none.
     /// let board = shapes::quad([1.0; 2])?;
@@ -99,7 +99,7 @@ impl Pixel<'_> {
     /// let mut choice = Choice::new(Technique::ZFail);
     /// choice.set("counter", "float")?;
     /// let mut frame = Rendered::new(&scene, choice, [65, 65])?;
-    /// frame.at([32, 32]).count(0, 256.0).label(0, Label::Shadow);
+    /// frame.at([32, 32]).count(0, 256.0).label(0, PixelLabel::Shadow);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -158,7 +158,7 @@ impl Pixel<'_> {
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
     /// use stencilscope::technique::{Choice, Technique};
-    /// use stencilscope::testing::{Label, Rendered};
+    /// use stencilscope::testing::{PixelLabel, Rendered};
     ///
     /// let scene = SceneBuilder::new("a board over a floor")
     ///     .object(Object::of("floor", shapes::quad([8.0; 2])?))
@@ -168,7 +168,7 @@ impl Pixel<'_> {
     ///     .build();
     /// let mut frame = Rendered::new(&scene, Choice::new(Technique::ShadowMap), [65, 65])?;
     /// let below = frame.at([32, 32]);
-    /// let texel = below.label(0, Label::Shadow).map_texel(0).expect("the map shows it");
+    /// let texel = below.label(0, PixelLabel::Shadow).map_texel(0).expect("the map shows it");
     /// // Depth is reversed: the board is nearer to the light than the floor below it.
     /// assert!(f64::from(texel.stored) > texel.surface);
     /// below.map_depth(0, texel.stored);
@@ -268,9 +268,9 @@ impl Pixel<'_> {
     /// # Panics
     /// If it says something else, or the scene has no such light.
     #[track_caller]
-    pub fn label(&self, light: usize, expected: Label) -> &Self {
+    pub fn label(&self, light: usize, expected: PixelLabel) -> &Self {
         let mask = self.capture.lights.get(light).and_then(|light| light.shadow.as_ref());
-        let found = mask.and_then(|mask| mask.byte_at(self.history.pixel)).and_then(Label::from_byte);
+        let found = mask.and_then(|mask| mask.byte_at(self.history.pixel)).and_then(PixelLabel::from_byte);
         if found != Some(expected) {
             let found = found.map_or_else(|| "unknown".to_owned(), |label| format!("{label:?}"));
             self.fail(&format!("{} is labelled {found}, not {expected:?}", numbers::light(light)));

@@ -4,7 +4,8 @@
 //! is for people, and for telling causes apart.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Settled};
+use super::packet::Bundle;
+use super::pencil::Settled;
 use super::shadow::Occluder;
 use super::{Place, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};

@@ -1,7 +1,7 @@
 //! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
 
 use super::chart::Chart;
-use super::pencil::Bundle;
+use super::packet::Bundle;
 use super::tree::Area;
 use glam::{DVec3, Vec3A, Vec4};
 

@@ -18,6 +18,7 @@
 mod ask;
 mod chart;
 mod coarse;
+mod packet;
 mod pencil;
 mod shadow;
 #[cfg(test)]
@@ -34,24 +35,44 @@ use crate::progress::Progress;
 use crate::scene::{Scene, Sight};
 use chart::Line;
 use glam::DVec3;
-use pencil::{Bundle, Pencil, Plane, Settled, Whose, point_rounding};
+use packet::Bundle;
+use pencil::{Pencil, Plane, Settled, Whose, point_rounding};
 use rayon::prelude::*;
 use shadow::LightPencil;
 use tree::set_bits;
 use view::View;
 use world::World;
 
-/// The light reaches the surface.
-pub const LIT: u8 = 0;
-/// Something lies between the light and the surface.
-pub const SHADOW: u8 = 1;
-/// No surface at this pixel.
-pub const BACKGROUND: u8 = 2;
-/// The light adds nothing: it and the eye are on different sides of the surface's plane, or the point is
-/// not within the light's range.
-pub const FACES_AWAY: u8 = 3;
-/// The labels in words, by value.
-pub const LABEL_NAMES: [&str; 4] = ["lit", "in shadow", "background", "faces away"];
+named_enum! {
+    /// What becomes of a light at a pixel; masks store its number as a byte.
+    pub enum PixelLabel {
+        /// The light reaches the surface.
+        Lit = "lit",
+        /// Something lies between the light and the surface.
+        Shadow = "in shadow",
+        /// No surface is at this pixel.
+        Background = "background",
+        /// The light adds nothing: it and the eye are on different sides of the surface's plane, or the point is not
+        /// within the light's range.
+        FacesAway = "faces away",
+    }
+}
+
+impl PixelLabel {
+    /// The label that masks store as this byte.
+    pub fn from_byte(byte: u8) -> Option<PixelLabel> {
+        PixelLabel::ALL.get(usize::from(byte)).copied()
+    }
+}
+
+/// [`PixelLabel::Lit`] as masks store it.
+pub const LIT: u8 = PixelLabel::Lit as u8;
+/// [`PixelLabel::Shadow`] as masks store it.
+pub const SHADOW: u8 = PixelLabel::Shadow as u8;
+/// [`PixelLabel::Background`] as masks store it.
+pub const BACKGROUND: u8 = PixelLabel::Background as u8;
+/// [`PixelLabel::FacesAway`] as masks store it.
+pub const FACES_AWAY: u8 = PixelLabel::FacesAway as u8;
 
 /// Pixels along each side of the tiles whose rays are followed together.
 const TILE: usize = 4;

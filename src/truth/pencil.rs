@@ -10,6 +10,7 @@
 
 use super::chart::{Chart, Line, NEAREST};
 use super::coarse::{Core, Four};
+use super::packet::Bundle;
 use super::tree::{Area, Tree, set_bits};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
 use glam::{DVec3, DVec4};
@@ -91,55 +92,6 @@ impl std::fmt::Debug for Pencil {
     }
 }
 
-/// Up to [`Bundle::MOST`] lines of a kind that are near each other.
-#[derive(Debug)]
-pub struct Bundle {
-    kind: fn(DVec3) -> Line,
-    points: [DVec3; Bundle::MOST],
-    len: usize,
-}
-
-impl Bundle {
-    /// Larger ones meet more triangles that most of their lines miss.
-    pub const MOST: usize = 16;
-
-    /// Of lines that `kind` makes of points.
-    pub fn new(kind: fn(DVec3) -> Line) -> Bundle {
-        Bundle { kind, points: [DVec3::ZERO; Bundle::MOST], len: 0 }
-    }
-
-    pub fn push(&mut self, point: DVec3) {
-        self.points[self.len] = point;
-        self.len += 1;
-    }
-
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    pub fn points(&self) -> &[DVec3] {
-        &self.points[..self.len]
-    }
-
-    fn line(&self, index: usize) -> Line {
-        (self.kind)(self.points[index])
-    }
-
-    pub fn lines(&self) -> impl Iterator<Item = Line> + Clone {
-        self.points().iter().map(|point| (self.kind)(*point))
-    }
-
-    /// What its points are relative to where a pencil's places are relative to `origin`.
-    pub fn base(&self, origin: DVec3) -> DVec3 {
-        if matches!((self.kind)(DVec3::ZERO), Line::Along(_)) { DVec3::ZERO } else { origin }
-    }
-
-    /// Do its lines go on without end?
-    pub fn is_endless(&self) -> bool {
-        !matches!((self.kind)(DVec3::ZERO), Line::To(_))
-    }
-}
-
 impl Pencil {
     /// The lines through a homogeneous centre and what they meet of `triangles`: those that
     /// `takes_part` says so of. A triangle edge-on to the centre is met by none.
@@ -188,7 +140,7 @@ impl Pencil {
     /// its end. `meets` says what need not be looked for any more.
     pub fn for_each_meeting(&self, bundle: &Bundle, mut meets: impl FnMut(&Met, &[DVec3; 3], u32) -> Settled) {
         let core = Core::new(&self.chart, bundle);
-        let mut left = (1_u32 << bundle.len) - 1;
+        let mut left = (1_u32 << bundle.len()) - 1;
         let mut follow = |area: &Area| {
             self.tree.for_each_meeting(*area, |index, found, depth| {
                 let four = &self.fours[index];

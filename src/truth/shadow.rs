@@ -1,7 +1,8 @@
 //! Whether anything lies between a light and surfaces.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Met, Pencil, Plane, PlaneRounding, Settled, point_rounding};
+use super::packet::Bundle;
+use super::pencil::{Met, Pencil, Plane, PlaneRounding, Settled, point_rounding};
 use super::tree::set_bits;
 use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};

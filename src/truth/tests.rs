@@ -1,7 +1,8 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Pencil, Settled, Whose, side_of};
+use super::packet::Bundle;
+use super::pencil::{Pencil, Settled, Whose, side_of};
 use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};

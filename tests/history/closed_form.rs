@@ -8,7 +8,7 @@ use stencilscope::plan::{Coverage, Part};
 use stencilscope::scene::{Light, Scene};
 use stencilscope::session::{CaptureRequest, SessionError};
 use stencilscope::technique::Technique;
-use stencilscope::testing::{Label, Rendered};
+use stencilscope::testing::{PixelLabel, Rendered};
 
 /// A little off the axis: no edge of a box or of the floor is there.
 const INSIDE: [u32; 2] = [103, 95];
@@ -25,7 +25,7 @@ fn rendered(technique: Technique, settings: &[(&str, &str)]) -> Rendered {
 fn three_nested_boxes_count_three() {
     for technique in [Technique::ZFail, Technique::ZPass, Technique::ZPassPlus] {
         let mut frame = rendered(technique, &[]);
-        frame.at(INSIDE).label(0, Label::Shadow).agrees().stencil_after("volumes", 3);
+        frame.at(INSIDE).label(0, PixelLabel::Shadow).agrees().stencil_after("volumes", 3);
     }
     rendered(Technique::ZFail, &[]).at(INSIDE).events_of(
         "volumes",
@@ -49,7 +49,7 @@ const ALL: (&str, &str) = ("casters", "all");
 fn three_nested_boxes_by_z_fail() {
     let mut frame = rendered(Technique::ZFail, &[ALL]);
     let pixel = frame.at(INSIDE);
-    pixel.label(0, Label::Shadow).agrees().distance(10.0, 1e-6).events(&[
+    pixel.label(0, PixelLabel::Shadow).agrees().distance(10.0, 1e-6).events(&[
         "ambient: clear depth",
         "ambient: clear stencil",
         "ambient: floor, front, passes, stores depth",
@@ -74,7 +74,7 @@ fn three_nested_boxes_by_z_fail() {
     let expected =
         "6 volume faces behind the surface fail the depth test: 6 back, 0 front; count 6, so the light pass skips it";
     assert_eq!(why, expected);
-    frame.at(OUTSIDE).label(0, Label::Lit).agrees().events(&[
+    frame.at(OUTSIDE).label(0, PixelLabel::Lit).agrees().events(&[
         "ambient: clear depth",
         "ambient: clear stencil",
         "ambient: floor, front, passes, stores depth",
@@ -88,7 +88,7 @@ fn three_nested_boxes_by_z_fail() {
 #[test]
 fn three_nested_boxes_by_z_pass() {
     let mut frame = rendered(Technique::ZPass, &[ALL]);
-    frame.at(INSIDE).agrees().label(0, Label::Shadow).events_of(
+    frame.at(INSIDE).agrees().label(0, PixelLabel::Shadow).events_of(
         "volumes",
         &[
             "volumes: light cap of outer, front, passes, stencil 0 to 1",
@@ -106,7 +106,7 @@ fn three_nested_boxes_by_z_pass() {
 fn three_nested_boxes_in_a_float() {
     let mut frame = rendered(Technique::ZFail, &[("counter", "float"), ALL]);
     let pixel = frame.at(INSIDE);
-    pixel.agrees().label(0, Label::Shadow);
+    pixel.agrees().label(0, PixelLabel::Shadow);
     let events: Vec<String> = pixel.history().events.iter().map(|event| pixel.history().brief(event)).collect();
     assert!(events.contains(&"volumes: clear count".to_owned()), "{events:?}");
     assert!(events.contains(&"volumes: dark cap of inner, back, passes, count 5 to 6".to_owned()), "{events:?}");
@@ -144,7 +144,7 @@ fn z_pass_plus_begins_with_the_count_of_the_near_plane() {
     let mut frame = Rendered::on(session(), &scene, &request).expect("a frame");
     let curve = frame.capture().depth;
     let pixel = frame.at(INSIDE);
-    pixel.agrees().label(0, Label::Shadow).stencil_after("near plane", 3).stencil_after("volumes", 6);
+    pixel.agrees().label(0, PixelLabel::Shadow).stencil_after("near plane", 3).stencil_after("volumes", 6);
     let ladder = pixel.history().ladder(0, &curve).expect("volumes");
     assert_eq!((ladder.start, ladder.count), (3, 6));
     let why = pixel.history().why(0).expect("volumes").to_string();
@@ -165,7 +165,7 @@ fn a_flattened_box_raises_its_receivers_mark_once() {
     let request = CaptureRequest::new(choice(Technique::Planar, &[]), SIZE);
     let mut frame = Rendered::on(session(), &scene, &request).expect("a frame");
     let pixel = frame.at(INSIDE);
-    pixel.agrees().label(0, Label::Shadow).stencil_after("receivers", 2).stencil_after("shadows", 3);
+    pixel.agrees().label(0, PixelLabel::Shadow).stencil_after("receivers", 2).stencil_after("shadows", 3);
     let shadows = pixel.history().triangles().filter(|(_, one)| one.part == Part::PlanarShadow);
     let raised: Vec<i32> = shadows.map(|(event, _)| event.counted()).collect();
     assert_eq!(raised, [1, 0], "the second triangle fails the stencil test");
@@ -306,5 +306,5 @@ fn a_failed_assertion_tells_what_was_found() {
 #[test]
 #[should_panic(expected = "dark cap of inner, triangle")]
 fn a_failed_assertion_tells_the_history() {
-    rendered(Technique::ZFail, &[]).at(INSIDE).label(0, Label::Lit);
+    rendered(Technique::ZFail, &[]).at(INSIDE).label(0, PixelLabel::Lit);
 }

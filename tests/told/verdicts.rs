@@ -1,14 +1,16 @@
-//! The sentence about the picked pixel, without its history, with it, and with its map: held against labels, counts and
-//! the color that the light pass left.
+//! The verdict about the picked pixel, without its history, with it, and with its map: its facts held against labels,
+//! counts and the color that the light pass left. How facts are worded, the tests of `history/verdict.rs` hold.
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::{gaps, mask_of, number};
+use super::patterns::{gaps, number};
 use stencilscope::capture::FrameTarget;
-use stencilscope::history::{EventKind, PixelHistory};
-use stencilscope::plan::{DecidedBy, Part, Program};
+use stencilscope::history::{
+    Count, Counted, EventKind, Evidence, Flattened, LightPass, PixelHistory, TestedCount, Verdict, Why,
+};
+use stencilscope::plan::{CountBits, DecidedBy, Part, Program, Side};
 use stencilscope::reading::map_decision::MapDecision;
-use stencilscope::reading::verdict::{Verdict, by_map, explained, verdict};
+use stencilscope::truth::PixelLabel;
 
 struct Here<'a> {
     frame: &'a Frame,
@@ -16,8 +18,6 @@ struct Here<'a> {
     at: [u32; 2],
     history: &'a PixelHistory,
 }
-
-type Check = fn(&Here, &[&str]) -> bool;
 
 impl Here<'_> {
     fn label(&self) -> Option<u8> {
@@ -50,9 +50,12 @@ impl Here<'_> {
         self.frame.plan.passes.iter().rposition(is_one).expect("a pass that counts")
     }
 
-    fn is_count(&self, told: &str) -> bool {
-        let told = told.split(" (").next().unwrap_or_default();
-        number(told) == self.signed() || number(told) == self.count()
+    fn is_count(&self, count: Count) -> bool {
+        let count = match count {
+            Count::Stencil(count) => f64::from(count),
+            Count::Float(count) => f64::from(count),
+        };
+        count == self.signed() || count == self.count()
     }
 
     /// Faces that counted, of the outside and of the inside of their volume.
@@ -69,7 +72,7 @@ impl Here<'_> {
     }
 
     /// Do the faces that count lie where they are said to, as their depths and the surface's have it?
-    fn lie(&self, told: &str) -> bool {
+    fn lie(&self, side: Side, on_surface: u32) -> bool {
         let is_nearer =
             |depth: f32, of: f32| if self.frame.plan.depth.mapping.is_reversed() { depth > of } else { depth < of };
         let all = self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_from_camera);
@@ -77,11 +80,11 @@ impl Here<'_> {
             let one = event.triangle()?;
             Some((is_nearer(one.depth, event.before.depth), one.depth == event.before.depth))
         });
-        match told {
-            _ if told.ends_with(" on or behind") => counted.all(|(nearer, _)| !nearer),
-            _ if told.ends_with(" behind") => counted.all(|(nearer, on)| !nearer && !on),
-            _ if told.ends_with(" in front of") => counted.all(|(nearer, _)| nearer),
-            _ => told.ends_with(" on either side of") && self.says_side("on either side of"),
+        match side {
+            Side::Behind if on_surface > 0 => counted.all(|(nearer, _)| !nearer),
+            Side::Behind => counted.all(|(nearer, on)| !nearer && !on),
+            Side::InFront => counted.all(|(nearer, _)| nearer),
+            Side::AsNeeded => self.is_side(Side::AsNeeded),
         }
     }
 
@@ -91,7 +94,7 @@ impl Here<'_> {
         let starts_at_eye = self.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
         let is_point = self.frame.capture.lights[self.light].position.w != 0.0;
         let is_parallel = self.frame.capture.camera.is_parallel();
-        starts_at_eye || (is_parallel && is_point && !self.says_side("in front of"))
+        starts_at_eye || (is_parallel && is_point && !self.is_side(Side::InFront))
     }
 
     /// How often faces turned its bit over.
@@ -106,8 +109,8 @@ impl Here<'_> {
         events.map(|event| f64::from(event.counted())).sum()
     }
 
-    fn says_side(&self, told: &str) -> bool {
-        self.decided_by().counted_side().is_some_and(|side| side.preposition() == told)
+    fn is_side(&self, side: Side) -> bool {
+        self.decided_by().counted_side() == Some(side)
     }
 
     /// What the light pass did to the picture here.
@@ -125,327 +128,214 @@ fn is_lighting(pass: &stencilscope::plan::Pass) -> bool {
     pass.draws.iter().any(|draw| matches!(draw.program, Program::Light(_))) || pass.name == "light"
 }
 
-const fn is(label: u8) -> Option<u8> {
-    Some(label)
-}
+impl Here<'_> {
+    fn is_label(&self, label: Option<PixelLabel>) -> bool {
+        let clear = if self.frame.plan.depth.mapping.is_reversed() { 0.0 } else { 1.0 };
+        let depth = || self.frame.capture.frame_at(0).and_then(|frame| frame.depth.image.depth_at(self.at));
+        let is_clear = || depth() == Some(clear) || self.frame.capture.steps[0].light.is_some();
+        label.is_some_and(|label| self.label() == Some(label as u8))
+            && (label != Some(PixelLabel::Background) || is_clear())
+    }
 
-const TITLES: &[(&str, Check)] = &[
-    ("Background: no surface is at this pixel.", |here, _| {
-        let clear = if here.frame.plan.depth.mapping.is_reversed() { 0.0 } else { 1.0 };
-        let depth = here.frame.capture.frame_at(0).and_then(|frame| frame.depth.image.depth_at(here.at));
-        here.label() == is(2) && (depth == Some(clear) || here.frame.capture.steps[0].light.is_some())
-    }),
-    ("Turned away from light {}.", |here, told| here.label() == is(3) && number(told[0]) == (here.light + 1) as f64),
-    ("Dark under light {}: its stencil count is {}.", |here, told| {
-        here.label() == is(1)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() != 0.0
-    }),
-    ("Lit by light {}: its stencil count is {}.", |here, told| {
-        here.label() == is(0)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() == 0.0
-    }),
-    ("Dark under light {}: its count is {}.", |here, told| {
-        here.label() == is(1)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() != 0.0
-    }),
-    ("Lit by light {}: its count is {}.", |here, told| {
-        here.label() == is(0)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() == 0.0
-    }),
-    ("Dark under light {}.", |here, told| here.label() == is(1) && number(told[0]) == (here.light + 1) as f64),
-    ("Lit by light {}.", |here, told| here.label() == is(0) && number(told[0]) == (here.light + 1) as f64),
-];
+    /// A count is told where the light pass tests one, and what it is says whether the pixel is dark.
+    fn tested(&self, label: Option<PixelLabel>, count: Option<Count>) -> bool {
+        match (label, count) {
+            (None | Some(PixelLabel::Background), count) => count.is_none(),
+            (_, None) => !self.decided_by().counts_volumes(),
+            (Some(PixelLabel::FacesAway), Some(count)) => self.is_count(count),
+            (_, Some(count)) => self.is_count(count) && (self.count() == 0.0) == (label == Some(PixelLabel::Lit)),
+        }
+    }
 
-fn dark_count(here: &Here, side: &str, count: &str) -> bool {
-    here.label() == is(1) && here.says_side(side) && here.is_count(count) && here.count() != 0.0
-}
+    fn evidence(&self, verdict: &Verdict) -> bool {
+        match &verdict.evidence {
+            Evidence::Label => verdict.label == Some(PixelLabel::Background),
+            Evidence::Shading { wraps: false } => !self.frame.plan.wraps_diffuse && !self.is_brighter(),
+            Evidence::Shading { wraps: true } => {
+                self.frame.plan.wraps_diffuse
+                    && verdict.count.is_none_or(|_| self.is_brighter() == (self.count() == 0.0))
+            }
+            Evidence::Decision(decided_by) => self.decision(*decided_by),
+            Evidence::NoCount => false,
+            Evidence::Count(tested) => self.sum(verdict, tested),
+            Evidence::History(why, tested) => {
+                let shown = match why {
+                    Why::Background => false,
+                    Why::Counted(counted, pass) => self.counted(counted, *pass),
+                    Why::Flattened(flattened, pass) => self.flattened(flattened, *pass),
+                };
+                shown && tested.is_none_or(|tested| self.sum(verdict, &tested))
+            }
+            Evidence::Texels(sentence) => self.texels(sentence),
+        }
+    }
 
-const REASONS: &[(&str, Check)] = &[
-    ("Nothing was drawn here, so there is nothing that a shadow could fall on.", |here, _| here.label() == is(2)),
-    (
-        "Light {} shines on the other side of this surface, so shading alone leaves it dark. Its count is {}.",
-        |here, told| {
-            number(told[0]) == (here.light + 1) as f64
-                && here.label() == is(3)
-                && here.is_count(told[1])
-                && !here.is_brighter()
-        },
-    ),
-    (
-        "Light {} shines on the other side of this surface; wrapped, it reaches round to here unless a shadow keeps it away.{}",
-        |here, told| {
-            let count = gaps(" Its count is {}.", told[1])
-                .map(|told| here.is_count(told[0]) && here.is_brighter() == (here.count() == 0.0));
-            let is_lit = !here.decided_by().counts_volumes();
-            number(told[0]) == (here.light + 1) as f64
-                && here.label() == is(3)
-                && here.frame.plan.wraps_diffuse
-                && count.unwrap_or(is_lit)
-        },
-    ),
-    ("Light {} shines on the other side of this surface, so shading alone leaves it dark.", |here, told| {
-        number(told[0]) == (here.light + 1) as f64
-            && here.label() == is(3)
-            && !here.decided_by().counts_volumes()
-            && !here.is_brighter()
-    }),
-    ("The volume faces {} the surface leave {} in {}, not 0, so the light pass skips this pixel.", |here, told| {
-        let mask = i64::from(mask_of(told[2]));
-        dark_count(here, told[0], told[1]) && (here.signed() as i64 & mask) == here.signed() as i64
-    }),
-    ("The volume faces {} the surface leave {}, not 0, so the light pass skips this pixel.", |here, told| {
-        dark_count(here, told[0], told[1])
-    }),
-    (
-        "What the count began with and the volume faces {} the surface leave {}, not 0, so the light pass {}.",
-        |here, told| {
-            let does = ["skips this pixel", "adds nothing"].contains(&told[2]);
-            here.begins_elsewhere() && dark_count(here, told[0], told[1]) && does
-        },
-    ),
-    ("The volume faces {} the surface leave {}, not 0, so the light pass adds nothing.", |here, told| {
-        dark_count(here, told[0], told[1])
-    }),
-    (
-        "The volume faces {} the surface leave {}, so the light pass adds nothing. Eight bits would read 0 and light this pixel.",
-        |here, told| dark_count(here, told[0], told[1]) && here.count() % 256.0 == 0.0,
-    ),
-    (
-        "{}More volumes were left than entered {} the surface. Not 0 is all that the light pass asks, so it {}.",
-        |here, told| {
-            let does = ["skips this pixel", "adds nothing"].contains(&told[2]);
-            let of_history = told[0].is_empty() || counted(here, told[0].trim_end().trim_end_matches('.'));
-            here.label() == is(1) && here.says_side(told[1]) && here.signed() < 0.0 && does && of_history
-        },
-    ),
-    ("{}{} volumes contain the surface, which eight bits read as 0: the light pass adds the light.", |here, told| {
-        let of_history = told[0].is_empty() || counted(here, told[0]);
-        let held = here.frame.capture.lights[here.light].count.as_ref().and_then(|count| count.count_at(here.at));
-        here.label() == is(0)
-            && here.count() == 0.0
-            && of_history
-            && held.is_some_and(|count| number(told[1]) == f64::from(count))
-    }),
-    (
-        "What the count began with and the volume faces {} the surface leave its bit at {}, so the light pass {}.",
-        |here, told| {
-            let is_one = told[1] == "1";
-            let does = if is_one { "skips this pixel" } else { "adds the light" };
-            let stored = here.label() == is(u8::from(is_one)) && here.count() == f64::from(u8::from(is_one));
-            here.begins_elsewhere() && here.says_side(told[0]) && stored && told[2] == does
-        },
-    ),
-    (
-        "An odd number of volume faces {} the surface turned its bit over, so the light pass skips this pixel.",
-        |here, told| here.label() == is(1) && here.count() == 1.0 && here.says_side(told[0]) && here.turns() % 2 == 1,
-    ),
-    (
-        "An even number of volume faces {} the surface, or none, turned its bit over, so the light pass adds the light.",
-        |here, told| here.label() == is(0) && here.count() == 0.0 && here.says_side(told[0]) && here.turns() % 2 == 0,
-    ),
-    ("The volume faces {} the surface cancel out, so the light pass adds the light.", |here, told| {
-        here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0
-    }),
-    (
-        "What the count began with and the volume faces {} the surface cancel out, so the light pass adds the light.",
-        |here, told| here.begins_elsewhere() && here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0,
-    ),
-    ("The light's map holds something nearer to the light here, so the light pass adds nothing.", |here, _| {
-        by_a_map(here, 1)
-    }),
-    ("The light's map holds nothing nearer to the light here, so the light pass adds it.", |here, _| by_a_map(here, 0)),
-    ("Texel {}: {}.", |here, told| {
-        let follows = match told[1] {
-            "it is nearer, so the light pass adds nothing" => by_a_map(here, 1),
-            "nothing nearer is stored, so the light pass adds the light" => by_a_map(here, 0),
-            "too close to tell by depths computed anew; the GPU's own say lit" => by_a_map(here, 0),
-            "too close to tell by depths computed anew; the GPU's own say in shadow" => by_a_map(here, 1),
-            many => gaps("of the {} texels read, {} hold nothing nearer to the light", many).is_some_and(|told| {
-                let [all, lit] = [number(told[0]), number(told[1])];
-                by_a_map(here, u8::from(2.0 * lit < all))
-            }),
-        };
-        follows
-            && (told[0].contains(" holds no caster")
-                || told[0].contains(" holds a caster ")
-                || told[0].contains(" holds depth "))
-    }),
-    ("A caster, flattened onto this flat receiver from the light, covers the pixel.", |here, _| flattened(here, 1)),
-    (
-        "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked.",
-        |here, _| flattened(here, 0),
-    ),
-    ("The flattened shadow of {} falls on the surface here, {}.", |here, told| {
-        let names = told[0].split(" and ").all(|name| {
-            here.history.triangles().any(|(event, one)| {
-                event.light == Some(here.light)
-                    && one.part == Part::PlanarShadow
-                    && one.fate.passed()
-                    && one.caster.as_deref() == Some(name)
-            })
-        });
-        let does = ["so the light pass skips it", "and darkens it after the light pass"].contains(&told[1]);
-        names && does && here.label() == is(1)
-    }),
-    ("{} over the surface {} the depth test against it, so the light pass adds the light.", |here, told| {
-        flattened_triangles(here, told[0])
-    }),
-    (
-        "{} of another receiver: this surface has a mark of its own, and the stencil test keeps shadow off it, so the light pass adds the light.",
-        |here, told| flattened_triangles(here, told[0].trim_end_matches(" is").trim_end_matches(" are")),
-    ),
-    (
-        "{} over the surface, which is no receiver, and the stencil test keeps shadow off it, so the light pass adds the light.",
-        |here, told| flattened_triangles(here, told[0].trim_end_matches(" is").trim_end_matches(" are")),
-    ),
-    ("{} over it left no fragment, so the light pass adds the light.", |here, told| flattened_triangles(here, told[0])),
-    (
-        "The texture of this flat receiver lets less than half of the light through here: a caster between it and the light was drawn there.",
-        |here, _| here.decided_by() == DecidedBy::ReceiverTextures && here.label() == is(1),
-    ),
-    (
-        "No caster was drawn here into this receiver's texture. Surfaces that are not flat have none, and are lit.",
-        |here, _| here.decided_by() == DecidedBy::ReceiverTextures && here.label() == is(0),
-    ),
-    (
-        "The silhouette of another object falls here. Nobody asks whether that object is nearer to the light, and translucent ones count as opaque for the mask.",
-        |here, _| here.decided_by() == DecidedBy::Silhouettes && here.label() == is(1),
-    ),
-    ("No silhouette of another object falls here; an object's own is never asked.", |here, _| {
-        here.decided_by() == DecidedBy::Silhouettes && here.label() == is(0)
-    }),
-    ("No shadow of this light is made in this frame: it reaches every surface that faces it.", |here, _| {
+    fn decision(&self, decided_by: DecidedBy) -> bool {
         let asks = |draw: &stencilscope::plan::Draw| {
             draw.part.is_of_volume() || [Part::PlanarShadow, Part::Map].contains(&draw.part)
         };
-        let of_light =
-            here.frame.plan.passes.iter().filter(|pass| pass.light.is_some_and(|light| light.0 == here.light));
-        here.decided_by() == DecidedBy::Nothing
-            && here.label() == is(0)
-            && !of_light.flat_map(|pass| &pass.draws).any(asks)
-    }),
-    ("The technique's mask says that something lies between the surface and the light.", |here, _| {
-        here.label() == is(1)
-    }),
-    ("The technique's mask says that nothing lies between the surface and the light.", |here, _| here.label() == is(0)),
-    ("{}, so the light pass skips it.", |here, told| {
-        counted(here, told[0]) && here.label() != is(0) && here.count() != 0.0
-    }),
-    ("{}, so the light pass adds the light.", |here, told| {
-        counted(here, told[0]) && here.label() != is(1) && here.count() == 0.0
-    }),
-];
-
-fn by_a_map(here: &Here, label: u8) -> bool {
-    here.decided_by() == DecidedBy::Map && here.label() == Some(label)
-}
-
-fn flattened(here: &Here, label: u8) -> bool {
-    here.decided_by() == DecidedBy::Flattened && here.label() == Some(label)
-}
-
-fn flattened_triangles(here: &Here, told: &str) -> bool {
-    let count = number(told);
-    let of_light = here.history.triangles().filter(|(event, one)| {
-        event.light == Some(here.light) && event.target != FrameTarget::Labels && one.part == Part::PlanarShadow
-    });
-    let all: Vec<bool> = of_light.map(|(_, one)| one.fate.passed()).collect();
-    let none_passes = all.iter().all(|passed| !passed);
-    none_passes
-        && count >= 1.0
-        && count <= all.len() as f64
-        && here.label() == is(0)
-        && told.contains("flattened triangle")
-}
-
-/// What a history says of faces and counts, up to what follows of it.
-fn counted(here: &Here, told: &str) -> bool {
-    let told = told
-        .trim_end()
-        .trim_end_matches(", so the light pass skips it")
-        .trim_end_matches(", so the light pass adds the light");
-    let [outside, inside] = here.faces();
-    let (cleared, told) = match gaps("The count begins at {}; {}", told) {
-        Some(parts) => (Some(number(parts[0])), parts[1]),
-        None => (None, told),
-    };
-    let begins = here.history.events.iter().rev().find_map(|event| match event.kind {
-        EventKind::ClearStencil if event.light == Some(here.light) => Some(f64::from(event.after.stencil)),
-        EventKind::ClearCount if event.light == Some(here.light) => Some(f64::from(event.after.count)),
-        _ => None,
-    });
-    let is_cleared = cleared.unwrap_or(0.0) == begins.unwrap_or(0.0);
-    let upper = told.strip_prefix("the").map(|rest| format!("The{rest}"));
-    let told = upper.as_deref().unwrap_or(told);
-    let (near, told) = match gaps("The near plane is in {}; {}", told) {
-        Some(parts) => (Some(number(parts[0])), parts[1]),
-        None => (None, told),
-    };
-    let near_holds = near.is_none_or(|near| near == here.near());
-    let (faces, count) = told.rsplit_once("; ").unwrap_or((told, ""));
-    let modulus = |bits: &str| match bits {
-        "eight bits hold" => 256.0,
-        "four bits hold" => 16.0,
-        "two bits hold" => 4.0,
-        "one bit holds" => 2.0,
-        _ => f64::NAN,
-    };
-    let count_holds = match (gaps("count {}", count), gaps("together {}, which {} as {}", count)) {
-        (Some(told), _) => here.is_count(told[0]),
-        (_, Some(told)) => {
-            here.is_count(told[2]) && (number(told[0]) - here.count()).rem_euclid(modulus(told[1])) == 0.0
-        }
-        _ => false,
-    };
-    let faces = faces.split(", of which").next().unwrap_or_default();
-    let faces_hold = if faces.to_lowercase() == "no volume face on the view ray counts" {
-        outside + inside == 0.0
-    } else {
-        let (words, parts) = faces.split_once(": ").unwrap_or((faces, ""));
-        let front = gaps("{} front, {} back", parts).map(|told| [number(told[0]), number(told[1])]);
-        let back = gaps("{} back, {} front", parts).map(|told| [number(told[1]), number(told[0])]);
-        let is_there = here.lie(words.split(" the surface").next().unwrap_or_default());
-        number(words) == outside + inside && front.or(back) == Some([outside, inside]) && is_there
-    };
-    is_cleared && near_holds && count_holds && faces_hold
-}
-
-pub fn patterns() -> Vec<&'static str> {
-    // Told where labels and counts are of several kinds at once, which the pixels here may miss.
-    let rare = [
-        "which eight bits read as 0",
-        "Eight bits would read 0",
-        "over it left no fragment",
-        "The technique's mask says that something",
-        "the depth test against it",
-        "of another receiver",
-        "which is no receiver",
-        "The texture of this flat receiver",
-        "More volumes were left",
-    ];
-    let all = TITLES.iter().chain(REASONS).map(|(pattern, _)| *pattern);
-    all.filter(|pattern| !rare.iter().any(|words| pattern.contains(words))).collect()
-}
-
-fn find(all: &'static [(&'static str, Check)], here: &Here, text: &str, held: &mut Held) -> Option<String> {
-    let known: Vec<_> =
-        all.iter().filter_map(|(pattern, check)| Some((pattern, check, gaps(pattern, text)?))).collect();
-    if let Some((pattern, ..)) = known.iter().find(|(_, check, told)| check(here, told)) {
-        held.insert(pattern);
-        return None;
+        let passes = self.frame.plan.passes.iter();
+        let of_light = passes.filter(|pass| pass.light.is_some_and(|light| light.0 == self.light));
+        let asks_nothing = || !of_light.flat_map(|pass| &pass.draws).any(asks);
+        decided_by == self.decided_by()
+            && !decided_by.counts_volumes()
+            && (decided_by != DecidedBy::Nothing || self.label() == Some(1) || asks_nothing())
     }
-    Some(match known.first() {
-        Some((pattern, ..)) => format!("is not so ({pattern}): {text}"),
-        None => format!("is known to no check: {text}"),
-    })
+
+    fn sum(&self, verdict: &Verdict, tested: &TestedCount) -> bool {
+        let is_dark = self.label() == Some(1);
+        let inverts = self.frame.plan.settings.get("operations").is_some_and(|operations| operations == "invert");
+        let mask = i64::from(tested.bits.modulus()) - 1;
+        let fits = tested.bits == CountBits::EIGHT || (self.signed() as i64 & mask) == self.signed() as i64;
+        let is_parity = || {
+            let turned = tested.begins_elsewhere || self.turns() % 2 == usize::from(is_dark);
+            inverts && turned && self.count() == f64::from(u8::from(is_dark))
+        };
+        let held = self.frame.capture.lights[self.light].count.as_ref().and_then(|count| count.count_at(self.at));
+        let reads_zero = |count: f32| match tested.count {
+            Count::Stencil(_) => self.count() == 0.0 && held == Some(count),
+            Count::Float(_) => self.count() == f64::from(count) && self.count() % 256.0 == 0.0,
+        };
+        Some(tested.count) == verdict.count
+            && self.is_side(tested.side)
+            && (!tested.begins_elsewhere || self.begins_elsewhere())
+            && fits
+            && (!tested.inverts || is_parity())
+            && (!tested.is_negative() || self.signed() < 0.0)
+            && tested.reads_as_zero().is_none_or(reads_zero)
+    }
+
+    fn counted(&self, counted: &Counted, pass: LightPass) -> bool {
+        let Counted { side, faces, cleared_to, near, sum, bits, count } = counted;
+        let begins = self.history.events.iter().rev().find_map(|event| match event.kind {
+            EventKind::ClearStencil if event.light == Some(self.light) => Some(f64::from(event.after.stencil)),
+            EventKind::ClearCount if event.light == Some(self.light) => Some(f64::from(event.after.count)),
+            _ => None,
+        });
+        let holds_otherwise = match count {
+            Count::Stencil(byte) => bits.hold_otherwise(*sum, *byte),
+            Count::Float(_) => false,
+        };
+        let rest = (f64::from(*sum) - self.count()).rem_euclid(bits.modulus().into());
+        let does = match pass {
+            LightPass::Adds => self.label() != Some(1) && self.count() == 0.0,
+            LightPass::Skips => self.label() != Some(0) && self.count() != 0.0,
+            LightPass::FacesAway | LightPass::AsksNothing => false,
+        };
+        f64::from(*cleared_to) == begins.unwrap_or(0.0)
+            && near.is_none_or(|near| f64::from(near) == self.near())
+            && self.is_count(*count)
+            && (!holds_otherwise || rest == 0.0)
+            && [f64::from(faces.front), f64::from(faces.back)] == self.faces()
+            && (faces.front + faces.back == 0 || self.lie(*side, faces.on_surface))
+            && does
+    }
+
+    fn flattened(&self, flattened: &Flattened, pass: LightPass) -> bool {
+        let of_light = || {
+            self.history.triangles().filter(|(event, one)| {
+                event.light == Some(self.light) && event.target != FrameTarget::Labels && one.part == Part::PlanarShadow
+            })
+        };
+        let falls = |name: &String| of_light().any(|(_, one)| one.fate.passed() && one.caster.as_ref() == Some(name));
+        let Flattened { casters, failed_stencil, failed_depth, hidden, .. } = flattened;
+        if !casters.is_empty() {
+            let does = matches!(pass, LightPass::Adds | LightPass::Skips);
+            return casters.iter().all(falls) && does && self.label() == Some(1);
+        }
+        let left = failed_stencil + failed_depth + hidden;
+        of_light().all(|(_, one)| !one.fate.passed())
+            && left >= 1
+            && left as usize == of_light().count()
+            && pass == LightPass::Adds
+            && self.label() == Some(0)
+    }
+
+    fn texels(&self, sentence: &str) -> bool {
+        let by_a_map = |label: u8| self.decided_by() == DecidedBy::Map && self.label() == Some(label);
+        let Some(told) = gaps("Texel {}: {}.", sentence) else { return false };
+        let follows = match told[1] {
+            "it is nearer, so the light pass adds nothing" => by_a_map(1),
+            "nothing nearer is stored, so the light pass adds the light" => by_a_map(0),
+            "too close to tell by depths computed anew; the GPU's own say lit" => by_a_map(0),
+            "too close to tell by depths computed anew; the GPU's own say in shadow" => by_a_map(1),
+            many => gaps("of the {} texels read, {} hold nothing nearer to the light", many).is_some_and(|told| {
+                let [all, lit] = [number(told[0]), number(told[1])];
+                by_a_map(u8::from(2.0 * lit < all))
+            }),
+        };
+        let stores = [" holds no caster", " holds a caster ", " holds depth "];
+        follows && stores.iter().any(|stores| told[0].contains(stores))
+    }
+}
+
+/// Kinds of verdicts, each of which some pixel must have.
+pub fn patterns() -> Vec<&'static str> {
+    vec![
+        "background",
+        "shading, counted",
+        "shading",
+        "shading, wrapped",
+        "dark by Map",
+        "lit by Map",
+        "dark by Flattened",
+        "lit by Flattened",
+        "lit by ReceiverTextures",
+        "dark by Silhouettes",
+        "lit by Silhouettes",
+        "lit by Nothing",
+        "lit by Labels",
+        "dark by a count in the stencil",
+        "lit by a count in the stencil",
+        "dark by a count in a float",
+        "lit by a count in a float",
+        "dark by a count in few bits",
+        "dark by a count that begins elsewhere",
+        "lit by a count that begins elsewhere",
+        "dark by an inverted bit",
+        "lit by an inverted bit",
+        "an inverted bit that begins elsewhere",
+        "dark by faces",
+        "lit by faces",
+        "a flattened shadow",
+        "texels",
+    ]
+}
+
+fn kind(verdict: &Verdict) -> &'static str {
+    let is_dark = verdict.label == Some(PixelLabel::Shadow);
+    let of = |dark, lit| if is_dark { dark } else { lit };
+    match &verdict.evidence {
+        Evidence::Label => "background",
+        Evidence::Shading { wraps: true } => "shading, wrapped",
+        Evidence::Shading { .. } if verdict.count.is_some() => "shading, counted",
+        Evidence::Shading { .. } => "shading",
+        Evidence::Decision(DecidedBy::Map) => of("dark by Map", "lit by Map"),
+        Evidence::Decision(DecidedBy::Flattened) => of("dark by Flattened", "lit by Flattened"),
+        Evidence::Decision(DecidedBy::ReceiverTextures) => of("dark by ReceiverTextures", "lit by ReceiverTextures"),
+        Evidence::Decision(DecidedBy::Silhouettes) => of("dark by Silhouettes", "lit by Silhouettes"),
+        Evidence::Decision(DecidedBy::Nothing) => of("dark by Nothing", "lit by Nothing"),
+        Evidence::Decision(_) => of("dark by Labels", "lit by Labels"),
+        Evidence::NoCount => "no count",
+        Evidence::Count(TestedCount { inverts: true, begins_elsewhere: true, .. }) => {
+            "an inverted bit that begins elsewhere"
+        }
+        Evidence::Count(TestedCount { inverts: true, .. }) => of("dark by an inverted bit", "lit by an inverted bit"),
+        Evidence::Count(TestedCount { begins_elsewhere: true, .. }) => {
+            of("dark by a count that begins elsewhere", "lit by a count that begins elsewhere")
+        }
+        Evidence::Count(tested) if tested.bits != CountBits::EIGHT => {
+            of("dark by a count in few bits", "lit by a count in few bits")
+        }
+        Evidence::Count(TestedCount { count: Count::Stencil(_), .. }) => {
+            of("dark by a count in the stencil", "lit by a count in the stencil")
+        }
+        Evidence::Count(_) => of("dark by a count in a float", "lit by a count in a float"),
+        Evidence::History(Why::Flattened(flattened, _), _) if flattened.casters.is_empty() => "no flattened shadow",
+        Evidence::History(Why::Flattened(..), _) => "a flattened shadow",
+        Evidence::History(..) => of("dark by faces", "lit by faces"),
+        Evidence::Texels(_) => "texels",
+    }
 }
 
 pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
@@ -453,17 +343,27 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
     for (history, at) in &frame.pixels {
         for light in 0..frame.capture.lights.len() {
             let here = Here { frame, light, at: *at, history };
-            let plain = verdict(&frame.capture, light, *at);
-            let told = explained(plain.clone(), history, light);
+            let plain = Verdict::of(&frame.capture, light, *at);
+            let with_history = plain.clone().with_history(history);
             let map =
                 frame.readers[light].as_ref().and_then(|readers| MapDecision::of(&frame.capture, readers, light, *at));
-            let mapped = map.map(|map| by_map(plain.clone(), &map, light));
-            let all: Vec<Verdict> = [Some(plain), Some(told), mapped].into_iter().flatten().collect();
-            for Verdict { title, reason, .. } in &all {
-                let told = [find(TITLES, &here, title, held), find(REASONS, &here, reason, held)];
-                wrong.extend(
-                    told.into_iter().flatten().map(|what| format!("of pixel {at:?} under light {}, {what}", light + 1)),
-                );
+            let with_texels = map.map(|map| plain.clone().with_texels(light, || map.sentence()));
+            for verdict in [Some(plain), Some(with_history), with_texels].into_iter().flatten() {
+                let is_true = verdict.light == light
+                    && here.is_label(verdict.label)
+                    && here.tested(verdict.label, verdict.count)
+                    && here.evidence(&verdict);
+                if is_true {
+                    held.insert(kind(&verdict));
+                } else {
+                    wrong.push(format!(
+                        "of pixel {at:?} under light {}, is not so ({}): {} {} {verdict:?}",
+                        light + 1,
+                        kind(&verdict),
+                        verdict.title(),
+                        verdict.reason()
+                    ));
+                }
             }
         }
     }

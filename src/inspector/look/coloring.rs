@@ -3,9 +3,9 @@
 use crate::capture::Image;
 use crate::inspector::look::findings;
 use crate::inspector::look::palette;
+use crate::numbers;
 use crate::picture::colors;
 use crate::reading::change::{self, ChangeKind};
-use crate::reading::counts;
 use crate::reading::depth::DepthScale;
 use crate::reading::shown::{PictureKind, Shown};
 use egui::Color32;
@@ -98,7 +98,7 @@ impl Coloring {
             Coloring::Stencil | Coloring::Labels | Coloring::Findings => {
                 image.byte_at(at).map(|value| value.to_string())
             }
-            Coloring::Count => image.count_at(at).map(counts::text),
+            Coloring::Count => image.count_at(at).map(numbers::count_in_float),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
                 Some(value) => fitted(value, columns),
                 None => "∞".to_owned(),

@@ -5,7 +5,7 @@ use crate::capture::Capture;
 use crate::inspector::look::coloring::{self, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::reading::counts;
+use crate::numbers;
 use crate::reading::format;
 use crate::reading::shown::{PictureKind, Shown};
 use egui::{Margin, Ui};
@@ -63,10 +63,10 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
         ui.label(theme::number(format!("depth {}", format::depth(depth))));
     }
     if let Some(stencil) = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)) {
-        ui.label(theme::number(format!("stencil {}", crate::numbers::signed(stencil))));
+        ui.label(theme::number(format!("stencil {}", numbers::signed(stencil))));
     }
     if let Some(count) = model.counts_to_show(capture).and_then(|(_, image)| image.count_at(at)) {
-        ui.label(theme::number(format!("count {}", counts::text(count))));
+        ui.label(theme::number(format!("count {}", numbers::count_in_float(count))));
     }
 }
 

@@ -9,6 +9,7 @@ use crate::inspector::look::texture::Shares;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::Model;
+use crate::numbers;
 use crate::reading::change::Change;
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
@@ -88,7 +89,7 @@ fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     let (listed, rest) = most_frequent(values.filter(|(_, pixels)| *pixels > 0).collect(), MOST_VALUES);
     let most = listed.iter().map(|(_, pixels)| *pixels).max().unwrap_or(0);
     for (value, pixels) in listed {
-        entry(ui, palette::stencil(value), &crate::numbers::signed(value), pixels);
+        entry(ui, palette::stencil(value), &numbers::signed(value), pixels);
         bar(ui, pixels, most);
     }
     more_values(ui, &rest);
@@ -122,12 +123,12 @@ fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     let tally = model.textures.tally(&shown.images[0]);
     theme::heading(ui, &title(shown));
     let in_order = tally.range(0..).chain(tally.range(..0).rev()).map(|(count, pixels)| (*count as f32, *pixels));
-    let (misread, read): (Vec<_>, Vec<_>) = in_order.partition(|(count, _)| counts::reads_zero_in_eight_bits(*count));
+    let (misread, read): (Vec<_>, Vec<_>) = in_order.partition(|(count, _)| numbers::reads_zero_in_eight_bits(*count));
     let list = |ui: &mut Ui, values, most| {
         let (listed, rest) = most_frequent(values, most);
         for (count, pixels) in listed {
             let hover = format!("In eight bits it would read {}", counts::in_eight_bits(count));
-            entry(ui, palette::count(count), &counts::text(count), pixels).on_hover_text(hover);
+            entry(ui, palette::count(count), &numbers::count_in_float(count), pixels).on_hover_text(hover);
         }
         more_values(ui, &rest);
     };

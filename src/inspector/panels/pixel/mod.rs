@@ -11,6 +11,7 @@ pub mod told;
 
 use crate::accuracy::Finding;
 use crate::capture::{Capture, CapturedLight, FrameSnapshot};
+use crate::history::Verdict;
 use crate::inspector::look::coloring;
 use crate::inspector::look::findings;
 use crate::inspector::look::palette;
@@ -18,13 +19,13 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::picture::error_legend;
 use crate::inspector::tours::tour_of;
+use crate::numbers;
 use crate::reading::counts;
 use crate::reading::depth::{DepthMeasure, FIXED_BITS};
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::map_decision::MapDecision;
 use crate::reading::shown::{PictureKind, has_truth};
-use crate::reading::verdict::{by_map, explained, verdict};
 use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 
@@ -128,18 +129,21 @@ fn sentence(
     let is_waiting = !told.is_of_pick && told.failed.is_none() && model.can_ask();
     let held = own.sentence.take().filter(|_| is_waiting && !told.is_late);
     let verdict = held.unwrap_or_else(|| {
-        let verdict = verdict(capture, light, at);
+        let verdict = Verdict::of(capture, light, at);
         match history {
-            Some(history) => explained(verdict, history, light),
+            Some(history) => verdict.with_history(history),
             None => verdict,
         }
     });
     own.sentence = Some(verdict.clone());
-    let verdict = map.map_or(verdict.clone(), |decision| by_map(verdict, decision, light));
+    let verdict = match map {
+        Some(decision) => verdict.with_texels(decision.light, || decision.sentence()),
+        None => verdict,
+    };
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        theme::heading(ui, &verdict.title);
-        ui.add(egui::Label::new(theme::note(verdict.reason)).wrap());
+        theme::heading(ui, &verdict.title());
+        ui.add(egui::Label::new(theme::note(verdict.reason())).wrap());
     });
 }
 
@@ -239,7 +243,7 @@ fn stencil_cells(ui: &mut Ui, pairs: &mut Pairs, stencil: u8) {
     pairs.add(ui, "stencil", |ui| {
         ui.horizontal(|ui| {
             theme::swatch(ui, palette::stencil(stencil));
-            ui.label(theme::number(crate::numbers::signed(stencil)).color(theme::of(ui).text));
+            ui.label(theme::number(numbers::signed(stencil)).color(theme::of(ui).text));
             if let Some(bits) = beside {
                 ui.label(bits);
             }
@@ -261,7 +265,7 @@ fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
     ui.label(theme::note(name));
     ui.horizontal(|ui| {
         theme::swatch(ui, palette::count(count));
-        ui.label(theme::number(counts::text(count)).color(theme::of(ui).text));
+        ui.label(theme::number(numbers::count_in_float(count)).color(theme::of(ui).text));
         let read = counts::in_eight_bits(count);
         if f32::from(read) != count {
             ui.label(theme::number(format!("would read {read} in eight bits")).color(theme::of(ui).dim));

@@ -4,6 +4,7 @@ use crate::capture::{Capture, FrameSnapshot, Snapshot};
 use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::numbers;
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
@@ -103,9 +104,8 @@ fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -
     let count = counts::known_after(capture, step).and_then(|(_, image)| image.count_at(at));
     let stencil = frame.stencil.as_ref().and_then(|aspect| aspect.image.byte_at(at));
     Values {
-        stencil: stencil
-            .map(|value| Value { text: crate::numbers::signed(value), color: Some(palette::stencil(value)) }),
-        count: count.map(|count| Value { text: counts::text(count), color: Some(palette::count(count)) }),
+        stencil: stencil.map(|value| Value { text: numbers::signed(value), color: Some(palette::stencil(value)) }),
+        count: count.map(|count| Value { text: numbers::count_in_float(count), color: Some(palette::count(count)) }),
         color: frame.color.image.rgba_at(at).map(|[red, green, blue, _]| Value {
             text: format!("{red} {green} {blue}"),
             color: Some(Color32::from_rgb(red, green, blue)),

@@ -1,9 +1,8 @@
 //! What the panel remembers, and what is told of the pick now.
 
-use crate::history::PixelHistory;
+use crate::history::{PixelHistory, Verdict};
 use crate::inspector::model::Model;
 use crate::inspector::model::history::is_late;
-use crate::reading::verdict::Verdict;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Weak};
