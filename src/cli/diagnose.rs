@@ -102,8 +102,8 @@ fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliErro
         Some(_) => output::deliver(&diagnosis.to_json().map_err(|error| broken(error.into()))?, json)?,
         None => output::print(&diagnosis.to_text())?,
     }
-    let proven = diagnosis.faults.iter().find(|found| found.proof == Proof::Proven);
-    let because = proven.map_or_else(String::new, |found| format!(", by {}", found.fault.name()));
+    let proven = diagnosis.causes.iter().find(|found| found.proof == Proof::Proven);
+    let because = proven.map_or_else(String::new, |found| format!(", by {}", found.cause.name()));
     match diagnosis.wrong() {
         0 => Ok(()),
         pixels => Err(CliError::Wrong { pixels, because }),

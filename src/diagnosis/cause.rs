@@ -3,8 +3,9 @@
 use std::fmt;
 
 named_enum! {
-    /// Why pixels are wrong. In the order of families: volumes, meshes, counts, planes, maps, silhouettes,
-    /// numbers, flags.
+    /// Why pixels are wrong, in our own frames and in those of other programs. In the order of families: volumes, meshes,
+    /// counts, planes, maps, silhouettes, numbers, flags, states. Rules of other programs' frames are the table in
+    /// [`recorded`](super::recorded).
     pub enum Cause {
         /// Z-pass starts to count inside a volume.
         EyeInVolume = "eye-in-volume",
@@ -86,6 +87,16 @@ named_enum! {
         Undrawn = "undrawn",
         /// A vertex shader tells in single precision what faces the light, and where vertices are carried.
         CarriedInF32 = "carried-in-f32",
+        /// One side of the volumes' faces is culled, though both count.
+        FaceCulled = "face-culled",
+        /// Volumes write depth, and hide each other.
+        VolumesWriteDepth = "volumes-write-depth",
+        /// The stencil holds other values than 0 before the first volume is counted.
+        StencilNotCleared = "stencil-not-cleared",
+        /// The light's pass compares only some bits of the count.
+        StencilMask = "stencil-mask",
+        /// The volumes are not closed, and are counted behind the surface.
+        OpenVolume = "open-volume",
     }
 }
 
@@ -236,6 +247,21 @@ impl Cause {
             Cause::NotReceiving => "The scene says that this object receives no shadows. Set `receives` if it should.",
             Cause::NotCasting => "The scene says that this object casts no shadow. Set `casts` if it should.",
             Cause::Undrawn => "The scene says that this object is not drawn. Set `visible` if it should be.",
+            Cause::FaceCulled => {
+                "Face culling throws away one side of the volumes, and only the other counts. Switch culling off for \
+                 the volumes."
+            }
+            Cause::VolumesWriteDepth => {
+                "Shadow volumes write depth, so that faces behind them are not counted as they should. Switch depth \
+                 writing off for the volumes."
+            }
+            Cause::StencilNotCleared => {
+                "The stencil is not cleared before volumes are counted in it. Clear it for every light."
+            }
+            Cause::StencilMask => {
+                "The light's stencil test looks at some of the bits that were counted in. Compare all of them."
+            }
+            Cause::OpenVolume => "Z-fail needs closed volumes, and these have edges of one triangle. Draw both caps.",
         }
     }
 }

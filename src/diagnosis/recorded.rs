@@ -7,7 +7,7 @@
 //!
 //! No rule looks at the program: what is known is what was drawn.
 
-use super::Proof;
+use super::{Cause, Proof};
 use crate::accuracy::{ErrorCounts, Region};
 use crate::numbers;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, LightId, MeshId, Pass, RasterState};
@@ -16,81 +16,70 @@ use glam::DVec4;
 use serde_json::json;
 use wgpu::StencilOperation as Operation;
 
-named_enum! {
-    /// Why pixels of a frame are wrong.
-    pub enum FrameFault {
-        /// A far plane cuts volumes that are counted behind the surface.
-        FarClip = "far-clip",
-        /// The near plane cuts volumes that are counted in front of the surface.
-        NearPlaneCut = "near-plane-cut",
-        /// Volumes end before the receiver.
-        FiniteExtrusion = "finite-extrusion",
-        /// One side of the volumes' faces is thrown away, though both count.
-        FaceCulled = "face-culled",
-        /// Counts stop at 0 or 255, and what takes away may come before what adds.
-        Clamped = "clamped",
-        /// Volumes write depth, and hide each other.
-        VolumesWriteDepth = "volumes-write-depth",
-        /// The stencil holds something before the first volume is counted.
-        NotCleared = "stencil-not-cleared",
-        /// The light's pass looks at some bits of the count alone.
-        MaskHides = "stencil-mask",
-        /// A cap as deep as the surface that it lies on passes the depth test, and is not counted behind it.
-        CapFighting = "cap-fighting",
-        /// The volumes are not closed, and are counted behind the surface.
-        OpenVolume = "open-volume",
-    }
+/// How a cause is looked for in another program's frame.
+struct FrameRule {
+    cause: Cause,
+    /// What it is and what to do in the program's own terms, where those are not [`Cause::meaning`]'s.
+    meaning: Option<&'static str>,
+    /// Its evidence in numbers, and the plan with that one thing changed, for volumes of a light at this position.
+    look: fn(&CountingDraws, DVec4) -> Option<(String, FramePlan)>,
 }
 
-impl FrameFault {
-    /// What it is and what to do, in the program's own terms.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            FrameFault::FarClip => {
-                "The far plane cuts shadow volumes away that z-fail counts. Use a projection to infinity, or depth \
-                 clamping (GL_DEPTH_CLAMP, depthClampEnable) for the volumes."
-            }
-            FrameFault::NearPlaneCut => {
-                "The near plane cuts shadow volumes open that z-pass counts. Count from behind with z-fail and closed \
-                 volumes; depth clamping saves what lies in front of the eye."
-            }
-            FrameFault::FiniteExtrusion => {
-                "The shadow volumes end before they reach the surface. Extrude them to infinity (w = 0)."
-            }
-            FrameFault::FaceCulled => {
-                "Face culling throws away one side of the volumes, and only the other counts. Switch culling off for \
-                 the volumes."
-            }
-            FrameFault::Clamped => {
-                "The stencil operations stop at 0 and 255. Use those that wrap (GL_INCR_WRAP, INCREMENT_AND_WRAP): \
-                 then the order of faces does not matter."
-            }
-            FrameFault::VolumesWriteDepth => {
-                "Shadow volumes write depth, so that faces behind them are not counted as they should. Switch depth \
-                 writing off for the volumes."
-            }
-            FrameFault::NotCleared => {
-                "The stencil is not cleared before volumes are counted in it. Clear it for every light."
-            }
-            FrameFault::MaskHides => {
-                "The light's stencil test looks at some of the bits that were counted in. Compare all of them."
-            }
-            FrameFault::CapFighting => {
-                "A volume's cap lies on the surface that throws the shadow. Z-fail must count it: let only nearer \
-                 fragments pass the depth test of the volumes (less, not less or equal)."
-            }
-            FrameFault::OpenVolume => {
-                "Z-fail needs closed volumes, and these have edges of one triangle. Draw both caps."
-            }
-        }
-    }
+/// Every cause that states and volumes can show. No rule knows a program's scene or settings, so no other cause can be.
+const RULES: [FrameRule; 10] = [
+    FrameRule {
+        cause: Cause::FarClip,
+        meaning: Some(
+            "The far plane cuts shadow volumes away that z-fail counts. Use a projection to infinity, or depth \
+             clamping (GL_DEPTH_CLAMP, depthClampEnable) for the volumes.",
+        ),
+        look: |draws, _| draws.clipped(true),
+    },
+    FrameRule {
+        cause: Cause::NearPlaneCut,
+        meaning: Some(
+            "The near plane cuts shadow volumes open that z-pass counts. Count from behind with z-fail and closed \
+             volumes; depth clamping saves what lies in front of the eye.",
+        ),
+        look: |draws, _| draws.clipped(false),
+    },
+    FrameRule {
+        cause: Cause::FiniteExtrusion,
+        meaning: Some("The shadow volumes end before they reach the surface. Extrude them to infinity (w = 0)."),
+        look: |draws, position| draws.finite(position),
+    },
+    FrameRule { cause: Cause::FaceCulled, meaning: None, look: |draws, _| draws.culled() },
+    FrameRule {
+        cause: Cause::Clamped,
+        meaning: Some(
+            "The stencil operations stop at 0 and 255. Use those that wrap (GL_INCR_WRAP, INCREMENT_AND_WRAP): \
+             then the order of faces does not matter.",
+        ),
+        look: |draws, _| draws.clamped(),
+    },
+    FrameRule { cause: Cause::VolumesWriteDepth, meaning: None, look: |draws, _| draws.writes_depth() },
+    FrameRule { cause: Cause::StencilNotCleared, meaning: None, look: |draws, _| draws.not_cleared() },
+    FrameRule { cause: Cause::StencilMask, meaning: None, look: |draws, _| draws.mask_hides() },
+    FrameRule {
+        cause: Cause::CapFighting,
+        meaning: Some(
+            "A volume's cap lies on the surface that throws the shadow. Z-fail must count it: let only nearer \
+             fragments pass the depth test of the volumes (less, not less or equal).",
+        ),
+        look: |draws, _| draws.cap_fighting(),
+    },
+    FrameRule { cause: Cause::OpenVolume, meaning: None, look: |draws, _| draws.open() },
+];
+
+fn meaning(cause: Cause) -> &'static str {
+    RULES.iter().find(|rule| rule.cause == cause).and_then(|rule| rule.meaning).unwrap_or(cause.meaning())
 }
 
 /// What may be wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suspicion {
     /// What it may be.
-    pub fault: FrameFault,
+    pub cause: Cause,
     /// What it is suspected from, in numbers.
     pub evidence: String,
     /// The frame without it.
@@ -99,9 +88,9 @@ pub struct Suspicion {
 
 /// A suspicion that was tried.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FaultFound {
+pub struct FrameCauseFound {
     /// What it is.
-    pub fault: FrameFault,
+    pub cause: Cause,
     /// The light whose shadows it is about.
     pub light: LightId,
     /// What it was suspected from.
@@ -111,21 +100,21 @@ pub struct FaultFound {
     /// Pixels of the light that are wrong without it.
     pub pixels_left: u64,
     /// Faults that were taken away with it; empty where it was tried alone.
-    pub together_with: Vec<FrameFault>,
+    pub together_with: Vec<Cause>,
 }
 
-impl FaultFound {
+impl FrameCauseFound {
     /// Its names, its light and what its run has shown: `far-clip (light 1), part: 10 pixels left`.
     pub fn title(&self) -> String {
         let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
-        let (name, light, proof) = (self.fault.name(), self.light.name(), self.proof.name());
+        let (name, light, proof) = (self.cause.name(), self.light.name(), self.proof.name());
         format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
     }
 
     /// What it is and what to do; of all of them where it is several.
     pub fn meaning(&self) -> String {
-        let all = std::iter::once(&self.fault).chain(&self.together_with);
-        all.map(|fault| fault.meaning()).collect::<Vec<_>>().join(" ")
+        let all = std::iter::once(&self.cause).chain(&self.together_with);
+        all.map(|cause| meaning(*cause)).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -137,7 +126,7 @@ pub struct FrameDiagnosis {
     /// Of each light: its pixels, and the largest wrong region.
     pub lights: Vec<(ErrorCounts, Option<Region>)>,
     /// The proven ones first.
-    pub faults: Vec<FaultFound>,
+    pub causes: Vec<FrameCauseFound>,
     /// Wrong pixels where the frame is run again as it is: it should be as many.
     pub wrong_again: u64,
     /// Surfaces at which no volume begins: they are taken to cast no shadow, which the frame can't say.
@@ -179,19 +168,19 @@ impl FrameDiagnosis {
         if self.wrong_again != self.wrong() {
             text += &format!("run again as it is, {} pixels are wrong\n", numbers::count(self.wrong_again));
         }
-        let (helping, others): (Vec<_>, Vec<_>) = self.faults.iter().partition(|found| found.proof != Proof::NotIt);
+        let (helping, others): (Vec<_>, Vec<_>) = self.causes.iter().partition(|found| found.proof != Proof::NotIt);
         for found in &helping {
             text += &format!("\n{}\n  {}\n  {}\n", found.title(), found.evidence, found.meaning());
         }
-        let is_joined = |one: &FaultFound| {
-            helping.iter().any(|found| found.light == one.light && found.together_with.contains(&one.fault))
+        let is_joined = |one: &FrameCauseFound| {
+            helping.iter().any(|found| found.light == one.light && found.together_with.contains(&one.cause))
         };
         let names: Vec<&str> =
-            others.iter().filter(|found| !is_joined(found)).map(|found| found.fault.name()).collect();
+            others.iter().filter(|found| !is_joined(found)).map(|found| found.cause.name()).collect();
         if self.wrong() > 0 && !names.is_empty() {
             text += &format!("\ntried, and not it: {}\n", names.join(", "));
         }
-        if self.wrong() > 0 && self.faults.iter().all(|found| found.proof == Proof::NotIt) {
+        if self.wrong() > 0 && self.causes.iter().all(|found| found.proof == Proof::NotIt) {
             text += "no known cause fits\n";
         }
         let said = |text: &mut String, names: &[String], what: &str| {
@@ -207,9 +196,9 @@ impl FrameDiagnosis {
     /// For scripts: as `diagnose --json` of a scene, with one region a light.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
-        let cause = |found: &FaultFound| {
+        let cause = |found: &FrameCauseFound| {
             json!({
-                "cause": found.fault.name(),
+                "cause": found.cause.name(),
                 "meaning": found.meaning(),
                 "evidence": found.evidence,
                 "mend": null,
@@ -220,7 +209,7 @@ impl FrameDiagnosis {
         };
         let region = |(index, (error, worst)): (usize, &(ErrorCounts, Option<Region>))| {
             let worst = worst.as_ref()?;
-            let of_light = self.faults.iter().filter(|found| found.light.0 == index);
+            let of_light = self.causes.iter().filter(|found| found.light.0 == index);
             Some(json!({
                 "pixels": error.wrong(),
                 "kind": worst.kind.name(),
@@ -247,29 +236,18 @@ impl FrameDiagnosis {
 
 /// What may be wrong with the shadows of a light at `position`, from states and volumes alone.
 pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Suspicion> {
-    FrameFault::ALL.into_iter().filter_map(|fault| suspicion(fault, plan, light, position)).collect()
+    RULES.iter().filter_map(|rule| suspicion(rule.cause, plan, light, position)).collect()
 }
 
-/// What speaks for a fault in a plan; `None` where nothing does.
-pub fn suspicion(fault: FrameFault, plan: &FramePlan, light: LightId, position: DVec4) -> Option<Suspicion> {
-    let counting = Counting { plan, light };
-    let (evidence, mended) = match fault {
-        FrameFault::FarClip => counting.clipped(true),
-        FrameFault::NearPlaneCut => counting.clipped(false),
-        FrameFault::FiniteExtrusion => counting.finite(position),
-        FrameFault::FaceCulled => counting.culled(),
-        FrameFault::Clamped => counting.clamped(),
-        FrameFault::VolumesWriteDepth => counting.writes_depth(),
-        FrameFault::NotCleared => counting.not_cleared(),
-        FrameFault::MaskHides => counting.mask_hides(),
-        FrameFault::CapFighting => counting.cap_fighting(),
-        FrameFault::OpenVolume => counting.open(),
-    }?;
-    Some(Suspicion { fault, evidence, mended })
+/// What speaks for a cause in a plan; `None` where nothing does.
+pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<Suspicion> {
+    let rule = RULES.iter().find(|rule| rule.cause == cause)?;
+    let (evidence, mended) = (rule.look)(&CountingDraws { plan, light }, position)?;
+    Some(Suspicion { cause, evidence, mended })
 }
 
 /// The draws that count a light's volumes.
-struct Counting<'a> {
+struct CountingDraws<'a> {
     plan: &'a FramePlan,
     light: LightId,
 }
@@ -285,7 +263,7 @@ fn sides(raster: &RasterState) -> [bool; 2] {
     [faces.iter().any(|face| counts(face.depth_fail_op)), faces.iter().any(|face| counts(face.pass_op))]
 }
 
-impl Counting<'_> {
+impl CountingDraws<'_> {
     fn is_of_light(&self, pass: &Pass) -> bool {
         pass.light == Some(self.light) && self.plan.is_of_picture(pass)
     }

@@ -3,8 +3,8 @@
 use super::{RunFrame, Session, SessionError};
 use crate::accuracy::ErrorCounts;
 use crate::capture::{Capture, Image};
-use crate::diagnosis::Proof;
-use crate::diagnosis::recorded::{FaultFound, FrameDiagnosis, FrameFault, Suspicion, suspicion, suspicions};
+use crate::diagnosis::recorded::{FrameCauseFound, FrameDiagnosis, Suspicion, suspicion, suspicions};
+use crate::diagnosis::{Cause, Proof};
 use crate::gpu::Memory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
@@ -24,7 +24,7 @@ impl Session {
         let traced = self.traced_for(scene, capture, progress)?;
         let compare = |light: usize, shadow: &Arc<Image>| traced.compare(light, shadow);
         let mut lights = Vec::new();
-        let mut faults = Vec::new();
+        let mut causes = Vec::new();
         let again = self.run_again(plan, capture)?;
         let mut wrong_again = 0;
         for (index, light) in capture.lights.iter().enumerate() {
@@ -51,60 +51,67 @@ impl Session {
                 _ => Proof::NotIt,
             };
             let mut of_light = Vec::new();
-            for Suspicion { fault, evidence, mended } in suspicions(plan, id, light.position) {
+            for Suspicion { cause, evidence, mended } in suspicions(plan, id, light.position) {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
                 let pixels_left = judge(self, &mended)?;
                 let proof = proof_of(pixels_left);
-                of_light.push(FaultFound { fault, light: id, evidence, proof, pixels_left, together_with: Vec::new() });
+                of_light.push(FrameCauseFound {
+                    cause,
+                    light: id,
+                    evidence,
+                    proof,
+                    pixels_left,
+                    together_with: Vec::new(),
+                });
             }
             if wrong > 0 && of_light.iter().all(|found| found.proof != Proof::Proven) {
                 of_light.extend(self.together(plan, (id, light.position), &of_light, &mut judge, proof_of)?);
             }
-            faults.extend(of_light);
+            causes.extend(of_light);
         }
-        faults.sort_by_key(|found| Proof::ALL.iter().position(|proof| *proof == found.proof));
+        causes.sort_by_key(|found| Proof::ALL.iter().position(|proof| *proof == found.proof));
         let named = |is_meant: &dyn Fn(&Object) -> bool| {
             scene.objects.iter().filter(|object| is_meant(object)).map(|object| object.name.clone()).collect()
         };
         Ok(FrameDiagnosis {
             scene: capture.scene.clone(),
             lights,
-            faults,
+            causes,
             wrong_again,
             silent: named(&|object| object.visible && !object.casts),
             unseen: named(&|object| !object.visible),
         })
     }
 
-    /// The first fault that takes some of the wrong pixels away, and with it, one by one, whatever takes most of the rest
+    /// The first cause that takes some of the wrong pixels away, and with it, one by one, whatever takes most of the rest
     /// away; `None` where nothing helps it.
     fn together(
         &mut self,
         plan: &FramePlan,
         (light, position): (LightId, DVec4),
-        found: &[FaultFound],
+        found: &[FrameCauseFound],
         judge: &mut impl FnMut(&mut Session, &FramePlan) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,
-    ) -> Result<Option<FaultFound>, SessionError> {
+    ) -> Result<Option<FrameCauseFound>, SessionError> {
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
-        let without = |fault, plan: &FramePlan| suspicion(fault, plan, light, position);
-        let Some(Suspicion { mut mended, .. }) = without(first.fault, plan) else { return Ok(None) };
+        let without = |cause, plan: &FramePlan| suspicion(cause, plan, light, position);
+        let Some(Suspicion { mut mended, .. }) = without(first.cause, plan) else { return Ok(None) };
         let mut joined = first.clone();
         loop {
             let mut best: Option<(u64, Suspicion)> = None;
-            let is_in = |fault: FrameFault| fault == first.fault || joined.together_with.contains(&fault);
-            for fault in found.iter().map(|one| one.fault).filter(|fault| !is_in(*fault)) {
-                let Some(found) = without(fault, &mended) else { continue };
+            let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
+            for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
+                let Some(found) = without(cause, &mended) else { continue };
                 let left = judge(self, &found.mended)?;
                 if left < best.as_ref().map_or(joined.pixels_left, |(best, _)| *best) {
                     best = Some((left, found));
                 }
             }
-            let Some((left, Suspicion { fault, evidence, mended: plan })) = best else { break };
+            let Some((left, Suspicion { cause, evidence, mended: plan })) = best else { break };
             (joined.pixels_left, joined.proof, mended) = (left, proof_of(left), plan);
-            joined.together_with.push(fault);
+            joined.together_with.push(cause);
             joined.evidence = format!("{}; {evidence}", joined.evidence);
         }
         Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))

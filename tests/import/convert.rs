@@ -7,8 +7,7 @@ use glam::{DQuat, DVec3};
 use std::sync::Arc;
 use stencilscope::capture::disk::{Contents, read_whole, write};
 use stencilscope::capture::{Capture, Differs};
-use stencilscope::diagnosis::Proof;
-use stencilscope::diagnosis::recorded::FrameFault;
+use stencilscope::diagnosis::{Cause, Proof};
 use stencilscope::import::{Converted, RawFrame, RawKind, convert, read};
 use stencilscope::plan::{Blob, DecidedBy, FramePlan, LightId, RasterState, Side, StartContent, lint};
 use stencilscope::progress::Progress;
@@ -193,36 +192,34 @@ fn volumes(plan: &mut FramePlan) -> impl Iterator<Item = &mut RasterState> {
 #[test]
 fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
     let mut session = session();
-    let mut proven = |name: &str, fault: FrameFault, change: &dyn Fn(&mut FramePlan)| {
+    let mut proven = |name: &str, cause: Cause, change: &dyn Fn(&mut FramePlan)| {
         let frame = provoked(&mut session, name, change);
         let diagnosis = session.diagnose_recorded(&frame, &Progress::default()).expect("a diagnosis");
-        assert!(diagnosis.wrong() > 50, "{}: {}", fault.name(), diagnosis.to_text());
-        let first = diagnosis.faults.first().expect("a fault");
-        assert_eq!((first.fault, first.proof), (fault, Proof::Proven), "{}", diagnosis.to_text());
-        assert!(diagnosis.to_json().expect("JSON").contains(fault.name()));
+        assert!(diagnosis.wrong() > 50, "{}: {}", cause.name(), diagnosis.to_text());
+        let first = diagnosis.causes.first().expect("a cause");
+        assert_eq!((first.cause, first.proof), (cause, Proof::Proven), "{}", diagnosis.to_text());
+        assert!(diagnosis.to_json().expect("JSON").contains(cause.name()));
     };
-    proven("ogre", FrameFault::FaceCulled, &|plan| {
-        volumes(plan).for_each(|raster| raster.cull = Some(wgpu::Face::Back))
-    });
-    proven("ogre", FrameFault::VolumesWriteDepth, &|plan| volumes(plan).for_each(|raster| raster.depth_write = true));
-    proven("ogre", FrameFault::MaskHides, &|plan| {
+    proven("ogre", Cause::FaceCulled, &|plan| volumes(plan).for_each(|raster| raster.cull = Some(wgpu::Face::Back)));
+    proven("ogre", Cause::VolumesWriteDepth, &|plan| volumes(plan).for_each(|raster| raster.depth_write = true));
+    proven("ogre", Cause::StencilMask, &|plan| {
         let draws = plan.passes.iter_mut().filter(|pass| pass.name == "light").flat_map(|pass| &mut pass.draws);
         draws.for_each(|draw| draw.raster.stencil.read_mask = 0xfe);
     });
-    proven("ogre", FrameFault::NotCleared, &|plan| {
+    proven("ogre", Cause::StencilNotCleared, &|plan| {
         let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
         volumes.depth_stencil.as_mut().expect("a target").clear_stencil = None;
         let texels = (plan.size[0] * plan.size[1]) as usize;
         let start = StartContent { depth: None, stencil: Some(Blob::new(vec![3; texels])) };
         plan.passes[0].recorded.as_mut().expect("recorded").start = Some(start);
     });
-    proven("ogre", FrameFault::Clamped, &|plan| {
+    proven("ogre", Cause::Clamped, &|plan| {
         for raster in volumes(plan) {
             raster.stencil.front.pass_op = wgpu::StencilOperation::DecrementClamp;
             raster.stencil.back.pass_op = wgpu::StencilOperation::IncrementClamp;
         }
     });
-    proven("own", FrameFault::CapFighting, &|plan| {
+    proven("own", Cause::CapFighting, &|plan| {
         let nearer = volumes(plan).filter(|raster| raster.depth_compare == wgpu::CompareFunction::Greater);
         nearer.for_each(|raster| raster.depth_compare = wgpu::CompareFunction::GreaterEqual);
     });
@@ -266,21 +263,21 @@ fn a_frame_that_its_program_drew_wrong_is_found_named_and_proven() {
     let mut session = session();
     let mut diagnosis = |name| session.diagnose_recorded(&frame_of(name), &Progress::default()).expect("a diagnosis");
     let short = diagnosis("ogre-short");
-    let first = short.faults.first().expect("a fault");
+    let first = short.causes.first().expect("a cause");
     assert!(short.wrong() > 500, "{}", short.to_text());
-    assert_eq!((first.fault, first.proof, first.pixels_left), (FrameFault::FiniteExtrusion, Proof::Proven, 0));
+    assert_eq!((first.cause, first.proof, first.pixels_left), (Cause::FiniteExtrusion, Proof::Proven, 0));
     // Its volumes are cut by the far plane, and where OGRE left a cap out of the box's they were open besides.
     let far = diagnosis("ogre-far");
-    let first = far.faults.first().expect("a fault");
-    assert_eq!((first.fault, first.proof), (FrameFault::FarClip, Proof::Proven), "{}", far.to_text());
-    assert_eq!((first.pixels_left, &first.together_with[..]), (0, &[FrameFault::OpenVolume][..]));
+    let first = far.causes.first().expect("a cause");
+    assert_eq!((first.cause, first.proof), (Cause::FarClip, Proof::Proven), "{}", far.to_text());
+    assert_eq!((first.pixels_left, &first.together_with[..]), (0, &[Cause::OpenVolume][..]));
     for said in
         ["far-clip and open-volume (light 1), proven: 0 pixels left", "; 84 edges of", "depth clamping", "both caps"]
     {
         assert!(far.to_text().contains(said), "{said}: {}", far.to_text());
     }
-    let alone = &far.faults[1];
-    assert!(alone.fault == FrameFault::FarClip && alone.pixels_left * 3 < far.wrong(), "{}", far.to_text());
+    let alone = &far.causes[1];
+    assert!(alone.cause == Cause::FarClip && alone.pixels_left * 3 < far.wrong(), "{}", far.to_text());
     // What lies beyond the far plane is in nobody's picture.
     let compared: u64 = far.lights.iter().map(|(error, _)| error.compared).sum();
     assert!(compared < 76_800 && far.lights.iter().all(|(error, _)| error.wrong_surface == 0), "{}", far.to_text());

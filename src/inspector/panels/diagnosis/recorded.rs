@@ -40,11 +40,11 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
     ui.add_space(4.0);
     theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
-    for fault in diagnosis.faults.iter().filter(|fault| fault.proof != Proof::NotIt) {
+    for cause in diagnosis.causes.iter().filter(|cause| cause.proof != Proof::NotIt) {
         ui.add_space(4.0);
-        ui.add(egui::Label::new(RichText::new(fault.title()).strong()).wrap());
-        ui.add(egui::Label::new(format!("{}.", fault.evidence)).wrap());
-        ui.add(egui::Label::new(theme::note(fault.meaning())).wrap());
+        ui.add(egui::Label::new(RichText::new(cause.title()).strong()).wrap());
+        ui.add(egui::Label::new(format!("{}.", cause.evidence)).wrap());
+        ui.add(egui::Label::new(theme::note(cause.meaning())).wrap());
     }
     for (names, what) in [
         (&diagnosis.silent, "Taken to cast no shadow, as no volume begins at its corners"),
