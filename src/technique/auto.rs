@@ -290,20 +290,19 @@ impl Decides for Questions {
         decided
     }
 
-    fn held_by_parts(&self, frame: &mut Frame, index: usize) -> Vec<bool> {
+    fn held_by_parts(&self, frame: &mut Frame, index: usize) -> (Vec<bool>, Option<LeftOut>) {
         if !frame.common.allows(Decision::Umbra) {
-            return Vec::new();
+            return (Vec::new(), None);
         }
         let placed = &frame.placed[index];
         let mesh = &placed.object.mesh;
         let connectivity = frame.job.cache.connectivity(mesh);
         let held = umbra::held_by_parts(&placed.world, mesh.triangles(), &connectivity, self.position);
-        if !held.is_empty() {
-            let count = held.iter().filter(|is_held| **is_held).count();
-            let because = "another part of it holds them in its umbra";
-            frame.plan.left_out.push(LeftOut::counted(Decision::Umbra, count as u64, &placed.object.name, because));
-        }
-        held
+        let count = held.iter().filter(|is_held| **is_held).count() as u64;
+        let because = "another part of it holds them in its umbra";
+        let left_out = LeftOut::counted(Decision::Umbra, count, &placed.object.name, because);
+        let is_needed = !held.is_empty();
+        (held, is_needed.then_some(left_out))
     }
 
     fn may_overflow(&self, casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {

@@ -16,6 +16,7 @@
 //! pass what faces away from it (`shown`); and z-fail draws no volume of a caster behind which nothing receives.
 
 mod counting;
+mod counting_purpose;
 mod drawn;
 mod extruded;
 mod eye_count;
@@ -29,11 +30,15 @@ use super::lesson::{Lesson, cited};
 use super::settings::{CountsBy, VolumeSettings, WhoCasts};
 use super::{Choice, PlanError, Technique, shown};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
-use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Part, Side, Visibility};
+use crate::plan::{
+    CountBits, CountOf, DecidedBy, Decision, Draw, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Side,
+    Visibility,
+};
 use crate::scene::Scene;
 pub use counting::{Counting, Form};
-use counting::{Counts, NeededPart, Start, Step};
-use drawn::{Made, Volume};
+use counting::{NeededPart, Step};
+use counting_purpose::{Counts, Start};
+use drawn::{CasterVolume, Made, Volume};
 use glam::{DVec3, DVec4};
 
 /// What is said of z-pass.
@@ -120,9 +125,10 @@ pub trait Decides {
     /// How the volumes of these casters must be counted, indices into [`Frame::placed`]; as many.
     fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided>;
 
-    /// Of each triangle of a caster: another part of the caster holds its part in the umbra. Empty: none.
-    fn held_by_parts(&self, _frame: &mut Frame, _caster: usize) -> Vec<bool> {
-        Vec::new()
+    /// Of each triangle of a caster: another part of the caster holds its part in the umbra, and so it needs no volume.
+    /// Empty: none. With what is said of it.
+    fn held_by_parts(&self, _frame: &mut Frame, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
+        (Vec::new(), None)
     }
 
     /// Could a count of these casting triangles, world space, reach 256? Only of who has an answer to it.
@@ -246,28 +252,134 @@ pub fn finish<D: Decides>(
     frame.finish()
 }
 
-/// The passes of a light.
+/// The volumes of a light, then the passes that count them.
 fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decides: &impl Decides) {
-    let (volumes, may_overflow) = volumes(frame, light, settings, decides);
-    let usual = decides.usual();
-    let counted = counted_by(&volumes, usual);
-    let side = counted.map_or(Side::AsNeeded, Counting::side);
+    let LightVolumes { volumes, meshes, left_out } = volumes_of(frame, light, settings, decides);
+    frame.plan.meshes.extend(meshes);
+    frame.plan.left_out.extend(left_out);
+    write_passes(frame, light, settings, decides, &volumes);
+}
+
+/// What a light's volumes add to a plan.
+struct LightVolumes {
+    volumes: Vec<Volume>,
+    /// One for each volume; they follow the meshes that the plan has.
+    meshes: Vec<DrawMesh>,
+    left_out: Vec<LeftOut>,
+}
+
+/// Every volume that a light needs. It asks the frame's cache of geometry, and adds nothing to the plan.
+fn volumes_of(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decides: &impl Decides) -> LightVolumes {
+    let (by_vertex_shader, cannot) = extruded::serves(frame, light, settings);
+    let mut all = LightVolumes { volumes: Vec::new(), meshes: Vec::new(), left_out: cannot.into_iter().collect() };
+    let placed = frame.placed.iter().enumerate();
+    let casting = placed.filter(|(_, placed)| placed.object.casts && !placed.object.mesh.triangles().is_empty());
+    let casters: Vec<usize> = casting.map(|(index, _)| index).collect();
+    let decisions = decides.forms(frame, &casters);
+    debug_assert_eq!(decisions.len(), casters.len());
+    for (index, Decided { form, left_out }) in casters.into_iter().zip(decisions) {
+        all.left_out.extend(left_out);
+        let Some(form) = form else { continue };
+        let (casters, because) = who_casts(frame, light, index, settings, by_vertex_shader);
+        let (hidden, because_hidden) = decides.held_by_parts(frame, index);
+        all.left_out.extend(because.into_iter().chain(because_hidden));
+        let of = CasterVolume { light, index, casters, hidden: &hidden, form };
+        let made = match by_vertex_shader && hidden.is_empty() && !form.ends_on_plane() {
+            true => Ok(extruded::make(frame, &of)),
+            false => drawn::make(frame, &of, settings),
+        };
+        let Made { mesh, casting, needed, begins_with, left_out } = match made {
+            Ok(made) => made,
+            Err(left_out) => {
+                all.left_out.push(left_out);
+                continue;
+            }
+        };
+        all.left_out.extend(left_out);
+        let is_drawn = |part: &NeededPart| match part.part {
+            Part::LightCap => settings.caps[0],
+            Part::DarkCap => settings.caps[1],
+            Part::Caps => settings.caps != [false; 2],
+            _ => true,
+        };
+        let (needed, lacking): (Vec<_>, Vec<_>) =
+            needed.into_iter().filter(|part| !part.triangles.is_empty()).partition(is_drawn);
+        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
+        let is_body = settings.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
+        all.volumes.push(Volume {
+            object: index,
+            caster: frame.placed[index].object.name.clone(),
+            counting: form.counting,
+            is_body,
+            darkens_nothing: !is_body && !casters::can_darken(frame, index, light, Darkened::All),
+            mesh: MeshId(frame.plan.meshes.len() + all.meshes.len()),
+            casting,
+            needed,
+            lacks_caps,
+            begins_with,
+        });
+        all.meshes.push(mesh);
+    }
+    all
+}
+
+/// The passes that count a light's volumes, and those that read the count.
+fn write_passes(
+    frame: &mut Frame,
+    light: LightId,
+    settings: &VolumeSettings,
+    decides: &impl Decides,
+    volumes: &[Volume],
+) {
+    let position = frame.light_position(light);
+    let may_overflow =
+        decides.may_overflow(&mut volumes.iter().flat_map(|volume| volume.casting_triangles(frame, position)));
+    if may_overflow {
+        let because = "a ray of it may meet more than 255 casting triangles: a float counts them";
+        frame.leave_out(Decision::EightBits, light.name(), because);
+    }
     let in_float = settings.counts_in_float || may_overflow;
-    frame.plan.lights[light.0].decided_by =
-        if in_float { DecidedBy::FloatCount { side } } else { DecidedBy::StencilCount { side } };
-    frame.plan.lights[light.0].count_of = what_counts(&volumes);
+    let usual = decides.usual();
+    let by = counted_by(volumes, usual);
+    let side = by.map_or(Side::AsNeeded, Counting::side);
+    let of_light = &mut frame.plan.lights[light.0];
+    of_light.decided_by = if in_float { DecidedBy::FloatCount { side } } else { DecidedBy::StencilCount { side } };
+    of_light.count_of = what_counts(volumes);
     if in_float {
-        count_in_float(frame, light, usual, settings, &volumes);
-        return;
+        frame.add_count(light);
+        if settings.two_pass || settings.operations != CountsBy::Wrapping {
+            let because = "a float target adds and takes away in one draw, and has no limits to stop at";
+            frame.leave_out(Decision::TwoPasses, light.name(), because);
+        }
     }
     if usual == Counting::InFrontPlus {
-        near_count::pass(frame, light, settings, &volumes);
+        near_count::pass(frame, light, settings, volumes);
     }
-    let (begins_at, start) = begin(frame, light, settings, &volumes);
-    let counts = told(frame, light, settings, &volumes, (counted, start));
+    let (begins_at, start) = begin(frame, light, settings, volumes);
+    let camera = &frame.job.scene.camera;
+    let counts = Counts {
+        by,
+        light,
+        options: settings,
+        start,
+        chooses_side: frame.job.choice.technique() == Technique::Auto,
+        place: camera.counting_place_name(),
+        is_parallel: camera.is_parallel(),
+        lacks: [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap])),
+    };
+    if in_float {
+        count_in_float(frame, &counts, begins_at, volumes);
+    } else {
+        count_in_stencil(frame, &counts, begins_at, volumes, decides.keeps_empty_pass());
+    }
+}
+
+/// Counts in eight bits of stencil, and lets the light pass test them.
+fn count_in_stencil(frame: &mut Frame, counts: &Counts, begins_at: u32, volumes: &[Volume], keeps_empty_pass: bool) {
+    let (light, settings) = (counts.light, counts.options);
     for (index, step) in Step::all(settings).iter().enumerate() {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
-        if draws.is_empty() && begins_at == 0 && !decides.keeps_empty_pass() {
+        if draws.is_empty() && begins_at == 0 && !keeps_empty_pass {
             frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
             continue;
         }
@@ -285,6 +397,17 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
          Everywhere else the surface is inside a shadow volume and stays dark."
     );
     frame.light_pass(light, &purpose, &Drawn::light_once_where_zero(mask));
+}
+
+/// Counts in a float target: signed, and right beyond eight bits. It adds and takes away in one draw, and stops nowhere.
+fn count_in_float(frame: &mut Frame, counts: &Counts, begins_at: u32, volumes: &[Volume]) {
+    let (light, step) = (counts.light, Step::BothFaces);
+    let draws = volumes.iter().flat_map(|volume| volume.float_draws(counts.options)).collect();
+    frame.count_pass(begins_at, light, step.name(), &counts.purpose(step), draws);
+    frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
+    let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
+                   stays dark.";
+    frame.light_pass(light, purpose, &frame.light_by(Visibility::Count));
 }
 
 /// What a light's count begins at, and why where that is said.
@@ -318,105 +441,6 @@ fn counted_by(volumes: &[Volume], usual: Counting) -> Option<Counting> {
     volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
-/// What is told of how these are counted, and from what.
-fn told<'a>(
-    frame: &Frame,
-    light: LightId,
-    options: &'a VolumeSettings,
-    volumes: &[Volume],
-    (by, start): (Option<Counting>, Option<Start>),
-) -> Counts<'a> {
-    let chooses_side = frame.job.choice.technique() == Technique::Auto;
-    let lacks = [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap]));
-    let camera = &frame.job.scene.camera;
-    let (place, is_parallel) = (camera.counting_place_name(), camera.is_parallel());
-    Counts { by, light, options, start, chooses_side, place, is_parallel, lacks }
-}
-
-/// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one
-/// draw, and stops nowhere.
-fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options: &VolumeSettings, volumes: &[Volume]) {
-    frame.add_count(light);
-    if options.two_pass || options.operations != CountsBy::Wrapping {
-        let because = "a float target adds and takes away in one draw, and has no limits to stop at";
-        frame.leave_out(Decision::TwoPasses, light.name(), because);
-    }
-    if counting == Counting::InFrontPlus {
-        near_count::pass(frame, light, options, volumes);
-    }
-    let draws = volumes.iter().flat_map(|volume| volume.float_draws(options)).collect();
-    let (begins_at, start) = begin(frame, light, options, volumes);
-    let counts = told(frame, light, options, volumes, (counted_by(volumes, counting), start));
-    let step = Step::BothFaces;
-    frame.count_pass(begins_at, light, step.name(), &counts.purpose(step), draws);
-    frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
-    let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
-                   stays dark.";
-    frame.light_pass(light, purpose, &frame.light_by(Visibility::Count));
-}
-
-/// All volumes of a light, and whether they may count beyond eight bits although nobody asked for that.
-fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides: &impl Decides) -> (Vec<Volume>, bool) {
-    let mut volumes = Vec::new();
-    let (position, by_vertex_shader) = (frame.light_position(light), extruded::serves(frame, light, options));
-    let placed = frame.placed.iter().enumerate();
-    let casting = placed.filter(|(_, placed)| placed.object.casts && !placed.object.mesh.triangles().is_empty());
-    let casters: Vec<usize> = casting.map(|(index, _)| index).collect();
-    let forms = decides.forms(frame, &casters);
-    debug_assert_eq!(forms.len(), casters.len());
-    for (index, Decided { form, left_out }) in casters.into_iter().zip(forms) {
-        let object = frame.placed[index].object;
-        frame.plan.left_out.extend(left_out);
-        let Some(form) = form else { continue };
-        let casters = who_casts(frame, light, index, options, by_vertex_shader);
-        let held = decides.held_by_parts(frame, index);
-        let made = match by_vertex_shader && held.is_empty() && !form.ends_on_plane() {
-            true => Ok(extruded::make(frame, light, index, casters, form)),
-            false => drawn::make(frame, light, index, (casters, &held), (form, options)),
-        };
-        let Made { mesh, casting, needed, begins_with } = match made {
-            Ok(made) => made,
-            Err(left_out) => {
-                frame.plan.left_out.push(left_out);
-                continue;
-            }
-        };
-        let is_drawn = |part: &NeededPart| match part.part {
-            Part::LightCap => options.caps[0],
-            Part::DarkCap => options.caps[1],
-            Part::Caps => options.caps != [false; 2],
-            _ => true,
-        };
-        let (needed, lacking): (Vec<_>, Vec<_>) =
-            needed.into_iter().filter(|part| !part.triangles.is_empty()).partition(is_drawn);
-        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
-        let mesh = frame.add_mesh(mesh);
-        let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
-        let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);
-        let (object, caster, counting) = (index, object.name.clone(), form.counting);
-        volumes.push(Volume {
-            object,
-            caster,
-            counting,
-            is_body,
-            darkens_nothing,
-            mesh,
-            casting,
-            needed,
-            lacks_caps,
-            begins_with,
-        });
-    }
-    let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame, position));
-    let may_overflow = decides.may_overflow(&mut casting);
-    drop(casting);
-    if may_overflow {
-        let because = "a ray of it may meet more than 255 casting triangles: a float counts them";
-        frame.leave_out(Decision::EightBits, light.name(), because);
-    }
-    (volumes, may_overflow)
-}
-
 /// Which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no volumes.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
     let who = choice.volumes().map_or(WhoCasts::Always(Casters::All), |settings| settings.casters);
@@ -434,9 +458,9 @@ fn who_casts(
     index: usize,
     options: &VolumeSettings,
     by_vertex_shader: bool,
-) -> Casters {
+) -> (Casters, Option<LeftOut>) {
     if let WhoCasts::Always(casters) = options.casters {
-        return casters;
+        return (casters, None);
     }
     let (position, placed) = (frame.light_position(light), &frame.placed[index]);
     let object = placed.object;
@@ -444,19 +468,17 @@ fn who_casts(
     let name = light.name();
     match frame.job.cache.light_facing_suffices(caster, position) {
         // They are its dark cap there.
-        Ok(()) if by_vertex_shader => Casters::LightFacing,
+        Ok(()) if by_vertex_shader => (Casters::LightFacing, None),
         Ok(()) => {
             let because = format!(
                 "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \
                  {name} is outside it; the triangles that face the light cast the same shadow alone"
             );
-            frame.leave_out(Decision::AwayTriangles, &object.name, because);
-            Casters::LightFacing
+            (Casters::LightFacing, Some(LeftOut::new(Decision::AwayTriangles, &object.name, because)))
         }
         Err(doubt) => {
             let because = format!("not for {name}: {doubt}; so every triangle casts");
-            frame.leave_out(Decision::LightFacing, &object.name, because);
-            Casters::All
+            (Casters::All, Some(LeftOut::new(Decision::LightFacing, &object.name, because)))
         }
     }
 }

@@ -6,7 +6,6 @@ use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, Fan, Volume
 use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
 use crate::plan::{Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState};
-use crate::scene::Object;
 use crate::technique::casters::{self, Darkened};
 use crate::technique::frame::Frame;
 use crate::technique::settings::VolumeSettings;
@@ -60,6 +59,21 @@ pub struct Made {
     pub needed: Vec<NeededPart>,
     /// How many of the count begin at the far end, where no dark cap is drawn for it.
     pub begins_with: u32,
+    /// What it does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A volume that is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct CasterVolume<'a> {
+    pub light: LightId,
+    /// Its caster, an index into [`Frame::placed`].
+    pub index: usize,
+    /// Which of the caster's triangles cast.
+    pub casters: Casters,
+    /// By triangle: another part of the caster holds its part in the umbra. Empty: none.
+    pub hidden: &'a [bool],
+    pub form: Form,
 }
 
 impl Volume {
@@ -136,17 +150,11 @@ impl Volume {
 ///
 /// # Errors
 /// Why there is none.
-pub fn make(
-    frame: &mut Frame,
-    light: LightId,
-    index: usize,
-    (casters, held): (Casters, &[bool]),
-    (form, options): (Form, &VolumeSettings),
-) -> Result<Made, LeftOut> {
-    let (mesh, parts, far_end) = outlined(frame, light, index, (casters, held), (form.extrusion, options));
-    let object = frame.placed[index].object;
+pub fn make(frame: &mut Frame, of: &CasterVolume, options: &VolumeSettings) -> Result<Made, LeftOut> {
+    let (mesh, parts, far_end) = outlined(frame, of, options);
+    let object = frame.placed[of.index].object;
     if parts.light_cap_turned.end == 0 {
-        let because = match casters {
+        let because = match of.casters {
             Casters::All => "every triangle is edge-on to the light",
             Casters::LightFacing => "no triangle faces the light",
             Casters::LightBackFacing => "no triangle faces away from the light",
@@ -154,22 +162,19 @@ pub fn make(
         return Err(LeftOut::new(Decision::NothingCasts, &object.name, because));
     }
     // A bias of sides that hug it is a few steps, and rounding may be more.
-    if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, index, light, Darkened::All) {
+    if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, of.index, of.light, Darkened::All) {
         let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
         return Err(LeftOut::new(Decision::Caster, &object.name, because));
     }
-    let (needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps[1], far_end));
-    Ok(Made { mesh, casting: Casting::Runs([parts.light_cap, parts.light_cap_turned]), needed, begins_with })
+    let casting = Casting::Runs([parts.light_cap.clone(), parts.light_cap_turned.clone()]);
+    let mut made = Made { mesh, casting, needed: Vec::new(), begins_with: 0, left_out: Vec::new() };
+    made.add_parts(of.form, &parts, far_end, options.caps[1], &object.name);
+    Ok(made)
 }
 
 /// The mesh of a volume, and which of its triangles are what.
-fn outlined(
-    frame: &mut Frame,
-    light: LightId,
-    index: usize,
-    (casters, held): (Casters, &[bool]),
-    (extrusion, options): (Extrusion, &VolumeSettings),
-) -> (DrawMesh, VolumeParts, Option<FarEnd>) {
+fn outlined(frame: &mut Frame, of: &CasterVolume, options: &VolumeSettings) -> (DrawMesh, VolumeParts, Option<FarEnd>) {
+    let CasterVolume { light, index, casters, hidden: held, form: Form { extrusion, .. } } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
@@ -204,53 +209,55 @@ fn outlined(
     (mesh, parts, far_end.map(|(_, far_end)| far_end))
 }
 
-/// The parts that count in a form; what is left out is said, but of dark caps that are not drawn anyway.
-fn needed_parts(
-    frame: &mut Frame,
-    form: Form,
-    parts: &VolumeParts,
-    caster: &Object,
-    (draws_dark_caps, far_end): (bool, Option<FarEnd>),
-) -> (Vec<NeededPart>, u32) {
-    let run = NeededPart::new;
-    let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
-    let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
-    if form.light_cap {
-        needed.push(run(Part::LightCap, false, &parts.light_cap));
-        needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
-    }
-    if !form.dark_cap {
-        return (needed, 0);
-    }
-    if let (DarkCap::Fan(..), Some(far_end), true) = (&parts.dark_cap, far_end, draws_dark_caps) {
-        frame.leave_out(Decision::DarkCap, &caster.name, far_end.because());
-        return (needed, far_end.met);
-    }
-    match &parts.dark_cap {
-        DarkCap::None => {
-            let beside = far_end.map_or_else(String::new, FarEnd::beside);
-            let because = format!("a directional light's volume closes in one point at infinity{beside}");
-            frame.leave_out(Decision::DarkCap, &caster.name, because);
+impl Made {
+    /// Adds the parts that count in a form. What is left out is said, but of dark caps that are not drawn anyway.
+    fn add_parts(
+        &mut self,
+        form: Form,
+        parts: &VolumeParts,
+        far_end: Option<FarEnd>,
+        draws_dark_caps: bool,
+        caster: &str,
+    ) {
+        let run = NeededPart::new;
+        let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
+        self.needed.extend([run(Part::Side, false, &parts.sides), hugging]);
+        if form.light_cap {
+            self.needed.push(run(Part::LightCap, false, &parts.light_cap));
+            self.needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
         }
-        DarkCap::Fan(triangles, _) => {
-            needed.push(run(Part::DarkCap, false, triangles));
-            let cap = parts.light_cap.len() + parts.light_cap_turned.len();
-            if triangles.len() < cap && draws_dark_caps {
-                let because = format!(
-                    "at infinity only its outline matters: {} triangles close what {cap} would",
-                    triangles.len()
-                );
-                let inner = (cap - triangles.len()) as u64;
-                frame.plan.left_out.push(LeftOut::counted(Decision::InnerDarkCap, inner, &caster.name, because));
+        if !form.dark_cap {
+            return;
+        }
+        match (&parts.dark_cap, far_end) {
+            (DarkCap::Fan(..), Some(far_end)) if draws_dark_caps => {
+                self.left_out.push(LeftOut::new(Decision::DarkCap, caster, far_end.because()));
+                self.begins_with = far_end.met;
+            }
+            (DarkCap::None, far_end) => {
+                let beside = far_end.map_or_else(String::new, FarEnd::beside);
+                let because = format!("a directional light's volume closes in one point at infinity{beside}");
+                self.left_out.push(LeftOut::new(Decision::DarkCap, caster, because));
+            }
+            (DarkCap::Fan(triangles, _), _) => {
+                self.needed.push(run(Part::DarkCap, false, triangles));
+                let cap = parts.light_cap.len() + parts.light_cap_turned.len();
+                if triangles.len() < cap && draws_dark_caps {
+                    let because = format!(
+                        "at infinity only its outline matters: {} triangles close what {cap} would",
+                        triangles.len()
+                    );
+                    let inner = (cap - triangles.len()) as u64;
+                    self.left_out.push(LeftOut::counted(Decision::InnerDarkCap, inner, caster, because));
+                }
+            }
+            (DarkCap::Carried(base), _) => {
+                let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
+                self.needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
+                self.needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
             }
         }
-        DarkCap::Carried(base) => {
-            let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
-            needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
-            needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
-        }
     }
-    (needed, 0)
 }
 
 impl FarEnd {

@@ -9,10 +9,10 @@
 //! closes all the same, and the error is that of an edge beside its place. Sides that hug their surface are no run of
 //! their own here, so nothing keeps their depths apart from it.
 
-use super::counting::{Form, NeededPart};
-use super::drawn::{Casting, Made};
+use super::counting::NeededPart;
+use super::drawn::{CasterVolume, Casting, Made};
 use crate::geometry::{Caster, Casters, Extruded, ExtrudedForm, ExtrudedVolume, Extruder, Extrusion};
-use crate::plan::{Decision, DrawMesh, LightId, Part};
+use crate::plan::{Decision, DrawMesh, LeftOut, LightId, Part};
 use crate::scene::Scene;
 use crate::technique::frame::Frame;
 use crate::technique::settings::VolumeSettings;
@@ -23,19 +23,18 @@ pub fn can_serve(options: &VolumeSettings, scene: &Scene) -> bool {
     options.by_vertex_shader && !ends_in_a_point
 }
 
-/// The same for a light; told where it was asked for and can't.
-pub fn serves(frame: &mut Frame, light: LightId, options: &VolumeSettings) -> bool {
+/// The same for a light, with the reason where it was asked for and can't.
+pub fn serves(frame: &Frame, light: LightId, options: &VolumeSettings) -> (bool, Option<LeftOut>) {
     let can = can_serve(options, frame.job.scene);
-    if options.by_vertex_shader && !can {
-        let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
-                       and that no side is seen edge-on, is found on the CPU";
-        frame.leave_out(Decision::VertexExtrusion, light.name(), because);
-    }
-    can
+    let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
+                   and that no side is seen edge-on, is found on the CPU";
+    let cannot = options.by_vertex_shader && !can;
+    (can, cannot.then(|| LeftOut::new(Decision::VertexExtrusion, light.name(), because)))
 }
 
 /// The volume of one caster.
-pub fn make(frame: &mut Frame, light: LightId, index: usize, casters: Casters, form: Form) -> Made {
+pub fn make(frame: &mut Frame, of: &CasterVolume) -> Made {
+    let CasterVolume { light, index, casters, form, .. } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
@@ -56,5 +55,6 @@ pub fn make(frame: &mut Frame, light: LightId, index: usize, casters: Casters, f
         casting: Casting::Picked(casters),
         needed,
         begins_with: 0,
+        left_out: Vec::new(),
     }
 }
