@@ -4,8 +4,10 @@
 //! program ─► crate::wrap   hands every call to the real wgpu; keeps a list beside while a frame is recorded
 //!              └► recorder.rs   which frame that is, and what becomes of it
 //!                   └► replay.rs     does the list draw by draw, and reads what each draw left
-//!                        ├ probe.rs      where a draw's vertices land: its shader, rewritten by rewrite.rs, writes it down
-//!                        ├ fragments.rs  which of its fragments its shader keeps, where it may discard some
+//!                        ├ probes.rs     does a draw once more to follow its vertices and fragments
+//!                        │  ├ vertices.rs   where its vertices land: its shader, rewritten by rewrite.rs, writes it down
+//!                        │  ├ fragments.rs  which of its fragments its shader keeps, where it may discard some
+//!                        │  └ probe.rs      the pipeline that such a shader runs in
 //!                        ├ states.rs     wgpu's states as a `RawFrame` has them
 //!                        └ readback.rs   textures and buffers as bytes
 //!                   └► RawFrame ─► import::convert ─► capture folder
@@ -37,11 +39,13 @@ pub mod example {
 mod error;
 mod fragments;
 mod probe;
+mod probes;
 mod readback;
 mod recorder;
 mod replay;
 mod rewrite;
 mod states;
+mod vertices;
 
 pub use error::RecordError;
 pub use recorder::{Cost, OfSeries, Recorded};

@@ -1,7 +1,7 @@
 //! Which frame is recorded, and what becomes of it.
 
 use super::RecordError;
-use super::probe::Probes;
+use super::probes::Probes;
 use super::replay::Replay;
 use crate::capture::disk::{self, Contents};
 use crate::import::{Converted, convert};

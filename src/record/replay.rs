@@ -1,7 +1,9 @@
 //! A recorded frame done draw by draw, with what each draw left read back.
 
-use super::probe::{Gpu, Landed, Probes, Room, accepted};
+use super::probe::{Gpu, accepted};
+use super::probes::{Probes, Room};
 use super::states::{self, PassState};
+use super::vertices::Landed;
 use super::{readback, rewrite};
 use crate::import::{
     Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture, pictures,

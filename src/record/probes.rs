@@ -1,0 +1,146 @@
+//! Where the vertices of draws land, and which fragments their shaders keep: draws are done once more, by pipelines that
+//! are made once for all of the program's that differ in nothing that counts here.
+
+use super::probe::{Gpu, Probe, accepted};
+use super::states::PassState;
+use super::vertices::{Landed, MOST_CORNERS, corners, direct, instances};
+use super::{fragments, vertices};
+use crate::wrap::Described;
+use crate::wrap::command::DrawCommand;
+use std::sync::Arc;
+
+/// More instances than are followed fragment by fragment: each is a draw.
+const MOST_INSTANCES: usize = 1 << 14;
+
+/// How many corners and kept fragments of a frame there is still memory for.
+#[derive(Debug)]
+pub struct Room {
+    pub corners: u64,
+    pub fragments: u64,
+}
+
+impl Default for Room {
+    /// Half a gigabyte each.
+    fn default() -> Room {
+        Room { corners: 1 << 25, fragments: 1 << 26 }
+    }
+}
+
+/// The pipelines that write logs.
+#[derive(Debug, Default)]
+pub struct Probes {
+    of_vertices: Made,
+    of_fragments: Made,
+}
+
+/// Pipelines of one kind: those of the program that differ in nothing that counts here share one.
+#[derive(Debug, Default)]
+struct Made(Vec<(Arc<Described>, MadeProbe)>);
+
+/// Why there is none, in words, is kept as well.
+type MadeProbe = Result<Arc<Probe>, &'static str>;
+
+impl Made {
+    fn get(
+        &mut self,
+        described: &Arc<Described>,
+        is_alike: impl Fn(&Described, &Described) -> bool,
+        make: impl FnOnce() -> Result<Probe, &'static str>,
+    ) -> MadeProbe {
+        if let Some((_, made)) = self.0.iter().find(|(of, _)| Arc::ptr_eq(of, described) || is_alike(of, described)) {
+            return made.clone();
+        }
+        let made = make().map(Arc::new);
+        self.0.push((described.clone(), made.clone()));
+        made
+    }
+}
+
+/// Have two pipelines the same vertices?
+fn have_same_vertices(one: &Described, other: &Described) -> bool {
+    let of = |of: &Described| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
+    let layout = |of: &Described| of.layout.as_ref().map(|layout| (layout.groups.clone(), layout.immediate_size));
+    of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && layout(one) == layout(other)
+}
+
+/// And the same fragments, before any test?
+fn have_same_fragments(one: &Described, other: &Described) -> bool {
+    let bias = |of: &Described| of.depth_stencil.as_ref().map(|state| state.bias);
+    let of = |of: &Described| (of.primitive, of.multisample, bias(of));
+    have_same_vertices(one, other) && of(one) == of(other) && one.fragment == other.fragment
+}
+
+/// Does what is not the program's: an error of it is not the program's either.
+fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, &'static str>) -> Result<T, &'static str> {
+    accepted(device, work).unwrap_or(Err("wgpu refuses to draw it once more"))
+}
+
+impl Probes {
+    /// Where the vertices of a draw land.
+    ///
+    /// # Errors
+    /// Why that can't be found, in words.
+    pub fn landed(
+        &mut self,
+        gpu: Gpu<'_>,
+        state: &PassState,
+        draw: &DrawCommand,
+        room: &mut Room,
+    ) -> Result<Landed, &'static str> {
+        let described = state.pipeline().ok_or("it has no pipeline")?;
+        let make = || guarded(gpu.device, || vertices::probe(gpu.device, described));
+        let probe = self.of_vertices.get(described, have_same_vertices, make)?;
+        let parts = direct(gpu, draw)?;
+        let mut all = Landed::default();
+        for part in &parts {
+            let corners = corners(gpu, state, described, part)?;
+            let all_corners = corners.len() as u64 * instances(part).len() as u64;
+            if all_corners > MOST_CORNERS || all_corners > room.corners {
+                return Err("it has more corners than are followed");
+            }
+            room.corners -= all_corners;
+            let log = guarded(gpu.device, || vertices::log(&probe, gpu, state, part, corners.len() as u64))?;
+            all.add(described, part, &corners, &log)?;
+        }
+        Ok(all)
+    }
+
+    /// Which fragments of a draw, whose triangles `landed`, its shader keeps, of a target of that size.
+    ///
+    /// # Errors
+    /// Why that can't be found, in words.
+    pub fn kept(
+        &mut self,
+        gpu: Gpu<'_>,
+        state: &PassState,
+        draw: &DrawCommand,
+        landed: &Landed,
+        size: [u32; 2],
+        room: &mut Room,
+    ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
+        let described = state.pipeline().ok_or("it has no pipeline")?;
+        let make = || guarded(gpu.device, || fragments::probe(gpu.device, described));
+        let probe = self.of_fragments.get(described, have_same_fragments, make)?;
+        let one_by_one = direct(gpu, draw)?.iter().flat_map(single).collect::<Vec<_>>();
+        let first: Vec<u32> = landed.instances.iter().map(|triangles| triangles.start as u32).collect();
+        let draws: Vec<_> = one_by_one.into_iter().zip(first).collect();
+        if draws.len() > MOST_INSTANCES {
+            return Err("it has more instances than are followed fragment by fragment");
+        }
+        let kept = guarded(gpu.device, || fragments::kept(&probe, gpu, state, &draws, size, room.fragments))?;
+        room.fragments -= kept.len() as u64;
+        Ok(kept)
+    }
+}
+
+/// A draw of each instance.
+fn single(draw: &DrawCommand) -> Vec<DrawCommand> {
+    let one = |instance: u32| match draw.clone() {
+        DrawCommand::Vertices { vertices, .. } => DrawCommand::Vertices { vertices, instances: instance..instance + 1 },
+        DrawCommand::Indexed { indices, base_vertex, .. } => {
+            DrawCommand::Indexed { indices, base_vertex, instances: instance..instance + 1 }
+        }
+        other => other,
+    };
+    instances(draw).map(one).collect()
+}

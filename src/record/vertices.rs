@@ -1,0 +1,221 @@
+//! Where a draw's vertices land: the draw is done once more into a target of one pixel that nobody looks at, by a shader
+//! that writes it down.
+
+use super::probe::{Gpu, Probe, ProbeParts, ProbeStage, begin, free_group, target};
+use super::readback;
+use super::rewrite::{self, HEAD, Logging, RECORD};
+use super::states::{PassState, topology};
+use crate::import::unroll;
+use crate::wrap::Described;
+use crate::wrap::command::DrawCommand;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// More corners than a draw is followed with.
+pub const MOST_CORNERS: u64 = 1 << 22;
+/// What a draw's vertices are and how they make triangles, as `RawDraw` has them.
+#[derive(Debug, Default)]
+pub struct Landed {
+    pub positions: Vec<[f32; 4]>,
+    pub triangles: Vec<[u32; 3]>,
+    pub instances: Vec<Range<usize>>,
+}
+
+/// The pipeline that notes where vertices land.
+pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'static str> {
+    if !device.features().contains(wgpu::Features::VERTEX_WRITABLE_STORAGE) {
+        return Err("vertex shaders can't write to storage on this GPU");
+    }
+    let module = described.vertex.source.module().ok_or("its vertex shader is in no language that is read")?;
+    let group = free_group(device, described, &[&module])?;
+    let Logging { module, entry_point, bindings } =
+        rewrite::vertex_log(&module, described.vertex.entry_point.as_deref(), group)?;
+    let primitive = wgpu::PrimitiveState {
+        topology: described.primitive.topology,
+        strip_index_format: described.primitive.strip_index_format,
+        ..wgpu::PrimitiveState::default()
+    };
+    let parts = ProbeParts {
+        vertex: ProbeStage::of(device, &described.vertex, module, Some(entry_point)),
+        fragment: None,
+        primitive,
+        bias: wgpu::DepthBiasState::default(),
+        compare: wgpu::CompareFunction::Never,
+        group,
+        log: vec![(wgpu::ShaderStages::VERTEX, false)],
+        bindings,
+    };
+    Ok(Probe::new(device, described, parts))
+}
+
+/// Each vertex of each instance, and where it lands.
+pub fn log(
+    probe: &Probe,
+    gpu: Gpu<'_>,
+    state: &PassState,
+    draw: &DrawCommand,
+    corners: u64,
+) -> Result<Log, &'static str> {
+    let Gpu { device, queue } = gpu;
+    let instances = instances(draw).len() as u64;
+    let room = corners * instances;
+    let size = HEAD + RECORD * room.max(1);
+    if size > device.limits().max_storage_buffer_binding_size {
+        return Err("it has more corners than are followed");
+    }
+    let log = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("stencilscope log"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    let view = target(device, [1, 1]);
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut pass = begin(&mut encoder, &view);
+    probe.set(device, &mut pass, state, |_| false);
+    probe.bind(device, &mut pass, &[log.as_entire_binding()]);
+    draw.encode(&mut pass);
+    drop(pass);
+    queue.submit([encoder.finish()]);
+    let bytes = readback::buffer(device, queue, &log, 0, size).ok_or("the GPU did not say where its vertices land")?;
+    Log::read(&bytes)
+}
+
+/// Positions by instance and vertex.
+pub struct Log(HashMap<(u32, u32), [f32; 4]>);
+
+impl Log {
+    fn read(bytes: &[u8]) -> Result<Log, &'static str> {
+        let (head, records) = bytes.split_at(HEAD as usize);
+        let word = |bytes: &[u8], at: usize| bytemuck::pod_read_unaligned::<u32>(&bytes[4 * at..4 * at + 4]);
+        let count = word(head, 0) as usize;
+        let records = records.chunks_exact(RECORD as usize);
+        if count > records.len() {
+            return Err("its vertex shader ran more often than it has corners");
+        }
+        let read = |record: &[u8]| {
+            ((word(record, 5), word(record, 4)), [0, 1, 2, 3].map(|at| f32::from_bits(word(record, at))))
+        };
+        Ok(Log(records.take(count).map(read).collect()))
+    }
+}
+
+impl Landed {
+    pub fn add(
+        &mut self,
+        described: &Described,
+        draw: &DrawCommand,
+        corners: &[Option<u32>],
+        Log(log): &Log,
+    ) -> Result<(), &'static str> {
+        for instance in instances(draw) {
+            let mut places: HashMap<u32, u32> = HashMap::new();
+            let mut place = |vertex: u32| -> Result<u32, &'static str> {
+                if let Some(place) = places.get(&vertex) {
+                    return Ok(*place);
+                }
+                let position = log.get(&(instance, vertex)).ok_or("the GPU did not run its shader for all vertices")?;
+                let place = self.positions.len() as u32;
+                self.positions.push(*position);
+                places.insert(vertex, place);
+                Ok(place)
+            };
+            let begin = self.triangles.len();
+            for triangle in unroll::triangles(topology(described), corners) {
+                let [a, b, c] = triangle.map(&mut place);
+                self.triangles.push([a?, b?, c?]);
+            }
+            self.instances.push(begin..self.triangles.len());
+        }
+        Ok(())
+    }
+}
+
+/// The instances of a direct draw.
+pub fn instances(draw: &DrawCommand) -> Range<u32> {
+    match draw {
+        DrawCommand::Vertices { instances, .. } | DrawCommand::Indexed { instances, .. } => instances.clone(),
+        _ => 0..0,
+    }
+}
+
+/// A draw whose numbers may be on the GPU as draws whose numbers are known, and of which none is empty.
+pub fn direct(gpu: Gpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static str> {
+    let words = |buffer: &wgpu::Buffer, offset: u64, count: u64| {
+        let bytes = readback::buffer(gpu.device, gpu.queue, buffer, offset, 4 * count);
+        let bytes = bytes.ok_or("its indirect buffer can't be read")?;
+        Ok::<Vec<u32>, &'static str>(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect())
+    };
+    let (buffer, offset, count, is_indexed) = match draw {
+        DrawCommand::Vertices { .. } | DrawCommand::Indexed { .. } => {
+            return Ok(Some(draw.clone()).into_iter().filter(draws_some).collect());
+        }
+        DrawCommand::Indirect { buffer, offset, is_indexed } => (buffer, *offset, 1, *is_indexed),
+        DrawCommand::Multi { buffer, offset, count, is_indexed } => (buffer, *offset, *count, *is_indexed),
+        DrawCommand::Counted { buffer, offset, count, count_offset, most, is_indexed } => {
+            let counted = words(count, *count_offset, 1)?[0];
+            (buffer, *offset, counted.min(*most), *is_indexed)
+        }
+        DrawCommand::MeshTasks(_) | DrawCommand::MeshTasksIndirect { .. } => {
+            return Err("mesh shaders are not followed");
+        }
+    };
+    let size = if is_indexed { 5 } else { 4 };
+    let words = words(buffer, offset, size * u64::from(count))?;
+    let part = |words: &[u32]| {
+        let range = |first: u32, count: u32| first..first.saturating_add(count);
+        match *words {
+            [indices, instances, first, base_vertex, first_instance] => DrawCommand::Indexed {
+                indices: range(first, indices),
+                base_vertex: base_vertex.cast_signed(),
+                instances: range(first_instance, instances),
+            },
+            [vertices, instances, first, first_instance] => {
+                DrawCommand::Vertices { vertices: range(first, vertices), instances: range(first_instance, instances) }
+            }
+            _ => DrawCommand::Vertices { vertices: 0..0, instances: 0..0 },
+        }
+    };
+    Ok(words.chunks_exact(size as usize).map(part).filter(draws_some).collect())
+}
+
+fn draws_some(draw: &DrawCommand) -> bool {
+    match draw {
+        DrawCommand::Vertices { vertices: corners, instances }
+        | DrawCommand::Indexed { indices: corners, instances, .. } => !corners.is_empty() && !instances.is_empty(),
+        _ => false,
+    }
+}
+
+/// The vertices of a direct draw in the order drawn, `None` where a strip starts again.
+pub fn corners(
+    gpu: Gpu<'_>,
+    state: &PassState,
+    described: &Described,
+    draw: &DrawCommand,
+) -> Result<Vec<Option<u32>>, &'static str> {
+    let (indices, base_vertex) = match draw {
+        DrawCommand::Indexed { indices, base_vertex, .. } => (indices, *base_vertex),
+        DrawCommand::Vertices { vertices, .. } if vertices.len() as u64 > MOST_CORNERS => {
+            return Err("it has more corners than are followed");
+        }
+        DrawCommand::Vertices { vertices, .. } => return Ok(vertices.clone().map(Some).collect()),
+        _ => return Ok(Vec::new()),
+    };
+    let (buffer, format, offset) = state.index_buffer().ok_or("it has no index buffer")?;
+    let size = format.byte_size() as u64;
+    let (from, bytes) = (offset + size * u64::from(indices.start), size * indices.len() as u64);
+    let bytes = readback::buffer(gpu.device, gpu.queue, buffer, from, bytes).ok_or("its index buffer can't be read")?;
+    let read: Vec<u32> = match format {
+        wgpu::IndexFormat::Uint16 => {
+            bytes.as_chunks::<2>().0.iter().map(|two| u32::from(u16::from_le_bytes(*two))).collect()
+        }
+        wgpu::IndexFormat::Uint32 => bytes.as_chunks::<4>().0.iter().map(|four| u32::from_le_bytes(*four)).collect(),
+    };
+    let restarts = described.primitive.strip_index_format.map(|format| match format {
+        wgpu::IndexFormat::Uint16 => u32::from(u16::MAX),
+        wgpu::IndexFormat::Uint32 => u32::MAX,
+    });
+    let corner = |index: u32| (Some(index) != restarts).then(|| index.wrapping_add_signed(base_vertex));
+    Ok(read.into_iter().map(corner).collect())
+}
