@@ -6,7 +6,6 @@
 //! removes the folder and ends its group itself.
 
 use super::error::ImportError;
-use super::renderdoc::{Options, Recording};
 use crate::progress::Progress;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read};
@@ -233,104 +232,4 @@ fn memory(process: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
-}
-
-/// What has ended the import of a file.
-pub fn import_error(ended: Ended, file: &Path, options: &Options) -> ImportError {
-    let file = file.to_owned();
-    let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
-    let reason = words.to_owned();
-    match kind {
-        "missing" => ImportError::NoFile { file, reason },
-        "corrupt" => ImportError::Corrupt { file, reason },
-        "newer" => ImportError::Version { file, reason },
-        "replay" => ImportError::Replay { file, reason, mend: replay_mend() },
-        "api" => ImportError::Api { file, api: reason },
-        "large" => ImportError::TooLarge { what: format!("more than {words} GiB") },
-        _ => common_error(ended, options),
-    }
-}
-
-/// What has ended the recording of a program.
-pub fn record_error(ended: Ended, recording: &Recording, options: &Options) -> ImportError {
-    let Some([kind, words]) = said(&ended) else {
-        return match ended {
-            // The script has a clock of its own, and did not get to look at it.
-            Ended::TooLong => never(recording, "RenderDoc does not answer"),
-            _ => common_error(ended, options),
-        };
-    };
-    let program = recording.program().to_owned();
-    match kind {
-        "program" => ImportError::NoProgram { program, reason: words.to_owned() },
-        "died" => {
-            let Ended::Said { last, .. } = &ended else { return common_error(ended, options) };
-            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
-            let how = if words.is_empty() { String::new() } else { format!(" {words}") };
-            ImportError::Died { program, how, frame: recording.frame, and_said, mend: died_mend() }
-        }
-        "never" => never(recording, words),
-        "unsupported" => {
-            let (api, reason) = words.split_once(' ').unwrap_or((words, ""));
-            ImportError::Unsupported { program, api: api.to_owned(), reason: reason.to_owned() }
-        }
-        _ => common_error(ended, options),
-    }
-}
-
-fn said(ended: &Ended) -> Option<[&str; 2]> {
-    match ended {
-        Ended::Said { kind, words, .. } => Some([kind, words]),
-        _ => None,
-    }
-}
-
-fn never(recording: &Recording, seen: &str) -> ImportError {
-    ImportError::NeverPresented {
-        program: recording.program().to_owned(),
-        frame: recording.frame,
-        seconds: recording.seconds,
-        seen: seen.to_owned(),
-        mend: match has_display() {
-            true => {
-                "ask for an earlier --frame or more --seconds, and name the program itself, not a script that starts it"
-            }
-            false => NO_DISPLAY,
-        },
-    }
-}
-
-fn common_error(ended: Ended, options: &Options) -> ImportError {
-    let gibibytes = options.most_memory >> 30;
-    match ended {
-        Ended::TooLong => ImportError::TooLong { seconds: options.seconds },
-        Ended::TooMuchMemory => ImportError::TooMuchMemory { gibibytes },
-        Ended::Cancelled => ImportError::Cancelled,
-        Ended::Said { kind, .. } if kind == "memory" => ImportError::TooMuchMemory { gibibytes },
-        Ended::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: options.python.clone() },
-        Ended::Said { kind, words, .. } if kind == "disk" => {
-            ImportError::Write { file: std::env::temp_dir(), source: std::io::Error::other(words) }
-        }
-        Ended::Said { words, .. } => ImportError::Script { last: words },
-        Ended::Silent { last, signal: Some(signal) } => {
-            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
-            ImportError::Crashed { signal, and_said }
-        }
-        Ended::Silent { last, .. } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
-        Ended::Silent { last, .. } => ImportError::Script { last },
-    }
-}
-
-const NO_DISPLAY: &str = "there is no display here: run stencilscope under `xvfb-run -a`";
-
-fn has_display() -> bool {
-    ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
-}
-
-fn replay_mend() -> &'static str {
-    if has_display() { "replay it on the machine that recorded it, or install mesa-vulkan-drivers" } else { NO_DISPLAY }
-}
-
-fn died_mend() -> &'static str {
-    if has_display() { "run it by itself first, or ask for an earlier --frame" } else { NO_DISPLAY }
 }

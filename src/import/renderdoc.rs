@@ -1,7 +1,7 @@
 //! RenderDoc's captures: its Python module in a process of its own takes a frame out of one, or records one first.
 
 use super::error::ImportError;
-use super::process::{self, Limits, Run};
+use super::process::{Ended, GRACE, Limits, Run};
 use super::{RawFrame, read};
 use crate::files::open_plain;
 use crate::progress::Progress;
@@ -66,20 +66,20 @@ pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<Raw
     let mut arguments = vec![file.as_os_str().to_owned()];
     arguments.extend((!options.pictures).then(|| "states".into()));
     let mut run = Run::start(&options.python, EXTRACT, &arguments, limits)?;
-    run.finish(progress).map_err(|ended| process::import_error(ended, file, options))?;
+    run.finish(progress).map_err(|ended| import_error(ended, file, options))?;
     read(run.folder())
 }
 
 /// Runs a program until it has shown a frame, ends it, and reads that frame.
 pub fn record(recording: &Recording, options: &Options, progress: &Progress) -> Result<RawFrame, ImportError> {
     // The program has its own time; what RenderDoc needs to start and to write comes on top.
-    let time = Duration::from_secs(recording.seconds.saturating_add(process::GRACE));
+    let time = Duration::from_secs(recording.seconds.saturating_add(GRACE));
     let limits = Limits { time, memory: u64::MAX };
     let mut arguments = vec![recording.frame.to_string(), recording.seconds.to_string()];
     arguments.extend(recording.command.iter().cloned());
     let arguments: Vec<_> = arguments.into_iter().map(Into::into).collect();
     let mut run = Run::start(&options.python, LAUNCH, &arguments, limits)?;
-    let capture = run.finish(&Progress::default()).map_err(|ended| process::record_error(ended, recording, options))?;
+    let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, options))?;
     let capture = PathBuf::from(capture);
     if let Some(keep) = &recording.keep {
         let failed = |source| ImportError::Write { file: keep.clone(), source };
@@ -87,4 +87,104 @@ pub fn record(recording: &Recording, options: &Options, progress: &Progress) -> 
     }
     let frame = import(&capture, options, progress)?;
     Ok(RawFrame { program: Some(recording.program().to_owned()), ..frame })
+}
+
+/// What has ended the import of a file.
+fn import_error(ended: Ended, file: &Path, options: &Options) -> ImportError {
+    let file = file.to_owned();
+    let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
+    let reason = words.to_owned();
+    match kind {
+        "missing" => ImportError::NoFile { file, reason },
+        "corrupt" => ImportError::Corrupt { file, reason },
+        "newer" => ImportError::Version { file, reason },
+        "replay" => ImportError::Replay { file, reason, mend: replay_mend() },
+        "api" => ImportError::Api { file, api: reason },
+        "large" => ImportError::TooLarge { what: format!("more than {words} GiB") },
+        _ => common_error(ended, options),
+    }
+}
+
+/// What has ended the recording of a program.
+fn record_error(ended: Ended, recording: &Recording, options: &Options) -> ImportError {
+    let Some([kind, words]) = said(&ended) else {
+        return match ended {
+            // The script has a clock of its own, and did not get to look at it.
+            Ended::TooLong => never(recording, "RenderDoc does not answer"),
+            _ => common_error(ended, options),
+        };
+    };
+    let program = recording.program().to_owned();
+    match kind {
+        "program" => ImportError::NoProgram { program, reason: words.to_owned() },
+        "died" => {
+            let Ended::Said { last, .. } = &ended else { return common_error(ended, options) };
+            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
+            let how = if words.is_empty() { String::new() } else { format!(" {words}") };
+            ImportError::Died { program, how, frame: recording.frame, and_said, mend: died_mend() }
+        }
+        "never" => never(recording, words),
+        "unsupported" => {
+            let (api, reason) = words.split_once(' ').unwrap_or((words, ""));
+            ImportError::Unsupported { program, api: api.to_owned(), reason: reason.to_owned() }
+        }
+        _ => common_error(ended, options),
+    }
+}
+
+fn said(ended: &Ended) -> Option<[&str; 2]> {
+    match ended {
+        Ended::Said { kind, words, .. } => Some([kind, words]),
+        _ => None,
+    }
+}
+
+fn never(recording: &Recording, seen: &str) -> ImportError {
+    ImportError::NeverPresented {
+        program: recording.program().to_owned(),
+        frame: recording.frame,
+        seconds: recording.seconds,
+        seen: seen.to_owned(),
+        mend: match has_display() {
+            true => {
+                "ask for an earlier --frame or more --seconds, and name the program itself, not a script that starts it"
+            }
+            false => NO_DISPLAY,
+        },
+    }
+}
+
+fn common_error(ended: Ended, options: &Options) -> ImportError {
+    let gibibytes = options.most_memory >> 30;
+    match ended {
+        Ended::TooLong => ImportError::TooLong { seconds: options.seconds },
+        Ended::TooMuchMemory => ImportError::TooMuchMemory { gibibytes },
+        Ended::Cancelled => ImportError::Cancelled,
+        Ended::Said { kind, .. } if kind == "memory" => ImportError::TooMuchMemory { gibibytes },
+        Ended::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: options.python.clone() },
+        Ended::Said { kind, words, .. } if kind == "disk" => {
+            ImportError::Write { file: std::env::temp_dir(), source: std::io::Error::other(words) }
+        }
+        Ended::Said { words, .. } => ImportError::Script { last: words },
+        Ended::Silent { last, signal: Some(signal) } => {
+            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
+            ImportError::Crashed { signal, and_said }
+        }
+        Ended::Silent { last, .. } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
+        Ended::Silent { last, .. } => ImportError::Script { last },
+    }
+}
+
+const NO_DISPLAY: &str = "there is no display here: run stencilscope under `xvfb-run -a`";
+
+fn has_display() -> bool {
+    ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+}
+
+fn replay_mend() -> &'static str {
+    if has_display() { "replay it on the machine that recorded it, or install mesa-vulkan-drivers" } else { NO_DISPLAY }
+}
+
+fn died_mend() -> &'static str {
+    if has_display() { "run it by itself first, or ask for an earlier --frame" } else { NO_DISPLAY }
 }
