@@ -13,7 +13,8 @@ use super::specialization::Specialization;
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError, start};
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, PlanTexture, RasterState, Visibility,
+    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, PlanTexture, RasterState, SurfaceData,
+    Visibility,
 };
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -110,64 +111,13 @@ impl<'a> Prepared<'a> {
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
         let lights = uniforms::lights(device, plan);
-        let mut next_draw = 0..;
+        let mut preparer =
+            PassPreparer { context, plan, pipelines, buffers, pictures, lights: &lights, textures: &textures };
+        let mut first_draw = 0;
         let mut passes = Vec::with_capacity(plan.passes.len());
         for pass in &plan.passes {
-            let mut prepared = prepared_targets(plan, pass, &textures);
-            let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.depth.as_ref());
-            let target = pass.depth_stencil.as_ref().filter(|_| start.is_some());
-            prepared.start =
-                target.map(|target| pipelines.start(device, plan.attachment(target.attachment).held_format()));
-            for (draw, index) in pass.draws.iter().zip(&mut next_draw) {
-                // Another program's colours are not known: a draw that leaves nothing else is not run.
-                if pass.targets().next().is_none() {
-                    continue;
-                }
-                let states = draw.raster.by_face();
-                let mesh = &plan.meshes[draw.mesh.0];
-                let shader = Shader::of(draw, mesh);
-                let light = pass.light.map(|light| &plan.lights[light.0]);
-                let specialization = Specialization::of(draw, light, plan.wraps_diffuse);
-                let of_state = |raster: &RasterState| {
-                    let key = PipelineKey { specialization, ..key_of(plan, pass, shader, raster) };
-                    (pipelines.get(device, &key), raster.stencil_reference)
-                };
-                let states = states.iter().map(of_state).collect();
-                let vertices = match &mesh.extruded {
-                    Some(extruded) => buffers.get(device, &extruded.corners)?,
-                    None => buffers.get(device, &mesh.vertices)?,
-                };
-                let indices = buffers.get(device, &mesh.indices)?;
-                let texture = draw.constants.texture.and_then(|id| plan.textures.get(id.0));
-                let shading = match (&mesh.surface, shader.pulls_vertices()) {
-                    (Some(surface), true) => {
-                        let normals = buffers.get(device, &surface.normals)?;
-                        let sides = buffers.get(device, &surface.sides)?;
-                        let shown = match (&surface.uvs, texture) {
-                            (Some(uvs), Some(texture)) => {
-                                let sampler = &pipelines.picture_samplers[usize::from(texture.clamps)];
-                                let view = pictures.get(context, &texture.picture);
-                                Some((buffers.get(device, uvs)?, view, sampler.clone()))
-                            }
-                            _ => None,
-                        };
-                        let storage = [&vertices, &indices, &normals, &sides];
-                        let surface = surface_group(device, pipelines, storage, shown.as_ref())?;
-                        let is_lit = draw.program.visibility().is_some();
-                        let light = pass.light.filter(|_| is_lit);
-                        let light =
-                            light.map(|light| light_group(device, pipelines, plan, &lights, &textures, draw, light));
-                        Some((surface, light))
-                    }
-                    _ if shader.form == Form::Kept => match &mesh.kept {
-                        Some(kept) => Some((kept_group(device, pipelines, &buffers.get(device, kept)?)?, None)),
-                        None => None,
-                    },
-                    _ => None,
-                };
-                prepared.draws.push(PreparedDraw { shader, pipelines: states, index, vertices, indices, shading });
-            }
-            passes.push(prepared);
+            passes.push(preparer.pass(pass, first_draw)?);
+            first_draw += pass.draws.len();
         }
         let staged = plan.passes.iter().map(|_| OnceCell::new()).collect();
         let view_group = views.bind_group(device, &pipelines.layouts.view);
@@ -248,6 +198,132 @@ impl<'a> Prepared<'a> {
     }
 }
 
+/// What passes are prepared from.
+struct PassPreparer<'a> {
+    context: &'a Context,
+    plan: &'a FramePlan,
+    pipelines: &'a mut Pipelines,
+    buffers: &'a mut Buffers,
+    pictures: &'a mut Pictures,
+    lights: &'a UniformArray,
+    /// By attachment.
+    textures: &'a [Arc<Texture>],
+}
+
+impl PassPreparer<'_> {
+    /// A pass whose first draw has this number among all of the plan.
+    fn pass(&mut self, pass: &Pass, first_draw: usize) -> Result<PreparedPass, GpuError> {
+        let plan = self.plan;
+        let target = pass.depth_stencil.as_ref();
+        let view = |id: AttachmentId, layer| layer_view(&self.textures[id.0], held_layer(plan, id, layer));
+        let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.depth.as_ref());
+        let start = target.filter(|_| start.is_some()).map(|target| plan.attachment(target.attachment).held_format());
+        let image_target = pass.image.as_ref().and(pass.color.as_ref());
+        // Another program's colours are not known: a draw that leaves nothing else is not run.
+        let draws = if pass.targets().next().is_some() { &pass.draws[..] } else { &[] };
+        Ok(PreparedPass {
+            color: pass.color.as_ref().map(|target| view(target.attachment, target.layer)),
+            depth_stencil: target.map(|target| view(target.attachment, target.layer)),
+            has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
+            start: start.map(|format| self.pipelines.start(&self.context.device, format)),
+            image_target: image_target.map(|target| self.textures[target.attachment.0].clone()),
+            draws: (first_draw..)
+                .zip(draws)
+                .map(|(index, draw)| self.draw(pass, draw, index))
+                .collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn draw(&mut self, pass: &Pass, draw: &Draw, index: usize) -> Result<PreparedDraw, GpuError> {
+        let (device, plan) = (&self.context.device, self.plan);
+        let mesh = &plan.meshes[draw.mesh.0];
+        let shader = Shader::of(draw, mesh);
+        let light = pass.light.map(|light| &plan.lights[light.0]);
+        let specialization = Specialization::of(draw, light, plan.wraps_diffuse);
+        let of_state = |raster: &RasterState| {
+            let key = PipelineKey { specialization, ..key_of(plan, pass, shader, raster) };
+            (self.pipelines.get(device, &key), raster.stencil_reference)
+        };
+        let pipelines = draw.raster.by_face().iter().map(of_state).collect();
+        let vertices = match &mesh.extruded {
+            Some(extruded) => self.buffers.get(device, &extruded.corners)?,
+            None => self.buffers.get(device, &mesh.vertices)?,
+        };
+        let indices = self.buffers.get(device, &mesh.indices)?;
+        let shading = match (&mesh.surface, &mesh.kept) {
+            (Some(surface), _) if shader.pulls_vertices() => {
+                let group = self.surface_group(draw, surface, [&vertices, &indices])?;
+                let light = pass.light.filter(|_| draw.program.visibility().is_some());
+                Some((group, light.map(|light| self.light_group(draw, light))))
+            }
+            (_, Some(kept)) if shader.form == Form::Kept => {
+                Some((kept_group(device, self.pipelines, &self.buffers.get(device, kept)?)?, None))
+            }
+            _ => None,
+        };
+        Ok(PreparedDraw { shader, pipelines, index, vertices, indices, shading })
+    }
+
+    /// What a program that pulls its vertices reads of a surface: with its picture, where the draw shows one.
+    fn surface_group(
+        &mut self,
+        draw: &Draw,
+        surface: &SurfaceData,
+        [vertices, indices]: [&Buffer; 2],
+    ) -> Result<BindGroup, GpuError> {
+        let device = &self.context.device;
+        let normals = self.buffers.get(device, &surface.normals)?;
+        let sides = self.buffers.get(device, &surface.sides)?;
+        let texture = draw.constants.texture.and_then(|id| self.plan.textures.get(id.0));
+        let shown = match (&surface.uvs, texture) {
+            (Some(uvs), Some(texture)) => Some((self.buffers.get(device, uvs)?, texture)),
+            _ => None,
+        };
+        let storage = [vertices, indices, &normals, &sides];
+        let uvs = shown.as_ref().map(|(uvs, _)| uvs);
+        storage.into_iter().chain(uvs).try_for_each(|buffer| check_bound(device, buffer))?;
+        let view = shown.as_ref().map(|(_, texture)| self.pictures.get(self.context, &texture.picture));
+        let Layouts { surface, textured_surface, .. } = &self.pipelines.layouts;
+        let layout = if shown.is_some() { textured_surface } else { surface };
+        let mut resources: Vec<BindingResource> = storage.map(Buffer::as_entire_binding).into();
+        if let (Some((uvs, texture)), Some(view)) = (&shown, &view) {
+            resources.push(uvs.as_entire_binding());
+            resources.push(BindingResource::TextureView(view));
+            resources.push(BindingResource::Sampler(&self.pipelines.picture_samplers[usize::from(texture.clamps)]));
+        }
+        let entry = |(binding, resource)| BindGroupEntry { binding, resource };
+        let entries: Vec<BindGroupEntry> = (0..).zip(resources).map(entry).collect();
+        Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries }))
+    }
+
+    /// What a program that lights or labels reads of a light.
+    fn light_group(&self, draw: &Draw, light: LightId) -> BindGroup {
+        let (device, layouts) = (&self.context.device, &self.pipelines.layouts);
+        let light = &self.plan.lights[light.0];
+        let array = TextureViewDimension::D2Array;
+        let map = light.map.as_ref().map(|map| map.attachment);
+        let (attachment, dimension, layout) = match (draw.program.visibility(), map, light.count) {
+            (Some(Visibility::Map), Some(map), _) => (map, array, &layouts.light_with_map),
+            (Some(Visibility::ReceiverTexture | Visibility::Projected), Some(map), _) => {
+                (map, array, &layouts.light_with_textures)
+            }
+            (Some(Visibility::Count), _, Some(count)) => (count, TextureViewDimension::D2, &layouts.light_with_count),
+            (Some(Visibility::Labels), ..) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
+            _ => return self.lights.bind_group(device, &layouts.light),
+        };
+        let view = self.textures[attachment.0]
+            .create_view(&TextureViewDescriptor { dimension: Some(dimension), ..TextureViewDescriptor::default() });
+        let entries = [
+            BindGroupEntry { binding: 0, resource: self.lights.binding() },
+            BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&view) },
+            BindGroupEntry { binding: 2, resource: BindingResource::Sampler(&self.pipelines.smooth_sampler) },
+        ];
+        let is_smooth = std::ptr::eq(layout, &layouts.light_with_textures);
+        let entries = if is_smooth { &entries[..] } else { &entries[..2] };
+        device.create_bind_group(&BindGroupDescriptor { label: Some("light with texture"), layout, entries })
+    }
+}
+
 /// Takes room for attachments and pictures.
 fn check_size(device: &Device, plan: &FramePlan, room: &mut Room) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
@@ -320,19 +396,6 @@ pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
     })
 }
 
-fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Arc<Texture>]) -> PreparedPass {
-    let target = pass.depth_stencil.as_ref();
-    let view = |id: AttachmentId, layer| layer_view(&textures[id.0], held_layer(plan, id, layer));
-    PreparedPass {
-        color: pass.color.as_ref().map(|target| view(target.attachment, target.layer)),
-        depth_stencil: target.map(|target| view(target.attachment, target.layer)),
-        has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
-        draws: Vec::with_capacity(pass.draws.len()),
-        start: None,
-        image_target: pass.image.as_ref().and(pass.color.as_ref()).map(|target| textures[target.attachment.0].clone()),
-    }
-}
-
 fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -> PipelineKey {
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     PipelineKey {
@@ -350,62 +413,6 @@ fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> Result<B
     let entries = [BindGroupEntry { binding: 0, resource: kept.as_entire_binding() }];
     let layout = &pipelines.layouts.kept;
     Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("kept fragments"), layout, entries: &entries }))
-}
-
-/// `shown`: where its corners lie in a picture, the picture, and how it is sampled.
-fn surface_group(
-    device: &Device,
-    pipelines: &Pipelines,
-    storage: [&Buffer; 4],
-    shown: Option<&(Buffer, TextureView, wgpu::Sampler)>,
-) -> Result<BindGroup, GpuError> {
-    let uvs = shown.map(|(uvs, ..)| uvs);
-    storage.into_iter().chain(uvs).try_for_each(|buffer| check_bound(device, buffer))?;
-    let resources = storage.map(Buffer::as_entire_binding).into_iter();
-    let picture = shown.map(|(uvs, view, sampler)| {
-        [uvs.as_entire_binding(), BindingResource::TextureView(view), BindingResource::Sampler(sampler)]
-    });
-    let entries: Vec<BindGroupEntry> = (0..)
-        .zip(resources.chain(picture.into_iter().flatten()))
-        .map(|(binding, resource)| BindGroupEntry { binding, resource })
-        .collect();
-    let Layouts { surface, textured_surface, .. } = &pipelines.layouts;
-    let layout = if shown.is_some() { textured_surface } else { surface };
-    Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries }))
-}
-
-fn light_group(
-    device: &Device,
-    pipelines: &Pipelines,
-    plan: &FramePlan,
-    lights: &UniformArray,
-    textures: &[Arc<Texture>],
-    draw: &Draw,
-    light: LightId,
-) -> BindGroup {
-    let layouts = &pipelines.layouts;
-    let light = &plan.lights[light.0];
-    let array = TextureViewDimension::D2Array;
-    let map = light.map.as_ref().map(|map| map.attachment);
-    let (attachment, dimension, layout) = match (draw.program.visibility(), map, light.count) {
-        (Some(Visibility::Map), Some(map), _) => (map, array, &layouts.light_with_map),
-        (Some(Visibility::ReceiverTexture | Visibility::Projected), Some(map), _) => {
-            (map, array, &layouts.light_with_textures)
-        }
-        (Some(Visibility::Count), _, Some(count)) => (count, TextureViewDimension::D2, &layouts.light_with_count),
-        (Some(Visibility::Labels), ..) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
-        _ => return lights.bind_group(device, &layouts.light),
-    };
-    let view = textures[attachment.0]
-        .create_view(&TextureViewDescriptor { dimension: Some(dimension), ..TextureViewDescriptor::default() });
-    let entries = [
-        BindGroupEntry { binding: 0, resource: lights.binding() },
-        BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&view) },
-        BindGroupEntry { binding: 2, resource: BindingResource::Sampler(&pipelines.smooth_sampler) },
-    ];
-    let is_smooth = std::ptr::eq(layout, &layouts.light_with_textures);
-    let entries = if is_smooth { &entries[..] } else { &entries[..2] };
-    device.create_bind_group(&BindGroupDescriptor { label: Some("light with texture"), layout, entries })
 }
 
 /// One aspect of a layer of an attachment, which is copied after a pass.
