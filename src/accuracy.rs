@@ -114,7 +114,7 @@ impl std::iter::Sum for ErrorCounts {
 
 /// Wrong pixels of one kind that touch each other, corners included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Region {
+pub struct WrongRegion {
     /// How many.
     pub pixels: u64,
     /// Which kind.
@@ -133,7 +133,7 @@ pub struct Accuracy {
     /// A [`Finding`] a pixel, row by row.
     pub findings: Vec<u8>,
     /// The largest connected wrong region.
-    pub worst: Option<Region>,
+    pub worst: Option<WrongRegion>,
 }
 
 /// Holds a technique's labels of one light, given by rows, against the truth, which `tracer` has
@@ -210,10 +210,10 @@ fn around([x, y]: [f64; 2], reach: f64) -> [[f64; 2]; 8] {
 }
 
 /// The largest set of wrong pixels of one kind that hang together.
-fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<Region> {
+fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<WrongRegion> {
     let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
     let mut left = findings.to_vec();
-    let mut worst: Option<Region> = None;
+    let mut worst: Option<WrongRegion> = None;
     for start in 0..left.len() {
         if !is_wrong(&left[start]) {
             continue;
@@ -227,10 +227,10 @@ fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<Region> {
 }
 
 /// Removes the region around a wrong pixel and describes it.
-fn take_region(left: &mut [u8], start: usize, size: [u32; 2]) -> Region {
+fn take_region(left: &mut [u8], start: usize, size: [u32; 2]) -> WrongRegion {
     let kind = Finding::from_byte(left[start]).unwrap_or(Finding::WrongSurface);
     let at = place(start, size);
-    let mut region = Region { pixels: 0, kind, bounds: [at[0], at[1], at[0], at[1]], at };
+    let mut region = WrongRegion { pixels: 0, kind, bounds: [at[0], at[1], at[0], at[1]], at };
     take_connected(left, Finding::NotCompared as u8, start, size, 1, |index| {
         let [x, y] = place(index, size);
         let [low_x, low_y, high_x, high_y] = region.bounds;
@@ -304,7 +304,7 @@ mod tests {
             [4, 4, 4, 4, 5, 5],
         ];
         let worst = worst_region(picture.as_flattened(), [6, 4]).expect("a region");
-        assert_eq!(worst, Region { pixels: 3, kind: Finding::FalseShadow, bounds: [0, 0, 2, 1], at: [0, 0] });
+        assert_eq!(worst, WrongRegion { pixels: 3, kind: Finding::FalseShadow, bounds: [0, 0, 2, 1], at: [0, 0] });
         assert_eq!(worst_region(&[0, 4, 5, 0], [2, 2]), None);
         let counts = ErrorCounts::of(picture.as_flattened());
         let expected = ErrorCounts { compared: 22, false_shadow: 3, missing_shadow: 3, wrong_surface: 1, edge_band: 7 };

@@ -50,7 +50,7 @@ const MOST: u32 = 1 << 16;
 
 /// What a file of results says of the run that it is a part of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Part {
+pub struct ShardPart {
     /// Which part.
     #[serde(flatten)]
     pub shard: Shard,
@@ -60,10 +60,10 @@ pub struct Part {
     pub run: Vec<String>,
 }
 
-impl Part {
+impl ShardPart {
     /// The part of a run that a shard makes.
-    pub fn new(shard: Shard, places: Vec<usize>, how: String, rows: impl IntoIterator<Item = String>) -> Part {
-        Part { shard, places, run: std::iter::once(how).chain(rows).collect() }
+    pub fn new(shard: Shard, places: Vec<usize>, how: String, rows: impl IntoIterator<Item = String>) -> ShardPart {
+        ShardPart { shard, places, run: std::iter::once(how).chain(rows).collect() }
     }
 }
 
@@ -133,23 +133,23 @@ fn missing(shards: &[Shard]) -> String {
 
 /// What one file holds.
 #[derive(Debug, Clone)]
-pub struct PartOf<R> {
+pub struct ResultsFile<R> {
     /// The file, for messages.
     pub name: String,
     /// What it was measured on.
     pub adapter: String,
     /// Which part it is; `None` of a whole run.
-    pub part: Option<Part>,
+    pub part: Option<ShardPart>,
     /// Its rows.
     pub rows: Vec<R>,
 }
 
 /// The rows of all parts in the order of the whole run.
-pub fn merged<R>(parts: Vec<PartOf<R>>) -> Result<Vec<R>, MergeError> {
-    let mut first: Option<(String, String, Part)> = None;
+pub fn merged<R>(parts: Vec<ResultsFile<R>>) -> Result<Vec<R>, MergeError> {
+    let mut first: Option<(String, String, ShardPart)> = None;
     let mut names: Vec<Option<String>> = Vec::new();
     let mut rows: Vec<Option<R>> = Vec::new();
-    for PartOf { name, adapter, part, rows: of_part } in parts {
+    for ResultsFile { name, adapter, part, rows: of_part } in parts {
         let Some(part) = part else { return Err(MergeError::Whole { name }) };
         let shard = part.shard;
         let (first, of_first, whole) = first.get_or_insert_with(|| (name.clone(), adapter.clone(), part.clone()));
@@ -179,7 +179,7 @@ pub fn merged<R>(parts: Vec<PartOf<R>>) -> Result<Vec<R>, MergeError> {
             *is_free.ok_or_else(damaged)? = Some(row);
         }
     }
-    let (name, _, Part { shard, .. }) = first.ok_or(MergeError::Nothing)?;
+    let (name, _, ShardPart { shard, .. }) = first.ok_or(MergeError::Nothing)?;
     let is_missing = names.iter().zip(1..).filter(|(name, _)| name.is_none());
     let shards: Vec<Shard> = is_missing.map(|(_, part)| Shard { part, of: shard.of }).collect();
     if !shards.is_empty() {
@@ -197,11 +197,11 @@ mod tests {
         text.parse().expect("a part")
     }
 
-    fn part(text: &str, rows: usize) -> PartOf<usize> {
+    fn part(text: &str, rows: usize) -> ResultsFile<usize> {
         let places: Vec<usize> = (0..rows).filter(|row| shard(text).has(*row)).collect();
         let names = (0..rows).map(|row| format!("row {row}"));
-        let part = Part::new(shard(text), places.clone(), "twice".to_owned(), names);
-        PartOf { name: format!("{text}.json"), adapter: "one".to_owned(), part: Some(part), rows: places }
+        let part = ShardPart::new(shard(text), places.clone(), "twice".to_owned(), names);
+        ResultsFile { name: format!("{text}.json"), adapter: "one".to_owned(), part: Some(part), rows: places }
     }
 
     #[test]
@@ -228,13 +228,13 @@ mod tests {
             "parts 1/4, 3/4 are missing: make each with `--shard 1/4`"
         );
         assert_eq!(error(vec![part("1/2", 9)]), "part 2/2 is missing: make it with `--shard 2/2`");
-        let twice = error(vec![part("1/2", 9), PartOf { name: "again".into(), ..part("1/2", 9) }]);
+        let twice = error(vec![part("1/2", 9), ResultsFile { name: "again".into(), ..part("1/2", 9) }]);
         assert!(twice.contains("part 1/2 is there twice, in `1/2.json` and in `again`"), "{twice}");
         assert!(error(vec![part("1/2", 9), part("2/2", 8)]).contains("`2/2.json` is of another run than `1/2.json`"));
         assert!(error(vec![part("1/2", 9), part("2/3", 9)]).contains("of another run"));
-        let elsewhere = error(vec![part("1/2", 9), PartOf { adapter: "two".into(), ..part("2/2", 9) }]);
+        let elsewhere = error(vec![part("1/2", 9), ResultsFile { adapter: "two".into(), ..part("2/2", 9) }]);
         assert!(elsewhere.contains("measured on two, and `1/2.json` on one"), "{elsewhere}");
-        assert!(error(vec![PartOf { part: None, ..part("1/2", 9) }]).contains("`1/2.json` is no part"));
+        assert!(error(vec![ResultsFile { part: None, ..part("1/2", 9) }]).contains("`1/2.json` is no part"));
         assert!(error(Vec::new()).contains("nothing to merge"));
         let mut damaged = part("1/2", 9);
         damaged.rows.pop();

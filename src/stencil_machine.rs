@@ -11,7 +11,7 @@ use wgpu::{CompareFunction, StencilOperation};
 
 /// What a pixel holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stored {
+pub struct DepthStencil {
     /// As in the buffer.
     pub depth: f32,
     /// Eight bits.
@@ -20,7 +20,7 @@ pub struct Stored {
 
 /// A fragment that arrives at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fragment {
+pub struct IncomingFragment {
     /// Bias included.
     pub depth: f32,
     /// Of the front of its triangle.
@@ -29,7 +29,7 @@ pub struct Fragment {
 
 /// What the tests did.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct TestOutcome {
     /// Did the stencil test pass?
     pub stencil_passed: bool,
     /// Did the depth test pass? `None` where the stencil test failed before it.
@@ -37,10 +37,10 @@ pub struct Outcome {
     /// The operation that ran.
     pub operation: StencilOperation,
     /// What the pixel holds now.
-    pub after: Stored,
+    pub after: DepthStencil,
 }
 
-impl Outcome {
+impl TestOutcome {
     /// Did the fragment reach the colour target?
     pub fn passed(&self) -> bool {
         self.depth_passed == Some(true)
@@ -55,7 +55,7 @@ pub fn stencil_passes(state: &RasterState, front_facing: bool, stored: u8) -> bo
 
 /// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces make
 /// no fragments.
-pub fn test(state: &RasterState, fragment: Fragment, stored: Stored) -> Outcome {
+pub fn test(state: &RasterState, fragment: IncomingFragment, stored: DepthStencil) -> TestOutcome {
     let (face, FaceMasks { reference, write, .. }) = state.face(fragment.front_facing);
     let stencil_passed = stencil_passes(state, fragment.front_facing, stored.stencil);
     let depth_passed = stencil_passed.then(|| compare(state.depth_compare, fragment.depth, stored.depth));
@@ -68,7 +68,7 @@ pub fn test(state: &RasterState, fragment: Fragment, stored: Stored) -> Outcome 
     let stencil = (stored.stencil & !write) | (written & write);
     let writes_depth = depth_passed == Some(true) && state.depth_write;
     let depth = if writes_depth { fragment.depth } else { stored.depth };
-    Outcome { stencil_passed, depth_passed, operation, after: Stored { depth, stencil } }
+    TestOutcome { stencil_passed, depth_passed, operation, after: DepthStencil { depth, stencil } }
 }
 
 /// `new ? stored`, with the new value on the left, as all APIs have it.

@@ -1,6 +1,6 @@
 //! Faces and lines with a depth buffer, drawn by the GPU that draws the window: egui itself has no depth.
 //!
-//! A [`Drawing`] is a shape of egui's. Before egui's own pass it is drawn into a picture with a depth buffer of its
+//! A [`ViewportDrawing`] is a shape of egui's. Before egui's own pass it is drawn into a picture with a depth buffer of its
 //! own, solids first, then what one looks through, which needs no order as it writes no depth, then lines; in egui's pass
 //! that picture is laid into the window. Geometry goes to the GPU when it is another one, and a picture is drawn when
 //! anything in it changed. All wgpu objects are of the window's device and live in its renderer.
@@ -30,27 +30,27 @@ const LINE: [VertexAttribute; 4] = vertex_attr_array![0 => Float32x3, 1 => Float
 /// A corner of faces.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub struct Vertex {
+pub struct ViewportVertex {
     at: Vec4,
     normal: [i16; 4],
     color: Color32,
     unused: u32,
 }
 
-impl Vertex {
+impl ViewportVertex {
     /// At a homogeneous place; `w = 0`, at infinity, for shells only: its length says where they fade. `normal` is of
     /// unit length, or zero where nothing is shaded.
-    pub fn new(at: DVec4, normal: Vec3, color: Color32) -> Vertex {
+    pub fn new(at: DVec4, normal: Vec3, color: Color32) -> ViewportVertex {
         let whole = |value: f32| (value * f32::from(i16::MAX)) as i16;
         let normal = [whole(normal.x), whole(normal.y), whole(normal.z), 0];
-        Vertex { at: at.as_vec4(), normal, color, unused: 0 }
+        ViewportVertex { at: at.as_vec4(), normal, color, unused: 0 }
     }
 }
 
 /// A line.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub struct Line {
+pub struct ViewportLine {
     /// One end.
     pub from: Vec3,
     /// In points.
@@ -63,11 +63,11 @@ pub struct Line {
 
 /// What is drawn. Triangles name vertices; fronts are counter-clockwise.
 #[derive(Debug, Default)]
-pub struct Geometry {
+pub struct ViewportGeometry {
     /// World space; everything is relative to it, so that single precision is enough.
     pub origin: DVec3,
     /// Corners of all triangles.
-    pub vertices: Vec<Vertex>,
+    pub vertices: Vec<ViewportVertex>,
     /// They hide what is behind them.
     pub solids: Vec<[u32; 3]>,
     /// The same from their front; from behind they are glass.
@@ -75,13 +75,13 @@ pub struct Geometry {
     /// They hide nothing.
     pub shells: Vec<[u32; 3]>,
     /// They lie on solids.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ViewportLine>,
 }
 
 /// From where geometry is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct View {
+pub struct ViewportCamera {
     /// Clip space, with reversed depth, from the geometry's.
     pub clip_from_stage: Mat4,
     /// Where it is looked from; the direction towards the viewer, with `w = 0`, in parallel views.
@@ -98,11 +98,11 @@ pub struct View {
 
 /// Geometry in a rectangle of the window.
 #[derive(Debug)]
-pub struct Drawing {
+pub struct ViewportDrawing {
     /// What is drawn.
-    pub geometry: Arc<Geometry>,
+    pub geometry: Arc<ViewportGeometry>,
     /// From where.
-    pub view: View,
+    pub view: ViewportCamera,
     /// Where in the window, points.
     pub rect: Rect,
     /// Which of the pictures that are kept.
@@ -111,7 +111,7 @@ pub struct Drawing {
     pub moves: bool,
 }
 
-impl Drawing {
+impl ViewportDrawing {
     /// For egui's painter.
     pub fn shape(self) -> Shape {
         Shape::Callback(Callback::new_paint_callback(self.rect, self))
@@ -130,7 +130,7 @@ pub struct Viewports {
 
 /// Geometry on the GPU.
 struct Uploaded {
-    geometry: Arc<Geometry>,
+    geometry: Arc<ViewportGeometry>,
     vertices: wgpu::Buffer,
     triangles: wgpu::Buffer,
     lines: wgpu::Buffer,
@@ -139,9 +139,9 @@ struct Uploaded {
 /// A picture, and what it shows.
 pub struct DrawnPicture {
     /// What is drawn.
-    pub geometry: Arc<Geometry>,
+    pub geometry: Arc<ViewportGeometry>,
     /// From where.
-    pub view: View,
+    pub view: ViewportCamera,
     /// Its reversed depth, of `samples` a pixel.
     pub depth: wgpu::Texture,
     /// Samples a pixel.
@@ -158,7 +158,7 @@ pub fn install(gpu: &RenderState) {
     gpu.renderer.write().callback_resources.insert(Viewports::new(&gpu.device, gpu.target_format));
 }
 
-impl CallbackTrait for Drawing {
+impl CallbackTrait for ViewportDrawing {
     fn prepare(
         &self,
         device: &wgpu::Device,
@@ -172,7 +172,7 @@ impl CallbackTrait for Drawing {
         let most = device.limits().max_texture_dimension_2d as f32;
         let corner = |at: egui::Pos2| Vec2::new(at.x, at.y) * pixels_per_point;
         let size = (corner(self.rect.max).round() - corner(self.rect.min).round()).clamp(Vec2::ONE, Vec2::splat(most));
-        own.draw(self, View { size, pixels_per_point, ..self.view }, device, encoder);
+        own.draw(self, ViewportCamera { size, pixels_per_point, ..self.view }, device, encoder);
         Vec::new()
     }
 
@@ -187,7 +187,7 @@ impl CallbackTrait for Drawing {
 }
 
 impl Viewports {
-    /// The picture that was drawn last for [`Drawing::slot`].
+    /// The picture that was drawn last for [`ViewportDrawing::slot`].
     pub fn picture(&self, slot: usize) -> Option<&DrawnPicture> {
         self.pictures.get(&slot)
     }
@@ -196,12 +196,12 @@ impl Viewports {
         let source = wgpu::ShaderSource::Wgsl(include_str!("../shaders/viewport.wgsl").into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("viewport"), source });
         let corners = wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
+            array_stride: size_of::<ViewportVertex>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &CORNER,
         };
         let lines = wgpu::VertexBufferLayout {
-            array_stride: size_of::<Line>() as u64,
+            array_stride: size_of::<ViewportLine>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &LINE,
         };
@@ -268,7 +268,13 @@ impl Viewports {
     }
 
     /// Draws the picture of a drawing, unless it is there already.
-    fn draw(&mut self, what: &Drawing, view: View, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder) {
+    fn draw(
+        &mut self,
+        what: &ViewportDrawing,
+        view: ViewportCamera,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
         let detail = usize::from(!(what.moves && self.is_cpu));
         let samples = SAMPLES[detail];
         let before = self.pictures.remove(&what.slot);
@@ -286,7 +292,7 @@ impl Viewports {
         self.pictures.insert(what.slot, picture);
     }
 
-    fn empty_picture(&self, device: &wgpu::Device, view: View, samples: u32) -> DrawnPicture {
+    fn empty_picture(&self, device: &wgpu::Device, view: ViewportCamera, samples: u32) -> DrawnPicture {
         let size = view.size.as_uvec2();
         let texture = |format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -308,7 +314,7 @@ impl Viewports {
         ];
         DrawnPicture {
             geometry: Arc::default(),
-            view: View { size: view.size, ..View::zeroed() },
+            view: ViewportCamera { size: view.size, ..ViewportCamera::zeroed() },
             depth: texture(DEPTH, samples, if samples > 1 { TextureUsages::empty() } else { TextureUsages::COPY_SRC }),
             samples,
             shown: bind(device, &self.window, &shown),
@@ -347,7 +353,7 @@ impl DrawnPicture {
             ..Default::default()
         });
         let part = |triangles: &[[u32; 3]]| 3 * triangles.len() as u32;
-        let Geometry { solids, holders, shells, lines, .. } = &*self.geometry;
+        let ViewportGeometry { solids, holders, shells, lines, .. } = &*self.geometry;
         let (solids, holders) = (part(solids), part(solids) + part(holders));
         let (shells, lines) = (holders + part(shells), lines.len() as u32);
         let ranges = [0..solids, solids..holders, solids..holders, holders..shells, 0..lines];
@@ -371,7 +377,7 @@ impl DrawnPicture {
 }
 
 impl Uploaded {
-    fn new(device: &wgpu::Device, geometry: Arc<Geometry>) -> Uploaded {
+    fn new(device: &wgpu::Device, geometry: Arc<ViewportGeometry>) -> Uploaded {
         let buffer = |contents: &[u8], usage| {
             device.create_buffer_init(&BufferInitDescriptor { label: Some("geometry"), contents, usage })
         };
@@ -401,6 +407,6 @@ mod tests {
         let is_view = |ty: &&naga::Type| ty.name.as_deref() == Some("View");
         let view = module.types.iter().map(|(_, ty)| ty).find(is_view).expect("a view");
         let naga::TypeInner::Struct { span, .. } = view.inner else { panic!("a struct") };
-        assert_eq!(span as usize, size_of::<super::View>());
+        assert_eq!(span as usize, size_of::<super::ViewportCamera>());
     }
 }

@@ -5,7 +5,7 @@ use crate::common::random::Random;
 use crate::common::{cuboid, from_above, request, session, square};
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::accuracy::{COLOR_TOLERANCE, ErrorCounts, Finding, Region, compare, wrong_colors};
+use stencilscope::accuracy::{COLOR_TOLERANCE, ErrorCounts, Finding, WrongRegion, compare, wrong_colors};
 use stencilscope::capture::Capture;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, MeshBuilder, OpenSpec, Scene, open};
@@ -182,7 +182,7 @@ fn one_flipped_pixel_of_a_mask_is_caught_and_found() {
     for (value, kind) in [(1, Finding::FalseShadow), (2, Finding::WrongSurface), (3, Finding::WrongSurface)] {
         rows[70][2] = value; // a corner of the floor, far from any edge
         let found = compare_rows(&rows);
-        assert_eq!(found.worst, Some(Region { pixels: 1, kind, bounds: [2, 70, 2, 70], at: [2, 70] }));
+        assert_eq!(found.worst, Some(WrongRegion { pixels: 1, kind, bounds: [2, 70, 2, 70], at: [2, 70] }));
         assert_eq!((found.counts.wrong(), found.findings[70 * 96 + 2]), (1, kind as u8));
     }
 }

@@ -5,7 +5,7 @@ use crate::common::{mesh, request, session};
 use glam::{DMat4, DVec3, DVec4};
 use stencilscope::capture::Capture;
 use stencilscope::math::depth::DepthMapping;
-use stencilscope::reading::coordinates::{NoVertex, Place, Step, Vertex, VertexPlaces};
+use stencilscope::reading::coordinates::{NoVertex, PixelCoordinates, TransformStep, VertexCoordinates, VertexPlaces};
 use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::{Object, Projection, Scene, SceneBuilder};
 use stencilscope::technique::Technique;
@@ -26,8 +26,8 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
         let capture = session.capture(&scene, &frame).expect("a capture");
         let [width, height] = capture.size;
         for pixel in [[0, 0], [width / 2, height / 2], [width / 3, height - 1], [width - 1, height / 4]] {
-            let place = Place::of(&capture, pixel);
-            for Step { name, matrix: rows, inverse } in &place.chain {
+            let place = PixelCoordinates::of(&capture, pixel);
+            for TransformStep { name, matrix: rows, inverse } in &place.chain {
                 let product = matrix(*rows) * matrix(*inverse);
                 assert!(product.abs_diff_eq(DMat4::IDENTITY, 1e-9), "{name}: {product}");
             }
@@ -58,7 +58,7 @@ fn steps_of_depth_are_those_of_the_formula() {
     scene.camera.near = 0.1;
     let mut session = session();
     let capture = session.capture(&scene, &request(Technique::None, [200, 200])).expect("a capture");
-    let place = Place::of(&capture, [100, 100]);
+    let place = PixelCoordinates::of(&capture, [100, 100]);
     let distance = -place.point.expect("the floor").eye[2];
     for (step, bits) in place.depth_steps.iter().zip([8, 16, 24]) {
         let expected = distance * distance / 0.1 / f64::from((1_u32 << bits) - 1);
@@ -87,7 +87,7 @@ fn the_corners_of_a_pixel_s_triangle_go_the_same_way() {
             session.capture_with_plan(&scene, &request(Technique::ZFail, [80, 60])).expect("a capture");
         for pixel in [[40, 30], [20, 45], [63, 21], [33, 52]] {
             let history = session.history(&plan, &capture, pixel).expect("a history");
-            let place = Place::of(&capture, pixel).with_vertices(&capture, &plan, &history);
+            let place = PixelCoordinates::of(&capture, pixel).with_vertices(&capture, &plan, &history);
             assert_eq!(place.point.is_some(), place.vertices.len() == 3, "{name} {pixel:?}");
             let Some(point) = place.point else { continue };
             found += 1;
@@ -132,7 +132,7 @@ fn wedge(projection: Projection) -> Scene {
     scene
 }
 
-fn vertices(capture: &Capture, scene: &Scene) -> Vec<Vertex> {
+fn vertices(capture: &Capture, scene: &Scene) -> Vec<VertexCoordinates> {
     let asked: Vec<String> = (0..5).map(|index| format!("wedge: sharp:{index}")).collect();
     VertexPlaces::of(capture, scene, &asked).expect("five vertices").vertices
 }
@@ -146,7 +146,7 @@ fn what_is_not_before_the_eye_is_not_divided_and_says_so() {
         frame.choice.set("depth", mapping.name()).expect("a setting");
         let capture = session.capture(&scene, &frame).expect("a capture");
         let [before, beside, behind, right, too_near] =
-            <[Vertex; 5]>::try_from(vertices(&capture, &scene)).expect("five");
+            <[VertexCoordinates; 5]>::try_from(vertices(&capture, &scene)).expect("five");
         assert!(before.beyond.is_empty(), "{before:?}");
         // Straight ahead is the middle of the picture.
         let [x, y, _] = before.window.expect("divided");

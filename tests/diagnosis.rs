@@ -9,7 +9,7 @@ use crate::common::session;
 use provoke::Provocation;
 use stencilscope::diagnosis::{Cause, Diagnosis};
 use stencilscope::progress::Progress;
-use stencilscope::session::{CaptureRequest, Fault, Session};
+use stencilscope::session::{CaptureRequest, InjectedFault, Session};
 
 const SMALL: [u32; 2] = [160, 120];
 
@@ -17,7 +17,7 @@ fn diagnose(session: &mut Session, provoked: &Provocation) -> Diagnosis {
     // A pixel in 37 million is of one picture alone.
     let size = if provoked.cause == Cause::SubpixelEdges { [320, 240] } else { SMALL };
     let request = CaptureRequest::new(provoked.choice.clone(), size);
-    let fault = provoked.fault.as_deref().map_or(Fault::None, |change| Fault::Plan(change));
+    let fault = provoked.fault.as_deref().map_or(InjectedFault::None, |change| InjectedFault::Plan(change));
     session.diagnose(&provoked.scene, &request, fault, &Progress::default()).expect("a diagnosis")
 }
 

@@ -7,9 +7,11 @@ use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::disk::{read, write};
 use stencilscope::capture::{Capture, Image, PixelFormat, Snapshot};
-use stencilscope::difference::{AspectKind, DifferenceError, Found, PassDifference, Side, Texel, compare};
+use stencilscope::difference::{
+    AspectChange, AspectKind, ComparedSide, DifferenceError, PassDifference, Texel, compare,
+};
 use stencilscope::scene::{Light, Material, Object, Scene};
-use stencilscope::session::Every;
+use stencilscope::session::SnapshotInterval;
 use stencilscope::technique::{Choice, Technique};
 
 const SIZE: [u32; 2] = [61, 37];
@@ -191,15 +193,15 @@ fn passes_of_one_frame_alone_are_named() {
     let [volumes, map] = [Technique::ZFail, Technique::ShadowMap]
         .map(|technique| session.capture(&scene(), &request(technique, SIZE)).expect("a capture"));
     let difference = compare(&volumes, &map).expect("one size");
-    let alone = |side: Side| -> Vec<&str> {
+    let alone = |side: ComparedSide| -> Vec<&str> {
         difference.passes.iter().filter(|pass| pass.only_in() == Some(side)).map(|pass| pass.name.as_str()).collect()
     };
-    assert!(alone(Side::A).contains(&"volumes") && !alone(Side::B).is_empty(), "{difference:?}");
-    assert!(alone(Side::B).iter().all(|name| name.contains("map")), "{:?}", alone(Side::B));
+    assert!(alone(ComparedSide::A).contains(&"volumes") && !alone(ComparedSide::B).is_empty(), "{difference:?}");
+    assert!(alone(ComparedSide::B).iter().all(|name| name.contains("map")), "{:?}", alone(ComparedSide::B));
     let of_both = difference.passes.iter().filter(|pass| pass.only_in().is_none());
     assert!(of_both.clone().any(|pass| pass.name == "light"));
     let stencil = of_both.flat_map(|pass| &pass.aspects).find(|aspect| aspect.aspect == AspectKind::Stencil);
-    assert_eq!(stencil.map(|aspect| aspect.found), Some(Found::OnlyIn(Side::A)));
+    assert_eq!(stencil.map(|aspect| aspect.found), Some(AspectChange::OnlyIn(ComparedSide::A)));
     let text = difference.to_text();
     assert!(text.contains("technique: z-fail in A, shadow-map in B\n") && text.contains("only in B"), "{text}");
     // The same the other way round.
@@ -214,7 +216,7 @@ fn a_pass_that_is_left_out_is_the_first_difference() {
     let mut shorter = good.clone();
     shorter.steps.remove(2);
     let difference = compare(&good, &shorter).expect("one size");
-    assert_eq!((first(&difference).only_in(), first(&difference).index), (Some(Side::A), [Some(2), None]));
+    assert_eq!((first(&difference).only_in(), first(&difference).index), (Some(ComparedSide::A), [Some(2), None]));
     assert!(difference.to_text().contains("first difference: pass 3 in A alone, light 1: mask\n"));
     assert_eq!(difference.passes.last().map(|pass| pass.index), Some([Some(6), Some(5)]));
     assert!(difference.first_in_pixels().is_none() && difference.shown(&good, &shorter).is_none());
@@ -224,7 +226,7 @@ fn a_pass_that_is_left_out_is_the_first_difference() {
 fn the_draw_that_differs_is_named() {
     let mut session = session();
     let mut request = request(Technique::ZFail, SIZE);
-    request.every = Every::Draw;
+    request.every = SnapshotInterval::Draw;
     let capture = session.capture(&scene(), &request).expect("a capture");
     let parent = tempfile::tempdir().expect("a folder");
     let folder = parent.path().join("out");

@@ -8,13 +8,13 @@ use std::sync::Arc;
 use stencilscope::capture::disk::{CaptureError, read, write};
 use stencilscope::capture::{Capture, DrawState, FrameSnapshot, Image, Snapshot};
 use stencilscope::scene::{Light, OpenSpec, Scene, open};
-use stencilscope::session::{CaptureRequest, Every, Session};
+use stencilscope::session::{CaptureRequest, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [64, 48];
 
 fn by_draw(technique: Technique) -> CaptureRequest {
-    CaptureRequest { every: Every::Draw, ..request(technique, SIZE) }
+    CaptureRequest { every: SnapshotInterval::Draw, ..request(technique, SIZE) }
 }
 
 /// Something for every technique: a closed and an open caster, a point light and a sun.
@@ -230,7 +230,7 @@ fn a_frame_whose_draws_change_too_much_is_refused_with_a_mend() {
     assert!(error.contains("at least 3") && error.contains("32 MiB fit"), "{error}");
     assert!(error.contains("--every pass") && !error.contains('\n'), "{error}");
     // The same, pass by pass, does.
-    let request = CaptureRequest { every: Every::Pass, ..request };
+    let request = CaptureRequest { every: SnapshotInterval::Pass, ..request };
     assert!(session.capture(&many_sheets(50.0), &request).is_ok());
 }
 

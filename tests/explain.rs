@@ -4,7 +4,7 @@ use crate::common::{request, session};
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Snapshot, Step};
 use stencilscope::plan::CountOf;
-use stencilscope::reading::explain_facts::{Fact, Known, facts};
+use stencilscope::reading::explain_facts::{ExplainContext, ExplainFact, facts};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::scene::Scene;
 use stencilscope::scene::builtin::{self, Builtin};
@@ -12,8 +12,8 @@ use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [160, 120];
 
-fn of_step(scene: &Scene, capture: &Capture, step: usize, pick: Option<[u32; 2]>) -> Vec<Fact> {
-    facts(&Known { capture, step, lights: &scene.lights, pick, history: None, map: None })
+fn of_step(scene: &Scene, capture: &Capture, step: usize, pick: Option<[u32; 2]>) -> Vec<ExplainFact> {
+    facts(&ExplainContext { capture, step, lights: &scene.lights, pick, history: None, map: None })
 }
 
 fn named(capture: &Capture, name: &str) -> usize {

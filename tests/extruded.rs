@@ -5,7 +5,7 @@ use crate::common::{cuboid, from_above, request, session, square};
 use stencilscope::accuracy;
 use stencilscope::capture::disk::{read_whole, write};
 use stencilscope::capture::{Capture, Snapshot};
-use stencilscope::plan::{Decision, FramePlan, Part};
+use stencilscope::plan::{Decision, DrawPart, FramePlan};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Camera, Projection, Scene, builtin};
 use stencilscope::session::{CaptureRequest, RunFrame, Session};
@@ -106,7 +106,7 @@ fn every_other_setting_does_what_it_does() {
             let draws =
                 |capture: &Capture| capture.steps.iter().flat_map(|step| step.draws.clone()).collect::<Vec<_>>();
             let sides = |capture: &Capture| -> u64 {
-                draws(capture).iter().filter(|draw| draw.part == Part::Side).map(|draw| draw.triangles).sum()
+                draws(capture).iter().filter(|draw| draw.part == DrawPart::Side).map(|draw| draw.triangles).sum()
             };
             assert!(sides(&captures[0]) < sides(&captures[1]), "{name} {technique:?} {settings:?}");
             seen += one.iter().filter(|label| **label == 1).count();
@@ -215,5 +215,5 @@ fn parallel_lines_of_sight_are_left_to_the_cpu() {
     let finite = both(&mut session, &scene, Technique::ZFail, &[("extrusion", "finite:4")]);
     assert_eq!(finite.each_ref().map(told), [0, 0]);
     assert!(finite[1].left_out.iter().all(|left| left.decision != Some(Decision::AwayTriangles)));
-    assert!(finite[1].steps.iter().flat_map(|step| &step.draws).any(|draw| draw.part == Part::Caps));
+    assert!(finite[1].steps.iter().flat_map(|step| &step.draws).any(|draw| draw.part == DrawPart::Caps));
 }

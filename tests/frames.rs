@@ -9,19 +9,19 @@ mod shared;
 use shared::{assert_makes_what_was_stored, draws, has_ended, recording};
 use std::process::{Command, Stdio};
 use std::time::Duration;
-use stencilscope::import::{self, Api, ImportError, Options, RawContents, RawFrame, Recording};
+use stencilscope::import::{self, ImportError, RawContents, RawFrame, RecordedApi, RecordingRequest, RenderDocOptions};
 use stencilscope::progress::Progress;
 
 /// Debian's interpreter, which has the packages' modules.
 const PYTHON: &str = "/usr/bin/python3";
 
-fn options() -> Options {
-    Options { python: PYTHON.to_owned(), ..Options::default() }
+fn options() -> RenderDocOptions {
+    RenderDocOptions { python: PYTHON.to_owned(), ..RenderDocOptions::default() }
 }
 
 fn record(command: &[&str], seconds: u64) -> Result<RawFrame, ImportError> {
     let command = command.iter().map(|word| (*word).to_owned()).collect();
-    import::record(&Recording { command, frame: 3, seconds, keep: None }, &options(), &Progress::default())
+    import::record(&RecordingRequest { command, frame: 3, seconds, keep: None }, &options(), &Progress::default())
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn ogre_is_recorded_with_every_option() {
     for more in [&[][..], &["--inside"], &["--along"], &["--along", "--far", "350"], &["--reach", "330"]] {
         let frame = record(&[&[PYTHON, script.as_str()], more].concat(), 60).expect("a frame");
         println!("{more:?}");
-        assert_eq!((frame.api, frame.limits.len()), (Api::OpenGl, 0), "{:?}", frame.limits);
+        assert_eq!((frame.api, frame.limits.len()), (RecordedApi::OpenGl, 0), "{:?}", frame.limits);
         assert_makes_what_was_stored(&frame);
     }
 }
@@ -55,7 +55,7 @@ fn recordings_that_are_here_are_imported() {
 #[test]
 fn a_list_reads_no_pictures() {
     let file = recording("ogre.rdc");
-    let states = Options { pictures: false, ..options() };
+    let states = RenderDocOptions { pictures: false, ..options() };
     let [whole, states] =
         [options(), states].map(|options| import::import(&file, &options, &Progress::default()).expect("a frame"));
     assert_eq!(import::list(&whole), import::list(&states));
@@ -79,7 +79,7 @@ fn opengl_as_few_use_it_is_the_right_way_round() {
 #[test]
 fn a_shadow_map_of_glmark_is_recorded() {
     let frame = record(&["glmark2-es2", "-b", "shadow", "-s", "320x240"], 60).expect("a frame");
-    assert_eq!((frame.api, draws(&frame).len()), (Api::Gles, 3));
+    assert_eq!((frame.api, draws(&frame).len()), (RecordedApi::Gles, 3));
     assert_makes_what_was_stored(&frame);
 }
 
@@ -91,7 +91,7 @@ fn vulkan_is_recorded() {
     let program = env!("CARGO_BIN_EXE_stencilscope");
     let capture = [program, "capture", "tori", "-t", "z-fail", "--size", "320x180", "--external-capture", "-o", &out];
     let frame = record(&capture, 60).expect("a frame");
-    assert_eq!(frame.api, Api::Vulkan);
+    assert_eq!(frame.api, RecordedApi::Vulkan);
     assert!(frame.events.iter().any(|event| event.groups == ["volumes"]));
     assert_makes_what_was_stored(&frame);
 }

@@ -5,7 +5,7 @@ use crate::common::{is_closed, judged, session, volume};
 use glam::{DQuat, DVec3};
 use std::fs;
 use std::path::{Path, PathBuf};
-use stencilscope::scene::{NotTaken, OpenSpec, Projection, Scene, SceneError, files_of, open};
+use stencilscope::scene::{OpenSpec, Projection, Scene, SceneError, Unsupported, files_of, open};
 use stencilscope::technique::Technique;
 
 fn sample(name: &str) -> PathBuf {
@@ -45,7 +45,7 @@ const SAMPLES: [(&str, usize, usize, bool, &[&str]); 15] = [
     ("turntable.glb", 3, 1, true, &[]),
 ];
 
-fn not_taken(scene: &Scene) -> Vec<&NotTaken> {
+fn not_taken(scene: &Scene) -> Vec<&Unsupported> {
     scene.not_taken.iter().chain(scene.objects.iter().flat_map(|object| object.mesh.not_taken())).collect()
 }
 

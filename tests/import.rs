@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use shared::{assert_makes_what_was_stored, draws, recording};
 use std::fs;
 use std::io::Write;
-use stencilscope::import::{self, Api, ImportError, RawContents, RawKind, RawTopology};
+use stencilscope::import::{self, ImportError, RawContents, RawKind, RawTopology, RecordedApi};
 use tempfile::TempDir;
 
 /// Pixels a draw whose stencil may differ where volume and surface share a corner, and so a depth.
@@ -21,7 +21,7 @@ const TIES: usize = 8;
 #[test]
 fn the_stencil_shadows_of_ogre_come_out_whole() {
     let frame = import::read(&recording("ogre")).expect("a frame");
-    assert_eq!((frame.api, frame.recorder.as_str()), (Api::OpenGl, "RenderDoc 1.24"));
+    assert_eq!((frame.api, frame.recorder.as_str()), (RecordedApi::OpenGl, "RenderDoc 1.24"));
     assert!(frame.limits.is_empty(), "{:?}", frame.limits);
     let triangles: Vec<usize> = draws(&frame).iter().map(|draw| draw.triangles.len()).collect();
     assert_eq!(triangles, [2, 576, 12, 4, 120, 12, 8, 2, 576, 12, 4]);
@@ -39,7 +39,7 @@ fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
 #[test]
 fn our_own_z_fail_comes_out_whole() {
     let frame = import::read(&recording("own")).expect("a frame");
-    assert_eq!((frame.api, draws(&frame).len()), (Api::Vulkan, 15));
+    assert_eq!((frame.api, draws(&frame).len()), (RecordedApi::Vulkan, 15));
     let passes = frame.events.iter().filter(|event| event.kind == RawKind::BeginPass);
     let passes: Vec<&str> = passes.map(|event| event.groups[0].as_str()).collect();
     assert_eq!(passes, ["ambient", "volumes", "mask", "light"]);

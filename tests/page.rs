@@ -8,7 +8,7 @@ use std::path::Path;
 use stencilscope::capture::disk;
 use stencilscope::page;
 use stencilscope::scene::builtin::Builtin;
-use stencilscope::session::{CaptureRequest, Every, RunFrame, Session};
+use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [96, 64];
@@ -51,7 +51,7 @@ fn tori_are_a_megabyte_and_a_half_and_five_with_every_draw() {
         let request = CaptureRequest { every, ..request(Technique::ZFail, [640, 480]) };
         html(&frame(&mut session, "tori", request)).len()
     };
-    let [passes, draws] = [bytes(Every::Pass), bytes(Every::Draw)];
+    let [passes, draws] = [bytes(SnapshotInterval::Pass), bytes(SnapshotInterval::Draw)];
     println!("every pass {passes} bytes, every draw {draws}");
     assert!(passes <= 1_500_000 && draws <= 5_000_000, "{passes} and {draws} bytes");
     assert!(draws > passes, "draws are in it");

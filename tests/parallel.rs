@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use stencilscope::accuracy;
 use stencilscope::capture::{Capture, CapturedLight};
 use stencilscope::math::depth::DepthMapping;
-use stencilscope::plan::{Decision, FramePlan, Part};
+use stencilscope::plan::{Decision, DrawPart, FramePlan};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Camera, Light, Projection, Scene, builtin};
 use stencilscope::session::Session;
@@ -132,7 +132,7 @@ fn the_count_begins_at_what_the_lamps_ray_along_the_view_meets() {
         let judged = session.judged(scene, &capture, &Progress::default()).expect("a truth");
         assert_eq!(wrong(&judged), 0, "{casters}");
         let drawn = plan.passes.iter().flat_map(|pass| &pass.draws);
-        assert!(drawn.filter(|draw| draw.part == Part::DarkCap).count() == 0, "a line at infinity");
+        assert!(drawn.filter(|draw| draw.part == DrawPart::DarkCap).count() == 0, "a line at infinity");
         let kept = plan.left_out.iter().filter(|left| left.decision == Some(Decision::DarkCap)).count();
         assert_eq!(kept, 2, "the floor's and the box's");
         clears(&plan)

@@ -4,9 +4,9 @@ use crate::common::{cuboid, from_above, square};
 use glam::Vec3;
 use std::sync::Arc;
 use stencilscope::geometry::GeometryCache;
-use stencilscope::plan::{Decision, Draw, FramePlan, MeshId, Part, lint};
-use stencilscope::scene::{Group, Light, Material, MeshBuilder, Scene, Shading};
-use stencilscope::technique::{self, Choice, Job, PlanError, Technique};
+use stencilscope::plan::{Decision, Draw, DrawPart, FramePlan, MeshId, lint};
+use stencilscope::scene::{Light, Material, MeshBuilder, MeshGroup, Scene, Shading};
+use stencilscope::technique::{self, Choice, PlanError, PlanRequest, Technique};
 use wgpu::StencilOperation;
 
 fn plan_of(scene: &Scene, technique: Technique) -> Result<FramePlan, PlanError> {
@@ -14,7 +14,7 @@ fn plan_of(scene: &Scene, technique: Technique) -> Result<FramePlan, PlanError> 
 }
 
 fn plan_with(scene: &Scene, technique: Technique, cache: &mut GeometryCache) -> Result<FramePlan, PlanError> {
-    technique::plan(Job { scene, size: [64, 48], choice: &Choice::new(technique), cache })
+    technique::plan(PlanRequest { scene, size: [64, 48], choice: &Choice::new(technique), cache })
 }
 
 fn scene() -> Scene {
@@ -64,7 +64,7 @@ fn a_full_cache_gives_the_plan_of_an_empty_one() {
         scene
     };
     let groups = |first: usize| {
-        let group = |triangles: std::ops::Range<usize>, shading| Group {
+        let group = |triangles: std::ops::Range<usize>, shading| MeshGroup {
             name: String::new(),
             triangles,
             material: Some(Material { shading, ..Material::default() }),
@@ -133,7 +133,7 @@ fn what_a_scene_does_not_need_is_left_out_and_said() {
     let plan = plan_of(&scene, Technique::ZFail).expect("a plan");
     let parts = |part| plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == part).count();
     // The caster's sides and light cap: under a sun its volume ends in one point, and the floor darkens nothing.
-    assert_eq!([Part::Side, Part::LightCap, Part::DarkCap].map(parts), [1, 1, 0]);
+    assert_eq!([DrawPart::Side, DrawPart::LightCap, DrawPart::DarkCap].map(parts), [1, 1, 0]);
     assert!(plan.left_out.iter().any(|left| left.is(Decision::Caster, "floor")));
     assert!(plan.left_out.iter().any(|left| left.is(Decision::DarkCap, "caster")));
     let plan = plan_of(&scene, Technique::ShadowMap).expect("a plan");
@@ -146,7 +146,7 @@ fn what_a_scene_does_not_need_is_left_out_and_said() {
 fn a_light_cap_is_drawn_in_the_surfaces_own_vertex_order() {
     let plan = plan_of(&scene(), Technique::ZFail).expect("a plan");
     let draws: Vec<_> = plan.passes.iter().flat_map(|pass| &pass.draws).collect();
-    let is_cap = |draw: &&&Draw| draw.part == Part::LightCap && draw.caster.as_deref() == Some("caster");
+    let is_cap = |draw: &&&Draw| draw.part == DrawPart::LightCap && draw.caster.as_deref() == Some("caster");
     let of_caps = draws.iter().filter(is_cap).flat_map(|cap| {
         let corners = cap.triangles.start as usize * 3..cap.triangles.end as usize * 3;
         plan.meshes[cap.mesh.0].indices.data()[corners].chunks(3)

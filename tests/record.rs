@@ -8,9 +8,9 @@ mod ways;
 use renderer::{Fault, Renderer};
 use std::path::PathBuf;
 use stencilscope::capture::{Capture, DrawSummary, disk};
-use stencilscope::history::{Fate, PixelHistory, TriangleEvent};
-use stencilscope::import::Converted;
-use stencilscope::record::{self, OfSeries, RecordError, Recorded};
+use stencilscope::history::{FragmentOutcome, PixelHistory, TriangleEvent};
+use stencilscope::import::ConvertedFrame;
+use stencilscope::record::{self, RecordError, RecordedFrame, SeriesFrame};
 use stencilscope::session::Session;
 use stencilscope::testing::Rendered;
 use stencilscope::wgpu;
@@ -21,7 +21,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-fn recorded(name: &str, renderer: &Renderer) -> Recorded {
+fn recorded(name: &str, renderer: &Renderer) -> RecordedFrame {
     let folder = folder(name);
     record::frame(&renderer.device, &renderer.queue, &folder, |encoder| renderer.encode(encoder)).expect("a frame")
 }
@@ -41,7 +41,8 @@ fn last_stencil(capture: &Capture) -> Vec<u8> {
 #[test]
 fn a_frame_is_recorded_draw_by_draw() {
     let renderer = Renderer::new(record::instance, Fault::None);
-    let Recorded { frame: Converted { capture, plan, lights, .. }, folder, .. } = recorded("whole", &renderer);
+    let RecordedFrame { frame: ConvertedFrame { capture, plan, lights, .. }, folder, .. } =
+        recorded("whole", &renderer);
     assert_eq!(draws(&capture).len(), 4, "{}", capture.plan_text);
     for draw in draws(&capture) {
         let differs = draw.differs.unwrap_or_else(|| panic!("{} is not computed anew", draw.name));
@@ -65,7 +66,7 @@ fn a_frame_is_drawn_as_without_us() {
     wrapped.draw();
     let expected = plain.picture();
     assert!(expected == wrapped.picture());
-    let Recorded { folder, .. } = recorded("same", &wrapped);
+    let RecordedFrame { folder, .. } = recorded("same", &wrapped);
     assert!(expected == wrapped.picture() && plain.stencil() == wrapped.stencil());
     std::fs::remove_dir_all(folder).expect("removed");
 }
@@ -105,7 +106,7 @@ fn a_series_has_each_frame_and_what_it_cost() {
     renderer.draw();
     let folders = ["frame-0000", "frame-0001"].map(|name| target.join(name));
     assert_eq!(series.iter().map(|frame| &frame.folder).collect::<Vec<_>>(), folders.iter().collect::<Vec<_>>());
-    for OfSeries { folder, outcome } in &series {
+    for SeriesFrame { folder, outcome } in &series {
         let cost = outcome.as_ref().expect("a frame");
         let opened = disk::read_whole(folder).expect("a folder");
         assert_eq!((cost.draws, draws(&opened.capture).len()), (4, 4));
@@ -128,7 +129,7 @@ fn a_series_ends_where_nothing_can_be_written() {
     record::start(&renderer.device, &target).expect("a wrapped device");
     (0..2).for_each(|_| renderer.draw());
     let series = record::stop(&renderer.device).expect("a wrapped device");
-    assert!(matches!(series[..], [OfSeries { outcome: Err(RecordError::Disk(_)), .. }]), "{series:?}");
+    assert!(matches!(series[..], [SeriesFrame { outcome: Err(RecordError::Disk(_)), .. }]), "{series:?}");
     std::fs::remove_file(target).expect("removed");
 }
 
@@ -136,7 +137,7 @@ fn a_series_ends_where_nothing_can_be_written() {
 #[test]
 fn histories_end_in_what_was_stored() {
     let renderer = Renderer::new(record::instance, Fault::None);
-    let Recorded { frame: Converted { capture, plan, .. }, folder, .. } = recorded("history", &renderer);
+    let RecordedFrame { frame: ConvertedFrame { capture, plan, .. }, folder, .. } = recorded("history", &renderer);
     let mut session = Session::new(None).expect("an adapter");
     let [width, height] = capture.size;
     let mut fragments = 0;
@@ -156,7 +157,7 @@ fn histories_end_in_what_was_stored() {
 fn a_culled_face_shows_in_the_history_of_a_pixel_that_lacks_its_shadow() {
     let of = |fault, name| {
         let renderer = Renderer::new(record::instance, fault);
-        let Recorded { frame: Converted { capture, plan, .. }, folder, .. } = recorded(name, &renderer);
+        let RecordedFrame { frame: ConvertedFrame { capture, plan, .. }, folder, .. } = recorded(name, &renderer);
         std::fs::remove_dir_all(folder).expect("removed");
         (renderer.stencil(), Rendered::recorded(plan, capture).expect("an adapter"))
     };
@@ -167,7 +168,7 @@ fn a_culled_face_shows_in_the_history_of_a_pixel_that_lacks_its_shadow() {
     let pixel = [shadowed % width, shadowed / width].map(|at| at as u32);
     right.at(pixel).stencil(1).agrees();
     wrong.at(pixel).stencil(0).agrees();
-    let is_culled_back = |triangle: &TriangleEvent| triangle.fate == Fate::Culled && !triangle.is_front;
+    let is_culled_back = |triangle: &TriangleEvent| triangle.fate == FragmentOutcome::Culled && !triangle.is_front;
     let of_volume = |frame: &mut Rendered| {
         let history = frame.at(pixel).history().clone();
         history.triangles().filter(|(event, triangle)| event.pass_name == "volumes" && is_culled_back(triangle)).count()

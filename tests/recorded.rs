@@ -7,18 +7,18 @@ use glam::{DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::capture::Capture;
 use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawMesh, FaceMasks,
-    FramePlan, May, Part, Pass, PlanView, Program, RasterState, RecordedPass, StartContent, StencilFace, ViewId,
-    Viewport, lint,
+    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawMesh, DrawPart,
+    FaceMasks, FramePlan, Pass, PlanView, Program, RasterState, RecordedPass, ShaderEffect, StartContent, StencilFace,
+    ViewId, Viewport, lint,
 };
 use wgpu::{CompareFunction as Compare, StencilOperation as Operation, TextureFormat};
 
 const SIZE: [u32; 2] = [40, 30];
 
 fn of_program(raster: RasterState, mesh: usize, triangles: u32) -> Draw {
-    let program = Program::Recorded { may_discard: May::No, writes_depth: May::No };
+    let program = Program::Recorded { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
     let mesh = stencilscope::plan::MeshId(mesh);
-    Draw { program, ..Draw::of_positions("draw", Part::Surface, mesh, triangles, raster) }
+    Draw { program, ..Draw::of_positions("draw", DrawPart::Surface, mesh, triangles, raster) }
 }
 
 fn pass(viewport: Viewport, start: Option<StartContent>, draws: Vec<Draw>) -> Pass {
@@ -256,7 +256,7 @@ fn a_recorded_frame_is_written_and_read_back_the_same() {
     let capture = Capture { lights: Vec::new(), ..capture };
     let parent = tempfile::tempdir().expect("a folder");
     let folder = parent.path().join("out");
-    let contents = stencilscope::capture::disk::Contents { capture: &capture, plan: Some(&plan), scene: None };
+    let contents = stencilscope::capture::disk::FolderContents { capture: &capture, plan: Some(&plan), scene: None };
     stencilscope::capture::disk::write(contents, &folder, false).expect("written");
     let whole = stencilscope::capture::disk::read_whole(&folder).expect("read");
     assert!(whole.plan.expect("a plan") == plan);

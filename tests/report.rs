@@ -9,7 +9,7 @@ use stencilscope::progress::Progress;
 use stencilscope::report::Report;
 use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::{Light, Object, Scene};
-use stencilscope::session::{Measured, Measurement};
+use stencilscope::session::{MeasuredTechnique, Measurement};
 use stencilscope::technique::{Choice, Technique};
 
 const SMALL: [&str; 6] = ["report", "triangle.obj", "--size", "80x60", "--runs", "2"];
@@ -94,7 +94,7 @@ fn a_sweep_measures_every_value() {
     assert!(table.contains("| of casters | wrong pixels |") && table.contains("| fps |"), "{table}");
     let plot = fs::read_to_string(folder.path().join("s.svg")).expect("a plot");
     assert!(plot.contains("Frame time against triangles") && plot.contains("frames a second"));
-    let values = |rows: &[stencilscope::report::Row]| -> Vec<String> {
+    let values = |rows: &[stencilscope::report::ReportRow]| -> Vec<String> {
         rows.iter().filter_map(|row| Some(row.sweep.as_ref()?.text.clone())).collect()
     };
     assert_eq!(values(&sweep("lights=1..3", &["-t", "auto"])), ["1", "2", "3"]);
@@ -238,7 +238,7 @@ fn rows_for_which_there_is_no_room_are_left_out_and_the_others_are_as_they_were(
     };
     // The map alone is 64 MiB: where there is room, it is set up anew for each of its frames.
     let (all, few) = (measured(None), measured(Some(32 << 20)));
-    let row = |row: &Measured| (row.choice.technique(), row.error, row.frames.len(), row.bytes);
+    let row = |row: &MeasuredTechnique| (row.choice.technique(), row.error, row.frames.len(), row.bytes);
     assert_eq!(all.iter().map(|one| one.choice.clone()).collect::<Vec<_>>(), what.choices);
     assert_eq!(few.iter().map(row).collect::<Vec<_>>(), [&all[0], &all[2]].map(row));
     assert!(all.iter().all(|row| row.frames.len() == 2 && row.gpu_ms.is_none_or(|ms| ms > 0.0)));

@@ -2,7 +2,7 @@
 
 use crate::commands::{assert_fails, folder, run, text};
 use std::f64::consts::FRAC_1_SQRT_2;
-use stencilscope::reading::shading::Shaded;
+use stencilscope::reading::shading::SurfaceShading;
 use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::{Light, Material, Object, Projection, Scene, SceneBuilder, Shading, shapes};
 use stencilscope::technique::{Choice, Technique};
@@ -16,9 +16,9 @@ fn rendered(scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> R
     Rendered::new(scene, choice, SIZE).expect("a frame")
 }
 
-fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<Shaded> {
+fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<SurfaceShading> {
     let history = frame.at(at).history().clone();
-    Shaded::of(frame.capture(), frame.plan(), &history)
+    SurfaceShading::of(frame.capture(), frame.plan(), &history)
 }
 
 /// As a picture stores it.

@@ -5,10 +5,10 @@ use glam::{DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
-    MeshId, Part, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
+    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, DrawPart,
+    FramePlan, MeshId, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
 };
-use stencilscope::stencil_machine::{Fragment, Stored, test};
+use stencilscope::stencil_machine::{DepthStencil, IncomingFragment, test};
 use wgpu::{CompareFunction as Compare, StencilOperation as Operation};
 
 const COMPARES: [Compare; 8] = [
@@ -110,7 +110,7 @@ fn draw(raster: RasterState, mesh: usize, triangles: std::ops::Range<u32>) -> Dr
     Draw {
         name: "quads".to_owned(),
         caster: None,
-        part: Part::Surface,
+        part: DrawPart::Surface,
         program: Program::Position,
         raster,
         mesh: MeshId(mesh),
@@ -221,8 +221,8 @@ fn the_machine_agrees_with_the_gpu_on_every_function_operation_place_face_refere
             let (value, depth) = (VALUES[pixel / DEPTHS.len()], DEPTHS[pixel % DEPTHS.len()]);
             let at = index * PIXELS_A_CASE + pixel;
             assert_eq!(stencil_after(&capture, 0, at), value, "the stored value of pixel {at}");
-            let stored = Stored { depth: STORED_DEPTH, stencil: value };
-            let outcome = test(&case.state, Fragment { depth, front_facing: case.front_facing }, stored);
+            let stored = DepthStencil { depth: STORED_DEPTH, stencil: value };
+            let outcome = test(&case.state, IncomingFragment { depth, front_facing: case.front_facing }, stored);
             let on_gpu = stencil_after(&capture, 1, at);
             let front = case.front_facing;
             assert_eq!(outcome.after.stencil, on_gpu, "{value} stored, depth {depth}, front {front}\n{}", case.state);
@@ -268,8 +268,8 @@ fn the_machine_agrees_with_the_gpu_on_every_depth_test() {
     let Snapshot::Frame(frame) = &capture.steps[0].snapshot else { panic!("no frame") };
     for (index, state) in states.iter().enumerate() {
         for (slot, depth) in COMPARED_DEPTHS.into_iter().enumerate() {
-            let stored = Stored { depth: STORED_DEPTH, stencil: 0 };
-            let outcome = test(state, Fragment { depth, front_facing: true }, stored);
+            let stored = DepthStencil { depth: STORED_DEPTH, stencil: 0 };
+            let outcome = test(state, IncomingFragment { depth, front_facing: true }, stored);
             let at = (index * COMPARED_DEPTHS.len() + slot) as u32;
             assert_eq!(stencil_after(&capture, 0, at as usize), outcome.after.stencil, "{depth}\n{state}");
             assert_eq!(frame.depth.image.depth_at([at, 0]), Some(outcome.after.depth), "{depth}\n{state}");

@@ -2,7 +2,7 @@
 
 use crate::common;
 use stencilscope::capture::StepTests;
-use stencilscope::history::{Fate, PixelHistory};
+use stencilscope::history::{FragmentOutcome, PixelHistory};
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -13,7 +13,7 @@ const SIZE: [u32; 2] = [160, 90];
 fn counted(history: &PixelHistory, step: usize, draw: Option<usize>) -> [u8; 4] {
     let mut counts = [0; 4];
     for (event, triangle) in history.triangles() {
-        let Fate::Tested { stencil, depth, .. } = triangle.fate else { continue };
+        let FragmentOutcome::Tested { stencil, depth, .. } = triangle.fate else { continue };
         if event.pass != step || draw.is_some_and(|draw| draw != triangle.draw) {
             continue;
         }

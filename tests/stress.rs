@@ -10,19 +10,20 @@ use glam::DVec4;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use stencilscope::accuracy::ErrorCounts;
-use stencilscope::plan::{Blob, Draw, FramePlan, Part};
+use stencilscope::plan::{Blob, Draw, DrawPart, FramePlan};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Mesh, MeshBuilder, Scene};
-use stencilscope::session::{Fault, Session};
+use stencilscope::session::{InjectedFault, Session};
 use stencilscope::stress::{
-    Case, Drives, Entrant, Expected, Row, Seen, Stress, Surprise, Symptom, Verdict, cases, summary,
+    CaseNumber, Entrant, ExpectedResult, FailureSymptom, StressCase, StressResults, StressRow, StressVerdict,
+    TruthCounts, UnexpectedResult, cases, summary,
 };
 use stencilscope::technique::{Choice, Technique};
 
 const SMALL: [u32; 2] = [160, 120];
 
-fn case(name: &str) -> &'static Case {
-    Case::named(name).expect(name)
+fn case(name: &str) -> &'static StressCase {
+    StressCase::named(name).expect(name)
 }
 
 #[test]
@@ -100,9 +101,9 @@ fn every_known_failure_has_a_case() {
 fn volumes_fail_only_where_they_must() {
     let must = |technique: Technique| -> Vec<String> {
         let entrant = Entrant::of(technique);
-        let fails = |case: &'static Case| {
+        let fails = |case: &'static StressCase| {
             case.values.iter().filter_map(move |value| match case.expected_at(&entrant, *value) {
-                Expected::Fails(symptom) => Some(format!("{} {value}: {}", case.name, symptom.name)),
+                ExpectedResult::Fails(symptom) => Some(format!("{} {value}: {}", case.name, symptom.name)),
                 _ => None,
             })
         };
@@ -122,7 +123,7 @@ fn volumes_fail_only_where_they_must() {
     assert_eq!(names, BTreeSet::from(expected.map(str::to_owned)));
     let z_fail = Entrant::of(Technique::ZFail);
     let may = cases::all().filter(|case| {
-        case.values.iter().any(|value| matches!(case.expected_at(&z_fail, *value), Expected::MayFail(_)))
+        case.values.iter().any(|value| matches!(case.expected_at(&z_fail, *value), ExpectedResult::MayFail(_)))
     });
     let may: Vec<&str> = may.map(|case| case.name).collect();
     assert_eq!(
@@ -133,16 +134,16 @@ fn volumes_fail_only_where_they_must() {
 }
 
 /// A row as if measured.
-fn row(name: &str, technique: Technique, value: f64, [false_shadow, missing_shadow]: [u64; 2]) -> Row {
+fn row(name: &str, technique: Technique, value: f64, [false_shadow, missing_shadow]: [u64; 2]) -> StressRow {
     let (case, entrant) = (case(name), Entrant::of(technique));
     let error = ErrorCounts { compared: 10_000, false_shadow, missing_shadow, ..ErrorCounts::default() };
-    Row {
+    StressRow {
         case: case.name,
         parameter: (case.parameter, value),
         entrant,
         settings: Default::default(),
         error,
-        seen: Seen { pixels: 20_000, lit: 9_000, shadow: 1_000 },
+        seen: TruthCounts { pixels: 20_000, lit: 9_000, shadow: 1_000 },
         flips: None,
         off_limit: None,
         expected: case.expected_at(&entrant, value),
@@ -155,21 +156,21 @@ fn row(name: &str, technique: Technique, value: f64, [false_shadow, missing_shad
 fn a_known_failure_excuses_its_values_its_kind_and_its_share_only() {
     let nested = |value, wrong| row("nested", Technique::ZFail, value, wrong).surprise();
     assert_eq!(nested(255.0, [0, 0]), None);
-    assert_eq!(nested(255.0, [0, 1]), Some(Surprise::Wrong));
+    assert_eq!(nested(255.0, [0, 1]), Some(UnexpectedResult::Wrong));
     assert_eq!(nested(256.0, [0, 300]), None);
-    assert_eq!(nested(256.0, [0, 0]), Some(Surprise::NotShown));
-    assert_eq!(nested(256.0, [1, 300]), Some(Surprise::OtherKind));
-    assert_eq!(nested(256.0, [0, 3000]), Some(Surprise::TooMany));
-    assert_eq!(nested(257.0, [0, 300]), Some(Surprise::Wrong));
+    assert_eq!(nested(256.0, [0, 0]), Some(UnexpectedResult::NotShown));
+    assert_eq!(nested(256.0, [1, 300]), Some(UnexpectedResult::OtherKind));
+    assert_eq!(nested(256.0, [0, 3000]), Some(UnexpectedResult::TooMany));
+    assert_eq!(nested(257.0, [0, 300]), Some(UnexpectedResult::Wrong));
     // Never promised: texels may show, a little.
     let map = |wrong| row("near-far", Technique::ShadowMap, 10.0, wrong);
-    assert_eq!(map([9, 9]).verdict(), Verdict::FailsAsKnown);
-    assert_eq!(map([0, 0]).verdict(), Verdict::Holds);
-    assert_eq!(map([0, 100]).surprise(), Some(Surprise::TooMany));
+    assert_eq!(map([9, 9]).verdict(), StressVerdict::FailsAsKnown);
+    assert_eq!(map([0, 0]).verdict(), StressVerdict::Holds);
+    assert_eq!(map([0, 100]).surprise(), Some(UnexpectedResult::TooMany));
     // A failure at one value does not excuse the next: the whole is judged by its rows.
     let rows = [256.0, 257.0].map(|value| row("nested", Technique::ZFail, value, [0, 300]));
     let whole = &summary(&rows)[0];
-    assert_eq!((whole.verdict, whole.surprise), (Verdict::Unexpected, Some((257.0, Surprise::Wrong))));
+    assert_eq!((whole.verdict, whole.surprise), (StressVerdict::Unexpected, Some((257.0, UnexpectedResult::Wrong))));
     assert_eq!((whole.breaks_at, whole.expected.name()), (Some(256.0), "wrap-256"));
     assert_eq!(rows.map(|row| row.expected.name()), ["wrap-256", "right"]);
 }
@@ -178,11 +179,11 @@ fn a_known_failure_excuses_its_values_its_kind_and_its_share_only() {
 #[test]
 fn what_is_only_excused_is_said_to_be() {
     let row = row("fine-grid", Technique::ShadowMap, 0.1, [0, 0]);
-    let rows = vec![Row { error: ErrorCounts { edge_band: 500, ..row.error }, ..row }];
+    let rows = vec![StressRow { error: ErrorCounts { edge_band: 500, ..row.error }, ..row }];
     let whole = &summary(&rows)[0];
-    assert_eq!((whole.breaks_at, whole.blurred_at, whole.verdict), (None, Some(0.1), Verdict::FailsAsKnown));
+    assert_eq!((whole.breaks_at, whole.blurred_at, whole.verdict), (None, Some(0.1), StressVerdict::FailsAsKnown));
     let adapter = session().adapter().clone();
-    let stress = Stress { adapter, size: [320, 240], rows, part: None };
+    let stress = StressResults { adapter, size: [320, 240], rows, part: None };
     assert!(stress.to_table().contains("no wrong pixel, but too many pixels excused along edges at 0.1"));
     assert!(stress.to_markdown().contains("0.1 aliasing (too many excused)"));
     assert!(stress.to_json().expect("JSON").contains("\"too_many_excused_at\": 0.1"));
@@ -194,34 +195,37 @@ fn what_is_only_excused_is_said_to_be() {
 fn a_mixed_failure_is_of_both_kinds() {
     let cut = |wrong| row("eye-in-volume", Technique::ZPass, 0.0, wrong).surprise();
     assert_eq!(cut([3000, 3000]), None);
-    assert_eq!((cut([0, 3000]), cut([3000, 0])), (Some(Surprise::OtherKind), Some(Surprise::OtherKind)));
-    assert_eq!(cut([0, 0]), Some(Surprise::NotShown));
+    assert_eq!(
+        (cut([0, 3000]), cut([3000, 0])),
+        (Some(UnexpectedResult::OtherKind), Some(UnexpectedResult::OtherKind))
+    );
+    assert_eq!(cut([0, 0]), Some(UnexpectedResult::NotShown));
 }
 
 #[test]
 fn what_can_not_fail_does_not_hold() {
     let good = row("near-far", Technique::ZFail, 10.0, [0, 0]);
-    assert_eq!(good.verdict(), Verdict::Holds);
+    assert_eq!(good.verdict(), StressVerdict::Holds);
     for seen in [
-        Seen::default(),
-        Seen { pixels: 16_384, lit: 2, shadow: 0 },
-        Seen { pixels: 20_000, lit: 10_000, shadow: 1 },
-        Seen { pixels: 20_000, lit: 0, shadow: 10_000 },
+        TruthCounts::default(),
+        TruthCounts { pixels: 16_384, lit: 2, shadow: 0 },
+        TruthCounts { pixels: 20_000, lit: 10_000, shadow: 1 },
+        TruthCounts { pixels: 20_000, lit: 0, shadow: 10_000 },
     ] {
-        assert_eq!(Row { seen, ..good.clone() }.surprise(), Some(Surprise::LittleToSee), "{seen:?}");
+        assert_eq!(StressRow { seen, ..good.clone() }.surprise(), Some(UnexpectedResult::LittleToSee), "{seen:?}");
     }
-    let bare = Row { seen: Seen::default(), ..row("no-caster", Technique::ZFail, 0.0, [0, 0]) };
-    assert_eq!(bare.verdict(), Verdict::Holds, "the case says that nothing is there");
+    let bare = StressRow { seen: TruthCounts::default(), ..row("no-caster", Technique::ZFail, 0.0, [0, 0]) };
+    assert_eq!(bare.verdict(), StressVerdict::Holds, "the case says that nothing is there");
     let blurred = ErrorCounts { edge_band: 500, ..good.error };
-    assert_eq!(Row { error: blurred, ..good.clone() }.surprise(), Some(Surprise::TooManyExcused));
-    assert_eq!(Row { flips: Some(1), ..good }.surprise(), Some(Surprise::Flickers));
+    assert_eq!(StressRow { error: blurred, ..good.clone() }.surprise(), Some(UnexpectedResult::TooManyExcused));
+    assert_eq!(StressRow { flips: Some(1), ..good }.surprise(), Some(UnexpectedResult::Flickers));
 }
 
 #[test]
 fn trends_are_judged() {
-    let course = |rows: &[Row]| summary(rows)[0].course.clone().expect("a course");
-    let far = |off: &[u64]| -> Vec<Row> {
-        let row = |(value, off): (&f64, &u64)| Row {
+    let course = |rows: &[StressRow]| summary(rows)[0].course.clone().expect("a course");
+    let far = |off: &[u64]| -> Vec<StressRow> {
+        let row = |(value, off): (&f64, &u64)| StressRow {
             off_limit: Some(*off),
             ..row("light-far", Technique::ZFail, *value, [0, 0])
         };
@@ -229,9 +233,9 @@ fn trends_are_judged() {
     };
     assert!(course(&far(&[9, 1, 0, 0, 0, 0])).holds);
     assert!(!course(&far(&[9, 1, 0, 0, 0, 1])).holds, "it does not come to be the sun");
-    assert_eq!(summary(&far(&[9, 9, 9, 9, 9, 9]))[0].verdict, Verdict::Unexpected);
+    assert_eq!(summary(&far(&[9, 9, 9, 9, 9, 9]))[0].verdict, StressVerdict::Unexpected);
 
-    let size = |errors: &[u64]| -> Vec<Row> {
+    let size = |errors: &[u64]| -> Vec<StressRow> {
         let row = |(value, wrong): (&f64, &u64)| row("map-size", Technique::ShadowMap, *value, [*wrong, 0]);
         case("map-size").values.iter().zip(errors).map(row).collect()
     };
@@ -239,8 +243,8 @@ fn trends_are_judged() {
     assert!(falls.holds && falls.text.starts_with("size × error: 64 × 80 = "), "{falls:?}");
     assert!(!course(&size(&[80, 40, 20, 60, 5, 2, 1])).holds);
 
-    let time = |setup: &dyn Fn(f64) -> f64| -> Vec<Row> {
-        let row = |value: &f64| Row {
+    let time = |setup: &dyn Fn(f64) -> f64| -> Vec<StressRow> {
+        let row = |value: &f64| StressRow {
             setup_ms: setup(*value),
             frame_ms: *value,
             ..row("triangle-count", Technique::ZFail, *value, [0, 0])
@@ -251,13 +255,19 @@ fn trends_are_judged() {
     assert!(!course(&time(&|count| count * count)).holds, "quadratic");
 }
 
-fn rows(session: &mut Session, names: &[&str], only: &[Technique]) -> Vec<Row> {
-    let cases: Vec<&'static Case> = names.iter().map(|name| case(name)).collect();
+fn rows(session: &mut Session, names: &[&str], only: &[Technique]) -> Vec<StressRow> {
+    let cases: Vec<&'static StressCase> = names.iter().map(|name| case(name)).collect();
     session.stress(&cases, only, SMALL, &Progress::default()).expect("rows")
 }
 
 /// One row of a case.
-fn one(session: &mut Session, (name, value): (&str, f64), entrant: Entrant, size: [u32; 2], fault: Fault) -> Row {
+fn one(
+    session: &mut Session,
+    (name, value): (&str, f64),
+    entrant: Entrant,
+    size: [u32; 2],
+    fault: InjectedFault,
+) -> StressRow {
     let rows = session.stress_faulty(case(name), &[entrant], &[value], size, fault, &Progress::default());
     rows.expect("a row").remove(0)
 }
@@ -308,7 +318,7 @@ fn a_grazed_floor_does_not_darken_itself() {
     let mut session = session();
     for technique in [Technique::ZFail, Technique::ZPass, Technique::ZPassPlus] {
         for (degrees, size) in [(1e-4, [320, 240]), (1e-3, [360, 240]), (1e-3, [720, 480])] {
-            let row = one(&mut session, ("grazing", degrees), Entrant::of(technique), size, Fault::None);
+            let row = one(&mut session, ("grazing", degrees), Entrant::of(technique), size, InjectedFault::None);
             assert!(row.error.compared > 40_000);
             assert_eq!(row.error.wrong(), 0, "{technique:?}: {:?}", row.error);
         }
@@ -322,12 +332,12 @@ fn seeds_that_failed_hold() {
     let mut session = session();
     for seed in [297.0, 444.0] {
         let z_fail = Entrant::of(Technique::ZFail);
-        let row = one(&mut session, ("random", seed), z_fail, [320, 240], Fault::None);
+        let row = one(&mut session, ("random", seed), z_fail, [320, 240], InjectedFault::None);
         assert_eq!(row.error.wrong(), 0, "{seed}: {:?}", row.error);
         let unbiased = |plan: &mut FramePlan| {
-            draws(plan, Part::Side).for_each(|draw| draw.raster.depth_bias = wgpu::DepthBiasState::default());
+            draws(plan, DrawPart::Side).for_each(|draw| draw.raster.depth_bias = wgpu::DepthBiasState::default());
         };
-        let row = one(&mut session, ("random", seed), z_fail, [320, 240], Fault::Plan(&unbiased));
+        let row = one(&mut session, ("random", seed), z_fail, [320, 240], InjectedFault::Plan(&unbiased));
         assert!(row.error.wrong() > 0, "{seed}");
     }
 }
@@ -342,7 +352,7 @@ fn see_random_scenes() {
     let (mut session, mut compared) = (session(), 0);
     for seed in (0..1000).step_by(17) {
         let z_fail = Entrant::of(Technique::ZFail);
-        let row = one(&mut session, ("random", f64::from(seed)), z_fail, [64, 48], Fault::None);
+        let row = one(&mut session, ("random", f64::from(seed)), z_fail, [64, 48], InjectedFault::None);
         assert_eq!(row.error.wrong(), 0, "seed {seed}: {:?}", row.error);
         compared += row.error.compared;
     }
@@ -353,9 +363,9 @@ fn a_known_failure_that_does_not_show_is_unexpected_too() {
     let mut session = session();
     let z_pass = Entrant::of(Technique::ZPass);
     let mend = |scene: &mut Scene| scene.camera.near = 0.05;
-    let row = one(&mut session, ("near-plane", 2.1), z_pass, SMALL, Fault::Scene(&mend));
-    assert!(matches!(row.expected, Expected::Fails(Symptom { name: "near-plane", .. })));
-    assert_eq!((row.error.wrong(), row.surprise()), (0, Some(Surprise::NotShown)));
+    let row = one(&mut session, ("near-plane", 2.1), z_pass, SMALL, InjectedFault::Scene(&mend));
+    assert!(matches!(row.expected, ExpectedResult::Fails(FailureSymptom { name: "near-plane", .. })));
+    assert_eq!((row.error.wrong(), row.surprise()), (0, Some(UnexpectedResult::NotShown)));
 }
 
 /// The wide and the tall picture cross a shadow's edges.
@@ -375,7 +385,7 @@ fn extreme_pictures_have_something_to_compare() {
 #[test]
 fn a_case_drives_a_scene_or_a_setting() {
     let map = Entrant::of(Technique::ShadowMap);
-    assert!(matches!(case("map-size").drives, Drives::Setting("size", _)));
+    assert!(matches!(case("map-size").drives, CaseNumber::Setting("size", _)));
     assert_eq!(case("map-size").choice(&map, 64.0).expect("a choice").settings()["size"], "64");
     assert_eq!(case("nested").choice(&map, 64.0).expect("a choice").settings()["size"], "1024");
 }

@@ -9,10 +9,10 @@ use std::sync::Arc;
 use stencilscope::capture::disk::{read_whole, write};
 use stencilscope::plan::{Blob, FramePlan};
 use stencilscope::reading::pick_ray::sight;
-use stencilscope::reading::shading::Shaded;
+use stencilscope::reading::shading::SurfaceShading;
 use stencilscope::scene::{
-    Camera, Light, Material, Mesh, MeshBuilder, Object, OpenSpec, Picture, Projection, Scene, SceneBuilder, Shading,
-    Texture, obj, open, shapes,
+    Camera, Light, Material, MaterialTexture, Mesh, MeshBuilder, Object, OpenSpec, Projection, Scene, SceneBuilder,
+    Shading, TextureImage, obj, open, shapes,
 };
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::{Choice, Technique};
@@ -20,19 +20,19 @@ use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [96, 72];
 
-fn picture(size: [u32; 2], of: impl Fn(u32, u32) -> [u8; 3]) -> Arc<Picture> {
+fn picture(size: [u32; 2], of: impl Fn(u32, u32) -> [u8; 3]) -> Arc<TextureImage> {
     let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
     let texels = texels.map(|(x, y)| of(x, y)).map(|[r, g, b]| [r, g, b, 255]).collect();
-    Arc::new(Picture::new("a picture", size, texels).expect("a picture"))
+    Arc::new(TextureImage::new("a picture", size, texels).expect("a picture"))
 }
 
 /// Red grows to the right and green to the top.
-fn ramp() -> Arc<Picture> {
+fn ramp() -> Arc<TextureImage> {
     picture([256, 256], |x, y| [x as u8, 255 - y as u8, 90])
 }
 
-fn along_world(picture: &Arc<Picture>, side: f32) -> Option<Texture> {
-    Some(Texture { picture: picture.clone(), side: Some(side), clamps: false })
+fn along_world(picture: &Arc<TextureImage>, side: f32) -> Option<MaterialTexture> {
+    Some(MaterialTexture { picture: picture.clone(), side: Some(side), clamps: false })
 }
 
 /// A slanted board whose corners say where they lie in a picture: all of it, three times as wide as high.
@@ -47,8 +47,8 @@ fn slanted() -> Mesh {
     builder.build().expect("a board")
 }
 
-fn on_board(picture: &Arc<Picture>) -> Object {
-    let texture = Some(Texture { picture: picture.clone(), side: None, clamps: false });
+fn on_board(picture: &Arc<TextureImage>) -> Object {
+    let texture = Some(MaterialTexture { picture: picture.clone(), side: None, clamps: false });
     Object { texture, ..Object::new("board", Arc::new(slanted()), Material::matte([1.0; 3])) }
 }
 
@@ -56,9 +56,9 @@ fn rendered(scene: &Scene, technique: Technique) -> Rendered {
     Rendered::new(scene, Choice::new(technique), SIZE).expect("a frame")
 }
 
-fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<Shaded> {
+fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<SurfaceShading> {
     let history = frame.at(at).history().clone();
-    Shaded::of(frame.capture(), frame.plan(), &history)
+    SurfaceShading::of(frame.capture(), frame.plan(), &history)
 }
 
 fn last_color(frame: &Rendered, at: [u32; 2]) -> [u8; 4] {
@@ -219,7 +219,7 @@ fn a_picture_along_the_world_lies_where_it_is_said_to() {
     let quarters = picture([2, 2], |x, y| [255 * x as u8, 255 * y as u8, 0]);
     let look = |clamps: bool, at: [f64; 2]| {
         let floor = Object {
-            texture: Some(Texture { picture: quarters.clone(), side: Some(2.0), clamps }),
+            texture: Some(MaterialTexture { picture: quarters.clone(), side: Some(2.0), clamps }),
             ..Object::new("floor", Arc::new(shapes::quad([8.0; 2]).expect("a floor")), Material::matte([1.0; 3]))
         };
         let [x, z] = at;
@@ -287,7 +287,7 @@ fn the_terms_of_a_pixel_with_a_picture_add_up_to_its_colour() {
     for (shading, clamps) in [(Shading::Flat, false), (Shading::Gouraud, true), (Shading::Phong, false)] {
         let mut board = on_board(&noisy);
         board.material = Material { shading, specular: 0.4, shininess: 8.0, checks: 0.7, ..board.material };
-        board.texture = board.texture.map(|texture| Texture { clamps, ..texture });
+        board.texture = board.texture.map(|texture| MaterialTexture { clamps, ..texture });
         let floor = Object {
             texture: along_world(&noisy, 3.0),
             material: Material { emission: [0.02, 0.0, 0.05], ..Material::default() },

@@ -5,7 +5,7 @@ use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::Decision;
 use stencilscope::scene::{Light, Object, OpenSpec, Pose, Projection, Scene, open};
-use stencilscope::session::{CaptureRequest, Every, Session};
+use stencilscope::session::{CaptureRequest, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
 const SHADOWING: [Technique; 4] = [Technique::Planar, Technique::ZPass, Technique::ZFail, Technique::ShadowMap];
@@ -292,7 +292,7 @@ fn a_frame_that_copies_much_is_the_same_in_parts() {
     let by_draw = session.capture_plan(&scene, &split).expect("a capture");
     assert_ends_alike(&by_draw, &by_pass);
     assert!(by_draw.steps.iter().all(|step| step.gpu_ms.is_some_and(|ms| ms > 0.0)), "every part is timed");
-    let request = CaptureRequest { every: Every::Draw, ..request(Technique::ZFail, [1600, 1000]) };
+    let request = CaptureRequest { every: SnapshotInterval::Draw, ..request(Technique::ZFail, [1600, 1000]) };
     let joined = session.capture(&scene, &request).expect("a capture");
     assert_eq!((&joined.lights, joined.steps.len()), (&by_pass.lights, by_pass.steps.len()));
     for (index, (joined, whole)) in joined.steps.iter().zip(&by_pass.steps).enumerate() {

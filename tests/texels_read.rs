@@ -3,7 +3,7 @@
 use crate::commands::{folder, run, text};
 use serde_json::Value;
 use std::sync::Arc;
-use stencilscope::reading::fragments::Fragments;
+use stencilscope::reading::fragments::SurfaceFragments;
 use stencilscope::reading::texels_read::TexelReaders;
 use stencilscope::reading::texture_decision::TextureDecision;
 use stencilscope::scene::builtin::Builtin;
@@ -110,7 +110,7 @@ fn what_textures_let_through_is_what_labels_say() {
         let mut labels = [0_u32; 2];
         let mut off = 0;
         for light in 0..capture.lights.len() {
-            let fragments = Fragments::new(capture, Some(&plan), light).expect("a picture");
+            let fragments = SurfaceFragments::new(capture, Some(&plan), light).expect("a picture");
             let mask = capture.lights[light].shadow.as_ref().expect("a mask");
             for pixel in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
                 let Some(found) = TextureDecision::of(capture, &fragments, light, pixel) else { continue };

@@ -5,7 +5,7 @@ use crate::common::{cuboid, from_above, label_counts, mesh, request, session, sq
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Snapshot};
-use stencilscope::plan::{CountOf, FramePlan, Part, StencilFace};
+use stencilscope::plan::{CountOf, DrawPart, FramePlan, StencilFace};
 use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Mesh, Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
@@ -357,7 +357,7 @@ fn a_closed_volume_counts_to_zero_when_nothing_hides_it() {
         let parts = |plan: &mut FramePlan, part| {
             plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != part))
         };
-        parts(&mut all, Part::LightCap);
+        parts(&mut all, DrawPart::LightCap);
         assert!(counted(&mut session, &all).iter().any(|count| *count != 0));
     }
 }

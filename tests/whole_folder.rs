@@ -11,7 +11,7 @@ use stencilscope::capture::disk::{WholeFrame, read, read_whole, write};
 use stencilscope::plan::FramePlan;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, Object, Scene};
-use stencilscope::session::{Fault, RunFrame, Session};
+use stencilscope::session::{InjectedFault, RunFrame, Session};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [61, 37];
@@ -78,7 +78,7 @@ fn histories_ladders_and_diagnoses_are_those_of_the_run() {
         }
         let mut diagnose = |frame: &RunFrame| {
             let (scene, request) = frame.made().expect("a source");
-            session.diagnose(scene, request, Fault::None, &Progress::default()).expect("a diagnosis")
+            session.diagnose(scene, request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
         };
         assert!(diagnose(&frame) == diagnose(&opened), "{}", technique.name());
     }

@@ -3,7 +3,7 @@
 use super::{Frustum, NearClip, PlacedObject, ViewOf};
 use crate::geometry::{NearClipVolume, ViewVolume};
 use crate::plan::{FramePlan, LightId, PlanMap, Program, ViewId, Visibility};
-use crate::scene::{Camera, Light, Scene, Sight};
+use crate::scene::{Camera, Light, Ray, Scene};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// The corners of a view: right top, left top, left bottom, right bottom.
@@ -90,7 +90,7 @@ fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: View
 
 pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
     let sights = CORNERS.map(|corner| camera.sights(aspect).through(corner));
-    let at = |sight: Sight, distance: f64| (camera.eye + sight.at(distance)).extend(1.0);
+    let at = |sight: Ray, distance: f64| (camera.eye + sight.at(distance)).extend(1.0);
     Frustum {
         of: ViewOf::Camera,
         near: sights.map(|sight| at(sight, camera.near)),

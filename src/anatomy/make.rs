@@ -3,8 +3,8 @@
 use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
 use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
 use crate::plan::FramePlan;
-use crate::recorded::Space;
-use crate::scene::{Group, Object, Scene};
+use crate::recorded::PassSpace;
+use crate::scene::{MeshGroup, Object, Scene};
 use crate::technique::{Choice, casting};
 use glam::{DVec3, DVec4, Vec3};
 
@@ -60,7 +60,7 @@ fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
 fn color(object: &Object) -> [f32; 3] {
     let groups = object.mesh.groups();
     let count = groups.iter().map(|group| group.triangles.len()).sum::<usize>().max(1) as f32;
-    let part = |group: &Group| {
+    let part = |group: &MeshGroup| {
         let shown = object.texture_of(group).map_or([1.0; 3], |texture| texture.picture.mean());
         let own = group.material.unwrap_or(object.material).color;
         let share = group.triangles.len() as f32 / count;
@@ -89,7 +89,7 @@ fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) 
 /// are no numbers.
 pub fn recorded_places(plan: &FramePlan, pass: usize, corners: [[f32; 4]; 3]) -> Option<[DVec4; 3]> {
     let pass = plan.passes.get(pass).filter(|pass| pass.recorded.is_some())?;
-    let space = Space::new(plan, pass);
+    let space = PassSpace::new(plan, pass);
     let [a, b, c] = corners.map(|corner| space.place(corner));
     Some([a?, b?, c?])
 }
@@ -125,9 +125,9 @@ fn silhouettes(
 mod tests {
     use super::*;
     use crate::anatomy::ViewOf;
-    use crate::plan::Part;
+    use crate::plan::DrawPart;
     use crate::scene::{OpenSpec, open};
-    use crate::technique::{Job, Technique, plan};
+    use crate::technique::{PlanRequest, Technique, plan};
 
     #[test]
     fn an_object_with_a_picture_has_its_average_colour() {
@@ -152,7 +152,8 @@ mod tests {
         let mut choice = Choice::new(technique);
         settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
         let mut cache = GeometryCache::default();
-        let plan = plan(Job { scene: &scene, size: [320, 180], choice: &choice, cache: &mut cache }).expect("a plan");
+        let plan =
+            plan(PlanRequest { scene: &scene, size: [320, 180], choice: &choice, cache: &mut cache }).expect("a plan");
         anatomy(&scene, Some(&choice), &plan, &mut cache)
     }
 
@@ -186,7 +187,7 @@ mod tests {
                 let is_of = |one: &&Silhouette| one.light == volume.light && one.caster == volume.caster;
                 let silhouette = anatomy.silhouettes.iter().find(is_of).expect("a silhouette");
                 let quads: i32 = silhouette.edges.iter().map(|edge| edge.multiplicity.abs()).sum();
-                let sides = volume.parts.iter().find(|part| part.part == Part::Side).expect("sides");
+                let sides = volume.parts.iter().find(|part| part.part == DrawPart::Side).expect("sides");
                 assert_eq!(sides.triangles.len(), 2 * quads as usize, "{settings:?}");
             }
         }

@@ -17,7 +17,7 @@ mod volumes;
 pub use make::{anatomy, recorded_places};
 
 use crate::geometry::{Edge, SilhouetteEdge};
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use crate::scene::{Camera, Mesh};
 use glam::{DVec3, DVec4};
 use std::sync::Arc;
@@ -97,8 +97,8 @@ pub struct ShadowVolume {
 /// One part of a shadow volume.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VolumePart {
-    /// [`Part::Side`], [`Part::LightCap`] or [`Part::DarkCap`].
-    pub part: Part,
+    /// [`DrawPart::Side`], [`DrawPart::LightCap`] or [`DrawPart::DarkCap`].
+    pub part: DrawPart,
     /// Indices of vertices, counter-clockwise seen from outside the volume.
     pub triangles: Vec<[u32; 3]>,
 }

@@ -1,8 +1,8 @@
 //! Shadow volumes out of a plan.
 
 use super::{PlacedObject, ShadowVolume, VolumePart};
-use crate::plan::{Draw, DrawMesh, FramePlan, MeshId, Part, Pass, ViewId};
-use crate::recorded::{self, Space};
+use crate::plan::{Draw, DrawMesh, DrawPart, FramePlan, MeshId, Pass, ViewId};
+use crate::recorded::{self, PassSpace};
 use crate::scene::Scene;
 use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,7 +39,7 @@ pub fn recorded(plan: &FramePlan, scene: &Scene) -> Vec<ShadowVolume> {
     let mut found = Vec::new();
     for (pass, draw, caster) in recorded::casters(plan, scene) {
         let (Some(light), Some(mesh)) = (pass.light, plan.meshes.get(draw.mesh.0)) else { continue };
-        let places = Space::new(plan, pass).places(plan, draw);
+        let places = PassSpace::new(plan, pass).places(plan, draw);
         let is_place = |corner: &u32| places.get(*corner as usize).is_some_and(Option::is_some);
         let triangles = corners(draw, mesh).filter(|corners| corners.iter().all(is_place)).collect();
         let volume = ShadowVolume {
@@ -78,14 +78,14 @@ fn add(volume: &mut ShadowVolume, draw: &Draw, mesh: &DrawMesh) {
     let of = |triangle: &[u32; 3]| match extruded.carried(*triangle) {
         // All that a sun carries to infinity is one point.
         _ if has_equal_corners(vertices, *triangle) => None,
-        [true, true, true] if draw.part == Part::Caps => Some(Part::DarkCap),
-        [false, false, false] if draw.part == Part::Caps => Some(Part::LightCap),
+        [true, true, true] if draw.part == DrawPart::Caps => Some(DrawPart::DarkCap),
+        [false, false, false] if draw.part == DrawPart::Caps => Some(DrawPart::LightCap),
         // Its triangles face the same way: it has no area.
         [true, true, true] | [false, false, false] => None,
         _ => Some(draw.part),
     };
     let triangles: Vec<_> = triangles.filter_map(|triangle| Some((of(&triangle)?, triangle))).collect();
-    for part in [Part::Side, Part::LightCap, Part::DarkCap] {
+    for part in [DrawPart::Side, DrawPart::LightCap, DrawPart::DarkCap] {
         let mut of_part = triangles.iter().filter(|(of, _)| *of == part).map(|(_, triangle)| *triangle).peekable();
         if of_part.peek().is_some() {
             add_part(volume, part, of_part);
@@ -98,7 +98,7 @@ fn has_equal_corners(vertices: &[[f32; 4]], triangle: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-fn add_part(volume: &mut ShadowVolume, part: Part, triangles: impl Iterator<Item = [u32; 3]>) {
+fn add_part(volume: &mut ShadowVolume, part: DrawPart, triangles: impl Iterator<Item = [u32; 3]>) {
     match volume.parts.iter_mut().find(|one| one.part == part) {
         Some(one) => one.triangles.extend(triangles),
         None => volume.parts.push(VolumePart { part, triangles: triangles.collect() }),

@@ -5,20 +5,20 @@
 
 use super::export;
 use super::memory;
-use super::news::{Exported, News, Tell, WindowNews};
+use super::news::{Exported, News, Notify, WindowNews};
 use super::queue::Order;
-use super::reader::{Reader, Reading, Unread};
+use super::reader::{NoReader, ReadRequest, ReaderThread};
 use super::watch::Watch;
-use super::worker::{Start, Worker};
+use super::worker::{Worker, WorkerStart};
 use super::{AppError, ViewRequest};
-use crate::ask::{Asked, FilmOf, FilmSubject, Kind};
+use crate::ask::{FilmOf, FilmSubject, PendingQuestion, QuestionKind};
 use crate::capture::Capture;
 use crate::import::SHIPPED;
-use crate::inspector::{Action, ExportData, Inspector, Remembered, SceneEntry};
+use crate::inspector::{Action, ExportData, Inspector, SceneEntry, StoredSettings};
 use crate::reading::shown::PictureKind;
 use crate::scene::{TechniqueRequest, builtin};
 use crate::session::RunFrame;
-use crate::stress::Case;
+use crate::stress::StressCase;
 use crate::technique::Choice;
 use std::path::Path;
 use std::pin::Pin;
@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 /// What the system's dialog shows: it has files or folders, not both.
 #[derive(Debug, Clone, Copy)]
-enum Wanted {
+enum DialogFilter {
     /// Scenes and models.
     File,
     /// Captures.
@@ -38,14 +38,14 @@ pub struct Controller {
     /// The panels.
     pub inspector: Inspector,
     worker: Worker,
-    tell: Tell,
+    tell: Notify,
     /// Of the scene that is open.
     scene: u64,
     /// Of the frame that is shown.
     frame: u64,
     /// That frame; `None` for a folder that holds a capture alone.
     run: Option<RunFrame>,
-    reader: Reader,
+    reader: ReaderThread,
     /// Files of the open scene; `None` where nothing is remembered or watched.
     watch: Option<Watch>,
     /// What is selected when the first capture comes.
@@ -53,22 +53,22 @@ pub struct Controller {
     first_pick: Option<[u32; 2]>,
     first_is_error: bool,
     /// As stored last.
-    remembered: Remembered,
+    remembered: StoredSettings,
 }
 
 impl Drop for Controller {
     /// Long work stops: the program ends.
     fn drop(&mut self) {
         self.inspector.make_way();
-        self.inspector.cancel(Kind::FilmOf);
+        self.inspector.cancel(QuestionKind::FilmOf);
     }
 }
 
 impl Controller {
     /// Opens what is asked for. `tell` wakes whoever draws. What was remembered of the run before is recalled, and
     /// this one's kept, where `remembers` says so.
-    pub fn new(request: ViewRequest, tell: Tell, remembers: bool) -> Result<Controller, AppError> {
-        let start = Start {
+    pub fn new(request: ViewRequest, tell: Notify, remembers: bool) -> Result<Controller, AppError> {
+        let start = WorkerStart {
             source: request.source,
             name: request.name,
             capture: request.capture,
@@ -94,7 +94,7 @@ impl Controller {
             scene: 0,
             frame: 0,
             run: None,
-            reader: Reader::default(),
+            reader: ReaderThread::default(),
             watch,
             first_step: request.step,
             first_pick: request.pick,
@@ -162,8 +162,8 @@ impl Controller {
         }
     }
 
-    fn say_if_failed(&mut self, begun: Result<(), Unread>) {
-        if let Err(Unread { ticket, why }) = begun {
+    fn say_if_failed(&mut self, begun: Result<(), NoReader>) {
+        if let Err(NoReader { ticket, why }) = begun {
             let reason = format!("no pixel can be linked with its texel now: {why}; run the frame again");
             self.inspector.answer(ticket, Err(reason.clone()), true);
             self.inspector.push_error(reason);
@@ -196,8 +196,8 @@ impl Controller {
             }
             Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
             Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },
-            Action::Browse => return self.browse(Wanted::File),
-            Action::BrowseFolder => return self.browse(Wanted::Folder),
+            Action::Browse => return self.browse(DialogFilter::File),
+            Action::BrowseFolder => return self.browse(DialogFilter::Folder),
             Action::BrowseExport { path } => return self.browse_export(&path),
             Action::Reload => {
                 let Some(request) = self.inspector.draft() else { return };
@@ -211,12 +211,12 @@ impl Controller {
                     let data = match (data, &self.run) {
                         // With all that is known of it by now.
                         (ExportData::Capture(capture), Some(run)) => {
-                            export::Data::Frame(Box::new(RunFrame { capture, ..run.clone() }))
+                            export::ExportContent::Frame(Box::new(RunFrame { capture, ..run.clone() }))
                         }
                         (ExportData::Page(capture), Some(run)) => {
-                            export::Data::Page(Box::new(RunFrame { capture, ..run.clone() }))
+                            export::ExportContent::Page(Box::new(RunFrame { capture, ..run.clone() }))
                         }
-                        (data, _) => export::Data::Panels(data),
+                        (data, _) => export::ExportContent::Panels(data),
                     };
                     if let Err(error) = export::start(data, path, replace, Arc::clone(&self.tell)) {
                         self.inspector.end_export(Err(format!("nothing can be written now: {error}; try again")));
@@ -229,7 +229,7 @@ impl Controller {
                 }
             },
             Action::OpenStress { case, value, entrant } => {
-                let Some(case) = Case::named(case) else { return };
+                let Some(case) = StressCase::named(case) else { return };
                 self.inspector.make_way();
                 Order::OpenCase { case, value, entrant }
             }
@@ -255,9 +255,9 @@ impl Controller {
     }
 
     /// Answers what follows from the shown capture.
-    fn read(&mut self, asked: Asked) {
+    fn read(&mut self, asked: PendingQuestion) {
         let Some(capture) = self.inspector.capture().cloned() else { return };
-        let reading = Reading { asked, capture, plan: self.inspector.plan().cloned() };
+        let reading = ReadRequest { asked, capture, plan: self.inspector.plan().cloned() };
         let begun = self.reader.read(reading, &self.tell);
         self.say_if_failed(begun);
     }
@@ -271,15 +271,15 @@ impl Controller {
     }
 
     /// Asks for a file or folder in the system's dialog, beside the window.
-    fn browse(&mut self, wanted: Wanted) {
+    fn browse(&mut self, wanted: DialogFilter) {
         let dialog = rfd::AsyncFileDialog::new();
         // Made here, as some systems give dialogs to the first thread only.
         let dialog: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match wanted {
-            Wanted::File => {
+            DialogFilter::File => {
                 let dialog = dialog.set_title("Open a scene or a model");
                 Box::pin(dialog.add_filter("scenes and models", &["toml", "obj", "ply", "gltf", "glb"]).pick_file())
             }
-            Wanted::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
+            DialogFilter::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
         };
         let tell = Arc::clone(&self.tell);
         let wait = move || {

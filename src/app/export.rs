@@ -1,7 +1,7 @@
 //! Writes what the panels export, on a thread of its own: a large capture takes a while.
 
-use super::news::{Exported, Tell, WindowNews};
-use crate::capture::disk::{self, Contents};
+use super::news::{Exported, Notify, WindowNews};
+use crate::capture::disk::{self, FolderContents};
 use crate::files::write_whole;
 use crate::inspector::ExportData;
 use crate::page;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// What is to be written.
 #[derive(Debug, Clone)]
-pub enum Data {
+pub enum ExportContent {
     /// A frame with what it was made from.
     Frame(Box<RunFrame>),
     /// The same, for a browser.
@@ -23,7 +23,7 @@ pub enum Data {
 
 /// Writes `data` to `path`, and tells the window how that ended. What is there is replaced only where `replace`
 /// says so. Scenes are the worker's to write.
-pub fn start(data: Data, path: String, replace: bool, tell: Tell) -> std::io::Result<()> {
+pub fn start(data: ExportContent, path: String, replace: bool, tell: Notify) -> std::io::Result<()> {
     let run = move || {
         let news = write(&data, &path, replace);
         tell(WindowNews::Exported(news));
@@ -39,16 +39,16 @@ pub fn check(path: &Path, replace: bool) -> Option<Exported> {
     (path.exists() && !replace).then(|| Exported::Taken(path.display().to_string()))
 }
 
-fn write(data: &Data, path: &str, replace: bool) -> Exported {
+fn write(data: &ExportContent, path: &str, replace: bool) -> Exported {
     match data {
-        Data::Frame(run) => write_folder(run.contents(), path, replace),
-        Data::Page(run) => write_page(run, path, replace),
-        Data::Panels(ExportData::Capture(capture)) => write_folder(capture.as_ref().into(), path, replace),
-        Data::Panels(data) => write_file(data, path, replace),
+        ExportContent::Frame(run) => write_folder(run.contents(), path, replace),
+        ExportContent::Page(run) => write_page(run, path, replace),
+        ExportContent::Panels(ExportData::Capture(capture)) => write_folder(capture.as_ref().into(), path, replace),
+        ExportContent::Panels(data) => write_file(data, path, replace),
     }
 }
 
-fn write_folder(contents: Contents, path: &str, replace: bool) -> Exported {
+fn write_folder(contents: FolderContents, path: &str, replace: bool) -> Exported {
     let folder = PathBuf::from(path);
     if !replace && disk::is_capture(&folder) {
         return Exported::Taken(path.to_owned());
@@ -126,7 +126,7 @@ mod tests {
     fn a_taken_place_is_asked_about_and_replaced_only_where_that_is_wished() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.png").display().to_string();
-        let data = Data::Panels(ExportData::Picture(Picture::filled([3, 2], [1, 2, 3])));
+        let data = ExportContent::Panels(ExportData::Picture(Picture::filled([3, 2], [1, 2, 3])));
         assert!(matches!(write(&data, &path, false), Exported::Done(_)));
         assert!(matches!(write(&data, &path, false), Exported::Taken(_)));
         assert!(matches!(write(&data, &path, true), Exported::Done(_)));
@@ -142,10 +142,10 @@ mod tests {
         let run = crate::session::Session::new(None).expect("a GPU").render(scene, request).expect("a frame");
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.html").display().to_string();
-        let alone = Data::Panels(ExportData::Page(Arc::clone(&run.capture)));
+        let alone = ExportContent::Panels(ExportData::Page(Arc::clone(&run.capture)));
         let answer = write(&alone, &path, false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("capture the scene again")));
-        let page = Data::Page(Box::new(run));
+        let page = ExportContent::Page(Box::new(run));
         assert!(matches!(write(&page, &path, false), Exported::Done(said) if said.contains("browser")));
         assert!(matches!(write(&page, &path, false), Exported::Taken(_)));
         assert!(std::fs::read_to_string(&path).expect("a file").starts_with("<!doctype html>"));
@@ -156,14 +156,17 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy").display().to_string();
         let image = Arc::new(Image::uniform(PixelFormat::U8, [3, 2], &[7]));
-        assert!(matches!(write(&Data::Panels(ExportData::Data(vec![image])), &path, false), Exported::Done(_)));
+        assert!(matches!(
+            write(&ExportContent::Panels(ExportData::Data(vec![image])), &path, false),
+            Exported::Done(_)
+        ));
         let bytes = std::fs::read(&path).expect("a file");
         assert!(bytes.starts_with(b"\x93NUMPY") && bytes.ends_with(&[7; 6]));
     }
 
     #[test]
     fn a_place_that_can_not_be_written_to_is_told_with_the_mend() {
-        let data = Data::Panels(ExportData::Picture(Picture::filled([1, 1], [0; 3])));
+        let data = ExportContent::Panels(ExportData::Picture(Picture::filled([1, 1], [0; 3])));
         let answer = write(&data, "/no such folder/a.png", false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("choose another place")));
     }
@@ -174,7 +177,7 @@ mod tests {
         let report = Report::new(adapter(), vec![row("tori", "z-fail", "", 3, 9.5)]);
         let written = |name: &str| {
             let path = folder.path().join(name).display().to_string();
-            let data = Data::Panels(ExportData::Report(Box::new(report.clone())));
+            let data = ExportContent::Panels(ExportData::Report(Box::new(report.clone())));
             (write(&data, &path, false), std::fs::read(&path).unwrap_or_default())
         };
         let starts: [(&str, &[u8]); 5] = [

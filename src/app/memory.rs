@@ -4,7 +4,7 @@
 //! is told once, and nothing else depends on it.
 
 use crate::files::write_whole;
-use crate::inspector::Remembered;
+use crate::inspector::StoredSettings;
 use std::path::PathBuf;
 
 /// The file; `None` where the system names no folder.
@@ -14,7 +14,7 @@ fn file() -> Option<PathBuf> {
 }
 
 /// What was remembered; as at first where nothing was, or it can't be read.
-pub fn load() -> Remembered {
+pub fn load() -> StoredSettings {
     let text = file().and_then(|file| std::fs::read_to_string(file).ok());
     text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
 }
@@ -23,7 +23,7 @@ pub fn load() -> Remembered {
 ///
 /// # Errors
 /// The file can't be written: with the mend.
-pub fn store(remembered: &Remembered) -> Result<(), String> {
+pub fn store(remembered: &StoredSettings) -> Result<(), String> {
     let Some(file) = file() else { return Ok(()) };
     let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);
     let text = serde_json::to_vec_pretty(remembered).map_err(|error| error.to_string())?;

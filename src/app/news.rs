@@ -81,7 +81,7 @@ pub enum Exported {
 }
 
 /// Wakes whoever draws the panels; one that is gone needs no news.
-pub type Tell = Arc<dyn Fn(WindowNews) + Send + Sync>;
+pub type Notify = Arc<dyn Fn(WindowNews) + Send + Sync>;
 
 /// An event of the window's loop that is not the system's.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! What the window asks of the worker, and what of it still counts when the worker gets to it.
 
-use crate::ask::{Asked, Kind, RunRequest};
-use crate::stress::{Case, Entrant};
+use crate::ask::{PendingQuestion, QuestionKind, RunRequest};
+use crate::stress::{Entrant, StressCase};
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
@@ -18,7 +18,7 @@ pub enum Order {
     /// The scene of a stress case.
     OpenCase {
         /// Which case.
-        case: &'static Case,
+        case: &'static StressCase,
         /// The value of its number.
         value: f64,
         /// How its shadows are made; `None`: as before.
@@ -49,30 +49,30 @@ pub enum Order {
         /// The frame that is meant.
         frame: u64,
         /// The question.
-        asked: Asked,
+        asked: PendingQuestion,
     },
 }
 
 /// Sorts of orders, the most urgent first: of each only the newest counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Sort {
+enum OrderKind {
     /// A scene is saved before it is changed.
     Save,
     /// What the next picture depends on.
-    BeforePicture(Kind),
+    BeforePicture(QuestionKind),
     /// What is seen first.
     Picture,
     /// What is known of it later.
-    Question(Kind),
+    Question(QuestionKind),
 }
 
 impl Order {
-    fn sort(&self) -> Sort {
+    fn sort(&self) -> OrderKind {
         match self {
-            Order::SaveScene { .. } => Sort::Save,
-            Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. } | Order::Run { .. } => Sort::Picture,
-            Order::Answer { asked, .. } if asked.ask.kind().is_urgent() => Sort::BeforePicture(asked.ask.kind()),
-            Order::Answer { asked, .. } => Sort::Question(asked.ask.kind()),
+            Order::SaveScene { .. } => OrderKind::Save,
+            Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. } | Order::Run { .. } => OrderKind::Picture,
+            Order::Answer { asked, .. } if asked.ask.kind().is_urgent() => OrderKind::BeforePicture(asked.ask.kind()),
+            Order::Answer { asked, .. } => OrderKind::Question(asked.ask.kind()),
         }
     }
 
@@ -85,13 +85,13 @@ impl Order {
 
 /// Orders that wait, in order of urgency.
 #[derive(Debug, Default)]
-pub struct Queue(BTreeMap<Sort, Order>);
+pub struct OrderQueue(BTreeMap<OrderKind, Order>);
 
-impl Queue {
+impl OrderQueue {
     /// One more.
     pub fn add(&mut self, order: Order) {
         let sort = order.sort();
-        if sort != Sort::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.is_kept_over(&order)) {
+        if sort != OrderKind::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.is_kept_over(&order)) {
             self.0.insert(sort, order);
         }
     }
@@ -109,14 +109,14 @@ impl Queue {
     /// The next to obey, but for what waits for a quiet moment.
     pub fn next_now(&mut self) -> Option<Order> {
         let first = self.0.first_entry()?;
-        (!matches!(first.key(), Sort::Question(kind) if kind.waits_for_quiet())).then(|| first.remove())
+        (!matches!(first.key(), OrderKind::Question(kind) if kind.waits_for_quiet())).then(|| first.remove())
     }
 
     /// The next that long work lets come between; none while a new picture is waited for.
     pub fn next_short(&mut self) -> Option<Order> {
         // A scene that is to be saved waits for the end: it holds nothing up that is short.
-        let first = *self.0.keys().find(|sort| **sort != Sort::Save)?;
-        let is_short = matches!(first, Sort::Question(kind) if kind.is_short());
+        let first = *self.0.keys().find(|sort| **sort != OrderKind::Save)?;
+        let is_short = matches!(first, OrderKind::Question(kind) if kind.is_short());
         is_short.then(|| self.0.remove(&first)).flatten()
     }
 
@@ -132,19 +132,19 @@ pub struct Inbox<'a> {
     /// From the window.
     pub orders: &'a Receiver<Order>,
     /// Taken in, and not obeyed yet.
-    pub queue: Queue,
+    pub queue: OrderQueue,
     /// The window is gone.
     pub is_closed: bool,
 }
 
 impl Inbox<'_> {
-    /// [`Queue::next_now`], once all that came was taken in.
+    /// [`OrderQueue::next_now`], once all that came was taken in.
     pub fn next_now(&mut self) -> Option<Order> {
         self.take_in();
         self.queue.next_now()
     }
 
-    /// [`Queue::next_short`], once all that came was taken in.
+    /// [`OrderQueue::next_short`], once all that came was taken in.
     pub fn next_short(&mut self) -> Option<Order> {
         self.take_in();
         self.queue.next_short()
@@ -181,17 +181,21 @@ mod tests {
     }
 
     fn asked(ticket: u64, ask: impl Into<Ask>) -> Order {
-        Order::Answer { scene: 1, frame: 1, asked: Asked { ticket, ask: ask.into(), progress: Progress::default() } }
+        Order::Answer {
+            scene: 1,
+            frame: 1,
+            asked: PendingQuestion { ticket, ask: ask.into(), progress: Progress::default() },
+        }
     }
 
-    fn queue(orders: impl IntoIterator<Item = Order>) -> Queue {
-        let mut queue = Queue::default();
+    fn queue(orders: impl IntoIterator<Item = Order>) -> OrderQueue {
+        let mut queue = OrderQueue::default();
         orders.into_iter().for_each(|order| queue.add(order));
         queue
     }
 
     /// Tickets of the questions in the order in which they are answered; 0: another order.
-    fn tickets(mut queue: Queue) -> Vec<u64> {
+    fn tickets(mut queue: OrderQueue) -> Vec<u64> {
         let orders = std::iter::from_fn(|| queue.next());
         orders.map(|order| if let Order::Answer { asked, .. } = order { asked.ticket } else { 0 }).collect()
     }
@@ -234,7 +238,7 @@ mod tests {
         let mut queue = queue([stress(2), asked(3, TruthOf {})]);
         queue.put_back(stress(1));
         assert_eq!(tickets(queue), [3, 2]);
-        let mut queue = Queue::default();
+        let mut queue = OrderQueue::default();
         queue.put_back(stress(1));
         assert_eq!(tickets(queue), [1]);
     }
@@ -242,7 +246,7 @@ mod tests {
     #[test]
     fn between_steps_of_long_work_only_what_is_short_is_obeyed_and_nothing_of_a_frame_that_goes() {
         let mut still = queue([asked(1, TruthOf {}), asked(2, history(0)), asked(3, DrawsOf { step: 1 })]);
-        let short = |queue: &mut Queue| match queue.next_short() {
+        let short = |queue: &mut OrderQueue| match queue.next_short() {
             Some(Order::Answer { asked, .. }) => Some(asked.ticket),
             _ => None,
         };

@@ -1,16 +1,16 @@
 //! Answers what follows from the capture on a thread of its own: pictures do not wait for it.
 
-use super::news::{Tell, WindowNews};
-use crate::ask::Asked;
+use super::news::{Notify, WindowNews};
+use crate::ask::PendingQuestion;
 use crate::capture::Capture;
 use crate::plan::FramePlan;
 use std::sync::Arc;
 
 /// A question, and what it is answered from.
 #[derive(Debug)]
-pub struct Reading {
+pub struct ReadRequest {
     /// The question.
-    pub asked: Asked,
+    pub asked: PendingQuestion,
     /// What was seen.
     pub capture: Arc<Capture>,
     /// What was run.
@@ -19,7 +19,7 @@ pub struct Reading {
 
 /// A question that nothing answers: the system gives no thread.
 #[derive(Debug)]
-pub struct Unread {
+pub struct NoReader {
     /// Whose it is.
     pub ticket: u64,
     /// What the system says.
@@ -28,31 +28,31 @@ pub struct Unread {
 
 /// One question at a time; of those that come meanwhile only the newest counts.
 #[derive(Debug, Default)]
-pub struct Reader {
+pub struct ReaderThread {
     is_running: bool,
-    next: Option<Reading>,
+    next: Option<ReadRequest>,
 }
 
-impl Reader {
+impl ReaderThread {
     /// Answers now, or after what is under way.
-    pub fn read(&mut self, reading: Reading, tell: &Tell) -> Result<(), Unread> {
+    pub fn read(&mut self, reading: ReadRequest, tell: &Notify) -> Result<(), NoReader> {
         if self.is_running {
             self.next = Some(reading);
             return Ok(());
         }
         let (tell, ticket) = (Arc::clone(tell), reading.asked.ticket);
         let run = move || {
-            let Reading { asked, capture, plan } = reading;
+            let ReadRequest { asked, capture, plan } = reading;
             let result = asked.ask.read_from(&capture, plan.as_ref());
             tell(WindowNews::Read { ticket: asked.ticket, result });
         };
-        std::thread::Builder::new().name("reader".to_owned()).spawn(run).map_err(|why| Unread { ticket, why })?;
+        std::thread::Builder::new().name("reader".to_owned()).spawn(run).map_err(|why| NoReader { ticket, why })?;
         self.is_running = true;
         Ok(())
     }
 
     /// What was under way is done.
-    pub fn go_on(&mut self, tell: &Tell) -> Result<(), Unread> {
+    pub fn go_on(&mut self, tell: &Notify) -> Result<(), NoReader> {
         self.is_running = false;
         self.next.take().map_or(Ok(()), |next| self.read(next, tell))
     }

@@ -36,7 +36,7 @@ fn first_size(screen: Option<[f64; 2]>) -> [f64; 2] {
 }
 
 /// A window that egui draws on.
-pub struct Surface {
+pub struct WindowSurface {
     window: Arc<Window>,
     painter: Painter,
     input: egui_winit::State,
@@ -52,7 +52,7 @@ pub struct Surface {
     grab_failed: Option<String>,
 }
 
-impl Surface {
+impl WindowSurface {
     /// Opens the window and a GPU that can draw on it, the one named in part by `adapter` where
     /// there is one.
     pub fn new(
@@ -60,7 +60,7 @@ impl Surface {
         ctx: &Context,
         proxy: EventLoopProxy<WindowNews>,
         adapter: Option<&str>,
-    ) -> Result<Surface, AppError> {
+    ) -> Result<WindowSurface, AppError> {
         let attributes = Window::default_attributes()
             .with_title("stencilscope")
             .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop))))
@@ -86,7 +86,7 @@ impl Surface {
         input.init_accesskit(event_loop, &window, proxy);
         window.set_visible(true);
         let textures = egui::TexturesDelta::default();
-        Ok(Surface {
+        Ok(WindowSurface {
             window,
             painter,
             input,
@@ -203,7 +203,7 @@ impl Surface {
     }
 }
 
-impl Drop for Surface {
+impl Drop for WindowSurface {
     fn drop(&mut self) {
         // What was not drawn yet will never be; egui takes dropping it for a bug otherwise.
         self.textures.clear();

@@ -3,7 +3,7 @@
 //! It asks for their times every second: no system has to support watching, and a file that an
 //! editor replaces by another is seen too. Nothing is told, and nothing drawn, unless one changed.
 
-use super::news::{Tell, WindowNews};
+use super::news::{Notify, WindowNews};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
@@ -12,17 +12,17 @@ use std::time::{Duration, SystemTime};
 const EVERY: Duration = Duration::from_secs(1);
 
 /// When a file was written last, and how large it is; `None` while it is not there.
-type Stamp = Option<(SystemTime, u64)>;
+type FileStamp = Option<(SystemTime, u64)>;
 
 /// The files that are looked at.
 #[derive(Debug, Default, Clone)]
 pub struct Watch {
-    files: Arc<Mutex<Vec<(PathBuf, Stamp)>>>,
+    files: Arc<Mutex<Vec<(PathBuf, FileStamp)>>>,
 }
 
 impl Watch {
     /// Starts to look.
-    pub fn start(tell: Tell) -> std::io::Result<Watch> {
+    pub fn start(tell: Notify) -> std::io::Result<Watch> {
         let watch = Watch::default();
         let files = Arc::clone(&watch.files);
         let look = move || {
@@ -50,13 +50,13 @@ impl Watch {
     }
 }
 
-fn stamp(file: &Path) -> Stamp {
+fn stamp(file: &Path) -> FileStamp {
     let facts = std::fs::metadata(file).ok()?;
     Some((facts.modified().ok()?, facts.len()))
 }
 
 /// The first file that changed and is there; a change is told once.
-fn first_changed(files: &mut [(PathBuf, Stamp)]) -> Option<String> {
+fn first_changed(files: &mut [(PathBuf, FileStamp)]) -> Option<String> {
     files.iter_mut().find_map(|(file, before)| {
         let now = stamp(file);
         // One that is away for a moment is being replaced.

@@ -2,7 +2,7 @@
 
 use super::controller::Controller;
 use super::news::WindowNews;
-use super::surface::Surface;
+use super::surface::WindowSurface;
 use super::{AppError, ViewRequest, no_window};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -33,7 +33,7 @@ struct App {
     controller: Controller,
     proxy: EventLoopProxy<WindowNews>,
     adapter: Option<String>,
-    surface: Option<Surface>,
+    surface: Option<WindowSurface>,
     failure: Option<AppError>,
     repaint_at: Option<Instant>,
 }
@@ -80,7 +80,7 @@ impl ApplicationHandler<WindowNews> for App {
         if self.surface.is_some() {
             return;
         }
-        match Surface::new(event_loop, &self.ctx, self.proxy.clone(), self.adapter.as_deref()) {
+        match WindowSurface::new(event_loop, &self.ctx, self.proxy.clone(), self.adapter.as_deref()) {
             Ok(mut surface) => {
                 if let Some(capture) = self.controller.inspector.capture() {
                     surface.set_title(title(capture));

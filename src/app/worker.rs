@@ -1,6 +1,6 @@
 //! The thread that owns the session: opens what is asked for, renders, answers, and tells the window.
 //!
-//! Of all orders that wait, only the newest of a sort counts ([`Queue`]); what was asked of a scene or a
+//! Of all orders that wait, only the newest of a sort counts ([`OrderQueue`]); what was asked of a scene or a
 //! frame that is shown no more is dropped. Long work is asked to stop by the window, through its
 //! [`Progress`](crate::progress::Progress). A report gives way to what is asked of the shown frame, stress cases give way to
 //! everything, row by row. Once no order has come for a while, what waits for quiet is done (the frame is timed, so that
@@ -15,16 +15,16 @@ mod film;
 mod turns;
 
 use super::news::{Exported, News};
-use super::queue::{Inbox, Order, Queue};
+use super::queue::{Inbox, Order, OrderQueue};
 use super::{AppError, ViewSource, allocator};
-use crate::ask::{Ask, Asked, CarriedOver, Holds, Kind, RunRequest};
+use crate::ask::{AnswerLifetime, Ask, CarriedOver, PendingQuestion, QuestionKind, RunRequest};
 use crate::capture::disk::{self, WholeFrame};
-use crate::import::Shipped;
+use crate::import::ShippedFrame;
 use crate::progress::Progress;
 use crate::scene::file::store;
 use crate::scene::{OpenSpec, Scene};
-use crate::session::{CaptureRequest, Every, RunFrame, Session, SessionError};
-use crate::stress::{Case, Drives, Entrant};
+use crate::session::{CaptureRequest, RunFrame, Session, SessionError, SnapshotInterval};
+use crate::stress::{CaseNumber, Entrant, StressCase};
 use crate::technique::{Choice, ChoiceError};
 use std::path::Path;
 use std::sync::Arc;
@@ -64,7 +64,7 @@ impl Drop for Worker {
 
 /// What a worker starts with.
 #[derive(Debug)]
-pub struct Start {
+pub struct WorkerStart {
     /// What to open first.
     pub source: ViewSource,
     /// What opens it again.
@@ -79,7 +79,7 @@ pub struct Start {
 
 impl Worker {
     /// Starts the thread; `tell` carries its news.
-    pub fn start(start: Start, tell: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
+    pub fn start(start: WorkerStart, tell: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let (alive, ended) = channel();
         let is_filming = Arc::new(AtomicBool::new(false));
@@ -87,7 +87,7 @@ impl Worker {
         let run = move || {
             // Goes last: by then all else has gone.
             let _alive: Sender<()> = alive;
-            let mut work = Work::new(start.adapter, &start.capture, Box::new(tell), films);
+            let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(tell), films);
             work.begin(start.source, start.name, start.time);
             work.obey_all(&waiting);
         };
@@ -103,7 +103,7 @@ impl Worker {
 }
 
 /// Everything the thread works with.
-struct Work {
+struct WorkerState {
     adapter: Option<String>,
     session: Option<Session>,
     open: Option<Box<Scene>>,
@@ -115,8 +115,8 @@ struct Work {
     choice: Choice,
     size: [u32; 2],
     /// What the open scene says otherwise, if it is a stress case.
-    brought: Brought,
-    every: Every,
+    brought: StressOverrides,
+    every: SnapshotInterval,
     /// How many frames were captured.
     frames: u64,
     /// The frame that the window shows; `None` for a folder's.
@@ -135,22 +135,22 @@ struct Work {
 /// What a stress case brings along in place of what the user has chosen, which counts again when another
 /// scene is opened. What the user changes meanwhile is chosen.
 #[derive(Debug, Default)]
-struct Brought {
+struct StressOverrides {
     /// How its shadows are made.
     choice: Option<Choice>,
     /// Of the picture.
     size: Option<[u32; 2]>,
 }
 
-impl Work {
+impl WorkerState {
     fn new(
         adapter: Option<String>,
         capture: &CaptureRequest,
         tell: Box<dyn Fn(News) + Send>,
         is_filming: Arc<AtomicBool>,
-    ) -> Work {
+    ) -> WorkerState {
         let CaptureRequest { choice, size, every, .. } = capture.clone();
-        Work {
+        WorkerState {
             adapter,
             session: None,
             open: None,
@@ -158,7 +158,7 @@ impl Work {
             scenes: 0,
             choice,
             size,
-            brought: Brought::default(),
+            brought: StressOverrides::default(),
             every,
             frames: 0,
             last: None,
@@ -179,7 +179,7 @@ impl Work {
             }
             ViewSource::Scene(scene) => {
                 self.spec = Some(name);
-                let done = self.show_scene(scene, time, Brought::default());
+                let done = self.show_scene(scene, time, StressOverrides::default());
                 self.finish(done);
             }
         }
@@ -187,7 +187,7 @@ impl Work {
 
     /// Obeys orders until the window is gone, and what waits for quiet in between.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
-        let mut inbox = Inbox { orders, queue: Queue::default(), is_closed: false };
+        let mut inbox = Inbox { orders, queue: OrderQueue::default(), is_closed: false };
         let mut is_tidy = false;
         loop {
             if let Some(order) = inbox.next_now() {
@@ -237,11 +237,11 @@ impl Work {
     }
 
     /// Answers a question that is still asked: at once, or turn by turn.
-    fn answer_in_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+    fn answer_in_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
             match asked.ask.kind() {
-                Kind::StressOf => self.end_stress(),
-                Kind::FilmOf => self.set_film(None),
+                QuestionKind::StressOf => self.end_stress(),
+                QuestionKind::FilmOf => self.set_film(None),
                 _ => {}
             }
             return;
@@ -255,8 +255,8 @@ impl Work {
     }
 
     /// Answers a question, if it is about what is shown.
-    fn answer(&mut self, of: [u64; 2], asked: &Asked) {
-        if asked.ask.kind() != Kind::DiagnosisOf && !self.is_meant(of, asked) {
+    fn answer(&mut self, of: [u64; 2], asked: &PendingQuestion) {
+        if asked.ask.kind() != QuestionKind::DiagnosisOf && !self.is_meant(of, asked) {
             return;
         }
         let (doing, starts) = (asked.ask.doing(), self.session.is_none());
@@ -274,21 +274,21 @@ impl Work {
     }
 
     /// Is it about what is shown now?
-    fn is_meant(&self, [scene, frame]: [u64; 2], asked: &Asked) -> bool {
+    fn is_meant(&self, [scene, frame]: [u64; 2], asked: &PendingQuestion) -> bool {
         match asked.ask.kind().holds() {
-            Holds::Frame => self.last.is_none() || frame == self.frames,
-            Holds::Scene => scene == self.scenes,
-            Holds::Always => true,
+            AnswerLifetime::Frame => self.last.is_none() || frame == self.frames,
+            AnswerLifetime::Scene => scene == self.scenes,
+            AnswerLifetime::Always => true,
         }
     }
 
     /// What a question comes to.
-    fn found(&mut self, of: [u64; 2], asked: &Asked) -> Result<crate::ask::Answer, SessionError> {
+    fn found(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<crate::ask::Answer, SessionError> {
         let kind = asked.ask.kind();
-        if kind == Kind::DiagnosisOf && (of[1] != self.frames || !self.is_meant(of, asked)) {
+        if kind == QuestionKind::DiagnosisOf && (of[1] != self.frames || !self.is_meant(of, asked)) {
             return Err(SessionError::OtherFrame);
         }
-        if kind.holds() == Holds::Frame && self.last.is_none() {
+        if kind.holds() == AnswerLifetime::Frame && self.last.is_none() {
             return Err(SessionError::NoFrame);
         }
         if kind.waits_for_quiet() && self.took > LONGEST_TIMED {
@@ -310,7 +310,7 @@ impl Work {
             self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name);
             return Ok(());
         }
-        if let Some(shipped) = Shipped::named(name) {
+        if let Some(shipped) = ShippedFrame::named(name) {
             self.show_folder(shipped.open().map_err(|error| error.to_string())?, name);
             return Ok(());
         }
@@ -322,7 +322,7 @@ impl Work {
             None => Choice::new(self.choice.technique()),
         };
         self.spec = Some(spec);
-        self.show_scene(Box::new(scene), 0.0, Brought::default())
+        self.show_scene(Box::new(scene), 0.0, StressOverrides::default())
     }
 
     /// What a capture folder holds: a frame that was run, or a capture alone.
@@ -345,7 +345,7 @@ impl Work {
         let spec = OpenSpec::new(disk::scene_file(Path::new(folder)).display().to_string());
         let request = Box::new(RunRequest::of(scene, request.choice.clone(), request.size));
         let scene = Box::new(scene.clone());
-        self.brought = Brought::default();
+        self.brought = StressOverrides::default();
         self.take_over(&request);
         let (scene_number, files) = (self.scenes, crate::scene::files_of(&spec));
         (self.open, self.spec) = (Some(scene.clone()), Some(spec));
@@ -384,9 +384,9 @@ impl Work {
         scene.camera = request.camera;
         self.choice = request.choice.clone();
         self.size = request.size;
-        self.brought = Brought::default();
+        self.brought = StressOverrides::default();
         let Some(before) = self.open.take() else {
-            return self.show_scene(Box::new(scene), request.time, Brought::default());
+            return self.show_scene(Box::new(scene), request.time, StressOverrides::default());
         };
         let CarriedOver { request, dropped } = request.carried_over(&before, &scene);
         let name = spec.name;
@@ -427,7 +427,7 @@ impl Work {
         }
     }
 
-    fn show_scene(&mut self, scene: Box<Scene>, time: f64, brought: Brought) -> Result<(), String> {
+    fn show_scene(&mut self, scene: Box<Scene>, time: f64, brought: StressOverrides) -> Result<(), String> {
         self.brought = brought;
         let choice = self.brought.choice.clone().unwrap_or_else(|| self.choice.clone());
         let size = self.brought.size.unwrap_or(self.size);
@@ -453,7 +453,7 @@ impl Work {
     }
 
     /// Opens a stress case's scene at a value, with its shadows made as `entrant` says.
-    fn open_case(&mut self, case: &'static Case, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
+    fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
         (self.tell)(News::Busy(format!("opening {}", case.name)));
         let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
         scene.name = format!("{} {value}", case.name);
@@ -463,7 +463,7 @@ impl Work {
         };
         let choice = choice.map_err(|error| format!("{}: {error}", case.name))?;
         self.spec = None;
-        self.show_scene(Box::new(scene), 0.0, Brought { choice, size: case.size })
+        self.show_scene(Box::new(scene), 0.0, StressOverrides { choice, size: case.size })
     }
 
     /// Takes note of what a run asks for, but for what the open scene has brought along.
@@ -506,8 +506,8 @@ impl Work {
 
 /// Where a case drives a setting: `chosen` with the setting at that value, or the case's first
 /// technique that has it; `None` where the case drives the scene.
-fn driven(case: &Case, value: f64, chosen: &Choice) -> Result<Option<Choice>, ChoiceError> {
-    let Drives::Setting(key, _) = case.drives else { return Ok(None) };
+fn driven(case: &StressCase, value: f64, chosen: &Choice) -> Result<Option<Choice>, ChoiceError> {
+    let CaseNumber::Setting(key, _) = case.drives else { return Ok(None) };
     if chosen.settings().contains_key(key) {
         let mut choice = chosen.clone();
         choice.set(key, &value.to_string())?;

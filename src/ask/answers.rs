@@ -1,13 +1,13 @@
 //! What is known, what is being found out, and what has to be asked next.
 
-use super::{Answer, Ask, Holds, Kind, Question};
+use super::{Answer, AnswerLifetime, Ask, Question, QuestionKind};
 use crate::progress::Progress;
 use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A question on its way to who answers it.
 #[derive(Debug, Clone)]
-pub struct Asked {
+pub struct PendingQuestion {
     /// Told with the answer: one to what is asked no more is dropped.
     pub ticket: u64,
     /// The question.
@@ -16,9 +16,9 @@ pub struct Asked {
     pub progress: Progress,
 }
 
-impl PartialEq for Asked {
+impl PartialEq for PendingQuestion {
     /// Equal where question and ticket are.
-    fn eq(&self, other: &Asked) -> bool {
+    fn eq(&self, other: &PendingQuestion) -> bool {
         self.ticket == other.ticket && self.ask == other.ask
     }
 }
@@ -61,19 +61,19 @@ impl<T> Reply<T> {
 }
 
 #[derive(Debug, Default)]
-struct Slot {
-    asked: Option<Asked>,
+struct AnswerSlot {
+    asked: Option<PendingQuestion>,
     /// Parts of its answer that have come.
     parts: usize,
     /// When the wait for it began, in the clock of [`Answers::tick`].
     since: f64,
-    known: Option<Known>,
+    known: Option<KnownAnswer>,
     /// What was given up, and why; `None`: by who asked.
     given_up: Option<(Ask, Option<String>)>,
 }
 
 #[derive(Debug)]
-struct Known {
+struct KnownAnswer {
     ask: Ask,
     answer: Answer,
     /// It holds: nothing that it depends on was replaced.
@@ -83,7 +83,7 @@ struct Known {
 /// Answers by kind of question: the last of each.
 #[derive(Debug)]
 pub struct Answers {
-    slots: Vec<Slot>,
+    slots: Vec<AnswerSlot>,
     /// What was wanted since it was last looked at.
     wanted: RefCell<Vec<Ask>>,
     /// What was started by hand and not handed out yet.
@@ -100,7 +100,7 @@ pub struct Answers {
 impl Default for Answers {
     fn default() -> Answers {
         Answers {
-            slots: Kind::ALL.iter().map(|_| Slot::default()).collect(),
+            slots: QuestionKind::ALL.iter().map(|_| AnswerSlot::default()).collect(),
             wanted: RefCell::default(),
             started: Vec::new(),
             tickets: 0,
@@ -130,7 +130,7 @@ impl Answers {
 
     fn reply<Q: Question>(&self, ask: &Ask) -> Reply<Q::Answer> {
         let slot = self.slot(Q::KIND);
-        let is_it = |known: &&Known| known.is_current && known.ask == *ask;
+        let is_it = |known: &&KnownAnswer| known.is_current && known.ask == *ask;
         let ready = slot.known.as_ref().filter(is_it).and_then(|known| Q::answer(&known.answer)).cloned();
         let older = slot.known.as_ref().filter(|_| ready.is_none()).and_then(|known| Q::answer(&known.answer)).cloned();
         let asked = slot.asked.as_ref().filter(|asked| asked.ask == *ask);
@@ -179,16 +179,16 @@ impl Answers {
     }
 
     /// Asks again for what failed or was stopped, once it is wanted.
-    pub fn try_again(&mut self, kind: Kind) {
+    pub fn try_again(&mut self, kind: QuestionKind) {
         self.slot_mut(kind).given_up = None;
     }
 
     /// Stops what is being found out; it is not asked for again by itself.
-    pub fn cancel(&mut self, kind: Kind) {
+    pub fn cancel(&mut self, kind: QuestionKind) {
         self.give_up(kind, None);
     }
 
-    fn give_up(&mut self, kind: Kind, reason: Option<String>) {
+    fn give_up(&mut self, kind: QuestionKind, reason: Option<String>) {
         let slot = self.slot_mut(kind);
         if let Some(asked) = slot.asked.take() {
             asked.progress.cancel();
@@ -197,14 +197,14 @@ impl Answers {
     }
 
     /// Stops it, to be asked for again by who wants it.
-    fn pause(&mut self, kind: Kind) {
+    fn pause(&mut self, kind: QuestionKind) {
         if let Some(asked) = self.slot_mut(kind).asked.take() {
             asked.progress.cancel();
         }
     }
 
     /// Forgets what is known of a kind.
-    pub fn forget(&mut self, kind: Kind) {
+    pub fn forget(&mut self, kind: QuestionKind) {
         self.slot_mut(kind).known = None;
     }
 
@@ -214,20 +214,20 @@ impl Answers {
     }
 
     /// What has to be asked now, each once.
-    pub fn take_asked(&mut self) -> Vec<Asked> {
+    pub fn take_asked(&mut self) -> Vec<PendingQuestion> {
         let wanted = std::mem::take(self.wanted.get_mut());
         let started = std::mem::take(&mut self.started);
-        let mut asked: Vec<Asked> = started.into_iter().filter_map(|ask| self.ask(ask)).collect();
+        let mut asked: Vec<PendingQuestion> = started.into_iter().filter_map(|ask| self.ask(ask)).collect();
         for ask in wanted {
             if !self.is_settled(&ask) {
                 asked.extend(self.ask(ask));
             }
         }
         let kinds = || asked.iter().map(|asked| asked.ask.kind());
-        if kinds().any(Kind::is_urgent) {
+        if kinds().any(QuestionKind::is_urgent) {
             self.make_way();
-        } else if kinds().any(Kind::interrupts_truth) {
-            self.pause(Kind::TruthOf);
+        } else if kinds().any(QuestionKind::interrupts_truth) {
+            self.pause(QuestionKind::TruthOf);
         }
         asked
     }
@@ -239,13 +239,13 @@ impl Answers {
         is_known || is_asked || slot.given_up.as_ref().is_some_and(|(of, _)| of == ask)
     }
 
-    fn ask(&mut self, ask: Ask) -> Option<Asked> {
+    fn ask(&mut self, ask: Ask) -> Option<PendingQuestion> {
         let kind = ask.kind();
         let can_be = match kind.holds() {
             _ if kind.is_read_from_capture() => self.has_frame,
-            Holds::Frame => self.has_frame && (self.has_scene || self.has_plan),
-            Holds::Scene => self.has_scene,
-            Holds::Always => true,
+            AnswerLifetime::Frame => self.has_frame && (self.has_scene || self.has_plan),
+            AnswerLifetime::Scene => self.has_scene,
+            AnswerLifetime::Always => true,
         };
         if !can_be {
             return None;
@@ -260,13 +260,13 @@ impl Answers {
         }
         slot.given_up = None;
         slot.parts = 0;
-        Some(slot.asked.insert(Asked { ticket, ask, progress: Progress::default() }).clone())
+        Some(slot.asked.insert(PendingQuestion { ticket, ask, progress: Progress::default() }).clone())
     }
 
     /// Takes an answer in, or why there is none; the kind of its question, or `None` where that is asked no more.
     /// `is_last`: nothing more comes.
-    pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) -> Option<Kind> {
-        let kind = Kind::ALL
+    pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) -> Option<QuestionKind> {
+        let kind = QuestionKind::ALL
             .iter()
             .copied()
             .find(|kind| self.slot(*kind).asked.as_ref().is_some_and(|asked| asked.ticket == ticket))?;
@@ -276,7 +276,7 @@ impl Answers {
             Ok(answer) => {
                 slot.parts += 1;
                 let answer = answer.after(slot.known.as_ref().map(|known| &known.answer));
-                slot.known = Some(Known { ask: asked.ask, answer, is_current: true });
+                slot.known = Some(KnownAnswer { ask: asked.ask, answer, is_current: true });
             }
             Err(reason) => slot.given_up = Some((asked.ask, Some(reason))),
         }
@@ -292,7 +292,7 @@ impl Answers {
         match result {
             Ok(answer) => {
                 let answer = Q::into_answer(answer).after(slot.known.as_ref().map(|known| &known.answer));
-                slot.known = Some(Known { ask, answer, is_current: true });
+                slot.known = Some(KnownAnswer { ask, answer, is_current: true });
             }
             Err(reason) => slot.given_up = Some((ask, Some(reason))),
         }
@@ -308,7 +308,7 @@ impl Answers {
     /// Another frame is shown: answers that hold for a frame are older ones now, or go.
     pub fn new_frame(&mut self) {
         self.has_frame = true;
-        self.replace(Holds::Frame, |kind, slot| match &mut slot.known {
+        self.replace(AnswerLifetime::Frame, |kind, slot| match &mut slot.known {
             Some(known) if kind.outlives_frame() => known.is_current = false,
             known => *known = None,
         });
@@ -317,8 +317,8 @@ impl Answers {
     /// Another scene is open, or (`has_scene` false) a folder, which can't be run.
     pub fn new_scene(&mut self, has_scene: bool) {
         (self.has_scene, self.has_plan) = (has_scene, false);
-        self.replace(Holds::Frame, |_, slot| slot.known = None);
-        self.replace(Holds::Scene, |_, slot| slot.known = None);
+        self.replace(AnswerLifetime::Frame, |_, slot| slot.known = None);
+        self.replace(AnswerLifetime::Scene, |_, slot| slot.known = None);
     }
 
     /// What was run for the frame is known: it answers what a run of it tells.
@@ -328,8 +328,8 @@ impl Answers {
 
     /// Drops what is asked and what was given up of answers that hold so long. What was started by hand goes on, or
     /// says why it does not: who works on it tells.
-    fn replace(&mut self, holds: Holds, change: impl Fn(Kind, &mut Slot)) {
-        for kind in Kind::ALL.iter().copied().filter(|kind| kind.holds() == holds) {
+    fn replace(&mut self, holds: AnswerLifetime, change: impl Fn(QuestionKind, &mut AnswerSlot)) {
+        for kind in QuestionKind::ALL.iter().copied().filter(|kind| kind.holds() == holds) {
             if !kind.is_started_by_hand() {
                 self.pause(kind);
             }
@@ -341,8 +341,8 @@ impl Answers {
 
     /// Another picture is asked for, and must not wait: long work of this one stops.
     pub fn make_way(&mut self) {
-        self.pause(Kind::TruthOf);
-        for kind in Kind::ALL {
+        self.pause(QuestionKind::TruthOf);
+        for kind in QuestionKind::ALL {
             if let Some(reason) = kind.stopped_by_picture() {
                 self.give_up(*kind, Some(reason.to_owned()));
             }
@@ -356,15 +356,21 @@ impl Answers {
 
     /// Is anything being found out that says how far it is?
     pub fn has_progress(&self) -> bool {
-        let tells = [Kind::TruthOf, Kind::DiagnosisOf, Kind::ReportOf, Kind::FilmOf, Kind::StressOf];
+        let tells = [
+            QuestionKind::TruthOf,
+            QuestionKind::DiagnosisOf,
+            QuestionKind::ReportOf,
+            QuestionKind::FilmOf,
+            QuestionKind::StressOf,
+        ];
         tells.iter().any(|kind| self.slot(*kind).asked.is_some())
     }
 
-    fn slot(&self, kind: Kind) -> &Slot {
+    fn slot(&self, kind: QuestionKind) -> &AnswerSlot {
         &self.slots[kind as usize]
     }
 
-    fn slot_mut(&mut self, kind: Kind) -> &mut Slot {
+    fn slot_mut(&mut self, kind: QuestionKind) -> &mut AnswerSlot {
         &mut self.slots[kind as usize]
     }
 }

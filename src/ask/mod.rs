@@ -10,12 +10,12 @@
 //! ```
 //!
 //! A new question is an entry in the table below, an arm of [`Session::answer`](crate::session::Session::answer), and
-//! the panel that wants it. [`Kind`] says how it is treated, by default as most are.
+//! the panel that wants it. [`QuestionKind`] says how it is treated, by default as most are.
 
 mod answers;
 mod run_request;
 
-pub use answers::{Answers, Asked, Reply};
+pub use answers::{Answers, PendingQuestion, Reply};
 pub use run_request::{CarriedOver, ObjectChanges, RunRequest, without};
 
 use crate::anatomy::Anatomy;
@@ -37,7 +37,7 @@ pub trait Question: Clone + Into<Ask> {
     /// What is learned.
     type Answer;
     /// Which kind it is.
-    const KIND: Kind;
+    const KIND: QuestionKind;
     /// The question, where `ask` is of this kind.
     fn of(ask: &Ask) -> Option<&Self>;
     /// The answer, where it is one to this kind.
@@ -55,7 +55,7 @@ macro_rules! questions {
 
             impl Question for $name {
                 type Answer = $answer;
-                const KIND: Kind = Kind::$name;
+                const KIND: QuestionKind = QuestionKind::$name;
 
                 fn of(ask: &Ask) -> Option<&$name> {
                     if let Ask::$name(question) = ask { Some(question) } else { None }
@@ -87,17 +87,17 @@ macro_rules! questions {
 
         /// The kinds of questions, the most urgent first.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-        pub enum Kind { $($(#[$doc])* $name),* }
+        pub enum QuestionKind { $($(#[$doc])* $name),* }
 
-        impl Kind {
+        impl QuestionKind {
             /// All of them, the most urgent first.
-            pub const ALL: &[Kind] = &[$(Kind::$name),*];
+            pub const ALL: &[QuestionKind] = &[$(QuestionKind::$name),*];
         }
 
         impl Ask {
             /// Which kind it is.
-            pub fn kind(&self) -> Kind {
-                match self { $(Ask::$name(_) => Kind::$name),* }
+            pub fn kind(&self) -> QuestionKind {
+                match self { $(Ask::$name(_) => QuestionKind::$name),* }
             }
         }
     };
@@ -191,7 +191,7 @@ impl ReportOf {
 
 /// For how long an answer holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Holds {
+pub enum AnswerLifetime {
     /// While its frame is shown.
     Frame,
     /// While its scene is open.
@@ -200,59 +200,75 @@ pub enum Holds {
     Always,
 }
 
-impl Kind {
+impl QuestionKind {
     /// For how long an answer holds.
-    pub fn holds(self) -> Holds {
+    pub fn holds(self) -> AnswerLifetime {
         match self {
-            Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf | Kind::ReportOf => Holds::Scene,
-            Kind::FilmOf | Kind::StressOf => Holds::Always,
-            _ => Holds::Frame,
+            QuestionKind::WallsOf
+            | QuestionKind::CaptureOf
+            | QuestionKind::MeshesOf
+            | QuestionKind::DiagnosisOf
+            | QuestionKind::ReportOf => AnswerLifetime::Scene,
+            QuestionKind::FilmOf | QuestionKind::StressOf => AnswerLifetime::Always,
+            _ => AnswerLifetime::Frame,
         }
     }
 
     /// Is the answer of the frame before shown until that of the next is known? Others go with their frame, and give
     /// their memory back.
     pub fn outlives_frame(self) -> bool {
-        matches!(self, Kind::HistoryOf | Kind::AnatomyOf)
+        matches!(self, QuestionKind::HistoryOf | QuestionKind::AnatomyOf)
     }
 
     /// Is it asked by a press of a button only, as it takes long?
     pub fn is_started_by_hand(self) -> bool {
-        matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::FilmOf | Kind::StressOf)
+        matches!(
+            self,
+            QuestionKind::DiagnosisOf
+                | QuestionKind::FaultsOf
+                | QuestionKind::ReportOf
+                | QuestionKind::FilmOf
+                | QuestionKind::StressOf
+        )
     }
 
     /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.
     pub fn is_short(self) -> bool {
-        matches!(self, Kind::DrawsOf | Kind::HistoryOf | Kind::AnatomyOf | Kind::TestsOf)
+        matches!(
+            self,
+            QuestionKind::DrawsOf | QuestionKind::HistoryOf | QuestionKind::AnatomyOf | QuestionKind::TestsOf
+        )
     }
 
     /// Does it follow from the capture and its plan, with nothing to run? Then a folder's frame answers it too, and
     /// no picture waits for it.
     pub fn is_read_from_capture(self) -> bool {
-        self == Kind::ReadersOf
+        self == QuestionKind::ReadersOf
     }
 
     /// Is it found out only when nothing else is asked for for a while?
     pub fn waits_for_quiet(self) -> bool {
-        self == Kind::TimingOf
+        self == QuestionKind::TimingOf
     }
 
     /// Is what is asked for next of no use without it, so that all long work makes way?
     pub fn is_urgent(self) -> bool {
-        self == Kind::WallsOf
+        self == QuestionKind::WallsOf
     }
 
     /// Is it so much asked for by who looks on that a truth under way is begun again after it?
     pub fn interrupts_truth(self) -> bool {
-        matches!(self, Kind::DrawsOf | Kind::CaptureOf)
+        matches!(self, QuestionKind::DrawsOf | QuestionKind::CaptureOf)
     }
 
     /// What is said of it when it is stopped because another picture is asked for; `None`: it goes on, or is asked
     /// for again by who wants it.
     pub fn stopped_by_picture(self) -> Option<&'static str> {
         match self {
-            Kind::DiagnosisOf => Some("stopped for another picture: diagnose again when it is the one you want"),
-            Kind::ReportOf => Some("stopped for another picture: measure again when it is the one you want"),
+            QuestionKind::DiagnosisOf => {
+                Some("stopped for another picture: diagnose again when it is the one you want")
+            }
+            QuestionKind::ReportOf => Some("stopped for another picture: measure again when it is the one you want"),
             _ => None,
         }
     }
@@ -274,7 +290,7 @@ impl Ask {
         }
     }
 
-    /// The answer, where it follows from the capture and its plan ([`Kind::is_read_from_capture`]).
+    /// The answer, where it follows from the capture and its plan ([`QuestionKind::is_read_from_capture`]).
     ///
     /// # Errors
     /// There is none, in a few words.

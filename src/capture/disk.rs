@@ -3,7 +3,7 @@
 //! The folder is written beside its place and renamed into it, so it is there whole or not at
 //! all; a folder that it replaces is moved aside until then.
 
-use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, StateFiles};
+use super::manifest::{self, LightEntry, Manifest, MatricesEntry, PassEntry, StateFiles};
 use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
 use crate::accuracy::Finding;
 use crate::plan::FramePlan;
@@ -28,7 +28,7 @@ const SCENE: &str = "scene.toml";
 
 /// What a capture folder is written from.
 #[derive(Debug, Clone, Copy)]
-pub struct Contents<'a> {
+pub struct FolderContents<'a> {
     /// What the frame left.
     pub capture: &'a Capture,
     /// The frame, by which it can be run and asked about again.
@@ -37,9 +37,9 @@ pub struct Contents<'a> {
     pub scene: Option<&'a Scene>,
 }
 
-impl<'a> From<&'a Capture> for Contents<'a> {
-    fn from(capture: &'a Capture) -> Contents<'a> {
-        Contents { capture, plan: None, scene: None }
+impl<'a> From<&'a Capture> for FolderContents<'a> {
+    fn from(capture: &'a Capture) -> FolderContents<'a> {
+        FolderContents { capture, plan: None, scene: None }
     }
 }
 
@@ -84,7 +84,7 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
 
 /// Writes a capture, with its frame and scene where they are given, to `folder`, whole or not at all, and returns how
 /// many milliseconds its pictures took (also in the manifest).
-pub fn write<'a>(contents: impl Into<Contents<'a>>, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
+pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
     let contents = contents.into();
     put_folder(folder, |new| write_files(contents, new))
@@ -154,11 +154,11 @@ fn is_plain(file: &str) -> bool {
     !file.contains(['/', '\\']) && !file.starts_with('.')
 }
 
-fn write_files(Contents { capture, plan, scene }: Contents, folder: &Path) -> Result<f64, CaptureError> {
+fn write_files(FolderContents { capture, plan, scene }: FolderContents, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
     fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
-    let mut written = Written::default();
+    let mut written = WrittenImages::default();
     for (index, step) in capture.steps.iter().enumerate() {
         let entry = write_step(folder, index, step, capture, &mut written)?;
         manifest.passes.push(entry);
@@ -189,7 +189,7 @@ fn write_step(
     index: usize,
     step: &Step,
     capture: &Capture,
-    written: &mut Written,
+    written: &mut WrittenImages,
 ) -> Result<PassEntry, CaptureError> {
     let stem = format!("{index:03}-{}", slug(&step.name));
     let files = match &step.snapshot {
@@ -231,7 +231,7 @@ fn frame_files(
     folder: &Path,
     stem: &str,
     frame: &FrameSnapshot,
-    written: &mut Written,
+    written: &mut WrittenImages,
 ) -> Result<StateFiles, CaptureError> {
     let mut unchanged = Vec::new();
     let mut put = |name: &'static str, ending: &str, aspect: &Aspect| {
@@ -249,9 +249,9 @@ fn frame_files(
 /// The pictures that have a file. The capture holds all of them, so each is known by its place in
 /// memory.
 #[derive(Default)]
-struct Written(BTreeMap<*const Image, String>);
+struct WrittenImages(BTreeMap<*const Image, String>);
 
-impl Written {
+impl WrittenImages {
     /// Writes a picture to `file` unless it has one; the file that it has.
     fn put(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
         if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
@@ -293,7 +293,7 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         files::write_layers(&folder.join(&file), &map.faces)?;
         *(if map.holds_colors() { &mut entry.textures } else { &mut entry.map }) = Some(file);
         entry.layer_names.clone_from(&map.layer_names);
-        entry.matrices = Some(Matrices {
+        entry.matrices = Some(MatricesEntry {
             light_from_world: manifest::rows(map.light_from_world),
             clip_from_light: map.clip_from_light.iter().copied().map(manifest::rows).collect(),
         });

@@ -45,27 +45,27 @@ pub struct Image {
     size: [u32; 2],
     /// Rows of a strip; the last may have fewer.
     strip_rows: u32,
-    strips: Vec<Strip>,
+    strips: Vec<RowStrip>,
 }
 
 /// Some rows.
 #[derive(Clone)]
-struct Strip {
+struct RowStrip {
     row_stride: usize,
     bytes: Bytes,
 }
 
-impl Strip {
+impl RowStrip {
     fn row(&self, y: u32, row_bytes: usize) -> &[u8] {
         let start = y as usize * self.row_stride;
         &self.bytes[start..start + row_bytes]
     }
 
     /// Some of its rows, in the same memory.
-    fn part(&self, rows: Range<u32>, row_bytes: usize) -> Strip {
+    fn part(&self, rows: Range<u32>, row_bytes: usize) -> RowStrip {
         let start = rows.start as usize * self.row_stride;
         let last = rows.end.saturating_sub(1) as usize * self.row_stride;
-        Strip { row_stride: self.row_stride, bytes: self.bytes.slice(start..last + row_bytes) }
+        RowStrip { row_stride: self.row_stride, bytes: self.bytes.slice(start..last + row_bytes) }
     }
 }
 
@@ -81,10 +81,10 @@ impl Image {
         assert!(row_stride >= row_bytes, "a row of {row_bytes} bytes does not fit a stride of {row_stride}");
         let needed = height.checked_sub(1).map_or(0, |rows| rows * row_stride + row_bytes);
         assert!(bytes.len() >= needed, "{} bytes are too few for {needed}", bytes.len());
-        Image::of_one_strip(format, size, Strip { row_stride, bytes })
+        Image::of_one_strip(format, size, RowStrip { row_stride, bytes })
     }
 
-    fn of_one_strip(format: PixelFormat, size: [u32; 2], strip: Strip) -> Image {
+    fn of_one_strip(format: PixelFormat, size: [u32; 2], strip: RowStrip) -> Image {
         Image { format, size, strip_rows: size[1].max(1), strips: vec![strip] }
     }
 
@@ -103,7 +103,7 @@ impl Image {
     pub fn uniform(format: PixelFormat, size: [u32; 2], texel: &[u8]) -> Image {
         assert_eq!(texel.len(), format.texel_bytes());
         let row = texel.repeat(size[0] as usize);
-        Image::of_one_strip(format, size, Strip { row_stride: 0, bytes: row.into() })
+        Image::of_one_strip(format, size, RowStrip { row_stride: 0, bytes: row.into() })
     }
 
     /// The same picture, with its rows in the memory of `other` wherever it has them too, and a copy of the rest;
@@ -119,7 +119,7 @@ impl Image {
             let is_equal = rows.clone().all(|y| self.row(y) == other.row(y));
             is_equal.then(|| other.strip(rows))
         };
-        let shared: Vec<Option<Strip>> = starts.clone().map(|start| shared(rows_from(start))).collect();
+        let shared: Vec<Option<RowStrip>> = starts.clone().map(|start| shared(rows_from(start))).collect();
         let changed = shared.iter().filter(|strip| strip.is_none()).count();
         if changed * 4 > shared.len() * MOST_CHANGED_QUARTERS {
             return None;
@@ -127,14 +127,14 @@ impl Image {
         let copied = |start: u32| {
             let mut bytes = Vec::with_capacity(rows_from(start).len() * self.row_bytes());
             rows_from(start).for_each(|y| bytes.extend_from_slice(self.row(y)));
-            Strip { row_stride: self.row_bytes(), bytes: bytes.into() }
+            RowStrip { row_stride: self.row_bytes(), bytes: bytes.into() }
         };
         let strips = starts.zip(shared).map(|(start, shared)| shared.unwrap_or_else(|| copied(start))).collect();
         Some(Image { format: self.format, size: self.size, strip_rows: STRIP_ROWS, strips })
     }
 
     /// Rows of one strip.
-    fn strip(&self, rows: Range<u32>) -> Strip {
+    fn strip(&self, rows: Range<u32>) -> RowStrip {
         let index = rows.start / self.strip_rows;
         let first = index * self.strip_rows;
         self.strips[index as usize].part(rows.start - first..rows.end - first, self.row_bytes())
@@ -156,7 +156,7 @@ impl Image {
 
     /// Where its rows lie in memory, padding included: what several pictures share, they have at the same place.
     pub fn memory(&self) -> impl Iterator<Item = Range<usize>> {
-        let place = |strip: &Strip| {
+        let place = |strip: &RowStrip| {
             let start = strip.bytes.as_ptr() as usize;
             start..start + strip.bytes.len()
         };

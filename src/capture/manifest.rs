@@ -2,10 +2,10 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, Capture, Differs, DrawSummary, Origin, Timing};
-use crate::accuracy::{ErrorCounts, Finding, Region};
+use super::{AdapterInfo, Capture, DrawSummary, Origin, RecomputeDifference, Timing};
+use crate::accuracy::{ErrorCounts, Finding, WrongRegion};
 use crate::math::depth::DepthCurve;
-use crate::plan::{CountOf, DecidedBy, LeftOut, Part, Side};
+use crate::plan::{CountOf, CountedSide, DecidedBy, DrawPart, LeftOut};
 use crate::scene::{Camera, Projection};
 use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -118,7 +118,7 @@ pub(super) struct DrawEntry {
     pub triangles: u64,
     /// Of another program's draw: pixels where it makes something else when it is computed anew.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub differs: Option<Differs>,
+    pub differs: Option<RecomputeDifference>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -151,7 +151,7 @@ pub(super) struct LightEntry {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub matrices: Option<Matrices>,
+    pub matrices: Option<MatricesEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -179,7 +179,7 @@ pub(super) struct RegionEntry {
 
 /// Row by row.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Matrices {
+pub(super) struct MatricesEntry {
     pub light_from_world: [[f64; 4]; 4],
     /// One a face.
     pub clip_from_light: Vec<[[f64; 4]; 4]>,
@@ -250,7 +250,7 @@ impl From<&DrawSummary> for DrawEntry {
 impl DrawEntry {
     /// `None` for a part that this version does not know.
     pub fn to_summary(&self) -> Option<DrawSummary> {
-        let part = Part::from_name(&self.part)?;
+        let part = DrawPart::from_name(&self.part)?;
         let (name, caster) = (self.name.clone(), self.caster.clone());
         Some(DrawSummary { name, caster, part, triangles: self.triangles, after: None, differs: self.differs })
     }
@@ -293,9 +293,9 @@ impl LightEntry {
     /// What decided where its shadow is: as it says, or in a folder that does not, as technique and files tell.
     pub fn decided_by(&self, technique: &str) -> DecidedBy {
         let side = match technique {
-            "z-pass" | "z-pass-plus" => Some(Side::InFront),
-            "z-fail" => Some(Side::Behind),
-            "auto" => Some(Side::AsNeeded),
+            "z-pass" | "z-pass-plus" => Some(CountedSide::InFront),
+            "z-fail" => Some(CountedSide::Behind),
+            "auto" => Some(CountedSide::AsNeeded),
             _ => None,
         };
         self.decided_by.unwrap_or(match (side, technique) {
@@ -320,8 +320,8 @@ impl LightEntry {
     }
 }
 
-impl From<&Region> for RegionEntry {
-    fn from(region: &Region) -> RegionEntry {
+impl From<&WrongRegion> for RegionEntry {
+    fn from(region: &WrongRegion) -> RegionEntry {
         let kind = region.kind.name().to_owned();
         RegionEntry { pixels: region.pixels, kind, bounds: region.bounds, at: region.at }
     }
@@ -329,9 +329,9 @@ impl From<&Region> for RegionEntry {
 
 impl RegionEntry {
     /// `None` for a kind that is no error.
-    pub fn to_region(&self) -> Option<Region> {
+    pub fn to_region(&self) -> Option<WrongRegion> {
         let kind = Finding::ALL.into_iter().find(|finding| finding.is_wrong() && finding.name() == self.kind)?;
-        Some(Region { pixels: self.pixels, kind, bounds: self.bounds, at: self.at })
+        Some(WrongRegion { pixels: self.pixels, kind, bounds: self.bounds, at: self.at })
     }
 }
 

@@ -17,8 +17,8 @@ pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 
-use crate::accuracy::{ErrorCounts, Region};
-use crate::plan::{CountOf, DecidedBy, LeftOut, Part};
+use crate::accuracy::{ErrorCounts, WrongRegion};
+use crate::plan::{CountOf, DecidedBy, DrawPart, LeftOut};
 use crate::truth::{LIT, SHADOW};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -113,19 +113,19 @@ pub struct DrawSummary {
     /// The object it shows or whose shadow it makes.
     pub caster: Option<String>,
     /// Which part of it.
-    pub part: Part,
+    pub part: DrawPart,
     /// Triangles submitted.
     pub triangles: u64,
     /// The state after it; `None` where only the state after its pass was captured.
     pub after: Option<DrawState>,
     /// Of another program's draw that was computed anew from what was there before it: where that made something else
     /// than was stored; `None` where that was not asked.
-    pub differs: Option<Differs>,
+    pub differs: Option<RecomputeDifference>,
 }
 
 /// Pixels where a draw that is computed anew leaves something else than was stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub struct Differs {
+pub struct RecomputeDifference {
     /// Depths that are farther apart than rounding explains: sixteen steps of their format, or of 24 bits.
     pub depth: u64,
     /// Stencil values.
@@ -243,7 +243,7 @@ pub struct CapturedTruth {
     /// Totals of the findings.
     pub error: ErrorCounts,
     /// The largest connected wrong region.
-    pub worst: Option<Region>,
+    pub worst: Option<WrongRegion>,
 }
 
 /// The ground truth of a frame: learned of a capture, and put beside it by [`Capture::with_truth`].
@@ -297,7 +297,7 @@ pub struct Timing {
     pub setup_ms: Option<f64>,
 }
 
-impl Differs {
+impl RecomputeDifference {
     /// Is it as stored, but for rounding?
     pub fn is_nowhere(self) -> bool {
         self.depth == 0 && self.stencil == 0

@@ -3,8 +3,8 @@
 use super::options::{FrameOptions, SceneOptions, Subject};
 use super::progress::with_bar;
 use super::{CliError, output};
-use crate::film::{Film, LightRound, PLACES, Shows};
-use crate::picture::apng::Colors;
+use crate::film::{Film, FilmContent, LightRound, PLACES};
+use crate::picture::apng::ColorDepth;
 use crate::progress::Progress;
 use crate::reading::format;
 use crate::scene::Scene;
@@ -77,19 +77,19 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     arguments.frame.refuse_draws(refused)?;
     arguments.frame.refuse_external_capture(refused)?;
     let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
-    let mut session = Gpu { adapter: arguments.frame.adapter.as_deref(), session: None };
+    let mut session = LazySession { adapter: arguments.frame.adapter.as_deref(), session: None };
     let (name, shows) = match arguments.light_round {
         None => {
             let capture = steps(subject, &mut session)?;
-            (format!("{}, {}", capture.scene, capture.technique), Shows::Steps(capture))
+            (format!("{}, {}", capture.scene, capture.technique), FilmContent::Steps(capture))
         }
         Some(places) => {
             let (scene, request) = made(&arguments.scene, &subject)?;
             let name = format!("{}, {}", scene.name, request.choice.technique().name());
             let light = usize::from(arguments.which_light) - 1;
             let round = Box::new(LightRound::new(scene.clone(), light, places.unwrap_or(PLACES))?);
-            let colors = if arguments.exact { Colors::Exact } else { Colors::Rounded };
-            (name, Shows::LightRound { round, request: Box::new(request.clone()), colors })
+            let colors = if arguments.exact { ColorDepth::Exact } else { ColorDepth::Rounded };
+            (name, FilmContent::LightRound { round, request: Box::new(request.clone()), colors })
         }
     };
     let [width, height] = shows.size();
@@ -122,12 +122,12 @@ fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
 }
 
 /// A GPU that is opened on first use: a folder's frame needs none.
-struct Gpu<'a> {
+struct LazySession<'a> {
     adapter: Option<&'a str>,
     session: Option<Session>,
 }
 
-impl Gpu<'_> {
+impl LazySession<'_> {
     fn get(&mut self) -> Result<&mut Session, crate::session::SessionError> {
         match &mut self.session {
             Some(session) => Ok(session),
@@ -136,7 +136,7 @@ impl Gpu<'_> {
     }
 }
 
-fn steps(subject: Subject, gpu: &mut Gpu) -> Result<Arc<crate::capture::Capture>, CliError> {
+fn steps(subject: Subject, gpu: &mut LazySession) -> Result<Arc<crate::capture::Capture>, CliError> {
     match subject {
         Subject::Folder(frame) => Ok(frame.capture),
         scene @ Subject::Scene(_) => Ok(scene.frame(gpu.get()?)?.capture),

@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, UpAxis, model_scene};
 use crate::scene::{builtin, shapes};
 use crate::session::{
-    CaptureCost, Measured, Measurement, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
+    CaptureCost, MeasuredTechnique, Measurement, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
 };
 use crate::technique::{Choice, Technique};
 use clap::Args;
@@ -193,16 +193,16 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-fn frame_ms(of: &Measured) -> f64 {
+fn frame_ms(of: &MeasuredTechnique) -> f64 {
     median_ms(&of.frames).unwrap_or(f64::NAN)
 }
 
 /// `auto`, z-fail, and those that are right and may be as fast as the fastest of these.
-fn contenders(tried: &[Measured]) -> Vec<Choice> {
+fn contenders(tried: &[MeasuredTechnique]) -> Vec<Choice> {
     let right = || tried.iter().filter(|one| one.error.wrong() == 0);
     let fastest = right().map(frame_ms).fold(f64::INFINITY, f64::min);
-    let always = |one: &&Measured| matches!(one.choice.technique(), Technique::Auto | Technique::ZFail);
-    let may_win = |one: &&Measured| one.error.wrong() == 0 && frame_ms(one) <= MAY_WIN * fastest;
+    let always = |one: &&MeasuredTechnique| matches!(one.choice.technique(), Technique::Auto | Technique::ZFail);
+    let may_win = |one: &&MeasuredTechnique| one.error.wrong() == 0 && frame_ms(one) <= MAY_WIN * fastest;
     tried.iter().filter(|one| always(one) || may_win(one)).map(|one| one.choice.clone()).collect()
 }
 

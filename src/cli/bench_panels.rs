@@ -51,7 +51,7 @@ mod measured {
     use super::{FRAMES, LIGHTS, LIMIT_LIGHT_MS, LIMIT_PANELS_MS, WINDOW};
     use crate::app::AppError;
     use crate::app::headless::{FrameCost, Headless};
-    use crate::inspector::Panel;
+    use crate::inspector::PanelKind;
     use egui::{Event, Key, Modifiers, PointerButton, pos2};
     use std::time::{Duration, Instant};
 
@@ -73,7 +73,7 @@ mod measured {
         let middle = width_of(panels) / 2;
         panels.inspector().pick([middle, 200]);
         let mut text = String::new();
-        for panel in Panel::ALL {
+        for panel in PanelKind::ALL {
             panels.inspector().show_panel(panel);
             for _ in 0..4 {
                 panels.point([0.5, 0.5]);
@@ -95,14 +95,14 @@ mod measured {
                 verdict(total, LIMIT_PANELS_MS)
             );
         }
-        panels.inspector().show_panel(Panel::Picture);
-        panels.inspector().show_panel(Panel::Pixel);
+        panels.inspector().show_panel(PanelKind::Picture);
+        panels.inspector().show_panel(PanelKind::Pixel);
         text
     }
 
     /// The Scene tab's view is dragged about: all of it is drawn anew each frame.
     pub fn orbit(panels: &mut Headless) -> String {
-        panels.inspector().show_panel(Panel::Scene);
+        panels.inspector().show_panel(PanelKind::Scene);
         let middle = [0.55, 0.4];
         // The worker may have to look at the geometry first.
         if let Err(error) = panels.settle() {
@@ -134,7 +134,7 @@ mod measured {
         let drawn: Result<Vec<f64>, AppError> = drawn.collect();
         let drawn = drawn.map_or_else(|error| error.to_string(), |times| format!("{:.2}", median(times)));
         panels.frame(vec![button(false)]);
-        panels.inspector().show_panel(Panel::Picture);
+        panels.inspector().show_panel(PanelKind::Picture);
         let all = |of: fn(&FrameCost) -> Duration| median(costs.iter().map(|cost| ms(of(cost))).collect());
         let total = all(FrameCost::total);
         format!(

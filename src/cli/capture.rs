@@ -4,7 +4,7 @@ use super::options::{FrameOptions, SceneOptions};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::Capture;
-use crate::capture::disk::{self, Contents};
+use crate::capture::disk::{self, FolderContents};
 use crate::page;
 use crate::plan::DecidedBy;
 use crate::progress::Progress;
@@ -47,8 +47,8 @@ pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
     if let Some(page) = page {
         super::page::check_target(page, *overwrite)?;
     }
-    let how = Writing { folder: output, overwrite: *overwrite, truth: *truth, page: page.as_deref() };
-    let mut job = Job::new(scene, scene_options, frame, how)?;
+    let how = CaptureOutput { folder: output, overwrite: *overwrite, truth: *truth, page: page.as_deref() };
+    let mut job = CaptureJob::new(scene, scene_options, frame, how)?;
     job.request.timing_runs = if *timing { TIMING_RUNS } else { 0 };
     job.run()
 }
@@ -57,16 +57,16 @@ pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
 const TIMING_RUNS: usize = 5;
 
 /// A capture whose input was checked.
-pub struct Job<'a> {
+pub struct CaptureJob<'a> {
     started: Instant,
     scene: Scene,
     request: CaptureRequest,
     adapter: Option<&'a str>,
-    writing: Writing<'a>,
+    writing: CaptureOutput<'a>,
 }
 
 /// Where a capture goes, and what goes with it.
-pub struct Writing<'a> {
+pub struct CaptureOutput<'a> {
     /// The folder to make.
     pub folder: &'a Path,
     /// It may replace a capture.
@@ -77,19 +77,19 @@ pub struct Writing<'a> {
     pub page: Option<&'a str>,
 }
 
-impl<'a> Job<'a> {
+impl<'a> CaptureJob<'a> {
     /// Everything that can be wrong without a GPU is found here, before one is opened.
     pub fn new(
         name: &str,
         scene_options: &SceneOptions,
         frame: &'a FrameOptions,
-        writing: Writing<'a>,
-    ) -> Result<Job<'a>, CliError> {
+        writing: CaptureOutput<'a>,
+    ) -> Result<CaptureJob<'a>, CliError> {
         let started = Instant::now();
         let scene = scene_options.open(name)?;
         let request = frame.request(&scene)?;
         disk::check_target(writing.folder, writing.overwrite)?;
-        Ok(Job { started, scene, request, adapter: frame.adapter.as_deref(), writing })
+        Ok(CaptureJob { started, scene, request, adapter: frame.adapter.as_deref(), writing })
     }
 
     /// Captures into the folder and says so.
@@ -97,7 +97,7 @@ impl<'a> Job<'a> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
-        let Writing { folder, overwrite, truth, page } = self.writing;
+        let CaptureOutput { folder, overwrite, truth, page } = self.writing;
         if truth {
             capture = with_bar("ground truth", &Progress::default(), |progress| {
                 session.judged(&self.scene, &capture, progress)
@@ -105,7 +105,11 @@ impl<'a> Job<'a> {
         }
         // Loading the scene and opening the GPU come before the first frame too.
         capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
-        disk::write(Contents { capture: &capture, plan: Some(&plan), scene: Some(&self.scene) }, folder, overwrite)?;
+        disk::write(
+            FolderContents { capture: &capture, plan: Some(&plan), scene: Some(&self.scene) },
+            folder,
+            overwrite,
+        )?;
         let mut said = summary(&capture, folder);
         if let Some(page) = page {
             let bytes = page::write(&capture, &Arc::new(plan), Path::new(page))?;

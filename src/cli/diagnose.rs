@@ -1,15 +1,15 @@
 //! `stencilscope diagnose`: where shadows are wrong, why, what mends it, and the proof.
 
-use super::fix::Fix;
+use super::fix::FixOutput;
 use super::options::{FrameOptions, SceneOptions, SceneSubject, Subject};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
-use crate::diagnosis::{Cause, Diagnosis, Mend, Proof, wrong_pixels};
+use crate::diagnosis::{Cause, Diagnosis, Fix, Proof, wrong_pixels};
 use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::session::{CaptureRequest, Fault, RunFrame, Session};
+use crate::session::{CaptureRequest, InjectedFault, RunFrame, Session};
 use clap::Args;
 use std::collections::BTreeMap;
 use std::fs;
@@ -57,11 +57,12 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;
     folder.as_deref().map_or(Ok(()), |folder| check_folder(folder, arguments.overwrite))?;
-    let fix = arguments.fix.as_deref().map(|file| Fix::new(file, &arguments.scene, arguments.overwrite)).transpose()?;
+    let fix =
+        arguments.fix.as_deref().map(|file| FixOutput::new(file, &arguments.scene, arguments.overwrite)).transpose()?;
 
     let mut session = Session::new(frame.adapter.as_deref())?;
     let diagnosis = with_bar("diagnosis", &Progress::default(), |progress| {
-        session.diagnose(&scene, &request, Fault::None, progress)
+        session.diagnose(&scene, &request, InjectedFault::None, progress)
     })?;
     let suited = if arguments.no_techniques {
         Vec::new()
@@ -146,7 +147,7 @@ fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
     }
 }
 
-type Files = Vec<(&'static str, Vec<u8>)>;
+type DiagnosisFiles = Vec<(&'static str, Vec<u8>)>;
 
 /// Pictures before and after, text and document.
 fn files(
@@ -156,13 +157,13 @@ fn files(
     diagnosis: &Diagnosis,
     text: &str,
     document: &str,
-) -> Result<Files, CliError> {
-    let mut pictured = |mend: &Mend| {
-        let (capture, _) = session.capture_mended(scene, request, Fault::None, mend)?;
+) -> Result<DiagnosisFiles, CliError> {
+    let mut pictured = |mend: &Fix| {
+        let (capture, _) = session.capture_mended(scene, request, InjectedFault::None, mend)?;
         Ok::<_, CliError>(session.judged(scene, &capture, &Progress::default())?)
     };
     let png = |picture: &Picture| picture.to_png().map_err(|error| broken(std::io::Error::other(error.to_string())));
-    let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Mend::default())?))?)];
+    let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Fix::default())?))?)];
     // A larger picture is another: nothing in it stands beside the first.
     if let Some(advice) = diagnosis.advice.as_ref().filter(|advice| advice.mend.larger.is_none()) {
         files.push(("mended.png", png(&wrong_pixels(&pictured(&advice.mend)?))?));
@@ -172,7 +173,7 @@ fn files(
     Ok(files)
 }
 
-fn write_folder(folder: &Path, files: &Files) -> Result<String, CliError> {
+fn write_folder(folder: &Path, files: &DiagnosisFiles) -> Result<String, CliError> {
     disk::put_folder(folder, |new| {
         let failed = |source| CaptureError::Write { file: new.to_owned(), source };
         fs::create_dir_all(new).map_err(failed)?;

@@ -86,7 +86,7 @@ pub enum CliError {
     Store(#[from] crate::scene::file::StoreError),
     /// A mend can't be made.
     #[error(transparent)]
-    Mend(#[from] crate::diagnosis::MendError),
+    Mend(#[from] crate::diagnosis::FixError),
     /// Nobody reads standard output any more.
     #[error("standard output was closed")]
     ClosedOutput,

@@ -1,7 +1,7 @@
 //! `diagnose --fix`: the scene as a scene file, mended; then opened again and held against the truth.
 
 use super::{CliError, output};
-use crate::diagnosis::{Diagnosis, Mend, Suited};
+use crate::diagnosis::{Diagnosis, Fix, TechniqueFit};
 use crate::numbers;
 use crate::progress::Progress;
 use crate::scene::file::store;
@@ -11,15 +11,15 @@ use crate::technique::Choice;
 use std::path::Path;
 
 /// Where a mended scene goes.
-pub struct Fix<'a> {
+pub struct FixOutput<'a> {
     file: &'a str,
     /// The name by which the scene was opened.
     source: &'a str,
 }
 
-impl<'a> Fix<'a> {
+impl<'a> FixOutput<'a> {
     /// Checks, before long work, that the file may be written.
-    pub fn new(file: &'a str, source: &'a str, overwrite: bool) -> Result<Fix<'a>, CliError> {
+    pub fn new(file: &'a str, source: &'a str, overwrite: bool) -> Result<FixOutput<'a>, CliError> {
         let usage = |what: &str| Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())));
         let path = Path::new(file);
         let is_scene_file = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
@@ -32,7 +32,7 @@ impl<'a> Fix<'a> {
             usage("is there already: replace it with --overwrite or choose another name")
         } else {
             output::check_target(file)?;
-            Ok(Fix { file, source })
+            Ok(FixOutput { file, source })
         }
     }
 
@@ -44,7 +44,7 @@ impl<'a> Fix<'a> {
         time: f64,
         request: &CaptureRequest,
         diagnosis: &Diagnosis,
-        suited: &[Suited],
+        suited: &[TechniqueFit],
     ) -> Result<String, CliError> {
         if !diagnosis.is_bad() {
             return Ok(format!("{}: not written, as nothing is wrong\n", self.file));
@@ -69,7 +69,7 @@ impl<'a> Fix<'a> {
 }
 
 /// The scene with the mend made, and the technique that it asks for.
-fn mended(loaded: &Scene, mut choice: Choice, mend: &Mend) -> Result<Scene, CliError> {
+fn mended(loaded: &Scene, mut choice: Choice, mend: &Fix) -> Result<Scene, CliError> {
     let mut scene = loaded.clone();
     mend.apply(&mut scene, &mut choice)?;
     scene.technique = Some(choice.to_request());

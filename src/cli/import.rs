@@ -1,9 +1,9 @@
 //! `stencilscope import`: a frame out of a RenderDoc capture.
 
 use super::{CliError, output, progress};
-use crate::capture::disk::{self, Contents};
-use crate::capture::{Capture, Differs, DrawSummary};
-use crate::import::{self, Converted, ImportError, Options, RawFrame};
+use crate::capture::disk::{self, FolderContents};
+use crate::capture::{Capture, DrawSummary, RecomputeDifference};
+use crate::import::{self, ConvertedFrame, ImportError, RawFrame, RenderDocOptions};
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::FoundLight;
@@ -21,14 +21,14 @@ pub struct ImportArguments {
     #[arg(value_name = "FILE.rdc")]
     file: PathBuf,
     #[command(flatten)]
-    target: FrameTarget,
+    target: ImportTarget,
     #[command(flatten)]
     reader: ReaderOptions,
 }
 
 /// What becomes of the frame.
 #[derive(Debug, Args)]
-pub struct FrameTarget {
+pub struct ImportTarget {
     /// The capture folder to write
     #[arg(short, long, value_name = "DIR", required_unless_present = "list")]
     output: Option<PathBuf>,
@@ -59,8 +59,8 @@ pub struct ReaderOptions {
 
 impl ReaderOptions {
     /// As the import takes them; a list needs no pictures.
-    pub fn options(&self, target: &FrameTarget) -> Options {
-        Options {
+    pub fn options(&self, target: &ImportTarget) -> RenderDocOptions {
+        RenderDocOptions {
             python: self.python.clone(),
             seconds: self.replay_seconds,
             most_memory: self.memory << 30,
@@ -69,7 +69,7 @@ impl ReaderOptions {
     }
 }
 
-impl FrameTarget {
+impl ImportTarget {
     /// Checks, before any work, that the folder can be written.
     pub fn check(&self) -> Result<(), CliError> {
         Ok(self.output.as_deref().map_or(Ok(()), |folder| disk::check_target(folder, self.overwrite))?)
@@ -81,13 +81,17 @@ impl FrameTarget {
             output::print(&import::list(&frame))?;
         }
         let Some(folder) = &self.output else { return Ok(()) };
-        let Converted { plan, capture, scene, lights } = import::convert(&frame, name)?;
+        let ConvertedFrame { plan, capture, scene, lights } = import::convert(&frame, name)?;
         drop(frame);
         let mut session = Session::new(self.adapter.as_deref())?;
         let capture = progress::with_bar("check", &Progress::default(), |progress| {
             session.held_against_itself(&plan, &capture, progress)
         })?;
-        disk::write(Contents { capture: &capture, plan: Some(&plan), scene: scene.as_ref() }, folder, self.overwrite)?;
+        disk::write(
+            FolderContents { capture: &capture, plan: Some(&plan), scene: scene.as_ref() },
+            folder,
+            self.overwrite,
+        )?;
         output::print(&summary(&plan, &capture, folder, &lights))
     }
 }
@@ -107,7 +111,7 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
         "computed anew: {} of {all} draws leave what was stored, {exact} of them to the last bit\n",
         equal.len()
     );
-    for (draw, Differs { depth, stencil, .. }) in apart {
+    for (draw, RecomputeDifference { depth, stencil, .. }) in apart {
         text += &format!("  {}: another depth at {depth} pixels, another stencil at {stencil}\n", draw.name);
     }
     for (index, light) in lights.iter().enumerate() {

@@ -4,7 +4,7 @@ use super::report_results::ReportResults;
 use super::{CliError, stress};
 use crate::report::Report;
 use crate::shards::MergeError;
-use crate::stress::Stress;
+use crate::stress::StressResults;
 use clap::Args;
 
 /// How parts are made on several machines, after the help.
@@ -43,8 +43,8 @@ pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
     let texts: Vec<(String, String)> = texts.collect::<Result<_, CliError>>()?;
     let refused = |error: MergeError| CliError::Usage(error.to_string());
     if is_stress(&texts) {
-        let parts = parts(texts, |text| Stress::from_json(text).map_err(|error| error.to_string()))?;
-        deliver_stress(&Stress::merged(parts).map_err(refused)?, command, &arguments.results)
+        let parts = parts(texts, |text| StressResults::from_json(text).map_err(|error| error.to_string()))?;
+        deliver_stress(&StressResults::merged(parts).map_err(refused)?, command, &arguments.results)
     } else {
         let parts = parts(texts, |text| Report::from_json(text).map_err(|error| error.to_string()))?;
         arguments.results.deliver(command, &Report::merged(parts).map_err(refused)?)
@@ -52,7 +52,7 @@ pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
 }
 
 /// In the forms that results of stress cases have.
-fn deliver_stress(merged: &Stress, command: &str, results: &ReportResults) -> Result<(), CliError> {
+fn deliver_stress(merged: &StressResults, command: &str, results: &ReportResults) -> Result<(), CliError> {
     let [json, csv, markdown, page] = results.targets();
     if csv.is_some() {
         return Err(CliError::Usage("results of `stress` have no CSV: choose `--json`".to_owned()));

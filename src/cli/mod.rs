@@ -32,7 +32,7 @@ mod view;
 
 pub use error::CliError;
 
-use crate::import::{SHIPPED, Shipped};
+use crate::import::{SHIPPED, ShippedFrame};
 use crate::scene::builtin::{self, Builtin};
 use crate::scene::nearest;
 use clap::{Parser, Subcommand};
@@ -51,11 +51,11 @@ const COMMANDS: [&str; 15] = [
 #[command(after_help = help::everything())]
 struct CommandLine {
     #[command(subcommand)]
-    command: Command,
+    command: CliCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Open the inspector window (the default command)
     #[command(after_help = help::names())]
     View(Box<view::ViewArguments>),
@@ -110,21 +110,21 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Err(error) => return usage::answer(&error),
     };
     match command_line.command {
-        Command::View(arguments) => view::run(&arguments),
-        Command::Capture(arguments) => capture::run(&arguments),
-        Command::Page(arguments) => page::run(&arguments),
-        Command::Animate(arguments) => animate::run(&arguments),
-        Command::Pixel(arguments) => pixel::run(&arguments),
-        Command::Diagnose(arguments) => diagnose::run(&arguments),
-        Command::Diff(arguments) => diff::run(&arguments),
-        Command::Report(arguments) => report::run(&arguments, &spoken),
-        Command::Stress(arguments) => stress::run(&arguments, &spoken),
-        Command::Scenes(arguments) => scenes::run(&arguments),
-        Command::Import(arguments) => import::run(&arguments),
-        Command::Record(arguments) => record::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
-        Command::Pictures(arguments) => pictures::run(&arguments),
-        Command::Help(arguments) => help::run(&arguments),
+        CliCommand::View(arguments) => view::run(&arguments),
+        CliCommand::Capture(arguments) => capture::run(&arguments),
+        CliCommand::Page(arguments) => page::run(&arguments),
+        CliCommand::Animate(arguments) => animate::run(&arguments),
+        CliCommand::Pixel(arguments) => pixel::run(&arguments),
+        CliCommand::Diagnose(arguments) => diagnose::run(&arguments),
+        CliCommand::Diff(arguments) => diff::run(&arguments),
+        CliCommand::Report(arguments) => report::run(&arguments, &spoken),
+        CliCommand::Stress(arguments) => stress::run(&arguments, &spoken),
+        CliCommand::Scenes(arguments) => scenes::run(&arguments),
+        CliCommand::Import(arguments) => import::run(&arguments),
+        CliCommand::Record(arguments) => record::run(&arguments),
+        CliCommand::Bench(arguments) => bench::run(&arguments),
+        CliCommand::Pictures(arguments) => pictures::run(&arguments),
+        CliCommand::Help(arguments) => help::run(&arguments),
     }
 }
 
@@ -158,7 +158,7 @@ fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
 
 /// Is a first word no command, no scene and no file? An ending says that a file is meant.
 fn is_nothing(word: &str) -> bool {
-    let is_scene = Builtin::named(word).is_some() || Shipped::named(word).is_some();
+    let is_scene = Builtin::named(word).is_some() || ShippedFrame::named(word).is_some();
     let is_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
     !(word.is_empty() || word.starts_with('-') || COMMANDS.contains(&word) || is_scene || is_file)
 }

@@ -2,9 +2,9 @@
 
 use super::CliError;
 use crate::capture::disk;
-use crate::import::Shipped;
+use crate::import::ShippedFrame;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
-use crate::session::{CaptureRequest, Every, Moments, Moves, RunFrame, Session};
+use crate::session::{CaptureRequest, MotionFrames, MovingPart, RunFrame, Session, SnapshotInterval};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
@@ -56,12 +56,12 @@ pub struct SceneOptions {
     pub off: Vec<u32>,
     /// The moment of an animated scene; `report` also takes frames from A to B, A..B[:N], and counts the set-up of each
     #[arg(long, value_name = "SECONDS", value_parser = when, default_value = "0", allow_hyphen_values = true)]
-    time: When,
+    time: SceneTime,
 }
 
 /// When a scene is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum When {
+enum SceneTime {
     /// At a moment, seconds.
     At(f64),
     /// From a moment to another, in so many frames.
@@ -72,13 +72,13 @@ enum When {
 const MOST_FRAMES: usize = 10_000;
 
 /// `SECONDS`, `A..B` or `A..B:N`.
-fn when(text: &str) -> Result<When, String> {
-    let Some((from, rest)) = text.split_once("..") else { return finite(text).map(When::At) };
+fn when(text: &str) -> Result<SceneTime, String> {
+    let Some((from, rest)) = text.split_once("..") else { return finite(text).map(SceneTime::At) };
     let (to, frames) = rest.split_once(':').map_or((rest, None), |(to, frames)| (to, Some(frames)));
     let frames = frames.map(|frames| frames.parse().ok().filter(|frames| (1..=MOST_FRAMES).contains(frames)));
     match (finite(from), finite(to), frames) {
-        (Ok(from), Ok(to), None) if from < to => Ok(When::Moving { from, to, frames: None }),
-        (Ok(from), Ok(to), Some(Some(frames))) if from < to => Ok(When::Moving { from, to, frames: Some(frames) }),
+        (Ok(from), Ok(to), None) if from < to => Ok(SceneTime::Moving { from, to, frames: None }),
+        (Ok(from), Ok(to), Some(Some(frames))) if from < to => Ok(SceneTime::Moving { from, to, frames: Some(frames) }),
         _ => Err(format!("give seconds from low to high, and maybe frames from 1 to {MOST_FRAMES}, as `0..2:30`")),
     }
 }
@@ -125,7 +125,7 @@ impl SceneOptions {
             && light.is_empty()
             && sun.is_empty()
             && off.is_empty()
-            && *time == When::At(0.0)
+            && *time == SceneTime::At(0.0)
     }
 
     /// Opens the scene and applies these options; the result stands still at `--time`.
@@ -136,18 +136,20 @@ impl SceneOptions {
     /// The moment at which scenes are seen.
     pub fn moment(&self) -> Result<f64, CliError> {
         match self.time {
-            When::At(seconds) => Ok(seconds),
-            When::Moving { .. } => {
+            SceneTime::At(seconds) => Ok(seconds),
+            SceneTime::Moving { .. } => {
                 Err(CliError::Usage("`--time A..B` is for `report`: give one moment, in seconds".to_owned()))
             }
         }
     }
 
     /// The frames that were asked for, `usual` ones where their number was not; `None` of one moment.
-    pub fn moments(&self, moves: Moves, usual: usize) -> Option<Moments> {
+    pub fn moments(&self, moves: MovingPart, usual: usize) -> Option<MotionFrames> {
         match self.time {
-            When::At(_) => None,
-            When::Moving { from, to, frames } => Some(Moments { moves, from, to, frames: frames.unwrap_or(usual) }),
+            SceneTime::At(_) => None,
+            SceneTime::Moving { from, to, frames } => {
+                Some(MotionFrames { moves, from, to, frames: frames.unwrap_or(usual) })
+            }
         }
     }
 
@@ -235,7 +237,7 @@ impl Subject {
     pub fn new(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<Subject, CliError> {
         let folder = Path::new(name);
         let is_capture = disk::is_capture(folder);
-        let shipped = Shipped::named(name).filter(|_| !is_capture);
+        let shipped = ShippedFrame::named(name).filter(|_| !is_capture);
         if !is_capture && shipped.is_none() {
             let loaded = scene.load(name)?;
             let at = loaded.at(scene.moment()?);
@@ -312,8 +314,10 @@ impl FrameOptions {
     /// For a command that takes no snapshot of draws, and says why.
     pub fn refuse_draws(&self, why: &str) -> Result<(), CliError> {
         match self.every()? {
-            Every::Pass => Ok(()),
-            Every::Draw => Err(CliError::Usage(format!("`--every draw` is for captures; {why}: leave it out"))),
+            SnapshotInterval::Pass => Ok(()),
+            SnapshotInterval::Draw => {
+                Err(CliError::Usage(format!("`--every draw` is for captures; {why}: leave it out")))
+            }
         }
     }
 
@@ -325,10 +329,10 @@ impl FrameOptions {
         Ok(())
     }
 
-    fn every(&self) -> Result<Every, CliError> {
+    fn every(&self) -> Result<SnapshotInterval, CliError> {
         match self.every.as_str() {
-            "pass" => Ok(Every::Pass),
-            "draw" => Ok(Every::Draw),
+            "pass" => Ok(SnapshotInterval::Pass),
+            "draw" => Ok(SnapshotInterval::Draw),
             _ => Err(CliError::Usage("`--every` takes `pass` or `draw`: choose one".to_owned())),
         }
     }

@@ -49,12 +49,12 @@ mod shots {
     use crate::app::{ViewRequest, ViewSource};
     use crate::ask::{DiagnosisOf, ReportOf, StressOf};
     use crate::cli::{CliError, output};
-    use crate::inspector::{Inspector, Overlay, Panel, ThemeChoice};
+    use crate::inspector::{Inspector, Overlay, PanelKind, ThemeChoice};
     use crate::picture::Picture;
-    use crate::picture::apng::{AnimatedPng, AnimationError, Colors, Format};
+    use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
     use crate::reading::shown::PictureKind;
     use crate::scene::{OpenSpec, open};
-    use crate::session::{CaptureRequest, Every};
+    use crate::session::{CaptureRequest, SnapshotInterval};
     use crate::technique::{Choice, Technique};
     use egui::{Key, Modifiers};
     use std::path::Path;
@@ -78,7 +78,7 @@ mod shots {
     const STRESSED: [&str; 3] = ["near-far", "world-offset", "nested"];
 
     /// What a picture shows.
-    struct Shot {
+    struct PictureSubject {
         name: &'static str,
         scene: &'static str,
         technique: Technique,
@@ -86,7 +86,7 @@ mod shots {
         step: &'static str,
         kind: PictureKind,
         pick: Option<[u32; 2]>,
-        panels: &'static [Panel],
+        panels: &'static [PanelKind],
         theme: ThemeChoice,
         /// Buttons pressed once all is shown, by their keys.
         keys: &'static [Key],
@@ -98,8 +98,13 @@ mod shots {
         asks: Option<fn(&mut Inspector)>,
     }
 
-    fn shot(name: &'static str, scene: &'static str, technique: Technique, panels: &'static [Panel]) -> Shot {
-        Shot {
+    fn shot(
+        name: &'static str,
+        scene: &'static str,
+        technique: Technique,
+        panels: &'static [PanelKind],
+    ) -> PictureSubject {
+        PictureSubject {
             name,
             scene,
             technique,
@@ -119,11 +124,13 @@ mod shots {
         }
     }
 
-    fn shots() -> Vec<Shot> {
-        use Panel::{Diagnosis, Explain, Picture, Pixel, Report, Scene, Settings, ShadowMap as MapTab, State, Stress};
+    fn shots() -> Vec<PictureSubject> {
+        use PanelKind::{
+            Diagnosis, Explain, Picture, Pixel, Report, Scene, Settings, ShadowMap as MapTab, State, Stress,
+        };
         use PictureKind::{Error, Stencil};
         use Technique::{Auto, ShadowMap, ZFail, ZPass};
-        let volumes = |shot: Shot| Shot { step: "volumes", kind: Stencil, ..shot };
+        let volumes = |shot: PictureSubject| PictureSubject { step: "volumes", kind: Stencil, ..shot };
         vec![
             volumes(shot("inspector", "tori", ZFail, &[Picture, Pixel])),
             volumes(shot("state", "tori", ZFail, &[Picture, State])),
@@ -131,28 +138,31 @@ mod shots {
             shot("settings", "tori", ShadowMap, &[Picture, Settings, Pixel]),
             shot("scene", "tori", ZFail, &[Scene, Pixel]),
             shot("shadow-map", "table", ShadowMap, &[MapTab, Pixel]),
-            Shot { kind: Error, ..shot("error", "inside", ZPass, &[Picture, Pixel]) },
-            Shot { keys: &[Key::D], ..volumes(shot("diff", "tori", ZFail, &[Picture, Pixel])) },
-            Shot {
+            PictureSubject { kind: Error, ..shot("error", "inside", ZPass, &[Picture, Pixel]) },
+            PictureSubject { keys: &[Key::D], ..volumes(shot("diff", "tori", ZFail, &[Picture, Pixel])) },
+            PictureSubject {
                 step: "volumes",
                 overlay: Some(Overlay::Tests),
                 ..shot("overlay", "tori", ZFail, &[Picture, Pixel])
             },
-            Shot { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
-            Shot {
+            PictureSubject { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
+            PictureSubject {
                 kind: Error,
                 asks: Some(|panels| panels.start(DiagnosisOf {})),
                 ..shot("diagnosis", "inside", ZPass, &[Picture, Pixel, Diagnosis])
             },
-            Shot {
+            PictureSubject {
                 asks: Some(|panels| ReportOf::grid().into_iter().for_each(|report| panels.start(report))),
                 ..shot("report-tab", "table", ShadowMap, &[Picture, Pixel, Report])
             },
-            Shot {
+            PictureSubject {
                 asks: Some(|panels| panels.start(StressOf { cases: STRESSED.to_vec() })),
                 ..shot("stress-tab", "tori", ZFail, &[Picture, Pixel, Stress])
             },
-            Shot { theme: ThemeChoice::Light, ..volumes(shot("light-theme", "tori", ZFail, &[Picture, Pixel])) },
+            PictureSubject {
+                theme: ThemeChoice::Light,
+                ..volumes(shot("light-theme", "tori", ZFail, &[Picture, Pixel]))
+            },
         ]
     }
 
@@ -162,7 +172,7 @@ mod shots {
         only: &str,
         (window, scale): ([f32; 2], f32),
     ) -> Result<(), CliError> {
-        let wanted: Vec<Shot> = shots().into_iter().filter(|shot| shot.name.contains(only)).collect();
+        let wanted: Vec<PictureSubject> = shots().into_iter().filter(|shot| shot.name.contains(only)).collect();
         let wants_tour = TOUR.contains(only);
         if wanted.is_empty() && !wants_tour {
             return Err(CliError::Usage(nothing_named(only)));
@@ -208,7 +218,10 @@ mod shots {
         let request = ViewRequest {
             source: ViewSource::Scene(Box::new(open(&spec)?)),
             name: spec,
-            capture: CaptureRequest { every: Every::Pass, ..CaptureRequest::new(Choice::new(technique), SIZE) },
+            capture: CaptureRequest {
+                every: SnapshotInterval::Pass,
+                ..CaptureRequest::new(Choice::new(technique), SIZE)
+            },
             time: 0.0,
             adapter: adapter.map(str::to_owned),
             step: None,
@@ -220,7 +233,7 @@ mod shots {
         Ok(panels)
     }
 
-    fn take(shot: &Shot, adapter: Option<&str>, window: ([f32; 2], f32)) -> Result<Picture, CliError> {
+    fn take(shot: &PictureSubject, adapter: Option<&str>, window: ([f32; 2], f32)) -> Result<Picture, CliError> {
         let mut panels = opened(shot.scene, shot.technique, adapter, window)?;
         let inspector = panels.inspector();
         inspector.set_theme(shot.theme);
@@ -255,7 +268,7 @@ mod shots {
         let mut panels = opened("tori", Technique::ZFail, adapter, (TOUR_WINDOW, 1.0))?;
         let stops = Inspector::stops_of(Technique::ZFail);
         let size = TOUR_WINDOW.map(|side| side as u32);
-        let format = Format { size, pictures: stops as u32, milliseconds: STOP_MS, colors: Colors::Exact };
+        let format = AnimationFormat { size, pictures: stops as u32, milliseconds: STOP_MS, colors: ColorDepth::Exact };
         let mut file = Vec::new();
         let mut film = AnimatedPng::new(&mut file, format).map_err(encoding)?;
         for stop in 0..stops {

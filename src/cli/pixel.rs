@@ -5,8 +5,8 @@ use super::{CliError, output};
 use crate::capture::Capture;
 use crate::history::PixelDocument;
 use crate::plan::LightId;
-use crate::reading::coordinates::{Place, VertexPlaces};
-use crate::reading::shading::Shaded;
+use crate::reading::coordinates::{PixelCoordinates, VertexPlaces};
+use crate::reading::shading::SurfaceShading;
 use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{FrameSource, RunFrame, Session, SessionError};
 use clap::Args;
@@ -74,15 +74,15 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let history = session.history(&plan, &capture, *pixel)?;
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
-        let shading = Shaded::of(&capture, &plan, &history);
+        let shading = SurfaceShading::of(&capture, &plan, &history);
         let texels = readers.at(&capture, *pixel);
         let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
-        let reasons = read.chain(shading.as_ref().map(Shaded::text)).collect::<String>();
+        let reasons = read.chain(shading.as_ref().map(SurfaceShading::text)).collect::<String>();
         stories.push(history.story_with(&capture.depth, &reasons));
-        let place = || Place::of(&capture, *pixel).with_vertices(&capture, &plan, &history);
+        let place = || PixelCoordinates::of(&capture, *pixel).with_vertices(&capture, &plan, &history);
         let coordinates = arguments.coordinates.then(place);
-        stories.extend(coordinates.as_ref().map(Place::text));
-        documents.push(Document { history: PixelDocument::new(&history, took), texels, shading, coordinates });
+        stories.extend(coordinates.as_ref().map(PixelCoordinates::text));
+        documents.push(PixelOutput { history: PixelDocument::new(&history, took), texels, shading, coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -112,13 +112,13 @@ fn vertices(
 
 /// A history, the texels that decided each light, how the surface answers it, and where the pixel's point is, if that was asked for.
 #[derive(Debug, Serialize)]
-struct Document {
+struct PixelOutput {
     #[serde(flatten)]
     history: PixelDocument,
     texels: Vec<Option<TexelsRead>>,
-    shading: Option<Shaded>,
+    shading: Option<SurfaceShading>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    coordinates: Option<Place>,
+    coordinates: Option<PixelCoordinates>,
 }
 
 fn json<T: Serialize + ?Sized>(value: &T) -> Result<String, CliError> {

@@ -1,8 +1,8 @@
 //! `stencilscope record`: a frame of an unmodified program, through RenderDoc.
 
-use super::import::{FrameTarget, ReaderOptions, with_bar};
+use super::import::{ImportTarget, ReaderOptions, with_bar};
 use super::{CliError, output};
-use crate::import::{self, Recording};
+use crate::import::{self, RecordingRequest};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub struct RecordArguments {
     #[arg(long, value_name = "FILE.rdc")]
     keep: Option<PathBuf>,
     #[command(flatten)]
-    target: FrameTarget,
+    target: ImportTarget,
     #[command(flatten)]
     reader: ReaderOptions,
     /// The program and its arguments
@@ -34,7 +34,7 @@ pub struct RecordArguments {
 pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     arguments.keep.as_ref().map_or(Ok(()), |file| output::check_target(&file.to_string_lossy()))?;
-    let recording = Recording {
+    let recording = RecordingRequest {
         command: arguments.command.clone(),
         frame: arguments.frame,
         seconds: arguments.seconds,

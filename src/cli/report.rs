@@ -6,11 +6,11 @@ use super::progress::with_bar;
 use super::report_results::ReportResults;
 use super::{CliError, results};
 use crate::progress::Progress;
-use crate::report::{Report, Row};
+use crate::report::{Report, ReportRow};
 use crate::scene::builtin::Builtin;
 use crate::scene::{Scene, is_scene_file, suggestion};
-use crate::session::{Block, Measurement, Moments, Moves, Session, Sweep, report_rows};
-use crate::shards::{Part, Shard};
+use crate::session::{Measurement, MotionFrames, MovingPart, Session, Sweep, SweepBlock, report_rows};
+use crate::shards::{Shard, ShardPart};
 use crate::technique::{Choice, Technique};
 use clap::{Args, Subcommand};
 use std::path::Path;
@@ -19,7 +19,7 @@ use std::path::Path;
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct ReportArguments {
     #[command(subcommand)]
-    merge: Option<Merge>,
+    merge: Option<MergedFiles>,
     /// Built-in scenes, scene files (.toml) or models (.obj, .ply, .gltf, .glb)
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
@@ -40,7 +40,7 @@ pub struct ReportArguments {
     /// What moves in the frames of `--time A..B`: `scene` as it is made to, its first `light` or the `eye` round what the
     /// camera looks at, or `nothing` after the first
     #[arg(long, value_name = "WHAT", value_parser = moves, default_value = "scene")]
-    moves: Moves,
+    moves: MovingPart,
     /// Each scene at several values of `size`, `lights`, `casters`, `triangles` or `map-size`: `a,b,c` or `a..b`
     #[arg(long, value_name = "NAME=VALUES")]
     sweep: Option<Sweep>,
@@ -55,7 +55,7 @@ pub struct ReportArguments {
 }
 
 #[derive(Debug, Subcommand)]
-enum Merge {
+enum MergedFiles {
     /// Put the parts of a run together that `--shard` made, of `report` or of `stress`
     #[command(after_help = merge::EXAMPLES)]
     Merge(MergeArguments),
@@ -63,10 +63,10 @@ enum Merge {
 
 /// Measures and prints; `command` is the command line, for the page.
 pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
-    if let Some(Merge::Merge(arguments)) = &arguments.merge {
+    if let Some(MergedFiles::Merge(arguments)) = &arguments.merge {
         return merge::run(arguments, command);
     }
-    if arguments.moves != Moves::Scene && arguments.moments().is_none() {
+    if arguments.moves != MovingPart::Scene && arguments.moments().is_none() {
         return Err(CliError::Usage("`--moves` is for frames from a moment to another: add `--time A..B`".to_owned()));
     }
     let choices = choices(arguments)?;
@@ -80,12 +80,12 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     arguments.results.check()?;
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let blocks = scenes.iter().zip(distinct_names(&scenes)).map(|(scene, name)| blocks(arguments, scene, name, &what));
-    let blocks: Vec<(String, Block)> = blocks.collect::<Result<Vec<_>, _>>()?.concat();
+    let blocks: Vec<(String, SweepBlock)> = blocks.collect::<Result<Vec<_>, _>>()?.concat();
     let mut session = Session::new(arguments.adapter.as_deref())?;
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<ReportRow> = Vec::new();
     let mut places = Vec::new();
     let mut place = 0;
-    for (name, Block { scene, what, swept }) in &blocks {
+    for (name, SweepBlock { scene, what, swept }) in &blocks {
         let mut ours = what.clone();
         ours.choices.retain(|_| {
             let is_ours = arguments.shard.is_none_or(|shard| shard.has(place));
@@ -103,14 +103,14 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
             None => session.measure(scene, &ours, progress),
         })?;
         let of_block = report_rows(name, &ours, &measured, &what.choices);
-        rows.extend(of_block.into_iter().map(|row| Row { sweep: swept.clone(), ..row }));
+        rows.extend(of_block.into_iter().map(|row| ReportRow { sweep: swept.clone(), ..row }));
     }
     let part = arguments.shard.map(|shard| {
-        let moving = arguments.moments().map_or_else(String::new, |Moments { moves, from, to, frames }| {
+        let moving = arguments.moments().map_or_else(String::new, |MotionFrames { moves, from, to, frames }| {
             format!(", {frames} from {from} to {to} s, {} moves", moves.name())
         });
         let how = format!("stencilscope {} report, {} timed frames{moving}", env!("CARGO_PKG_VERSION"), arguments.runs);
-        Part::new(shard, places, how, blocks.iter().flat_map(names_of))
+        ShardPart::new(shard, places, how, blocks.iter().flat_map(names_of))
     });
     let report = Report { part, ..Report::new(session.adapter().clone(), rows) };
     arguments.results.deliver(command, &report)
@@ -118,14 +118,14 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
 
 impl ReportArguments {
     /// The frames of a motion that are asked for; `None` of scenes that stand still.
-    fn moments(&self) -> Option<Moments> {
+    fn moments(&self) -> Option<MotionFrames> {
         self.scene_options.moments(self.moves, usize::from(self.runs))
     }
 }
 
-fn moves(name: &str) -> Result<Moves, String> {
-    let names = Moves::ALL.map(Moves::name);
-    Moves::from_name(name).ok_or_else(|| suggestion(name, &names))
+fn moves(name: &str) -> Result<MovingPart, String> {
+    let names = MovingPart::ALL.map(MovingPart::name);
+    MovingPart::from_name(name).ok_or_else(|| suggestion(name, &names))
 }
 
 /// What is measured of a scene: once, or at each value of a sweep.
@@ -134,9 +134,9 @@ fn blocks(
     scene: &Scene,
     name: String,
     what: &Measurement,
-) -> Result<Vec<(String, Block)>, CliError> {
+) -> Result<Vec<(String, SweepBlock)>, CliError> {
     let blocks = match &arguments.sweep {
-        None => vec![Block { scene: scene.clone(), what: what.clone(), swept: None }],
+        None => vec![SweepBlock { scene: scene.clone(), what: what.clone(), swept: None }],
         Some(sweep) => sweep.blocks(scene, what).map_err(|why| {
             CliError::Usage(format!("`{}` can't be swept over {}: {why}", name.escape_debug(), sweep.name()))
         })?,
@@ -145,7 +145,7 @@ fn blocks(
 }
 
 /// What each row of a block is of: the same in all parts of a run.
-fn names_of((name, Block { what, swept, .. }): &(String, Block)) -> Vec<String> {
+fn names_of((name, SweepBlock { what, swept, .. }): &(String, SweepBlock)) -> Vec<String> {
     let [width, height] = what.size;
     let swept = swept.as_ref().map_or_else(String::new, |swept| format!(" · {} {}", swept.name, swept.text));
     let named = |choice: &Choice| {

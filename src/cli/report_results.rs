@@ -1,6 +1,6 @@
 //! Where a report goes, and in which forms.
 
-use super::results::{self, Form, Target};
+use super::results::{self, ResultFormat, ResultTarget};
 use super::{CliError, output};
 use crate::report::{PageOrigin, Report};
 use clap::Args;
@@ -28,7 +28,7 @@ pub struct ReportResults {
 
 impl ReportResults {
     /// The forms in their order, and the page.
-    pub fn targets(&self) -> [Target; 4] {
+    pub fn targets(&self) -> [ResultTarget; 4] {
         [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
     }
 
@@ -46,7 +46,7 @@ impl ReportResults {
         let [json, csv, markdown, page] = self.targets();
         let plot = results::plot_beside(&self.output, &self.plot);
         let origin = PageOrigin { command, plot: plot.as_deref() };
-        let forms: [Form; 4] = [
+        let forms: [ResultFormat; 4] = [
             (&json, &|| Ok(report.to_json()?)),
             (&csv, &|| Ok(report.to_csv())),
             (&markdown, &|| Ok(report.to_markdown())),

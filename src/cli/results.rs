@@ -5,10 +5,10 @@ use crate::files::from_beside;
 use std::path::Path;
 
 /// Where a form goes: `None` where it is not asked for, standard output where no file is named.
-pub type Target = Option<Option<String>>;
+pub type ResultTarget = Option<Option<String>>;
 
 /// The target of a form that goes to files alone.
-pub fn target(file: &Option<String>) -> Target {
+pub fn target(file: &Option<String>) -> ResultTarget {
     file.clone().map(Some)
 }
 
@@ -19,13 +19,13 @@ pub fn plot_beside(page: &Option<String>, plot: &Option<String>) -> Option<Strin
 }
 
 /// The files that are named, those of forms first.
-pub fn files<'a>(forms: &[&'a Target], plot: &'a Option<String>) -> Vec<&'a str> {
+pub fn files<'a>(forms: &[&'a ResultTarget], plot: &'a Option<String>) -> Vec<&'a str> {
     let of_forms = forms.iter().filter_map(|target| target.as_ref()?.as_deref());
     of_forms.chain(plot.as_deref()).collect()
 }
 
 /// Checks, before long work, that all results can be delivered.
-pub fn check(forms: &[&Target], plot: &Option<String>) -> Result<(), CliError> {
+pub fn check(forms: &[&ResultTarget], plot: &Option<String>) -> Result<(), CliError> {
     let files = files(forms, plot);
     files.iter().try_for_each(|file| output::check_target(file))?;
     let is_twice = |(index, file): &(usize, &&str)| files[..*index].contains(*file);
@@ -42,10 +42,10 @@ pub fn check(forms: &[&Target], plot: &Option<String>) -> Result<(), CliError> {
 }
 
 /// A form that may be asked for, and its text.
-pub type Form<'a> = (&'a Target, &'a dyn Fn() -> Result<String, CliError>);
+pub type ResultFormat<'a> = (&'a ResultTarget, &'a dyn Fn() -> Result<String, CliError>);
 
 /// Makes and writes the forms that are asked for; the table where none is.
-pub fn deliver(forms: &[Form], table: impl FnOnce() -> String) -> Result<(), CliError> {
+pub fn deliver(forms: &[ResultFormat], table: impl FnOnce() -> String) -> Result<(), CliError> {
     if forms.iter().all(|(target, _)| target.is_none()) {
         return output::print(&table());
     }

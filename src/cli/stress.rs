@@ -3,14 +3,14 @@
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
 use super::report_results::{is_png, page_file, plot_file};
-use super::results::{self, Form, Target};
+use super::results::{self, ResultFormat, ResultTarget};
 use super::{CliError, output};
 use crate::progress::Progress;
 use crate::report::PageOrigin;
 use crate::scene::suggestion;
 use crate::session::{Session, StressSteps};
 use crate::shards::Shard;
-use crate::stress::{Case, Stress, cases, right_because};
+use crate::stress::{StressCase, StressResults, cases, right_because};
 use crate::technique::Technique;
 use clap::Args;
 
@@ -56,12 +56,12 @@ pub struct StressArguments {
 /// [`CliError::Unexpected`] where a technique did not do as expected.
 pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     if arguments.list {
-        let line = |case: &Case| {
+        let line = |case: &StressCase| {
             format!("{:22}  {} values of {}: {}\n", case.name, case.values.len(), case.parameter, case.lesson)
         };
         return output::print(&cases::all().map(line).collect::<String>());
     }
-    let named = |name: &String| Case::named(name).ok_or_else(|| unknown(name));
+    let named = |name: &String| StressCase::named(name).ok_or_else(|| unknown(name));
     let chosen = arguments.case.iter().map(named).collect::<Result<Vec<_>, _>>()?;
     let chosen = if chosen.is_empty() { cases::all().collect() } else { chosen };
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
@@ -78,7 +78,7 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
         }
     };
     let rows = with_bar("stress", &Progress::default(), |progress| session.stress_rows(steps, progress))?;
-    let stress = Stress { adapter: session.adapter().clone(), size: arguments.size, rows, part };
+    let stress = StressResults { adapter: session.adapter().clone(), size: arguments.size, rows, part };
     let page = results::target(&arguments.output);
     let forms = [&arguments.json, &arguments.markdown, &page];
     deliver(&stress, command, forms, (&arguments.output, &arguments.plot))
@@ -86,21 +86,21 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
 
 /// Every technique that is asked for runs in a chosen case, and every case that is named runs one:
 /// what compares nothing is no success.
-fn check_that_all_run(chosen: &[&Case], is_named: bool, only: &[Technique]) -> Result<(), CliError> {
-    let runs = |case: &Case, technique| case.entrants().iter().any(|entrant| entrant.technique == technique);
+fn check_that_all_run(chosen: &[&StressCase], is_named: bool, only: &[Technique]) -> Result<(), CliError> {
+    let runs = |case: &StressCase, technique| case.entrants().iter().any(|entrant| entrant.technique == technique);
     if let Some(technique) = only.iter().find(|technique| !chosen.iter().any(|case| runs(case, **technique))) {
         return Err(runs_nowhere(chosen, is_named, *technique));
     }
-    let is_idle = |case: &&&Case| !only.iter().any(|technique| runs(case, *technique));
+    let is_idle = |case: &&&StressCase| !only.iter().any(|technique| runs(case, *technique));
     match (chosen.iter().find(is_idle), only) {
         (Some(case), [technique, ..]) if is_named => Err(runs_nowhere(&[*case], true, *technique)),
         _ => Ok(()),
     }
 }
 
-fn runs_nowhere(chosen: &[&Case], is_named: bool, technique: Technique) -> CliError {
+fn runs_nowhere(chosen: &[&StressCase], is_named: bool, technique: Technique) -> CliError {
     let name = technique.name();
-    let reason = |case: &&Case| {
+    let reason = |case: &&StressCase| {
         let (_, because) = case.without.iter().find(|(without, _)| *without == technique)?;
         Some(format!("`{name}` does not run in `{}`, as {because}: choose another technique or case", case.name))
     };
@@ -112,9 +112,9 @@ fn runs_nowhere(chosen: &[&Case], is_named: bool, technique: Technique) -> CliEr
 
 /// Writes JSON, Markdown and the page where they are asked for, else the table; and the plot.
 pub fn deliver(
-    stress: &Stress,
+    stress: &StressResults,
     command: &str,
-    [json, markdown, page]: [&Target; 3],
+    [json, markdown, page]: [&ResultTarget; 3],
     (page_file, plot): (&Option<String>, &Option<String>),
 ) -> Result<(), CliError> {
     if let Some(file) = plot {
@@ -125,14 +125,17 @@ pub fn deliver(
     let failed = |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
     let plot = results::plot_beside(page_file, plot);
     let origin = PageOrigin { command, plot: plot.as_deref() };
-    let forms: [Form; 3] = [
+    let forms: [ResultFormat; 3] = [
         (json, &|| stress.to_json().map_err(failed)),
         (markdown, &|| Ok(stress.to_markdown())),
         (page, &|| Ok(stress.to_page(origin))),
     ];
     results::deliver(&forms, || stress.to_table())?;
-    let unexpected =
-        stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
+    let unexpected = stress
+        .summary()
+        .into_iter()
+        .filter(|summary| summary.verdict == crate::stress::StressVerdict::Unexpected)
+        .count();
     if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
 }
 
@@ -147,9 +150,9 @@ mod tests {
     use super::*;
 
     fn refused(cases: &[&str], only: &[Technique]) -> Option<String> {
-        let chosen: Vec<&Case> = match cases {
+        let chosen: Vec<&StressCase> = match cases {
             [] => cases::all().collect(),
-            names => names.iter().filter_map(|name| Case::named(name)).collect(),
+            names => names.iter().filter_map(|name| StressCase::named(name)).collect(),
         };
         let error = check_that_all_run(&chosen, !cases.is_empty(), only).err()?;
         assert_eq!(error.exit_code(), 2);
@@ -159,7 +162,7 @@ mod tests {
     #[test]
     fn what_runs_nothing_is_refused_with_the_reason() {
         let reason = |cases: &[&str], only: &[Technique]| refused(cases, only).expect("it runs nothing");
-        let random = Case::named("random").expect("a case");
+        let random = StressCase::named("random").expect("a case");
         let because = random.without.iter().find(|(without, _)| *without == Technique::ZPass).expect("a reason").1;
         let text = reason(&["random"], &[Technique::ZPass]);
         assert!(text.contains("`z-pass` does not run in `random`") && text.contains(because), "{text}");

@@ -44,8 +44,8 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
         let mend = "read its manifest.json, .npy and .png files, or open it where there is a display";
         return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {mend}")));
     }
-    let writing = capture::Writing { folder, overwrite: true, truth: arguments.truth, page: None };
-    let job = capture::Job::new(&arguments.scene, &arguments.scene_options, &arguments.frame, writing)?;
+    let writing = capture::CaptureOutput { folder, overwrite: true, truth: arguments.truth, page: None };
+    let job = capture::CaptureJob::new(&arguments.scene, &arguments.scene_options, &arguments.frame, writing)?;
     output::note(&format!("{reason}: capturing into ./{FALLBACK_FOLDER} instead"));
     job.run()
 }
@@ -67,7 +67,7 @@ pub mod window {
     use super::{CliError, FrameOptions, SceneOptions, ViewArguments, capture_instead};
     use crate::app::{self, AppError, ViewRequest, ViewSource};
     use crate::capture::disk;
-    use crate::import::Shipped;
+    use crate::import::ShippedFrame;
     use crate::session::CaptureRequest;
     use crate::technique::{Choice, Technique};
     use std::path::Path;
@@ -85,7 +85,7 @@ pub mod window {
             "a window draws many frames, of which the debugger's own key records one; `capture` brackets its frame";
         arguments.frame.refuse_external_capture(why)?;
         let folder = Path::new(&arguments.scene);
-        let shipped = Shipped::named(&arguments.scene).filter(|_| !folder.is_dir());
+        let shipped = ShippedFrame::named(&arguments.scene).filter(|_| !folder.is_dir());
         if !folder.is_dir() && shipped.is_none() {
             let request = scene_request(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
             return Ok(ViewRequest { step: arguments.pass, pick: arguments.at, truth: arguments.truth, ..request });

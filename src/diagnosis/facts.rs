@@ -2,21 +2,21 @@
 
 use super::RegionKind;
 use super::cause::Cause;
-use super::mend::Mend;
+use super::mend::Fix;
 use super::mesh_facts::MeshFacts;
-use super::regions::Region;
+use super::regions::ConnectedRegion;
 use crate::accuracy::Finding;
 use crate::capture::Capture;
 use crate::geometry::Casters;
 use crate::history::PixelHistory;
-use crate::plan::{Draw, FramePlan, Part, Pass};
+use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Object, Scene};
 use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
-use crate::truth::{Met, SeenSurface, Tracer};
+use crate::truth::{OccluderHit, SeenSurface, Tracer};
 use std::collections::BTreeSet;
 
 /// One frame. Nothing here tells whether, or how, something was made wrong on purpose.
-pub(crate) struct Facts<'a> {
+pub(crate) struct FrameFacts<'a> {
     /// As the technique was given it.
     pub scene: &'a Scene,
     /// As it was used.
@@ -33,44 +33,44 @@ pub(crate) struct Facts<'a> {
 }
 
 /// A region with a close look at some of its pixels.
-pub(crate) struct Case<'a> {
-    pub region: &'a Region,
-    pub samples: Vec<Sample>,
+pub(crate) struct RegionSamples<'a> {
+    pub region: &'a ConnectedRegion,
+    pub samples: Vec<PixelSample>,
 }
 
 /// One pixel of a region.
-pub(crate) struct Sample {
+pub(crate) struct PixelSample {
     pub pixel: [u32; 2],
     pub seen: Option<SeenSurface>,
     /// What in truth lies between light and surface, the nearest to the surface first.
-    pub between: Vec<Met>,
+    pub between: Vec<OccluderHit>,
     /// `None` where the technique leaves no events that tell.
     pub history: Option<PixelHistory>,
 }
 
 /// A cause that may be it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Suspicion {
+pub(crate) struct SuspectedCause {
     pub cause: Cause,
     pub evidence: String,
     /// In the order in which they are tried; none where nothing helps.
-    pub mends: Vec<Mend>,
+    pub mends: Vec<Fix>,
     /// How many samples show it.
     pub shown_by: usize,
     /// How much it says about this very frame: larger before smaller.
     pub weight: usize,
 }
 
-impl Suspicion {
-    pub fn new(cause: Cause, evidence: String, mends: Vec<Mend>, shown_by: usize) -> Option<Suspicion> {
-        (shown_by > 0).then_some(Suspicion { cause, evidence, mends, shown_by, weight: 0 })
+impl SuspectedCause {
+    pub fn new(cause: Cause, evidence: String, mends: Vec<Fix>, shown_by: usize) -> Option<SuspectedCause> {
+        (shown_by > 0).then_some(SuspectedCause { cause, evidence, mends, shown_by, weight: 0 })
     }
 }
 
 /// Looks for the evidence of one cause.
-pub(crate) type Rule = fn(&Facts, &Case) -> Option<Suspicion>;
+pub(crate) type CauseRule = fn(&FrameFacts, &RegionSamples) -> Option<SuspectedCause>;
 
-impl<'a> Facts<'a> {
+impl<'a> FrameFacts<'a> {
     /// What a technique that counts volumes was told; `None` of another.
     pub fn volumes(&self) -> Option<VolumeSettings> {
         self.choice.volumes()
@@ -101,8 +101,8 @@ impl<'a> Facts<'a> {
     }
 
     /// The draws of a part of a light's shadows, as the camera sees them.
-    pub fn draws(&self, light: usize, part: Part) -> impl Iterator<Item = &'a Draw> {
-        let passes = self.passes(light).filter(move |pass| part == Part::Map || pass.view.0 == 0);
+    pub fn draws(&self, light: usize, part: DrawPart) -> impl Iterator<Item = &'a Draw> {
+        let passes = self.passes(light).filter(move |pass| part == DrawPart::Map || pass.view.0 == 0);
         passes.flat_map(|pass| &pass.draws).filter(move |draw| draw.part.includes(part))
     }
 
@@ -114,7 +114,7 @@ impl<'a> Facts<'a> {
     /// Is a caster's volume counted behind the visible surface?
     pub fn counts_behind(&self, light: usize, caster: &str) -> bool {
         let of_caster = |draw: &&Draw| draw.caster.as_deref() == Some(caster);
-        let mut sides = self.draws(light, Part::Side).filter(of_caster);
+        let mut sides = self.draws(light, DrawPart::Side).filter(of_caster);
         sides.any(|draw| {
             let stencil = &draw.raster.stencil;
             let keeps = wgpu::StencilOperation::Keep;
@@ -131,7 +131,7 @@ impl<'a> Facts<'a> {
     }
 
     /// Does a triangle of a caster cast for a light, as settings and meshes decide?
-    pub fn casts(&self, light: usize, met: &Met) -> bool {
+    pub fn casts(&self, light: usize, met: &OccluderHit) -> bool {
         match self.casting[light][met.place.object] {
             Casters::LightFacing => met.faces_light,
             Casters::LightBackFacing => !met.faces_light,
@@ -151,12 +151,12 @@ impl<'a> Facts<'a> {
     }
 
     /// The names of the objects that rays have met, in order.
-    pub fn names(&self, met: &[Met]) -> BTreeSet<String> {
+    pub fn names(&self, met: &[OccluderHit]) -> BTreeSet<String> {
         met.iter().map(|met| self.tracer.name(met.place).to_owned()).collect()
     }
 }
 
-impl Case<'_> {
+impl RegionSamples<'_> {
     pub fn light(&self) -> usize {
         self.region.light
     }
@@ -174,14 +174,14 @@ impl Case<'_> {
     }
 
     /// How many samples show something, with what the first of them tells.
-    pub fn shown<T>(&self, look: impl FnMut(&Sample) -> Option<T>) -> Option<(T, usize)> {
+    pub fn shown<T>(&self, look: impl FnMut(&PixelSample) -> Option<T>) -> Option<(T, usize)> {
         let mut found: Vec<T> = self.samples.iter().filter_map(look).collect();
         let count = found.len();
         (count > 0).then(|| (found.swap_remove(0), count))
     }
 }
 
-impl Sample {
+impl PixelSample {
     /// The middle of the pixel.
     pub fn center(&self) -> [f64; 2] {
         self.pixel.map(|n| f64::from(n) + 0.5)
@@ -199,20 +199,20 @@ impl Sample {
     pub fn volume_events(
         &self,
         light: usize,
-    ) -> impl Iterator<Item = (&crate::history::Event, &crate::history::TriangleEvent)> {
+    ) -> impl Iterator<Item = (&crate::history::PixelEvent, &crate::history::TriangleEvent)> {
         let all = self.history.iter().flat_map(|history| history.triangles());
         all.filter(move |(event, _)| event.light == Some(light) && event.is_of_volume())
     }
 
     /// Casters whose volume was counted otherwise than their triangles between light and surface say: name, as
     /// counted, and as it should be.
-    pub fn miscounted(&self, facts: &Facts, light: usize) -> Vec<(String, i32, i32)> {
+    pub fn miscounted(&self, facts: &FrameFacts, light: usize) -> Vec<(String, i32, i32)> {
         if self.history.is_none() || self.seen.is_none() {
             return Vec::new();
         }
         let mut found = Vec::new();
         for object in facts.scene.objects.iter().filter(|object| object.casts) {
-            let is_of = |met: &&Met| facts.tracer.name(met.place) == object.name && facts.casts(light, met);
+            let is_of = |met: &&OccluderHit| facts.tracer.name(met.place) == object.name && facts.casts(light, met);
             let expected = self.between.iter().filter(is_of).count() as i32;
             let counted = self.counted(light, &object.name);
             if counted != expected {

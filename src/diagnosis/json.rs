@@ -1,6 +1,6 @@
 //! A diagnosis as JSON: pixels, lights and regions count from 0. `assets/help/json.md` says what each field means.
 
-use super::{CauseFound, Diagnosis, FlagFound, Mend, MeshFinding, Proof, RegionFound, Suited};
+use super::{CauseFound, Diagnosis, Fix, FlagFound, MeshFinding, Proof, RegionFound, TechniqueFit};
 use crate::technique::Technique;
 use serde_json::{Map, Value, json};
 
@@ -9,7 +9,7 @@ const SCHEMA: u32 = 1;
 
 impl Diagnosis {
     /// Machine-readable. `suited` tells how techniques do on this scene; empty where that was not measured.
-    pub fn to_json(&self, suited: &[Suited]) -> Result<String, serde_json::Error> {
+    pub fn to_json(&self, suited: &[TechniqueFit]) -> Result<String, serde_json::Error> {
         let suited = suited.iter().map(|one| {
             json!({
                 "technique": one.choice.technique().name(),
@@ -74,7 +74,7 @@ fn cause(found: &CauseFound) -> Value {
 }
 
 /// Only what it changes, and the same in words.
-fn mend(mend: &Mend) -> Value {
+fn mend(mend: &Fix) -> Value {
     let mut table = Map::new();
     if let Some(technique) = mend.technique.map(Technique::name) {
         table.insert("technique".to_owned(), technique.into());

@@ -1,6 +1,6 @@
 //! What to change so that a cause is gone.
 
-use crate::plan::{FramePlan, Part};
+use crate::plan::{DrawPart, FramePlan};
 use crate::scene::{MeshError, Scene};
 use crate::technique::{Choice, ChoiceError, Technique};
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Changes of settings, scene and plan; empty where nothing helps.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub struct Mend {
+pub struct Fix {
     /// Another technique. Settings that it shares with the one before are kept.
     pub technique: Option<Technique>,
     /// Settings, as in `--set`.
@@ -24,7 +24,7 @@ pub struct Mend {
 
 /// Why a mend can't be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MendError {
+pub enum FixError {
     /// The technique has no such setting or value.
     #[error(transparent)]
     Choice(#[from] ChoiceError),
@@ -87,48 +87,48 @@ named_enum! {
 
 impl PlanEdit {
     /// The part of a volume that it draws again.
-    pub fn part(self) -> Option<Part> {
+    pub fn part(self) -> Option<DrawPart> {
         match self {
-            PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(Part::LightCap),
-            PlanEdit::DrawDarkCaps => Some(Part::DarkCap),
+            PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(DrawPart::LightCap),
+            PlanEdit::DrawDarkCaps => Some(DrawPart::DarkCap),
             PlanEdit::Refit => None,
         }
     }
 }
 
-impl Mend {
+impl Fix {
     /// Changes the technique.
-    pub fn technique(technique: Technique) -> Mend {
-        Mend { technique: Some(technique), ..Mend::default() }
+    pub fn technique(technique: Technique) -> Fix {
+        Fix { technique: Some(technique), ..Fix::default() }
     }
 
     /// Changes one setting.
-    pub fn setting(key: &str, value: &str) -> Mend {
-        Mend { settings: BTreeMap::from([(key.to_owned(), value.to_owned())]), ..Mend::default() }
+    pub fn setting(key: &str, value: &str) -> Fix {
+        Fix { settings: BTreeMap::from([(key.to_owned(), value.to_owned())]), ..Fix::default() }
     }
 
     /// Changes an object of the scene.
-    pub fn scene(object: usize, name: &str, change: ObjectChange) -> Mend {
-        Mend { scene: vec![SceneEdit { object, name: name.to_owned(), change }], ..Mend::default() }
+    pub fn scene(object: usize, name: &str, change: ObjectChange) -> Fix {
+        Fix { scene: vec![SceneEdit { object, name: name.to_owned(), change }], ..Fix::default() }
     }
 
     /// Changes the plan.
-    pub fn plan(edit: PlanEdit) -> Mend {
-        Mend { plan: vec![edit], ..Mend::default() }
+    pub fn plan(edit: PlanEdit) -> Fix {
+        Fix { plan: vec![edit], ..Fix::default() }
     }
 
     /// Draws a larger picture.
-    pub fn larger(times: u32) -> Mend {
-        Mend { larger: Some(times), ..Mend::default() }
+    pub fn larger(times: u32) -> Fix {
+        Fix { larger: Some(times), ..Fix::default() }
     }
 
     /// Nothing is changed.
     pub fn is_empty(&self) -> bool {
-        *self == Mend::default()
+        *self == Fix::default()
     }
 
     /// Both at once; where they differ on a setting, the other's holds.
-    pub fn and(&self, other: &Mend) -> Mend {
+    pub fn and(&self, other: &Fix) -> Fix {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
         both.larger = other.larger.or(self.larger);
@@ -143,14 +143,14 @@ impl Mend {
     }
 
     /// Makes its changes of scene and settings. Settings that another technique shares are kept.
-    pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), MendError> {
+    pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), FixError> {
         for SceneEdit { object, name, change } in &self.scene {
-            let missing = || MendError::NoObject { object: *object, name: name.clone() };
+            let missing = || FixError::NoObject { object: *object, name: name.clone() };
             let object = scene.objects.get_mut(*object).ok_or_else(missing)?;
             match change {
                 ObjectChange::Weld => {
                     let welded = object.mesh.welded();
-                    let welded = welded.map_err(|source| MendError::Mesh { name: name.clone(), source })?;
+                    let welded = welded.map_err(|source| FixError::Mesh { name: name.clone(), source })?;
                     object.mesh = Arc::new(welded);
                 }
                 ObjectChange::Receives => object.receives = true,
@@ -162,7 +162,7 @@ impl Mend {
     }
 
     /// Makes its changes of technique and settings alone.
-    pub fn choose(&self, choice: &mut Choice) -> Result<(), MendError> {
+    pub fn choose(&self, choice: &mut Choice) -> Result<(), FixError> {
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
             for spec in technique.settings() {
@@ -237,7 +237,7 @@ impl Mend {
 }
 
 /// Adds the draws of a part that the plan does not have.
-fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<Part>) {
+fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<DrawPart>) {
     for (pass, fresh) in plan.passes.iter_mut().zip(&fresh.passes) {
         let missing = fresh.draws.iter().filter(|draw| Some(draw.part) == part);
         for draw in missing {
@@ -251,7 +251,7 @@ fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<Part>) {
 /// Draws caps as the technique does: the triangles of the surface in its own vertex order.
 fn draw_caps_in_order(plan: &mut FramePlan, fresh: &FramePlan) {
     for (pass, fresh_pass) in plan.passes.iter_mut().zip(&fresh.passes) {
-        for draw in pass.draws.iter_mut().filter(|draw| matches!(draw.part, Part::LightCap | Part::DarkCap)) {
+        for draw in pass.draws.iter_mut().filter(|draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap)) {
             let same = fresh_pass.draws.iter().find(|other| (&other.name, other.part) == (&draw.name, draw.part));
             let Some(same) = same else { continue };
             *draw = same.clone();
@@ -263,7 +263,7 @@ fn draw_caps_in_order(plan: &mut FramePlan, fresh: &FramePlan) {
     }
 }
 
-impl fmt::Display for Mend {
+impl fmt::Display for Fix {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.describe())
     }
@@ -275,10 +275,10 @@ mod tests {
 
     #[test]
     fn two_mends_are_one_that_says_both() {
-        let both = Mend::setting("casters", "all").and(&Mend::setting("operations", "wrap"));
+        let both = Fix::setting("casters", "all").and(&Fix::setting("operations", "wrap"));
         assert_eq!(both.describe(), "set casters = all, set operations = wrap");
         assert_eq!(both.and(&both), both);
-        assert!(Mend::default().is_empty() && !both.is_empty());
-        assert!(both.weight() < Mend::technique(Technique::ZFail).weight());
+        assert!(Fix::default().is_empty() && !both.is_empty());
+        assert!(both.weight() < Fix::technique(Technique::ZFail).weight());
     }
 }

@@ -4,7 +4,7 @@
 //! such edge lies at the very same place, or a hair away) and those that are.
 
 use super::cause::Cause;
-use super::{MeshFinding, MeshTrouble};
+use super::{MeshDefect, MeshFinding};
 use crate::geometry::{EdgeList, Topology, winding_number};
 use crate::scene::{Mesh, Object};
 use glam::{DVec3, DVec4};
@@ -47,7 +47,7 @@ impl MeshFacts {
         let [open, split, near] = sort_open_edges(mesh, &world, edges);
         let is_whole = open.is_empty() && topology.is_oriented() && topology.connectivity.non_manifold_edges.count == 0;
         let matrix = object.pose.world_from_object();
-        let placed = |found: &crate::geometry::Found| {
+        let placed = |found: &crate::geometry::FoundPlaces| {
             (found.count, found.places.iter().map(|place| matrix.transform_point3(*place)).collect::<Vec<_>>())
         };
         let corners = |of: &[u32; 3]| of.map(|vertex| world[vertex as usize]);
@@ -87,7 +87,7 @@ impl MeshFacts {
     /// What there is to tell of it before any pixel.
     pub fn findings(&self, lights: &[DVec4]) -> Vec<MeshFinding> {
         let mut found = Vec::new();
-        let mut tell = |kind: MeshTrouble, count: usize, at: &[DVec3], effect: &str| {
+        let mut tell = |kind: MeshDefect, count: usize, at: &[DVec3], effect: &str| {
             if count > 0 {
                 let at = at.iter().take(MOST_PLACES).copied().collect();
                 found.push(MeshFinding { object: self.name.clone(), kind, count, at, effect: effect.to_owned() });
@@ -95,7 +95,7 @@ impl MeshFacts {
         };
         let only_facing = "right with casters = all, which volumes cast with by default; with casters = light-facing";
         tell(
-            MeshTrouble::Cause(Cause::OpenMesh),
+            MeshDefect::Cause(Cause::OpenMesh),
             self.open.len(),
             &self.open,
             &format!(
@@ -103,25 +103,25 @@ impl MeshFacts {
             ),
         );
         tell(
-            MeshTrouble::Cause(Cause::NonManifold),
+            MeshDefect::Cause(Cause::NonManifold),
             self.non_manifold.0,
             &self.non_manifold.1,
             &format!("edges of more than two triangles: {only_facing} silhouettes may not close"),
         );
         tell(
-            MeshTrouble::Cause(Cause::InconsistentWinding),
+            MeshDefect::Cause(Cause::InconsistentWinding),
             self.inconsistent.0 + usize::from(self.is_inside_out),
             &self.inconsistent.1,
             &format!("triangles disagree on which side is out, or face inwards: {only_facing} the wrong ones cast"),
         );
         tell(
-            MeshTrouble::Cause(Cause::SplitVertices),
+            MeshDefect::Cause(Cause::SplitVertices),
             self.split.len(),
             &self.split,
             "equal positions under different indices: welded, the mesh is whole along these edges",
         );
         tell(
-            MeshTrouble::Cause(Cause::NearVertices),
+            MeshDefect::Cause(Cause::NearVertices),
             self.near.len(),
             &self.near,
             &format!("edges a hair apart: {only_facing} the mesh counts as open there. Welding would move the surface"),
@@ -129,31 +129,31 @@ impl MeshFacts {
         let inside = lights.iter().filter(|light| self.winding_around(**light).is_some());
         let inside: Vec<DVec3> = inside.map(|light| light.truncate() / light.w).collect();
         tell(
-            MeshTrouble::Cause(Cause::LightInside),
+            MeshDefect::Cause(Cause::LightInside),
             inside.len(),
             &inside,
             &format!("a light is inside: {only_facing} nothing that should cast faces it"),
         );
         tell(
-            MeshTrouble::FlatTriangles,
+            MeshDefect::FlatTriangles,
             self.flat.0,
             &self.flat.1,
             "triangles without area cast nothing, and are no harm",
         );
         tell(
-            MeshTrouble::DroppedTriangles,
+            MeshDefect::DroppedTriangles,
             self.dropped,
             &[],
             "triangles with two equal corners were left out, and are no harm",
         );
         tell(
-            MeshTrouble::DuplicateTriangles,
+            MeshDefect::DuplicateTriangles,
             self.duplicates.len(),
             &self.duplicates,
             "the same triangle more than once: volumes count it as often, and reach the 255 of eight bits sooner",
         );
         tell(
-            MeshTrouble::Slivers,
+            MeshDefect::Slivers,
             self.slivers.len(),
             &self.slivers,
             "triangles a thousand times longer than high: volumes are right with them, maps and textures may lose them",

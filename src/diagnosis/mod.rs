@@ -23,9 +23,9 @@ mod suited;
 mod text;
 
 pub use cause::Cause;
-pub use mend::{Mend, MendError, ObjectChange, PlanEdit, SceneEdit};
+pub use mend::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};
 pub use shown::wrong_pixels;
-pub use suited::Suited;
+pub use suited::TechniqueFit;
 
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::numbers;
@@ -53,7 +53,7 @@ pub struct Diagnosis {
     /// The largest first; at most [`Diagnosis::MOST_REGIONS`].
     pub regions: Vec<RegionFound>,
     /// The regions that are smaller than those.
-    pub rest: Rest,
+    pub rest: RemainingRegions,
     /// What to do; `None` where nothing is wrong or nothing helps.
     pub advice: Option<Advice>,
 }
@@ -79,7 +79,7 @@ impl Diagnosis {
 
 /// Regions that are not told of one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Rest {
+pub struct RemainingRegions {
     /// How many.
     pub regions: usize,
     /// Their wrong pixels.
@@ -134,23 +134,23 @@ pub struct CauseFound {
     /// What was measured, in a sentence without its stop.
     pub evidence: String,
     /// What to change; `None` where nothing helps.
-    pub mend: Option<Mend>,
+    pub mend: Option<Fix>,
     /// What running it again has shown.
     pub proof: Proof,
     /// Wrong pixels of the region that the mend leaves, with those that it makes newly wrong in the
     /// region's box; `None` where it was not run.
     pub pixels_left: Option<u64>,
     /// Where another technique mends it: what mends most of it without changing the technique.
-    pub staying: Option<Staying>,
+    pub staying: Option<FixWithinTechnique>,
     /// Causes without whose mends, made at the same time, this one proves nothing; mostly none.
     pub together_with: Vec<Cause>,
 }
 
 /// What to change who stays with a technique.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Staying {
+pub struct FixWithinTechnique {
     /// Changes of settings and scene.
-    pub mend: Mend,
+    pub mend: Fix,
     /// Wrong pixels that it leaves.
     pub pixels_left: u64,
 }
@@ -175,7 +175,7 @@ pub struct MeshFinding {
     /// Name of the object.
     pub object: String,
     /// What it is.
-    pub kind: MeshTrouble,
+    pub kind: MeshDefect,
     /// How often.
     pub count: usize,
     /// The first places, world space, metres.
@@ -186,7 +186,7 @@ pub struct MeshFinding {
 
 /// What can be to be known of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum MeshTrouble {
+pub enum MeshDefect {
     /// It breaks techniques in a known way.
     Cause(Cause),
     /// Triangles whose corners lie on a line.
@@ -199,15 +199,15 @@ pub enum MeshTrouble {
     Slivers,
 }
 
-impl MeshTrouble {
+impl MeshDefect {
     /// The name in JSON and text.
     pub fn name(self) -> &'static str {
         match self {
-            MeshTrouble::Cause(cause) => cause.name(),
-            MeshTrouble::FlatTriangles => "flat-triangles",
-            MeshTrouble::DroppedTriangles => "dropped-triangles",
-            MeshTrouble::DuplicateTriangles => "duplicate-triangles",
-            MeshTrouble::Slivers => "slivers",
+            MeshDefect::Cause(cause) => cause.name(),
+            MeshDefect::FlatTriangles => "flat-triangles",
+            MeshDefect::DroppedTriangles => "dropped-triangles",
+            MeshDefect::DuplicateTriangles => "duplicate-triangles",
+            MeshDefect::Slivers => "slivers",
         }
     }
 }
@@ -224,25 +224,25 @@ pub struct FlagFound {
     /// One of them; `None` where there is none.
     pub at: Option<[u32; 2]>,
     /// What sets it.
-    pub mend: Mend,
+    pub mend: Fix,
 }
 
 /// What to do about the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// All that is to be changed, at once.
-    pub mend: Mend,
+    pub mend: Fix,
     /// Wrong pixels that were left when it was run, summed over the lights.
     pub wrong_left: u64,
     /// In a sentence.
     pub sentence: String,
     /// Where another technique is advised: what to change who stays with this one.
-    pub staying: Option<Staying>,
+    pub staying: Option<FixWithinTechnique>,
 }
 
 impl Advice {
     /// To make these changes, which leave so many pixels wrong of those that are now.
-    pub(crate) fn new(mend: &Mend, wrong_left: u64, wrong_now: u64) -> Advice {
+    pub(crate) fn new(mend: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
         let outcome = outcome(wrong_left);
         let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", numbers::count(wrong_now));
         Advice { mend: mend.clone(), wrong_left, sentence, staying: None }
@@ -250,10 +250,10 @@ impl Advice {
 
     /// Where another technique is advised: what to change who stays with this one, and how many pixels that leaves
     /// wrong.
-    pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Mend, u64)>) -> Advice {
+    pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Fix, u64)>) -> Advice {
         if let (Some(_), Some((mend, left))) = (self.mend.technique, staying) {
             self.sentence += &format!(" To stay with {}, {mend}: {}.", technique.name(), outcome(left));
-            self.staying = Some(Staying { mend: mend.clone(), pixels_left: left });
+            self.staying = Some(FixWithinTechnique { mend: mend.clone(), pixels_left: left });
         }
         self
     }

@@ -1,18 +1,18 @@
 //! What the run of a mend shows of a region, and which cause is named first.
 
-use super::facts::Suspicion;
-use super::mend::Mend;
-use super::regions::Region;
-use super::{Cause, CauseFound, Proof, Staying};
+use super::facts::SuspectedCause;
+use super::mend::Fix;
+use super::regions::ConnectedRegion;
+use super::{Cause, CauseFound, FixWithinTechnique, Proof};
 
 /// Which pixels of one light are wrong in one run, by number; too dark counts as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Wrong {
+pub(crate) struct WrongPixels {
     /// By light.
     pub lights: Vec<Vec<bool>>,
 }
 
-impl Wrong {
+impl WrongPixels {
     /// How many, over all lights.
     pub fn count(&self) -> u64 {
         self.lights.iter().flatten().filter(|wrong| **wrong).count() as u64
@@ -20,7 +20,12 @@ impl Wrong {
 }
 
 /// What a run proves of a region, with the pixels that are left.
-pub(crate) fn judge(region: &Region, before: &Wrong, after: &Wrong, size: [u32; 2]) -> (Proof, u64) {
+pub(crate) fn judge(
+    region: &ConnectedRegion,
+    before: &WrongPixels,
+    after: &WrongPixels,
+    size: [u32; 2],
+) -> (Proof, u64) {
     let (before, after) = (&before.lights[region.light], &after.lights[region.light]);
     let still = region.pixels.iter().filter(|index| after[**index]).count();
     let new = region.boxed(size).filter(|index| after[*index] && !before[*index]).count();
@@ -34,16 +39,16 @@ pub(crate) fn judge(region: &Region, before: &Wrong, after: &Wrong, size: [u32; 
 
 /// A suspicion with the best that its mends have shown.
 #[derive(Debug, Clone)]
-pub(crate) struct Tried {
-    pub suspicion: Suspicion,
-    pub mend: Option<Mend>,
+pub(crate) struct TriedCause {
+    pub suspicion: SuspectedCause,
+    pub mend: Option<Fix>,
     pub proof: Proof,
     pub left: Option<u64>,
-    pub staying: Option<Staying>,
+    pub staying: Option<FixWithinTechnique>,
     pub together_with: Vec<Cause>,
 }
 
-impl Tried {
+impl TriedCause {
     /// Smaller is named sooner.
     fn rank(&self) -> (u8, u64, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>, usize, Cause) {
         let is_limit = self.suspicion.cause == Cause::F32Limit;
@@ -60,16 +65,16 @@ impl Tried {
             self.left.unwrap_or(0),
             std::cmp::Reverse(self.suspicion.shown_by),
             std::cmp::Reverse(self.suspicion.weight),
-            self.mend.as_ref().map_or(0, Mend::weight),
+            self.mend.as_ref().map_or(0, Fix::weight),
             self.suspicion.cause,
         )
     }
 }
 
 /// The most likely first.
-pub(crate) fn ranked(mut tried: Vec<Tried>) -> Vec<CauseFound> {
-    tried.sort_by_key(Tried::rank);
-    let found = |tried: Tried| CauseFound {
+pub(crate) fn ranked(mut tried: Vec<TriedCause>) -> Vec<CauseFound> {
+    tried.sort_by_key(TriedCause::rank);
+    let found = |tried: TriedCause| CauseFound {
         cause: tried.suspicion.cause,
         evidence: tried.suspicion.evidence,
         mend: tried.mend,
@@ -84,15 +89,16 @@ pub(crate) fn ranked(mut tried: Vec<Tried>) -> Vec<CauseFound> {
 #[cfg(test)]
 mod tests {
     use super::super::RegionKind;
-    use super::super::regions::Key;
+    use super::super::regions::RegionKey;
     use super::*;
     use crate::accuracy::Finding;
 
     #[test]
     fn proven_is_only_what_leaves_nothing_wrong_in_the_box() {
-        let key = Key { kind: RegionKind::Wrong(Finding::FalseShadow), caster: None, receiver: None, hint: None };
-        let region = Region { key, light: 0, pixels: vec![0, 5], bounds: [0, 0, 1, 1] };
-        let wrong = |pixels: &[usize]| Wrong { lights: vec![(0..8).map(|index| pixels.contains(&index)).collect()] };
+        let key = RegionKey { kind: RegionKind::Wrong(Finding::FalseShadow), caster: None, receiver: None, hint: None };
+        let region = ConnectedRegion { key, light: 0, pixels: vec![0, 5], bounds: [0, 0, 1, 1] };
+        let wrong =
+            |pixels: &[usize]| WrongPixels { lights: vec![(0..8).map(|index| pixels.contains(&index)).collect()] };
         let before = wrong(&[0, 5, 7]);
         let judged = |after: &[usize]| judge(&region, &before, &wrong(after), [4, 2]);
         assert_eq!(judged(&[7]), (Proof::Proven, 0), "what lies outside is not asked");

@@ -8,10 +8,10 @@
 //! No rule looks at the program: what is known is what was drawn.
 
 use super::{Cause, Proof};
-use crate::accuracy::{ErrorCounts, Region};
+use crate::accuracy::{ErrorCounts, WrongRegion};
 use crate::numbers;
 use crate::plan::{Blob, Draw, DrawMesh, FramePlan, LightId, MeshId, Pass, RasterState};
-use crate::recorded::{OpenEdges, Space, far_ends};
+use crate::recorded::{OpenEdges, PassSpace, far_ends};
 use glam::DVec4;
 use serde_json::json;
 use wgpu::StencilOperation as Operation;
@@ -77,7 +77,7 @@ fn meaning(cause: Cause) -> &'static str {
 
 /// What may be wrong.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Suspicion {
+pub struct FrameSuspicion {
     /// What it may be.
     pub cause: Cause,
     /// What it is suspected from, in numbers.
@@ -124,7 +124,7 @@ pub struct FrameDiagnosis {
     /// What the frame is called.
     pub scene: String,
     /// Of each light: its pixels, and the largest wrong region.
-    pub lights: Vec<(ErrorCounts, Option<Region>)>,
+    pub lights: Vec<(ErrorCounts, Option<WrongRegion>)>,
     /// The proven ones first.
     pub causes: Vec<FrameCauseFound>,
     /// Wrong pixels where the frame is run again as it is: it should be as many.
@@ -207,7 +207,7 @@ impl FrameDiagnosis {
                 "together_with": found.together_with,
             })
         };
-        let region = |(index, (error, worst)): (usize, &(ErrorCounts, Option<Region>))| {
+        let region = |(index, (error, worst)): (usize, &(ErrorCounts, Option<WrongRegion>))| {
             let worst = worst.as_ref()?;
             let of_light = self.causes.iter().filter(|found| found.light.0 == index);
             Some(json!({
@@ -235,15 +235,15 @@ impl FrameDiagnosis {
 }
 
 /// What may be wrong with the shadows of a light at `position`, from states and volumes alone.
-pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Suspicion> {
+pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<FrameSuspicion> {
     RULES.iter().filter_map(|rule| suspicion(rule.cause, plan, light, position)).collect()
 }
 
 /// What speaks for a cause in a plan; `None` where nothing does.
-pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<Suspicion> {
+pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<FrameSuspicion> {
     let rule = RULES.iter().find(|rule| rule.cause == cause)?;
     let (evidence, mended) = (rule.look)(&CountingDraws { plan, light }, position)?;
-    Some(Suspicion { cause, evidence, mended })
+    Some(FrameSuspicion { cause, evidence, mended })
 }
 
 /// The draws that count a light's volumes.
@@ -309,7 +309,7 @@ impl CountingDraws<'_> {
         let mut plan = self.with_states(|raster| raster.unclipped_depth = true);
         let (mut moved, mut all) = (0, 0);
         for (pass, draw) in self.draws() {
-            let space = Space::new(self.plan, pass);
+            let space = PassSpace::new(self.plan, pass);
             let places = space.places(self.plan, draw);
             if places.iter().flatten().any(|place| place.w == 0.0) {
                 return None;

@@ -9,7 +9,7 @@ const REACH: u32 = 3;
 
 /// What the pixels of a region have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Key {
+pub(crate) struct RegionKey {
     pub kind: RegionKind,
     /// Index of the object whose shadow is missing, in the truth's scene.
     pub caster: Option<usize>,
@@ -21,8 +21,8 @@ pub(crate) struct Key {
 
 /// A region with its pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Region {
-    pub key: Key,
+pub(crate) struct ConnectedRegion {
+    pub key: RegionKey,
     pub light: usize,
     /// Numbers of its pixels, ascending.
     pub pixels: Vec<usize>,
@@ -31,7 +31,7 @@ pub(crate) struct Region {
 }
 
 /// The regions of a light, one key a pixel and none where it is right.
-pub(crate) fn find(light: usize, mut keys: Vec<Option<Key>>, size: [u32; 2]) -> Vec<Region> {
+pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2]) -> Vec<ConnectedRegion> {
     let mut regions = Vec::new();
     for start in 0..keys.len() {
         let Some(key) = keys[start] else { continue };
@@ -44,12 +44,12 @@ pub(crate) fn find(light: usize, mut keys: Vec<Option<Key>>, size: [u32; 2]) -> 
             [left.min(x), top.min(y), right.max(x), bottom.max(y)]
         };
         let bounds = pixels.iter().fold([x, y, x, y], grow);
-        regions.push(Region { key, light, pixels, bounds });
+        regions.push(ConnectedRegion { key, light, pixels, bounds });
     }
     regions
 }
 
-impl Region {
+impl ConnectedRegion {
     /// Some of its pixels: the one farthest from its rim first, then others spread over it.
     pub fn samples(&self, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {
         let count = self.pixels.len();
@@ -103,9 +103,9 @@ mod tests {
     use super::*;
     use crate::accuracy::Finding;
 
-    fn key(caster: usize) -> Option<Key> {
+    fn key(caster: usize) -> Option<RegionKey> {
         let kind = RegionKind::Wrong(Finding::FalseShadow);
-        Some(Key { kind, caster: Some(caster), receiver: None, hint: None })
+        Some(RegionKey { kind, caster: Some(caster), receiver: None, hint: None })
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! Which techniques are right for a scene, as measured on it.
 
-use super::{Diagnosis, Mend};
+use super::{Diagnosis, Fix};
 use crate::technique::{Choice, Technique};
 
 /// How a technique did on a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Suited {
+pub struct TechniqueFit {
     /// Technique and settings.
     pub choice: Choice,
     /// Wrong pixels, summed over the lights.
@@ -14,7 +14,7 @@ pub struct Suited {
     pub frame_ms: f64,
 }
 
-impl Suited {
+impl TechniqueFit {
     /// What is worth trying on any scene: every technique that makes shadows on the GPU as it is by default, and
     /// volumes that count in floats.
     pub fn candidates() -> Vec<Choice> {
@@ -33,8 +33,8 @@ impl Suited {
     }
 
     /// The fastest that has no wrong pixel: as it is by default where any is right so.
-    pub fn best(suited: &[Suited]) -> Option<&Suited> {
-        let is_plain = |one: &Suited| one.choice == Choice::new(one.choice.technique());
+    pub fn best(suited: &[TechniqueFit]) -> Option<&TechniqueFit> {
+        let is_plain = |one: &TechniqueFit| one.choice == Choice::new(one.choice.technique());
         let right = suited.iter().filter(|one| one.wrong == 0);
         right.min_by(|a, b| is_plain(b).cmp(&is_plain(a)).then(a.frame_ms.total_cmp(&b.frame_ms)))
     }
@@ -43,12 +43,12 @@ impl Suited {
 impl Diagnosis {
     /// What mends the scene for good, where anything is better than what was asked for: what is advised, or the fastest
     /// technique without a wrong pixel.
-    pub fn mend_to_write(&self, suited: &[Suited]) -> Option<Mend> {
+    pub fn mend_to_write(&self, suited: &[TechniqueFit]) -> Option<Fix> {
         let best = || {
-            let choice = &Suited::best(suited)?.choice;
+            let choice = &TechniqueFit::best(suited)?.choice;
             // All of them: what was set for another technique is to be kept in none.
             let settings = choice.settings().clone();
-            Some(Mend { technique: Some(choice.technique()), settings, ..Mend::default() })
+            Some(Fix { technique: Some(choice.technique()), settings, ..Fix::default() })
         };
         let advised = self.advice.as_ref().map(|advice| advice.mend.clone());
         if self.is_mended() { advised } else { best().or(advised) }
@@ -66,13 +66,13 @@ mod tests {
 
     #[test]
     fn the_best_is_right_then_plain_then_fast() {
-        let choices = Suited::candidates();
+        let choices = TechniqueFit::candidates();
         assert!(choices.len() > 7, "{}", choices.len());
-        let one = |choice: &Choice, wrong, frame_ms| Suited { choice: choice.clone(), wrong, frame_ms };
+        let one = |choice: &Choice, wrong, frame_ms| TechniqueFit { choice: choice.clone(), wrong, frame_ms };
         let in_float = choices.last().expect("a candidate");
         let all = [one(&choices[0], 3, 1.0), one(in_float, 0, 2.0), one(&choices[1], 0, 4.0), one(&choices[2], 0, 3.0)];
-        assert_eq!(Suited::best(&all), Some(&all[3]));
-        assert_eq!(Suited::best(&all[..2]).map(Suited::name).as_deref(), Some("z-fail counter=float"));
-        assert_eq!(Suited::best(&all[..1]), None);
+        assert_eq!(TechniqueFit::best(&all), Some(&all[3]));
+        assert_eq!(TechniqueFit::best(&all[..2]).map(TechniqueFit::name).as_deref(), Some("z-fail counter=float"));
+        assert_eq!(TechniqueFit::best(&all[..1]), None);
     }
 }

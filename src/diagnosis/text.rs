@@ -2,7 +2,7 @@
 //!
 //! Regions and lights count from 1, pixels from 0 as in `pixel --at`.
 
-use super::{Cause, CauseFound, Diagnosis, FlagFound, Mend, MeshFinding, Proof, RegionFound, RegionKind, Suited};
+use super::{Cause, CauseFound, Diagnosis, Fix, FlagFound, MeshFinding, Proof, RegionFound, RegionKind, TechniqueFit};
 use crate::accuracy::Finding;
 use crate::numbers;
 use crate::technique::Technique;
@@ -14,7 +14,7 @@ const MOST_PLACES: usize = 8;
 impl Diagnosis {
     /// The whole diagnosis, for someone who meets these words for the first time. `suited` tells how techniques do
     /// on this scene; empty where that was not measured.
-    pub fn to_text(&self, suited: &[Suited]) -> String {
+    pub fn to_text(&self, suited: &[TechniqueFit]) -> String {
         let mut out = self.heading();
         let mut explained = BTreeSet::new();
         for (index, region) in self.regions.iter().enumerate() {
@@ -93,11 +93,11 @@ impl Diagnosis {
     }
 
     /// The last line.
-    pub fn what_to_do(&self, suited: &[Suited]) -> String {
+    pub fn what_to_do(&self, suited: &[TechniqueFit]) -> String {
         if !self.is_bad() {
             return "nothing: the shadows are right".to_owned();
         }
-        let better = Suited::best(suited).filter(|_| !self.is_mended());
+        let better = TechniqueFit::best(suited).filter(|_| !self.is_mended());
         let better = better.map(|best| format!("`-t {}` has no wrong pixel here", best.name().replace(' ', " --set ")));
         match (&self.advice, better) {
             (Some(advice), better) => {
@@ -142,7 +142,7 @@ impl RegionFound {
     }
 }
 
-impl Mend {
+impl Fix {
     /// What of it can be said on a command line: `-t z-fail`, `--set bias-slope=2`.
     pub fn options(&self) -> Vec<String> {
         let technique = self.technique.map(|technique| format!("-t {}", technique.name()));
@@ -153,7 +153,7 @@ impl Mend {
 
 /// Do two regions have the same causes with the same mends and proofs?
 fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
-    let said = |region: &RegionFound| -> Vec<(Cause, Option<Mend>, Proof)> {
+    let said = |region: &RegionFound| -> Vec<(Cause, Option<Fix>, Proof)> {
         region.causes.iter().map(|found| (found.cause, found.mend.clone(), found.proof)).collect()
     };
     !one.causes.is_empty() && said(one) == said(other)
@@ -198,7 +198,7 @@ fn flag(FlagFound { object, cause, pixels: changed, at, mend }: &FlagFound) -> S
     format!("   {object}: {cause}: {} would change{at}; to do so, {mend}\n", pixels(*changed))
 }
 
-fn techniques(suited: &[Suited]) -> String {
+fn techniques(suited: &[TechniqueFit]) -> String {
     if suited.is_empty() {
         return String::new();
     }

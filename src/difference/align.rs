@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// One place in the common order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Pair {
+pub(super) enum AlignedPair {
     /// In both, with its index in each.
     Both(usize, usize),
     /// In the first alone.
@@ -18,17 +18,17 @@ pub(super) enum Pair {
 
 /// The common order of two lists: what only one has comes before the next that both have, the
 /// first list's before the second's.
-pub(super) fn align<K: Ord>(a: &[K], b: &[K]) -> Vec<Pair> {
+pub(super) fn align<K: Ord>(a: &[K], b: &[K]) -> Vec<AlignedPair> {
     let mut pairs = Vec::new();
     let (mut next_a, mut next_b) = (0, 0);
-    let mut alone = |pairs: &mut Vec<Pair>, to_a: usize, to_b: usize| {
-        pairs.extend((next_a..to_a).map(Pair::First));
-        pairs.extend((next_b..to_b).map(Pair::Second));
+    let mut alone = |pairs: &mut Vec<AlignedPair>, to_a: usize, to_b: usize| {
+        pairs.extend((next_a..to_a).map(AlignedPair::First));
+        pairs.extend((next_b..to_b).map(AlignedPair::Second));
         (next_a, next_b) = (to_a + 1, to_b + 1);
     };
     for (in_a, in_b) in increasing(&paired(a, b)) {
         alone(&mut pairs, in_a, in_b);
-        pairs.push(Pair::Both(in_a, in_b));
+        pairs.push(AlignedPair::Both(in_a, in_b));
     }
     alone(&mut pairs, a.len(), b.len());
     pairs
@@ -65,9 +65,9 @@ fn increasing(pairs: &[(usize, usize)]) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Pair::{Both, First, Second};
+    use AlignedPair::{Both, First, Second};
 
-    fn aligned(a: &str, b: &str) -> Vec<Pair> {
+    fn aligned(a: &str, b: &str) -> Vec<AlignedPair> {
         align(a.as_bytes(), b.as_bytes())
     }
 

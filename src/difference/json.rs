@@ -15,21 +15,21 @@
 //! Floats have their bits beside them; a value that is no number is null, and so is a distance to it and between labels.
 
 use super::{
-    AspectDifference, AspectKind, Difference, DifferingRegion, Found, Frame, LightDifference, Note, PassDifference,
-    Side, Texel, TexelDifference,
+    AspectChange, AspectDifference, AspectKind, ComparedFrame, ComparedSide, Difference, DifferenceNote,
+    DifferingRegion, LightDifference, PassDifference, Texel, TexelDifference,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct DifferenceDocument<'a> {
     schema: u32,
     size: [u32; 2],
     equal: bool,
     a: Value,
     b: Value,
-    asked: &'a [Note],
-    conditions: &'a [Note],
+    asked: &'a [DifferenceNote],
+    conditions: &'a [DifferenceNote],
     first: Option<Value>,
     passes: Vec<Value>,
     lights: Vec<Value>,
@@ -40,7 +40,7 @@ impl Difference {
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let [a, b] = self.sides.each_ref().map(frame);
         let place = |pass: &PassDifference| json!({"name": pass.name, "light": pass.light, "index": pass.index});
-        let document = Document {
+        let document = DifferenceDocument {
             schema: 1,
             size: self.size,
             equal: self.is_none(),
@@ -56,7 +56,7 @@ impl Difference {
     }
 }
 
-fn frame(Frame { scene, technique, settings }: &Frame) -> Value {
+fn frame(ComparedFrame { scene, technique, settings }: &ComparedFrame) -> Value {
     json!({"scene": scene, "technique": technique, "settings": settings})
 }
 
@@ -67,7 +67,7 @@ fn pass(pass: &PassDifference) -> Value {
         "name": pass.name,
         "light": pass.light,
         "index": pass.index,
-        "only_in": pass.only_in().map(Side::name),
+        "only_in": pass.only_in().map(ComparedSide::name),
         "aspects": aspects(&pass.aspects),
         "draws": draws.collect::<Vec<_>>(),
     })
@@ -85,9 +85,9 @@ fn aspects(differences: &[AspectDifference]) -> Vec<Value> {
 fn aspect(AspectDifference { aspect, found, carried }: &AspectDifference) -> Value {
     let (mut only_in, mut sizes, mut pixels) = (None, None, None);
     match found {
-        Found::OnlyIn(side) => only_in = Some(side.name()),
-        Found::Sizes(both) => sizes = Some(both),
-        Found::Pixels(difference) => pixels = Some(difference),
+        AspectChange::OnlyIn(side) => only_in = Some(side.name()),
+        AspectChange::Sizes(both) => sizes = Some(both),
+        AspectChange::Pixels(difference) => pixels = Some(difference),
     }
     json!({
         "aspect": aspect.name(),

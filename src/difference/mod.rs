@@ -16,11 +16,11 @@ mod shown;
 mod text;
 
 pub use images::{DifferingRegion, PixelDifference, Texel, TexelDifference};
-pub use notes::Note;
-pub use shown::Shown;
+pub use notes::DifferenceNote;
+pub use shown::ShownDifference;
 
 use crate::capture::{Capture, CapturedLight, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
-use align::{Pair, align};
+use align::{AlignedPair, align};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub enum DifferenceError {
 
 /// Which of the two captures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Side {
+pub enum ComparedSide {
     /// The first.
     A,
     /// The second.
@@ -50,13 +50,13 @@ pub enum Side {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Scene, technique and settings of each.
-    pub sides: [Frame; 2],
+    pub sides: [ComparedFrame; 2],
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// What was asked for differently; no difference by itself.
-    pub asked: Vec<Note>,
+    pub asked: Vec<DifferenceNote>,
     /// What makes pixels mean something else: camera, lights, how depth is stored.
-    pub conditions: Vec<Note>,
+    pub conditions: Vec<DifferenceNote>,
     /// Passes in their common order.
     pub passes: Vec<PassDifference>,
     /// Parallel to the lights that both have.
@@ -65,7 +65,7 @@ pub struct Difference {
 
 /// What a frame was made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Frame {
+pub struct ComparedFrame {
     /// Name of the scene.
     pub scene: String,
     /// Name of the technique.
@@ -106,18 +106,18 @@ pub struct AspectDifference {
     /// Which.
     pub aspect: AspectKind,
     /// How.
-    pub found: Found,
+    pub found: AspectChange,
     /// Neither pass wrote to it: the difference is an earlier one's.
     pub carried: bool,
 }
 
 /// How an aspect differs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Found {
+pub enum AspectChange {
     /// In texels.
     Pixels(PixelDifference),
     /// Only one frame has it.
-    OnlyIn(Side),
+    OnlyIn(ComparedSide),
     /// Maps of different sizes, whose texels have no partners.
     Sizes([[u32; 2]; 2]),
 }
@@ -161,13 +161,13 @@ pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> 
     if a.size != b.size {
         return Err(DifferenceError::Sizes { sizes: [a.size, b.size] });
     }
-    let mut pictures = Pictures::default();
+    let mut pictures = ImageComparisons::default();
     let key = |step: &Step| (step.name.clone(), step.light);
     let keys = [a, b].map(|capture| capture.steps.iter().map(key).collect::<Vec<_>>());
     let pairs = align(&keys[0], &keys[1]);
     let lights = a.lights.iter().zip(&b.lights).enumerate();
     Ok(Difference {
-        sides: [a, b].map(Frame::of),
+        sides: [a, b].map(ComparedFrame::of),
         size: a.size,
         asked: notes::asked(a, b),
         conditions: notes::conditions(a, b),
@@ -206,10 +206,10 @@ impl Difference {
     }
 }
 
-impl Frame {
-    fn of(capture: &Capture) -> Frame {
+impl ComparedFrame {
+    fn of(capture: &Capture) -> ComparedFrame {
         let (scene, technique) = (capture.scene.clone(), capture.technique.clone());
-        Frame { scene, technique, settings: capture.settings.clone() }
+        ComparedFrame { scene, technique, settings: capture.settings.clone() }
     }
 }
 
@@ -220,10 +220,10 @@ impl PassDifference {
     }
 
     /// The only frame that has it.
-    pub fn only_in(&self) -> Option<Side> {
+    pub fn only_in(&self) -> Option<ComparedSide> {
         match self.index {
-            [Some(_), None] => Some(Side::A),
-            [None, Some(_)] => Some(Side::B),
+            [Some(_), None] => Some(ComparedSide::A),
+            [None, Some(_)] => Some(ComparedSide::B),
             _ => None,
         }
     }
@@ -238,8 +238,8 @@ impl AspectDifference {
     /// Where texels differ.
     pub fn pixels(&self) -> Option<&PixelDifference> {
         match &self.found {
-            Found::Pixels(pixels) => Some(pixels),
-            Found::OnlyIn(_) | Found::Sizes(_) => None,
+            AspectChange::Pixels(pixels) => Some(pixels),
+            AspectChange::OnlyIn(_) | AspectChange::Sizes(_) => None,
         }
     }
 }
@@ -275,31 +275,35 @@ impl AspectKind {
 }
 
 /// The pictures of one state, each with whether it is an earlier one's.
-type State<'a> = BTreeMap<AspectKind, (&'a Arc<Image>, bool)>;
+type ComparedState<'a> = BTreeMap<AspectKind, (&'a Arc<Image>, bool)>;
 
 /// Comparisons by the pictures' places in memory: what passes share is compared once.
 #[derive(Default)]
-struct Pictures(BTreeMap<[*const Image; 2], Option<Found>>);
+struct ImageComparisons(BTreeMap<[*const Image; 2], Option<AspectChange>>);
 
-impl Pictures {
-    fn compare(&mut self, a: &Arc<Image>, b: &Arc<Image>) -> Option<Found> {
+impl ImageComparisons {
+    fn compare(&mut self, a: &Arc<Image>, b: &Arc<Image>) -> Option<AspectChange> {
         let compared = || {
             let sizes = [a.size(), b.size()];
-            if sizes[0] == sizes[1] { images::compare(a, b).map(Found::Pixels) } else { Some(Found::Sizes(sizes)) }
+            if sizes[0] == sizes[1] {
+                images::compare(a, b).map(AspectChange::Pixels)
+            } else {
+                Some(AspectChange::Sizes(sizes))
+            }
         };
         *self.0.entry([Arc::as_ptr(a), Arc::as_ptr(b)]).or_insert_with(compared)
     }
 
     /// The aspects that differ between two states, in the order of their kinds.
-    fn states(&mut self, a: &State, b: &State) -> Vec<AspectDifference> {
+    fn states(&mut self, a: &ComparedState, b: &ComparedState) -> Vec<AspectDifference> {
         let mut kinds: Vec<AspectKind> = a.keys().chain(b.keys()).copied().collect();
         kinds.sort_unstable();
         kinds.dedup();
         let one = |aspect: AspectKind| {
             let (found, carried) = match (a.get(&aspect), b.get(&aspect)) {
                 (Some((in_a, kept_a)), Some((in_b, kept_b))) => (self.compare(in_a, in_b)?, *kept_a && *kept_b),
-                (Some((_, kept)), None) => (Found::OnlyIn(Side::A), *kept),
-                (None, Some((_, kept))) => (Found::OnlyIn(Side::B), *kept),
+                (Some((_, kept)), None) => (AspectChange::OnlyIn(ComparedSide::A), *kept),
+                (None, Some((_, kept))) => (AspectChange::OnlyIn(ComparedSide::B), *kept),
                 (None, None) => return None,
             };
             Some(AspectDifference { aspect, found, carried })
@@ -308,7 +312,7 @@ impl Pictures {
     }
 }
 
-fn pass(pictures: &mut Pictures, [a, b]: [&Capture; 2], pair: Pair) -> PassDifference {
+fn pass(pictures: &mut ImageComparisons, [a, b]: [&Capture; 2], pair: AlignedPair) -> PassDifference {
     let alone = |step: &Step, index| PassDifference {
         name: step.name.clone(),
         light: step.light,
@@ -317,9 +321,9 @@ fn pass(pictures: &mut Pictures, [a, b]: [&Capture; 2], pair: Pair) -> PassDiffe
         draws: Vec::new(),
     };
     match pair {
-        Pair::First(in_a) => alone(&a.steps[in_a], [Some(in_a), None]),
-        Pair::Second(in_b) => alone(&b.steps[in_b], [None, Some(in_b)]),
-        Pair::Both(in_a, in_b) => {
+        AlignedPair::First(in_a) => alone(&a.steps[in_a], [Some(in_a), None]),
+        AlignedPair::Second(in_b) => alone(&b.steps[in_b], [None, Some(in_b)]),
+        AlignedPair::Both(in_a, in_b) => {
             let (step_a, step_b) = (&a.steps[in_a], &b.steps[in_b]);
             PassDifference {
                 aspects: pictures.states(&after_step(a, step_a), &after_step(b, step_b)),
@@ -335,13 +339,13 @@ fn pass(pictures: &mut Pictures, [a, b]: [&Capture; 2], pair: Pair) -> PassDiffe
 }
 
 /// Draws that both have, by name, caster and part.
-fn draws(pictures: &mut Pictures, a: &Step, b: &Step) -> Vec<DrawDifference> {
+fn draws(pictures: &mut ImageComparisons, a: &Step, b: &Step) -> Vec<DrawDifference> {
     let keys = |step: &Step| {
         step.draws.iter().map(|draw| (draw.name.clone(), draw.caster.clone(), draw.part)).collect::<Vec<_>>()
     };
     let mut differing = Vec::new();
     for pair in align(&keys(a), &keys(b)) {
-        let Pair::Both(in_a, in_b) = pair else { continue };
+        let AlignedPair::Both(in_a, in_b) = pair else { continue };
         let (draw_a, draw_b) = (&a.draws[in_a], &b.draws[in_b]);
         let (Some(after_a), Some(after_b)) = (&draw_a.after, &draw_b.after) else { continue };
         let aspects = pictures.states(&after_draw(a, after_a), &after_draw(b, after_b));
@@ -352,7 +356,7 @@ fn draws(pictures: &mut Pictures, a: &Step, b: &Step) -> Vec<DrawDifference> {
     differing
 }
 
-fn after_step<'a>(capture: &'a Capture, step: &'a Step) -> State<'a> {
+fn after_step<'a>(capture: &'a Capture, step: &'a Step) -> ComparedState<'a> {
     let mut state = of_snapshot(&step.snapshot);
     match &step.snapshot {
         Snapshot::Frame(frame) => {
@@ -373,7 +377,7 @@ fn after_step<'a>(capture: &'a Capture, step: &'a Step) -> State<'a> {
     state
 }
 
-fn after_draw<'a>(step: &Step, after: &'a DrawState) -> State<'a> {
+fn after_draw<'a>(step: &Step, after: &'a DrawState) -> ComparedState<'a> {
     let mut state = of_snapshot(&after.snapshot);
     let kind = |image: &Image| match &step.snapshot {
         Snapshot::Map { face, .. } => layer(image, *face),
@@ -385,8 +389,8 @@ fn after_draw<'a>(step: &Step, after: &'a DrawState) -> State<'a> {
 }
 
 /// The picture's aspects.
-fn of_snapshot(snapshot: &Snapshot) -> State<'_> {
-    let Snapshot::Frame(frame) = snapshot else { return State::new() };
+fn of_snapshot(snapshot: &Snapshot) -> ComparedState<'_> {
+    let Snapshot::Frame(frame) = snapshot else { return ComparedState::new() };
     let stencil = frame.stencil.as_ref().map(|stencil| (AspectKind::Stencil, stencil));
     let aspects = [(AspectKind::Color, &frame.color), (AspectKind::Depth, &frame.depth)].into_iter().chain(stencil);
     aspects.map(|(kind, aspect)| (kind, (&aspect.image, aspect.unchanged))).collect()
@@ -398,7 +402,7 @@ fn layer(image: &Image, index: usize) -> AspectKind {
 }
 
 /// What differs of a light at the end of the frame.
-fn of_light(pictures: &mut Pictures, light: usize, a: &CapturedLight, b: &CapturedLight) -> LightDifference {
+fn of_light(pictures: &mut ImageComparisons, light: usize, a: &CapturedLight, b: &CapturedLight) -> LightDifference {
     let labels = match (&a.shadow, &b.shadow) {
         (Some(in_a), Some(in_b)) => changes(in_a, in_b),
         _ => BTreeMap::new(),
@@ -406,8 +410,8 @@ fn of_light(pictures: &mut Pictures, light: usize, a: &CapturedLight, b: &Captur
     LightDifference { light, labels, aspects: pictures.states(&at_the_end(a), &at_the_end(b)) }
 }
 
-fn at_the_end(light: &CapturedLight) -> State<'_> {
-    let mut state = State::new();
+fn at_the_end(light: &CapturedLight) -> ComparedState<'_> {
+    let mut state = ComparedState::new();
     state.extend(light.shadow.iter().map(|image| (AspectKind::Labels, (image, false))));
     state.extend(light.count.iter().map(|image| (AspectKind::Count, (image, false))));
     let faces = light.map.iter().flat_map(|map| map.faces.iter().enumerate());

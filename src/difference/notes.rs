@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 /// Something besides pixels that is not alike in both frames.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Note {
+pub struct DifferenceNote {
     /// What: `technique`, `setting casters`, `camera's eye`.
     pub what: String,
     /// In the first frame.
@@ -20,8 +20,8 @@ pub struct Note {
 const NONE: &str = "none";
 
 /// Scene, technique, settings, adapter and plan.
-pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<Note> {
-    let mut notes = Notes::default();
+pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
+    let mut notes = NoteList::default();
     notes.add("scene", &a.scene, &b.scene);
     notes.add("technique", &a.technique, &b.technique);
     let keys: BTreeSet<&String> = a.settings.keys().chain(b.settings.keys()).collect();
@@ -41,8 +41,8 @@ pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<Note> {
 }
 
 /// Camera, depth mapping and lights.
-pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<Note> {
-    let mut notes = Notes::default();
+pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
+    let mut notes = NoteList::default();
     let far = |capture: &Capture| capture.camera.far.map_or_else(|| NONE.to_owned(), |far| far.to_string());
     notes.add("camera's eye", &point(a.camera.eye), &point(b.camera.eye));
     notes.add("camera's target", &point(a.camera.target), &point(b.camera.target));
@@ -65,12 +65,12 @@ pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<Note> {
 }
 
 #[derive(Default)]
-struct Notes(Vec<Note>);
+struct NoteList(Vec<DifferenceNote>);
 
-impl Notes {
+impl NoteList {
     fn add(&mut self, what: &str, a: &str, b: &str) {
         if a != b {
-            self.0.push(Note { what: what.to_owned(), a: a.to_owned(), b: b.to_owned() });
+            self.0.push(DifferenceNote { what: what.to_owned(), a: a.to_owned(), b: b.to_owned() });
         }
     }
 

@@ -22,7 +22,7 @@ const GROUND: f32 = 0.35;
 
 /// What the picture shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shown {
+pub struct ShownDifference {
     /// A, B, and where they differ.
     pub picture: Picture,
     /// Of this aspect.
@@ -32,7 +32,7 @@ pub struct Shown {
 impl Difference {
     /// Draws the first pass whose pixels differ, of the captures that were compared; `None` where no pixel
     /// differs.
-    pub fn shown(&self, a: &Capture, b: &Capture) -> Option<Shown> {
+    pub fn shown(&self, a: &Capture, b: &Capture) -> Option<ShownDifference> {
         let of_pass = self.first_in_pixels().and_then(|pass| of_pass(pass, a, b));
         let (aspect, in_a, in_b) = of_pass.or_else(|| self.of_lights(a, b))?;
         let difference = super::images::compare(&in_a, &in_b)?;
@@ -53,11 +53,11 @@ impl Difference {
         for (place, shown) in (0..).zip([&shown_a, &shown_b, &where_differs]) {
             picture.paste(shown, [GAP + place * (width + GAP), GAP]);
         }
-        Some(Shown { picture, aspect })
+        Some(ShownDifference { picture, aspect })
     }
 
     /// What no pass shows: such as the truth.
-    fn of_lights(&self, a: &Capture, b: &Capture) -> Option<Pictures> {
+    fn of_lights(&self, a: &Capture, b: &Capture) -> Option<AspectPair> {
         self.lights.iter().find_map(|light| {
             let aspect = light.aspects.iter().find(|aspect| aspect.pixels().is_some())?.aspect;
             let [in_a, in_b] =
@@ -68,9 +68,9 @@ impl Difference {
 }
 
 /// An aspect in both captures.
-type Pictures = (AspectKind, Arc<Image>, Arc<Image>);
+type AspectPair = (AspectKind, Arc<Image>, Arc<Image>);
 
-fn of_pass(pass: &PassDifference, a: &Capture, b: &Capture) -> Option<Pictures> {
+fn of_pass(pass: &PassDifference, a: &Capture, b: &Capture) -> Option<AspectPair> {
     let [step_a, step_b] = [a.steps.get(pass.index[0]?)?, b.steps.get(pass.index[1]?)?];
     if let Some(aspect) = pass.aspects.iter().find(|aspect| aspect.pixels().is_some()) {
         let [state_a, state_b] = [after_step(a, step_a), after_step(b, step_b)];

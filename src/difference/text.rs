@@ -1,8 +1,8 @@
 //! A difference in words: the first pass that differs, then every pass, then the lights.
 
 use super::{
-    AspectDifference, AspectKind, Difference, Found, LightDifference, Note, PassDifference, PixelDifference, Side,
-    Texel, TexelDifference,
+    AspectChange, AspectDifference, AspectKind, ComparedSide, Difference, DifferenceNote, LightDifference,
+    PassDifference, PixelDifference, Texel, TexelDifference,
 };
 use crate::numbers;
 use crate::truth::PixelLabel;
@@ -51,12 +51,12 @@ impl PassDifference {
     }
 }
 
-impl Side {
+impl ComparedSide {
     /// `A` or `B`.
     pub fn name(self) -> &'static str {
         match self {
-            Side::A => "A",
-            Side::B => "B",
+            ComparedSide::A => "A",
+            ComparedSide::B => "B",
         }
     }
 }
@@ -74,7 +74,7 @@ impl AspectKind {
     }
 }
 
-fn note(Note { what, a, b }: &Note) -> String {
+fn note(DifferenceNote { what, a, b }: &DifferenceNote) -> String {
     /// A line stays a line.
     const LONGEST: usize = 60;
     let short = |text: &str| match text.char_indices().nth(LONGEST) {
@@ -119,9 +119,9 @@ fn aspect_lines(difference: &AspectDifference, indent: &str) -> String {
     let title = aspect.title();
     let carried = if *carried { ", as before" } else { "" };
     match found {
-        Found::OnlyIn(side) => format!("{indent}{title}: only in {}{carried}\n", side.name()),
-        Found::Sizes([a, b]) => format!("{indent}{title}: {}x{} in A, {}x{} in B\n", a[0], a[1], b[0], b[1]),
-        Found::Pixels(PixelDifference { pixels, largest, region }) => {
+        AspectChange::OnlyIn(side) => format!("{indent}{title}: only in {}{carried}\n", side.name()),
+        AspectChange::Sizes([a, b]) => format!("{indent}{title}: {}x{} in A, {}x{} in B\n", a[0], a[1], b[0], b[1]),
+        AspectChange::Pixels(PixelDifference { pixels, largest, region }) => {
             let [left, top, right, bottom] = region.bounds;
             let mut out = format!("{indent}{title}: {}{carried}\n", pixel_count(*pixels));
             out += &format!("{indent}  {}\n", texel(*aspect, largest));
@@ -194,9 +194,9 @@ fn row(pass: &PassDifference) -> String {
 
 fn summary(AspectDifference { aspect, found, carried }: &AspectDifference) -> String {
     let found = match found {
-        Found::Pixels(pixels) => pixel_count(pixels.pixels),
-        Found::OnlyIn(side) => format!("only in {}", side.name()),
-        Found::Sizes(_) => "another size".to_owned(),
+        AspectChange::Pixels(pixels) => pixel_count(pixels.pixels),
+        AspectChange::OnlyIn(side) => format!("only in {}", side.name()),
+        AspectChange::Sizes(_) => "another size".to_owned(),
     };
     let carried = if *carried { " as before" } else { "" };
     format!("{}: {found}{carried}", aspect.title())
@@ -209,7 +209,7 @@ fn of_light(light: &LightDifference) -> String {
     }
     let mut summaries: Vec<String> = Vec::new();
     for difference in &light.aspects {
-        let whole_map = matches!(difference.found, Found::OnlyIn(_)) && difference.aspect.layer().is_some();
+        let whole_map = matches!(difference.found, AspectChange::OnlyIn(_)) && difference.aspect.layer().is_some();
         let one = if whole_map { of_map(difference) } else { summary(difference) };
         if summaries.last() != Some(&one) {
             summaries.push(one);
@@ -226,7 +226,7 @@ fn of_light(light: &LightDifference) -> String {
 /// All layers that only one has, as one.
 fn of_map(AspectDifference { aspect, found, .. }: &AspectDifference) -> String {
     match found {
-        Found::OnlyIn(side) => format!("{}: only in {}", aspect.name(), side.name()),
-        Found::Pixels(_) | Found::Sizes(_) => aspect.name().to_owned(),
+        AspectChange::OnlyIn(side) => format!("{}: only in {}", aspect.name(), side.name()),
+        AspectChange::Pixels(_) | AspectChange::Sizes(_) => aspect.name().to_owned(),
     }
 }

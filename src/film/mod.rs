@@ -17,10 +17,10 @@ pub use steps::step_picture;
 use crate::capture::Capture;
 use crate::files::WholeFile;
 use crate::picture::Picture;
-use crate::picture::apng::{AnimatedPng, AnimationError, Colors, Format};
+use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
 use crate::picture::svg::SvgError;
 use crate::reading::steps as step_numbers;
-use crate::reading::written::{Content, Written};
+use crate::reading::written::{TexelContent, WrittenAspects};
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, SessionError};
 use std::fs::File;
@@ -81,7 +81,7 @@ fn choice_of(lights: usize) -> String {
 
 /// What a film shows.
 #[derive(Debug, Clone)]
-pub enum Shows {
+pub enum FilmContent {
     /// A frame, pass by pass; masks are beside it and left out.
     Steps(Arc<Capture>),
     /// A light that goes round.
@@ -91,66 +91,66 @@ pub enum Shows {
         /// How each place is rendered.
         request: Box<CaptureRequest>,
         /// How colours are kept.
-        colors: Colors,
+        colors: ColorDepth,
     },
 }
 
-impl Shows {
+impl FilmContent {
     /// How many pictures that takes.
     pub fn pictures(&self) -> u32 {
         match self {
-            Shows::Steps(capture) => step_numbers::count(capture) as u32,
-            Shows::LightRound { round, .. } => round.places(),
+            FilmContent::Steps(capture) => step_numbers::count(capture) as u32,
+            FilmContent::LightRound { round, .. } => round.places(),
         }
     }
 
     /// Width and height of each.
     pub fn size(&self) -> [u32; 2] {
         match self {
-            Shows::Steps(capture) => steps::size(capture),
-            Shows::LightRound { request, .. } => request.size,
+            FilmContent::Steps(capture) => steps::size(capture),
+            FilmContent::LightRound { request, .. } => request.size,
         }
     }
 
     /// How long each is shown unless said otherwise.
     pub fn milliseconds(&self) -> u16 {
         match self {
-            Shows::Steps(_) => STEP_MILLISECONDS,
-            Shows::LightRound { .. } => PLACE_MILLISECONDS,
+            FilmContent::Steps(_) => STEP_MILLISECONDS,
+            FilmContent::LightRound { .. } => PLACE_MILLISECONDS,
         }
     }
 
-    fn colors(&self) -> Colors {
+    fn colors(&self) -> ColorDepth {
         match self {
             // A value has to be read off its colour.
-            Shows::Steps(_) => Colors::Exact,
-            Shows::LightRound { colors, .. } => *colors,
+            FilmContent::Steps(_) => ColorDepth::Exact,
+            FilmContent::LightRound { colors, .. } => *colors,
         }
     }
 
-    fn picture(&self, index: u32, render: &mut Render) -> Result<Picture, FilmError> {
+    fn picture(&self, index: u32, render: &mut FilmRenderer) -> Result<Picture, FilmError> {
         match self {
-            Shows::Steps(capture) => {
+            FilmContent::Steps(capture) => {
                 let step = step_numbers::numbered(capture).nth(index as usize).ok_or(FilmError::NoSteps)?;
                 Ok(step_picture(capture, step)?)
             }
-            Shows::LightRound { round, request, .. } => {
+            FilmContent::LightRound { round, request, .. } => {
                 let capture = render(&round.scene(index), request)?;
                 let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
                 let image = last.map(|frame| Arc::clone(&frame.color.image)).ok_or(FilmError::NoSteps)?;
-                Ok(Written { image, content: Content::Color, name: "colour" }.picture())
+                Ok(WrittenAspects { image, content: TexelContent::Color, name: "colour" }.picture())
             }
         }
     }
 }
 
 /// Renders a scene.
-pub type Render<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
+pub type FilmRenderer<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
 
 /// A film that is being made. One that is dropped before its end leaves nothing.
 #[derive(Debug)]
 pub struct Film {
-    shows: Shows,
+    shows: FilmContent,
     next: u32,
     // Closed before the file is taken away.
     animation: AnimatedPng<BufWriter<File>>,
@@ -160,8 +160,9 @@ pub struct Film {
 
 impl Film {
     /// Begins one, in place of what is at `path`.
-    pub fn begin(shows: Shows, path: &Path, milliseconds: u16) -> Result<Film, FilmError> {
-        let format = Format { size: shows.size(), pictures: shows.pictures(), milliseconds, colors: shows.colors() };
+    pub fn begin(shows: FilmContent, path: &Path, milliseconds: u16) -> Result<Film, FilmError> {
+        let format =
+            AnimationFormat { size: shows.size(), pictures: shows.pictures(), milliseconds, colors: shows.colors() };
         if format.pictures == 0 {
             return Err(FilmError::NoSteps);
         }
@@ -178,7 +179,7 @@ impl Film {
     }
 
     /// Makes the next picture; false where there is none left.
-    pub fn shoot(&mut self, render: &mut Render) -> Result<bool, FilmError> {
+    pub fn shoot(&mut self, render: &mut FilmRenderer) -> Result<bool, FilmError> {
         if self.next == self.pictures() {
             return Ok(false);
         }

@@ -6,7 +6,7 @@ use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 use crate::picture::svg::{self, SvgError};
 use crate::reading::steps;
-use crate::reading::written::Written;
+use crate::reading::written::WrittenAspects;
 
 /// Pixels of width for one of the bar's height, and how high it is at least and at most.
 const WIDTH_A_HEIGHT: u32 = 24;
@@ -34,7 +34,7 @@ fn bar_height(width: u32) -> u32 {
 /// What a pass writes, a pixel a texel; maps as large as fits in.
 pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError> {
     let mut all = Picture::filled(size(capture), colors::BACKGROUND);
-    let written = Written::by_step(capture, index);
+    let written = WrittenAspects::by_step(capture, index);
     if let Some(written) = &written {
         let shown = written.picture().fitted(capture.size);
         let [left, top] = [0, 1].map(|side| (capture.size[side] - shown.size()[side]) / 2);

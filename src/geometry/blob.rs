@@ -8,25 +8,25 @@ use std::sync::{Arc, LazyLock};
 /// Shared data with its hash: the executor uploads equal data once and keeps it while it is used.
 #[derive(Debug, Clone)]
 pub struct Blob<T> {
-    data: Data<T>,
+    data: BlobData<T>,
     len: usize,
     hash: u64,
 }
 
 /// Values, or what makes them when they are first asked for.
 #[derive(Clone)]
-enum Data<T> {
+enum BlobData<T> {
     Given(Arc<[T]>),
     Made(Arc<LazyLock<Vec<T>, MakeValues<T>>>),
 }
 
 type MakeValues<T> = Box<dyn FnOnce() -> Vec<T> + Send + Sync>;
 
-impl<T: Debug> Debug for Data<T> {
+impl<T: Debug> Debug for BlobData<T> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Data::Given(values) => values.fmt(f),
-            Data::Made(values) => values.fmt(f),
+            BlobData::Given(values) => values.fmt(f),
+            BlobData::Made(values) => values.fmt(f),
         }
     }
 }
@@ -34,19 +34,19 @@ impl<T: Debug> Debug for Data<T> {
 impl<T: bytemuck::Pod> Blob<T> {
     /// Hashes `data`.
     pub fn new(data: Vec<T>) -> Blob<T> {
-        Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: Data::Given(data.into()) }
+        Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: BlobData::Given(data.into()) }
     }
 
     /// `len` values that `make` makes when they are first asked for. What has the same `identity` is taken for equal.
     pub fn made(identity: &[u8], len: usize, make: impl FnOnce() -> Vec<T> + Send + Sync + 'static) -> Blob<T> {
-        Blob { hash: hashed(identity), len, data: Data::Made(Arc::new(LazyLock::new(Box::new(make)))) }
+        Blob { hash: hashed(identity), len, data: BlobData::Made(Arc::new(LazyLock::new(Box::new(make)))) }
     }
 
     /// The values.
     pub fn data(&self) -> &[T] {
         match &self.data {
-            Data::Given(values) => values,
-            Data::Made(values) => values,
+            BlobData::Given(values) => values,
+            BlobData::Made(values) => values,
         }
     }
 

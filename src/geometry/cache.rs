@@ -2,10 +2,10 @@
 //! mesh and its place, and buffers.
 
 use super::hugging::{has_edge_on, put_hugging_last};
-use super::planar::Flattened;
+use super::planar::FlattenedCaster;
 use super::{
-    Blob, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes,
-    SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
+    Blob, CapFan, CasterPlanes, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings,
+    FarEnd, SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
 use crate::scene::{Mesh, Pose, Shading};
 use glam::{DVec3, DVec4};
@@ -35,7 +35,7 @@ pub struct GeometryCache {
     flattened: HashMap<u64, (FlattenedTriangles, bool)>,
     /// In all of them.
     flattened_kept: usize,
-    planes: HashMap<(u64, PoseBits), Arc<Planes>>,
+    planes: HashMap<(u64, PoseBits), Arc<CasterPlanes>>,
     connectivities: HashMap<u64, Arc<Connectivity>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
@@ -124,7 +124,7 @@ pub struct Caster<'a> {
 
 /// A volume that is asked for.
 #[derive(Debug, Clone, Copy)]
-pub struct VolumeOf<'a> {
+pub struct VolumeRequest<'a> {
     /// Whose.
     pub caster: Caster<'a>,
     /// It is drawn too, so its sides may hug what is seen.
@@ -152,7 +152,7 @@ impl GeometryCache {
     }
 
     /// A flattened caster: made again only if plane, caster or light changed.
-    pub fn flattened(&mut self, what: &Flattened, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
+    pub fn flattened(&mut self, what: &FlattenedCaster, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
         let key = what.key();
         if let Some((triangles, used)) = self.flattened.get_mut(&key) {
             *used = true;
@@ -179,21 +179,21 @@ impl GeometryCache {
     }
 
     /// The planes of a caster's triangles, made on first use.
-    pub fn planes(&mut self, caster: Caster) -> Arc<Planes> {
+    pub fn planes(&mut self, caster: Caster) -> Arc<CasterPlanes> {
         let key = (caster.mesh.content_hash(), pose_bits(caster.pose));
         if let Some(planes) = self.planes.get(&key) {
             return planes.clone();
         }
         self.make_room(caster.mesh);
-        let planes = Arc::new(Planes::new(caster.world, caster.mesh.triangles()));
+        let planes = Arc::new(CasterPlanes::new(caster.world, caster.mesh.triangles()));
         self.planes.insert(key, planes.clone());
         planes
     }
 
     /// Writes the indices of a volume into `out`: facings, silhouette and [`write_indices`] in
     /// buffers that are kept.
-    pub fn volume_indices(&mut self, of: &VolumeOf, out: &mut Vec<u32>) -> VolumeParts {
-        let VolumeOf { caster, light, .. } = *of;
+    pub fn volume_indices(&mut self, of: &VolumeRequest, out: &mut Vec<u32>) -> VolumeParts {
+        let VolumeRequest { caster, light, .. } = *of;
         let triangles = caster.mesh.triangles();
         let planes = self.planes(caster);
         let edges = (of.by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
@@ -206,7 +206,7 @@ impl GeometryCache {
             None => silhouette_by_search(triangles, &self.facings, found),
         }
         let hugging = if of.is_drawn { put_hugging_last(found, caster, light, edges.as_deref()) } else { 0 };
-        let fan = |light| Fan::new(caster.world, triangles, &self.facings, found, light);
+        let fan = |light| CapFan::new(caster.world, triangles, &self.facings, found, light);
         let far_end = match of.extruder.infinite_from().map(fan) {
             Some(Some(fan)) => FarEnd::Fan(fan),
             None if of.extruder.is_one_point() => FarEnd::Point,
@@ -330,22 +330,22 @@ fn pose_bits(pose: &Pose) -> PoseBits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::planar::Clip;
+    use crate::geometry::planar::FlattenClip;
     use crate::math::Plane;
 
     #[test]
     fn a_caster_is_flattened_again_only_if_something_changed() {
         let mut cache = GeometryCache::default();
-        let what = Flattened {
+        let what = FlattenedCaster {
             mesh: 7,
             pose: Pose::default(),
             plane: Plane::through(DVec3::ZERO, DVec3::Y),
             light: DVec4::new(0.0, 4.0, 0.0, 1.0),
-            clip: Clip::BetweenPlaneAndLight,
+            clip: FlattenClip::BetweenPlaneAndLight,
             own: None,
         };
         let mut made = 0;
-        let mut ask = |what: &Flattened, is_next_plan: bool| {
+        let mut ask = |what: &FlattenedCaster, is_next_plan: bool| {
             if is_next_plan {
                 cache.next_plan();
             }
@@ -356,8 +356,8 @@ mod tests {
             made
         };
         assert_eq!([ask(&what, true), ask(&what, false), ask(&what, true)], [1, 1, 1]);
-        let moved = Flattened { light: DVec4::new(0.0, 4.0, 1e-12, 1.0), ..what };
-        assert_eq!([ask(&moved, true), ask(&Flattened { own: Some(0), ..what }, false)], [2, 3]);
+        let moved = FlattenedCaster { light: DVec4::new(0.0, 4.0, 1e-12, 1.0), ..what };
+        assert_eq!([ask(&moved, true), ask(&FlattenedCaster { own: Some(0), ..what }, false)], [2, 3]);
         // Not asked for by one plan, it is forgotten by the next.
         assert_eq!([ask(&moved, true), ask(&what, true)], [3, 4]);
     }

@@ -8,7 +8,7 @@
 //! Casters that touch end on one plane, or not at all: where they share an edge, their volumes share a side's edge, and
 //! two that end in different places round apart.
 
-use super::connectivity::Sets;
+use super::connectivity::DisjointSets;
 use super::relative;
 use crate::math::AxisBox;
 use foldhash::fast::RandomState;
@@ -90,7 +90,7 @@ pub fn touching(casters: &[(AxisBox, &[DVec3])], origin: DVec3) -> Vec<Vec<usize
     let is_beside = |one: &usize| {
         grown.iter().enumerate().any(|(other, around)| other != *one && !around.common(grown[*one]).is_empty())
     };
-    let mut sets = Sets::new(casters.len());
+    let mut sets = DisjointSets::new(casters.len());
     let mut first_at: HashMap<[u32; 3], usize, RandomState> = HashMap::default();
     for one in (0..casters.len()).filter(is_beside) {
         for vertex in casters[one].1 {

@@ -12,14 +12,14 @@ pub(super) const MOST_PLACES: usize = 64;
 
 /// How often something was found, and where.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Found {
+pub struct FoundPlaces {
     /// How often.
     pub count: usize,
     /// The first places, object space: at most 64.
     pub places: Vec<DVec3>,
 }
 
-impl Found {
+impl FoundPlaces {
     pub(super) fn add(&mut self, place: DVec3) {
         self.count += 1;
         if self.places.len() < MOST_PLACES {
@@ -34,11 +34,11 @@ pub struct Connectivity {
     /// Parts that hang together by edges.
     pub components: usize,
     /// Edges of one triangle.
-    pub open_edges: Found,
+    pub open_edges: FoundPlaces,
     /// Edges of more than two triangles.
-    pub non_manifold_edges: Found,
+    pub non_manifold_edges: FoundPlaces,
     /// Edges of two triangles that both run the same way along it.
-    pub inconsistent_edges: Found,
+    pub inconsistent_edges: FoundPlaces,
     /// Of each triangle, numbered in the order of their first triangles.
     component_of: Vec<u32>,
 }
@@ -48,7 +48,7 @@ impl Connectivity {
     pub fn new(mesh: &Mesh, edges: &EdgeList) -> Connectivity {
         let positions = mesh.positions();
         let mut connectivity = Connectivity::default();
-        let mut sets = Sets::new(mesh.triangles().len());
+        let mut sets = DisjointSets::new(mesh.triangles().len());
         for (index, edge) in edges.edges().iter().enumerate() {
             let middle = || (positions[edge.low as usize] + positions[edge.high as usize]) / 2.0;
             let (mut count, mut balance, mut first) = (0, 0, 0);
@@ -88,13 +88,13 @@ impl Connectivity {
 }
 
 /// Disjoint sets of triangles, or of anything that has numbers.
-pub(super) struct Sets {
+pub(super) struct DisjointSets {
     parent: Vec<u32>,
 }
 
-impl Sets {
-    pub(super) fn new(count: usize) -> Sets {
-        Sets { parent: (0..count as u32).collect() }
+impl DisjointSets {
+    pub(super) fn new(count: usize) -> DisjointSets {
+        DisjointSets { parent: (0..count as u32).collect() }
     }
 
     fn root(&mut self, mut member: usize) -> usize {

@@ -29,7 +29,7 @@ pub struct EdgeList {
     /// The incidents of each edge; of a fan, two that stand for no triangle.
     pairs: Vec<[Incident; 2]>,
     /// In order of their edges.
-    fans: Vec<Fan>,
+    fans: Vec<NonManifoldEdge>,
     fan_incidents: Vec<Incident>,
     none: Incident,
     neighbourhoods: Vec<Neighbourhood>,
@@ -46,7 +46,7 @@ type Neighbourhood = Option<[u32; MOST_RUNS]>;
 
 /// An edge of more than two triangles: `fan_incidents[start..end]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Fan {
+struct NonManifoldEdge {
     edge: u32,
     start: u32,
     end: u32,
@@ -106,7 +106,7 @@ impl EdgeList {
         let start = self.fan_incidents.len() as u32;
         self.fan_incidents.extend(run.iter().map(|(_, incident)| *incident));
         let end = self.fan_incidents.len() as u32;
-        self.fans.push(Fan { edge: self.edges.len() as u32 - 1, start, end });
+        self.fans.push(NonManifoldEdge { edge: self.edges.len() as u32 - 1, start, end });
         [self.none; 2]
     }
 
@@ -124,7 +124,7 @@ impl EdgeList {
         used.map(|incident| (incident.triangle(), incident.direction()))
     }
 
-    fn of_fan(&self, fan: Fan) -> &[Incident] {
+    fn of_fan(&self, fan: NonManifoldEdge) -> &[Incident] {
         &self.fan_incidents[fan.start as usize..fan.end as usize]
     }
 

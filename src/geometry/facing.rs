@@ -44,9 +44,9 @@ const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 
 /// The planes of a caster's triangles, world space.
 #[derive(Debug, Clone, Default)]
-pub struct Planes {
-    blocks: Vec<Block>,
-    extremes: Vec<Extremes>,
+pub struct CasterPlanes {
+    blocks: Vec<PlaneBlock>,
+    extremes: Vec<PlaneExtremes>,
     middle: DVec3,
     /// At least the distance of any corner from `middle` along any axis.
     reach: f64,
@@ -54,7 +54,7 @@ pub struct Planes {
 
 /// Planes of [`LANES`] triangles; NaN where the plane is too uncertain to decide anything.
 #[derive(Debug, Clone)]
-struct Block {
+struct PlaneBlock {
     normal: [[f32; LANES]; 3],
     offset: [f32; LANES],
 }
@@ -62,7 +62,7 @@ struct Block {
 /// The smallest and largest components of the planes of [`RUNS`] runs: x, y, z and offset of
 /// either; NaN where one of the planes is uncertain.
 #[derive(Debug, Clone)]
-struct Extremes {
+struct PlaneExtremes {
     low: [[f32; RUNS]; 4],
     high: [[f32; RUNS]; 4],
 }
@@ -155,16 +155,16 @@ fn sign_of_run(signs: &[i8]) -> i8 {
     if signs.iter().fold(0, |different, sign| different | (sign ^ first)) == 0 { first } else { MIXED }
 }
 
-impl Planes {
+impl CasterPlanes {
     /// Of `triangles` over `world` positions.
-    pub fn new(world: &[DVec3], triangles: &[[u32; 3]]) -> Planes {
-        let Some(first) = world.first() else { return Planes::default() };
+    pub fn new(world: &[DVec3], triangles: &[[u32; 3]]) -> CasterPlanes {
+        let Some(first) = world.first() else { return CasterPlanes::default() };
         let (low, high) = world.iter().fold((*first, *first), |(low, high), p| (low.min(*p), high.max(*p)));
         let middle = low + (high - low) / 2.0;
         let reach = (high - middle).max(middle - low).max_element();
         let frame = (middle, reach);
         let block = |corners: &[[u32; 3]]| {
-            let mut block = Block { normal: [[f32::NAN; LANES]; 3], offset: [0.0; LANES] };
+            let mut block = PlaneBlock { normal: [[f32::NAN; LANES]; 3], offset: [0.0; LANES] };
             for (lane, corners) in corners.iter().enumerate() {
                 if let Some((normal, offset)) = plane(corners.map(|vertex| world[vertex as usize]), frame) {
                     (0..3).for_each(|axis| block.normal[axis][lane] = normal[axis] as f32);
@@ -173,16 +173,16 @@ impl Planes {
             }
             block
         };
-        let blocks: Vec<Block> = triangles.par_chunks(LANES).with_min_len(64).map(block).collect();
+        let blocks: Vec<PlaneBlock> = triangles.par_chunks(LANES).with_min_len(64).map(block).collect();
         let counts = triangles.chunks(LANES).map(<[_]>::len);
-        let extremes = blocks.iter().zip(counts).map(|(block, count)| Extremes::of(block, count)).collect();
-        Planes { blocks, extremes, middle, reach }
+        let extremes = blocks.iter().zip(counts).map(|(block, count)| PlaneExtremes::of(block, count)).collect();
+        CasterPlanes { blocks, extremes, middle, reach }
     }
 
     /// The exact facing of every triangle, into buffers that are kept. `world` and `triangles` are
     /// those that the planes were made of.
     pub fn facings(&self, world: &[DVec3], triangles: &[[u32; 3]], light: DVec4, out: &mut Facings) {
-        let view = View::new(self, light);
+        let view = PlaneLight::new(self, light);
         if out.signs.len() != triangles.len() + 1 {
             out.signs.clear();
             out.signs.resize(triangles.len() + 1, 0);
@@ -234,15 +234,15 @@ impl Planes {
 }
 
 /// A light as the planes see it.
-struct View {
+struct PlaneLight {
     light: [f32; 3],
     w: f32,
     /// Values beyond it have the exact sign.
     bound: f32,
 }
 
-impl View {
-    fn new(planes: &Planes, light: DVec4) -> View {
+impl PlaneLight {
+    fn new(planes: &CasterPlanes, light: DVec4) -> PlaneLight {
         let relative = match light.w == 0.0 {
             true => light.truncate() / light.truncate().abs().max_element(),
             false => (light.truncate() - planes.middle) / planes.reach,
@@ -252,11 +252,11 @@ impl View {
         // f32, and of four products and three sums.
         let sum = relative.abs().element_sum();
         let bound = (ROUNDING * (8.0 * sum + 20.0)) as f32;
-        View { light: relative.to_array().map(|part| part as f32), w: f32::from(u8::from(light.w != 0.0)), bound }
+        PlaneLight { light: relative.to_array().map(|part| part as f32), w: f32::from(u8::from(light.w != 0.0)), bound }
     }
 
     /// The sign of each run, or [`MIXED`] where its planes' extremes do not tell.
-    fn runs(&self, extremes: &Extremes) -> [i8; RUNS] {
+    fn runs(&self, extremes: &PlaneExtremes) -> [i8; RUNS] {
         let mut signs = [MIXED; RUNS];
         let light = [self.light[0], self.light[1], self.light[2], self.w];
         let (mut low, mut high) = ([0.0; RUNS], [0.0; RUNS]);
@@ -281,7 +281,7 @@ impl View {
     }
 
     /// Signs of a run; returns their sum and how many are not zero.
-    fn run(&self, block: &Block, run: usize, out: &mut [i8], exact: impl Fn(usize) -> i8) -> (i64, i64) {
+    fn run(&self, block: &PlaneBlock, run: usize, out: &mut [i8], exact: impl Fn(usize) -> i8) -> (i64, i64) {
         let [x, y, z] = self.light;
         let [nx, ny, nz] = &block.normal;
         let first = run * RUN;
@@ -298,10 +298,10 @@ impl View {
     }
 }
 
-impl Extremes {
+impl PlaneExtremes {
     /// Of the first `count` planes of a block.
-    fn of(block: &Block, count: usize) -> Extremes {
-        let mut extremes = Extremes { low: [[f32::NAN; RUNS]; 4], high: [[f32::NAN; RUNS]; 4] };
+    fn of(block: &PlaneBlock, count: usize) -> PlaneExtremes {
+        let mut extremes = PlaneExtremes { low: [[f32::NAN; RUNS]; 4], high: [[f32::NAN; RUNS]; 4] };
         let [x, y, z] = &block.normal;
         for (axis, parts) in [x, y, z, &block.offset].into_iter().enumerate() {
             for (run, parts) in parts[..count].chunks(RUN).enumerate() {
@@ -342,7 +342,7 @@ mod tests {
 
     fn assert_exact(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) {
         let mut facings = Facings::default();
-        Planes::new(world, triangles).facings(world, triangles, light, &mut facings);
+        CasterPlanes::new(world, triangles).facings(world, triangles, light, &mut facings);
         assert_eq!(facings, Facings::from_signs(facing(world, triangles, light)), "{light}");
     }
 

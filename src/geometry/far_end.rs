@@ -30,14 +30,14 @@ const OCTAHEDRON: [[u32; 3]; 8] =
 
 /// A fan at infinity, and whole spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fan {
+pub struct CapFan {
     /// The direction in which its triangles meet.
     pub apex: DVec3,
     /// Spheres that are added, or taken away.
     pub spheres: i32,
 }
 
-impl Fan {
+impl CapFan {
     /// Of a caster and a point light, with the silhouette of its casting triangles; `None` where no direction
     /// to count along was found.
     pub fn new(
@@ -46,10 +46,10 @@ impl Fan {
         facings: &Facings,
         silhouette: &[SilhouetteEdge],
         light: DVec3,
-    ) -> Option<Fan> {
+    ) -> Option<CapFan> {
         let AxisBox { low, high } = AxisBox::around(world.iter().copied());
         if let Some(apex) = into_box(low, high, light) {
-            return Some(Fan { apex, spheres: 0 });
+            return Some(CapFan { apex, spheres: 0 });
         }
         let ends = |edge: &SilhouetteEdge| {
             let [p, q] = [edge.edge.low, edge.edge.high].map(|vertex| world[vertex as usize]);
@@ -72,7 +72,7 @@ impl Fan {
             };
             Some(caps - silhouette.iter().map(of_fan).sum::<Option<i32>>()?)
         };
-        PROBES.iter().find_map(spheres_along).map(|spheres| Fan { apex, spheres })
+        PROBES.iter().find_map(spheres_along).map(|spheres| CapFan { apex, spheres })
     }
 
     /// How many triangles its spheres have.

@@ -58,7 +58,7 @@ fn edges_of(&[a, b, c]: &[u32; 3]) -> [Edge; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Casters, Facings, Planes, silhouette};
+    use crate::geometry::{CasterPlanes, Casters, Facings, silhouette};
     use crate::scene::{MeshBuilder, Pose};
     use glam::DVec3;
 
@@ -73,7 +73,12 @@ mod tests {
         let edges = EdgeList::new(mesh.triangles(), 5);
         let hugging = |light: DVec4| {
             let (mut facings, mut found) = (Facings::default(), Vec::new());
-            Planes::new(caster.world, mesh.triangles()).facings(caster.world, mesh.triangles(), light, &mut facings);
+            CasterPlanes::new(caster.world, mesh.triangles()).facings(
+                caster.world,
+                mesh.triangles(),
+                light,
+                &mut facings,
+            );
             facings.keep_casting(Casters::All);
             silhouette(&edges, &facings, &mut found);
             let (mut by_search, all) = (found.clone(), found.len());

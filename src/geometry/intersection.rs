@@ -21,15 +21,15 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
         return None;
     }
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
-    let each = |triangle: usize| (outer_box(corners(triangle)), Flat::of(corners(triangle)).is_some());
+    let each = |triangle: usize| (outer_box(corners(triangle)), FlatTriangle::of(corners(triangle)).is_some());
     let (boxes, has_area): (Vec<Aabb>, Vec<bool>) = (0..triangles.len()).into_par_iter().map(each).unzip();
     let hierarchy = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
-    let search = Search { world, triangles, boxes: &boxes, has_area: &has_area, hierarchy: &hierarchy };
+    let search = IntersectionSearch { world, triangles, boxes: &boxes, has_area: &has_area, hierarchy: &hierarchy };
     if search.finds_any() { search.first() } else { None }
 }
 
 /// Looks for triangles that meet among those whose boxes overlap.
-struct Search<'a> {
+struct IntersectionSearch<'a> {
     world: &'a [DVec3],
     triangles: &'a [[u32; 3]],
     /// Of each triangle, as is the next.
@@ -39,16 +39,16 @@ struct Search<'a> {
 }
 
 /// Two nodes of the hierarchy: which triangles below the one meet which below the other?
-type Pair = [u32; 2];
+type NodePair = [u32; 2];
 
-impl Search<'_> {
+impl IntersectionSearch<'_> {
     /// Pairs that are shared among threads, about.
     const SHARED: usize = 1024;
 
     /// The hierarchy is held against itself: no way down is gone twice, as it is where each triangle asks for those
     /// around it.
     fn finds_any(&self) -> bool {
-        let mut pairs: Vec<Pair> = vec![[0, 0]];
+        let mut pairs: Vec<NodePair> = vec![[0, 0]];
         while !pairs.is_empty() && pairs.len() < Self::SHARED {
             let mut below = Vec::with_capacity(3 * pairs.len());
             if pairs.into_iter().any(|pair| self.look(pair, &mut below)) {
@@ -68,9 +68,9 @@ impl Search<'_> {
     }
 
     /// Do triangles of two leaves meet? Of other nodes, the pairs below are added whose boxes overlap.
-    fn look(&self, [one, other]: Pair, below: &mut Vec<Pair>) -> bool {
+    fn look(&self, [one, other]: NodePair, below: &mut Vec<NodePair>) -> bool {
         let node = |index: u32| &self.hierarchy.nodes[index as usize];
-        let overlap = |pair: &Pair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
+        let overlap = |pair: &NodePair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
         let children = |index: u32| [node(index).first_index, node(index).first_index + 1];
         match (node(one).is_leaf(), node(other).is_leaf()) {
             (true, true) => return self.meet_in(self.leaf(node(one)), self.leaf(node(other))),
@@ -166,20 +166,20 @@ fn opposite(one: Sign, other: Sign) -> bool {
 }
 
 /// A triangle and points of its plane in two dimensions, along an axis from which it has an area.
-struct Flat {
+struct FlatTriangle {
     axis: usize,
     corners: [DVec2; 3],
     /// Which way its corners run.
     turn: Sign,
 }
 
-impl Flat {
+impl FlatTriangle {
     /// `None` where the corners are collinear.
-    fn of(triangle: [DVec3; 3]) -> Option<Flat> {
+    fn of(triangle: [DVec3; 3]) -> Option<FlatTriangle> {
         (0..3).find_map(|axis| {
             let corners = triangle.map(|corner| flat(corner, axis));
             let turn = side_of_line([corners[0], corners[1]], corners[2]);
-            (turn != Sign::Zero).then_some(Flat { axis, corners, turn })
+            (turn != Sign::Zero).then_some(FlatTriangle { axis, corners, turn })
         })
     }
 
@@ -214,7 +214,7 @@ fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
     if side([from, to, tip], other_tip) != Sign::Zero {
         return false;
     }
-    let Some(flat) = Flat::of([from, to, tip]) else { return true };
+    let Some(flat) = FlatTriangle::of([from, to, tip]) else { return true };
     flat.inside_of(0, flat.flat(other_tip)) >= 0
 }
 
@@ -229,7 +229,7 @@ fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     if same_side(of_one) {
         return false;
     }
-    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
+    let (Some(flat_one), Some(flat_other)) = (FlatTriangle::of(one), FlatTriangle::of(other)) else { return true };
     match of_other {
         [Sign::Zero, Sign::Zero] => !wedges_are_apart(&flat_one, [other[1], other[2]]),
         // One edge of the other lies in this plane; all else of it is on one side.
@@ -251,11 +251,11 @@ fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
 }
 
 /// Wedges of one plane with a common apex: does a line along an edge of either part them?
-fn wedges_are_apart(one: &Flat, other: [DVec3; 2]) -> bool {
+fn wedges_are_apart(one: &FlatTriangle, other: [DVec3; 2]) -> bool {
     let apex = one.corners[0];
     let [c, d] = other.map(|point| one.flat(point));
     let turn = side_of_line([apex, c], d);
-    let other = Flat { axis: one.axis, corners: [apex, c, d], turn };
+    let other = FlatTriangle { axis: one.axis, corners: [apex, c, d], turn };
     // Wedges that overlap do so up to an edge of one in the other.
     let [_, a, b] = one.corners;
     turn != Sign::Zero
@@ -274,12 +274,12 @@ fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     if one_side(of_one) {
         return false;
     }
-    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
+    let (Some(flat_one), Some(flat_other)) = (FlatTriangle::of(one), FlatTriangle::of(other)) else { return true };
     if of_other == [Sign::Zero; 3] {
         return !flat_one.keeps_out(&other.map(|corner| flat_one.flat(corner)))
             && !flat_along(other, flat_one.axis).keeps_out(&flat_one.corners);
     }
-    let pierces = |plane: [DVec3; 3], flat: &Flat, points: [DVec3; 3], sides: [Sign; 3]| {
+    let pierces = |plane: [DVec3; 3], flat: &FlatTriangle, points: [DVec3; 3], sides: [Sign; 3]| {
         (0..3).any(|i| {
             let next = (i + 1) % 3;
             segment_meets(plane, flat, [points[i], points[next]], [sides[i], sides[next]])
@@ -289,13 +289,13 @@ fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
 }
 
 /// A triangle along a given axis; it has an area there, since it lies in a plane that has.
-fn flat_along(triangle: [DVec3; 3], axis: usize) -> Flat {
+fn flat_along(triangle: [DVec3; 3], axis: usize) -> FlatTriangle {
     let corners = triangle.map(|corner| flat(corner, axis));
-    Flat { axis, corners, turn: side_of_line([corners[0], corners[1]], corners[2]) }
+    FlatTriangle { axis, corners, turn: side_of_line([corners[0], corners[1]], corners[2]) }
 }
 
 /// Does a segment meet a closed triangle? `sides` are those of its ends.
-fn segment_meets(triangle: [DVec3; 3], flat: &Flat, [from, to]: [DVec3; 2], sides: [Sign; 2]) -> bool {
+fn segment_meets(triangle: [DVec3; 3], flat: &FlatTriangle, [from, to]: [DVec3; 2], sides: [Sign; 2]) -> bool {
     if sides[0] == sides[1] {
         // In the plane: apart if an edge of the triangle keeps both ends out, or the segment's line
         // all corners.

@@ -24,10 +24,12 @@ pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> boo
         return true;
     }
     let all = AxisBox::around(triangles.iter().flatten().copied());
-    let (faces, whole): (&[Face], _) =
-        if light.w != 0.0 { (&Face::ALL, Cell::FACE) } else { (&[Face::AHEAD], Cell::PLANE) };
-    let grid = |face: &Face| Some(Grid::new(*face, whole.part_before(&face.seen(&all.corners()))?, triangles.len()));
-    let grids: Vec<Grid> = faces.iter().filter_map(grid).collect();
+    let (faces, whole): (&[CubeFace], _) =
+        if light.w != 0.0 { (&CubeFace::ALL, DirectionCell::FACE) } else { (&[CubeFace::AHEAD], DirectionCell::PLANE) };
+    let grid = |face: &CubeFace| {
+        Some(CoverageGrid::new(*face, whole.part_before(&face.seen(&all.corners()))?, triangles.len()))
+    };
+    let grids: Vec<CoverageGrid> = faces.iter().filter_map(grid).collect();
     exceeds_in_boxes(&triangles, &grids, limit).unwrap_or_else(|| {
         grids.iter().any(|grid| {
             let seen = triangles.iter().map(|corners| grid.face.seen(corners));
@@ -66,20 +68,20 @@ fn around(low: f64, high: f64) -> [f64; 2] {
 
 /// A face of the cube around a light: its axis, and on which side.
 #[derive(Debug, Clone, Copy)]
-struct Face {
+struct CubeFace {
     axis: usize,
     side: f64,
 }
 
-impl Face {
-    const AHEAD: Face = Face { axis: 2, side: 1.0 };
-    const ALL: [Face; 6] = [
-        Face { axis: 0, side: 1.0 },
-        Face { axis: 0, side: -1.0 },
-        Face { axis: 1, side: 1.0 },
-        Face { axis: 1, side: -1.0 },
-        Face::AHEAD,
-        Face { axis: 2, side: -1.0 },
+impl CubeFace {
+    const AHEAD: CubeFace = CubeFace { axis: 2, side: 1.0 };
+    const ALL: [CubeFace; 6] = [
+        CubeFace { axis: 0, side: 1.0 },
+        CubeFace { axis: 0, side: -1.0 },
+        CubeFace { axis: 1, side: 1.0 },
+        CubeFace { axis: 1, side: -1.0 },
+        CubeFace::AHEAD,
+        CubeFace { axis: 2, side: -1.0 },
     ];
 
     /// Of each corner, how far it is across, across and ahead.
@@ -92,19 +94,19 @@ impl Face {
 }
 
 /// What triangles may cover of a face, in boxes.
-struct Grid {
-    face: Face,
-    cell: Cell,
+struct CoverageGrid {
+    face: CubeFace,
+    cell: DirectionCell,
     boxes: usize,
     /// Boxes for a step across.
     scale: [f64; 2],
 }
 
-impl Grid {
-    fn new(face: Face, cell: Cell, triangles: usize) -> Grid {
+impl CoverageGrid {
+    fn new(face: CubeFace, cell: DirectionCell, triangles: usize) -> CoverageGrid {
         let boxes = (2.0 * (triangles as f64).sqrt()).clamp(16.0, MOST_BOXES as f64);
         let scale = [0, 1].map(|axis| boxes / (cell.high[axis] - cell.low[axis]));
-        Grid { face, cell, boxes: boxes as usize, scale }
+        CoverageGrid { face, cell, boxes: boxes as usize, scale }
     }
 
     /// Which boxes the box around a triangle touches: first and last along both sides; `None` where it is beyond them.
@@ -130,24 +132,24 @@ impl Grid {
     }
 
     /// The directions through a box.
-    fn directions(&self, at: [usize; 2]) -> Cell {
+    fn directions(&self, at: [usize; 2]) -> DirectionCell {
         let border = |axis: usize, index: usize| self.cell.low[axis] + index as f64 / self.scale[axis];
         let borders = |more: usize| [border(0, at[0] + more), border(1, at[1] + more)];
-        Cell { low: borders(0), high: borders(1) }
+        DirectionCell { low: borders(0), high: borders(1) }
     }
 }
 
 /// A box that more may reach into than the limit.
-struct Full<'a> {
-    grid: &'a Grid,
+struct OverLimit<'a> {
+    grid: &'a CoverageGrid,
     at: [usize; 2],
     inner: Vec<[DVec3; 3]>,
 }
 
 /// Can a ray meet more than `limit`? In each of many boxes, the triangles that may reach into it are counted, with one look
 /// at each triangle; only full boxes are divided further. `None` where they are many.
-fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[Grid], limit: usize) -> Option<bool> {
-    let mut full: Vec<Full> = Vec::new();
+fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[CoverageGrid], limit: usize) -> Option<bool> {
+    let mut full: Vec<OverLimit> = Vec::new();
     let mut in_full = 0;
     for grid in grids {
         let width = grid.boxes + 1;
@@ -171,7 +173,7 @@ fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[Grid], limit: usize) -> O
                     if full.len() >= MOST_FULL || in_full > MOST_IN_FULL.max(2 * triangles.len()) {
                         return None;
                     }
-                    full.push(Full { grid, at: [x, y], inner: Vec::new() });
+                    full.push(OverLimit { grid, at: [x, y], inner: Vec::new() });
                 }
             }
         }
@@ -180,7 +182,7 @@ fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[Grid], limit: usize) -> O
         let grid = of_grid[0].grid;
         for corners in triangles {
             let Some([[left, right], [top, bottom]]) = grid.touched(corners) else { continue };
-            for Full { at: [x, y], inner, .. } in &mut *of_grid {
+            for OverLimit { at: [x, y], inner, .. } in &mut *of_grid {
                 if (left..=right).contains(x) && (top..=bottom).contains(y) {
                     inner.push(grid.face.seen(corners));
                 }
@@ -195,19 +197,19 @@ const FLAT: f64 = 1e-13;
 
 /// Directions (x, y, 1) with x and y in a range.
 #[derive(Clone, Copy)]
-struct Cell {
+struct DirectionCell {
     low: [f64; 2],
     high: [f64; 2],
 }
 
-impl Cell {
+impl DirectionCell {
     /// A face of the cube around a light.
-    const FACE: Cell = Cell { low: [-1.0 - BESIDE; 2], high: [1.0 + BESIDE; 2] };
+    const FACE: DirectionCell = DirectionCell { low: [-1.0 - BESIDE; 2], high: [1.0 + BESIDE; 2] };
     /// All that is ahead.
-    const PLANE: Cell = Cell { low: [f64::NEG_INFINITY; 2], high: [f64::INFINITY; 2] };
+    const PLANE: DirectionCell = DirectionCell { low: [f64::NEG_INFINITY; 2], high: [f64::INFINITY; 2] };
 
     /// What of it a box can cover whose corners these are; all, where it reaches behind the light.
-    fn part_before(&self, corners: &[DVec3; 8]) -> Option<Cell> {
+    fn part_before(&self, corners: &[DVec3; 8]) -> Option<DirectionCell> {
         if corners.iter().any(|corner| corner.z <= 0.0) {
             return self.may_hold(corners).then_some(*self);
         }
@@ -219,7 +221,7 @@ impl Cell {
             (low < high).then_some((low, high))
         };
         let ((left, right), (lower, upper)) = (along(0)?, along(1)?);
-        Some(Cell { low: [left, lower], high: [right, upper] })
+        Some(DirectionCell { low: [left, lower], high: [right, upper] })
     }
 
     fn exceeds(&self, triangles: &[[DVec3; 3]], limit: usize, halvings: u32) -> bool {
@@ -230,10 +232,11 @@ impl Cell {
             return true;
         }
         let middle = [0, 1].map(|axis| (self.low[axis] + self.high[axis]) / 2.0);
-        let quarters = [(false, false), (true, false), (false, true), (true, true)].map(|(right, upper)| Cell {
-            low: [if right { middle[0] } else { self.low[0] }, if upper { middle[1] } else { self.low[1] }],
-            high: [if right { self.high[0] } else { middle[0] }, if upper { self.high[1] } else { middle[1] }],
-        });
+        let quarters =
+            [(false, false), (true, false), (false, true), (true, true)].map(|(right, upper)| DirectionCell {
+                low: [if right { middle[0] } else { self.low[0] }, if upper { middle[1] } else { self.low[1] }],
+                high: [if right { self.high[0] } else { middle[0] }, if upper { self.high[1] } else { middle[1] }],
+            });
         quarters.iter().any(|quarter| {
             let mut inner: Vec<_> = triangles.iter().filter(|corners| quarter.may_hold(corners)).copied().collect();
             // Looking at edges takes longest, and is needed only where cells as such don't tell.
@@ -281,8 +284,10 @@ mod tests {
     fn in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
         let triangles = seen_from(triangles.to_vec(), light.extend(1.0));
         let all = AxisBox::around(triangles.iter().flatten().copied()).corners();
-        let grid = |face: &Face| Some(Grid::new(*face, Cell::FACE.part_before(&face.seen(&all))?, triangles.len()));
-        exceeds_in_boxes(&triangles, &Face::ALL.iter().filter_map(grid).collect::<Vec<_>>(), limit)
+        let grid = |face: &CubeFace| {
+            Some(CoverageGrid::new(*face, DirectionCell::FACE.part_before(&face.seen(&all))?, triangles.len()))
+        };
+        exceeds_in_boxes(&triangles, &CubeFace::ALL.iter().filter_map(grid).collect::<Vec<_>>(), limit)
     }
 
     fn stack(count: usize) -> Vec<[DVec3; 3]> {

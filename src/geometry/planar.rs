@@ -31,7 +31,7 @@ pub struct Receiver {
 /// transform. Triangles without area belong to none.
 pub fn receivers(object: &[DVec3], world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Vec<Receiver> {
     let edges_of = edges_of_triangles(triangles.len(), edges);
-    let mut walk = Walk { edges, edges_of, taken: vec![false; triangles.len()] };
+    let mut walk = EdgeTraversal { edges, edges_of, taken: vec![false; triangles.len()] };
     let size = extent(object);
     let mut found = Vec::new();
     for seed in 0..triangles.len() {
@@ -68,13 +68,13 @@ fn edges_of_triangles(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
 }
 
 /// Finds what can be reached over shared edges.
-struct Walk<'a> {
+struct EdgeTraversal<'a> {
     edges: &'a EdgeList,
     edges_of: Vec<Vec<u32>>,
     taken: Vec<bool>,
 }
 
-impl Walk<'_> {
+impl EdgeTraversal<'_> {
     /// The triangles connected with `seed` that `belongs` lets in, ascending. They are taken then.
     fn from(&mut self, seed: u32, belongs: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut members = vec![seed];
@@ -113,7 +113,7 @@ fn receiver(world: &[DVec3], triangles: &[[u32; 3]], members: Vec<u32>) -> Optio
 
 /// What of a caster is flattened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Clip {
+pub enum FlattenClip {
     /// What lies between plane and light.
     BetweenPlaneAndLight,
     /// All of it, as if there were no such limits: what is beyond the light gives an anti-shadow,
@@ -123,7 +123,7 @@ pub enum Clip {
 
 /// What a flattened caster depends on.
 #[derive(Debug, Clone, Copy)]
-pub struct Flattened {
+pub struct FlattenedCaster {
     /// Hash of the caster's mesh …
     pub mesh: u64,
     /// … and where it is placed.
@@ -133,12 +133,12 @@ pub struct Flattened {
     /// Homogeneous.
     pub light: DVec4,
     /// How much of it.
-    pub clip: Clip,
+    pub clip: FlattenClip,
     /// The receiver's first triangle, where it is a part of the caster.
     pub own: Option<u32>,
 }
 
-impl Flattened {
+impl FlattenedCaster {
     /// Equal for equal numbers, bit for bit.
     pub fn key(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
@@ -153,7 +153,7 @@ impl Flattened {
 pub struct Flattener {
     plane: Plane,
     light: DVec4,
-    clip: Clip,
+    clip: FlattenClip,
     /// Signed distance of the light (point) or its direction's normal part (directional); > 0.
     light_height: f64,
     /// Homogeneous world positions of the shadows so far, three a triangle.
@@ -162,7 +162,7 @@ pub struct Flattener {
 
 impl Flattener {
     /// Onto `plane`, turned towards the light; `None` where the light lies in the plane.
-    pub fn new(plane: Plane, light: DVec4, clip: Clip) -> Option<Flattener> {
+    pub fn new(plane: Plane, light: DVec4, clip: FlattenClip) -> Option<Flattener> {
         let plane = if plane.at(light) < 0.0 { plane.turned() } else { plane };
         let light_height = plane.at(light);
         (light_height > 0.0).then(|| Flattener { plane, light, clip, light_height, triangles: Vec::new() })
@@ -173,18 +173,18 @@ impl Flattener {
     pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
         let mut heights: Vec<f64> = world.iter().map(|position| self.plane.height(*position)).collect();
         on_plane.iter().for_each(|vertex| heights[*vertex as usize] = 0.0);
-        if self.clip == Clip::BetweenPlaneAndLight && heights.iter().all(|height| *height <= 0.0) {
+        if self.clip == FlattenClip::BetweenPlaneAndLight && heights.iter().all(|height| *height <= 0.0) {
             return;
         }
         for corners in triangles {
             let corners = corners.map(|vertex| (world[vertex as usize], heights[vertex as usize]));
             match self.clip {
-                Clip::BetweenPlaneAndLight if corners.iter().any(|(_, height)| *height > 0.0) => {
+                FlattenClip::BetweenPlaneAndLight if corners.iter().any(|(_, height)| *height > 0.0) => {
                     self.add_triangle(corners);
                 }
-                Clip::BetweenPlaneAndLight => {}
-                Clip::Off if corners.iter().all(|(_, height)| *height == 0.0) => {}
-                Clip::Off => self.triangles.push(corners.map(|(point, height)| self.projected(point, height))),
+                FlattenClip::BetweenPlaneAndLight => {}
+                FlattenClip::Off if corners.iter().all(|(_, height)| *height == 0.0) => {}
+                FlattenClip::Off => self.triangles.push(corners.map(|(point, height)| self.projected(point, height))),
             }
         }
     }
@@ -256,8 +256,9 @@ mod tests {
     }
 
     fn shadow_area(corners: [DVec3; 3], light: DVec4) -> f64 {
-        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), light, Clip::BetweenPlaneAndLight)
-            .expect("a light above");
+        let mut flattener =
+            Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), light, FlattenClip::BetweenPlaneAndLight)
+                .expect("a light above");
         flattener.add(&corners, &[[0, 1, 2]], &[]);
         let area = |[a, b, c]: [DVec4; 3]| {
             let [a, b, c] = [a, b, c].map(|v| v.truncate() / v.w);
@@ -273,7 +274,7 @@ mod tests {
     fn a_shadow_is_where_the_ray_from_the_light_meets_the_plane() {
         let plane = Plane::through(DVec3::new(0.3, -1.0, 2.0), DVec3::new(0.2, 1.0, -0.1));
         for light in [DVec4::new(3.0, 7.0, -2.0, 1.0), DVec4::new(0.4, 1.0, 0.3, 0.0)] {
-            let flattener = Flattener::new(plane, light, Clip::BetweenPlaneAndLight).expect("a light above");
+            let flattener = Flattener::new(plane, light, FlattenClip::BetweenPlaneAndLight).expect("a light above");
             for point in [DVec3::new(0.0, 1.0, 0.0), DVec3::new(-4.0, 2.0, 5.0), DVec3::new(1.0, 0.5, 1.0)] {
                 let shadow = flattener.shadow(point, plane.at(point.extend(1.0)));
                 assert!(shadow.w > 0.0);
@@ -304,8 +305,9 @@ mod tests {
     #[test]
     fn a_triangle_that_reaches_past_the_light_throws_a_shadow_to_infinity() {
         let corners = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 1.0, 0.0), DVec3::new(1.0, 6.0, 0.5)];
-        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), LIGHT, Clip::BetweenPlaneAndLight)
-            .expect("a light above");
+        let mut flattener =
+            Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), LIGHT, FlattenClip::BetweenPlaneAndLight)
+                .expect("a light above");
         flattener.add(&corners, &[[0, 1, 2]], &[]);
         let corners: Vec<DVec4> = flattener.finish().into_iter().flatten().collect();
         assert!(corners.iter().all(|corner| corner.w >= 0.0));

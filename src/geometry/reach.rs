@@ -41,7 +41,7 @@ pub enum NearClipVolume {
 
 /// Where a body lies outside of a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outside {
+pub struct OutsidePlane {
     /// Which plane, by its place in the volume.
     pub plane: usize,
     /// How far its nearest point is from it, metres; infinite where all its points are directions.
@@ -92,7 +92,7 @@ impl ViewVolume {
 
     /// Where points lie outside of the view: nothing between them is seen. Points are homogeneous and
     /// relative to the eye; `w = 0` is a direction.
-    pub fn outside(&self, points: &[DVec4]) -> Option<Outside> {
+    pub fn outside(&self, points: &[DVec4]) -> Option<OutsidePlane> {
         outside(&self.planes, points)
     }
 
@@ -102,10 +102,10 @@ impl ViewVolume {
     }
 
     /// The same of points at infinity: the near plane is no matter there.
-    pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<Outside> {
+    pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<OutsidePlane> {
         let points: Vec<DVec4> = directions.iter().map(|direction| direction.extend(0.0)).collect();
         let sides = outside(&self.planes[1..], &points);
-        sides.map(|found| Outside { plane: found.plane + 1, ..found })
+        sides.map(|found| OutsidePlane { plane: found.plane + 1, ..found })
     }
 
     /// The space between the near rectangle and a light, homogeneous and relative to the eye.
@@ -135,7 +135,7 @@ impl ViewVolume {
 
 impl NearClipVolume {
     /// Where points lie outside of it; `None` where they may not.
-    pub fn outside(&self, points: &[DVec4]) -> Option<Outside> {
+    pub fn outside(&self, points: &[DVec4]) -> Option<OutsidePlane> {
         match self {
             NearClipVolume::Planes(planes) => outside(planes, points),
             NearClipVolume::Slab(plane) => outside(&[*plane, plane.turned()], points),
@@ -144,7 +144,7 @@ impl NearClipVolume {
 }
 
 /// The first plane that all points are outside of.
-fn outside(planes: &[Plane], points: &[DVec4]) -> Option<Outside> {
+fn outside(planes: &[Plane], points: &[DVec4]) -> Option<OutsidePlane> {
     let beyond = |plane: &Plane| {
         let mut nearest = f64::INFINITY;
         for point in points {
@@ -160,7 +160,7 @@ fn outside(planes: &[Plane], points: &[DVec4]) -> Option<Outside> {
         }
         Some(nearest)
     };
-    let found = planes.iter().enumerate().find_map(|(plane, of)| Some(Outside { plane, distance: beyond(of)? }));
+    let found = planes.iter().enumerate().find_map(|(plane, of)| Some(OutsidePlane { plane, distance: beyond(of)? }));
     found.filter(|_| !points.is_empty())
 }
 

@@ -17,7 +17,7 @@ const PARALLEL: f64 = 1e-9;
 
 /// A parallelogram around a flat receiver, in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parallelogram {
+pub struct ReceiverParallelogram {
     /// One corner.
     pub corner: DVec3,
     /// The edge along which the texture's columns run.
@@ -26,10 +26,10 @@ pub struct Parallelogram {
     pub ey: DVec3,
 }
 
-impl Parallelogram {
+impl ReceiverParallelogram {
     /// The receiver itself where it is one, else the smallest rectangle around it along one of
     /// its edges.
-    pub fn around(receiver: &Receiver, world: &[DVec3], triangles: &[[u32; 3]]) -> Parallelogram {
+    pub fn around(receiver: &Receiver, world: &[DVec3], triangles: &[[u32; 3]]) -> ReceiverParallelogram {
         let members = || receiver.triangles.iter().map(|triangle| triangles[*triangle as usize]);
         let mut vertices: Vec<u32> = members().flatten().collect();
         vertices.sort_unstable();
@@ -44,7 +44,7 @@ impl Parallelogram {
             let directions = edges.map(|(from, to)| world[to as usize] - world[from as usize]);
             let rectangles = directions.filter_map(|edge| rectangle(&points, edge, receiver.plane.normal));
             let smallest = rectangles.min_by(|a, b| a.area().total_cmp(&b.area()));
-            smallest.unwrap_or(Parallelogram { corner: points[0], ex: DVec3::X, ey: DVec3::Y })
+            smallest.unwrap_or(ReceiverParallelogram { corner: points[0], ex: DVec3::X, ey: DVec3::Y })
         })
     }
 
@@ -54,7 +54,7 @@ impl Parallelogram {
 
     /// Box space from world space for a homogeneous light; `None` where it lies in the plane.
     pub fn box_from_world(&self, light: DVec4) -> Option<DMat4> {
-        let Parallelogram { corner: b, ex, ey } = *self;
+        let ReceiverParallelogram { corner: b, ex, ey } = *self;
         // From the light to the corner; for a directional light against its direction.
         let ew = b * light.w - light.truncate();
         let across_x = ew.cross(ey);
@@ -88,14 +88,14 @@ impl Parallelogram {
 }
 
 /// Of four corners, the last opposite to the first.
-fn parallelogram((corner, a, b, opposite): (DVec3, DVec3, DVec3, DVec3)) -> Option<Parallelogram> {
+fn parallelogram((corner, a, b, opposite): (DVec3, DVec3, DVec3, DVec3)) -> Option<ReceiverParallelogram> {
     let (ex, ey) = (a - corner, b - corner);
     let is_closed = (corner + ex + ey - opposite).length() <= PARALLEL * (ex.length() + ey.length());
-    is_closed.then_some(Parallelogram { corner, ex, ey })
+    is_closed.then_some(ReceiverParallelogram { corner, ex, ey })
 }
 
 /// Around points of a plane, along a direction in it.
-fn rectangle(points: &[DVec3], along: DVec3, normal: DVec3) -> Option<Parallelogram> {
+fn rectangle(points: &[DVec3], along: DVec3, normal: DVec3) -> Option<ReceiverParallelogram> {
     let u = along.try_normalize()?;
     let v = normal.cross(u).try_normalize()?;
     let first = *points.first()?;
@@ -106,14 +106,14 @@ fn rectangle(points: &[DVec3], along: DVec3, normal: DVec3) -> Option<Parallelog
         }
     }
     let corner = first + u * low[0] + v * low[1];
-    Some(Parallelogram { corner, ex: u * (high[0] - low[0]), ey: v * (high[1] - low[1]) })
+    Some(ReceiverParallelogram { corner, ex: u * (high[0] - low[0]), ey: v * (high[1] - low[1]) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const SLANTED: Parallelogram = Parallelogram {
+    const SLANTED: ReceiverParallelogram = ReceiverParallelogram {
         corner: DVec3::new(1.0, 0.5, -2.0),
         ex: DVec3::new(2.0, 0.25, 0.0),
         ey: DVec3::new(0.5, -0.25, 3.0),

@@ -3,7 +3,7 @@
 //! Nothing here is mended; z-fail with all casters needs no mending. It is what a person wants to
 //! know of a model, and what decides whether simpler ways would do.
 
-use super::connectivity::{Connectivity, Found, MOST_PLACES};
+use super::connectivity::{Connectivity, FoundPlaces, MOST_PLACES};
 use crate::math::{Sign, side_of_line};
 use crate::scene::Mesh;
 use foldhash::fast::RandomState;
@@ -26,9 +26,9 @@ pub struct Topology {
     /// Pairs of vertices that are not bit-identical, yet nearer than a millionth of the size: welding
     /// joins equal positions only. (Positions that a file splits by normal or texture coordinate are
     /// bit-identical, and whole again.)
-    pub split_vertices: Found,
+    pub split_vertices: FoundPlaces,
     /// Triangles whose corners are collinear.
-    pub flat_triangles: Found,
+    pub flat_triangles: FoundPlaces,
     /// Triangles with two equal corners, which loading left out.
     pub dropped_triangles: usize,
 }
@@ -41,7 +41,7 @@ impl Topology {
             triangles: triangles.len(),
             connectivity,
             split_vertices: split_vertices(mesh),
-            flat_triangles: Found::default(),
+            flat_triangles: FoundPlaces::default(),
             dropped_triangles: mesh.dropped_triangles(),
         };
         for corners in triangles {
@@ -112,8 +112,8 @@ fn is_flat(corners: [DVec3; 3]) -> bool {
 }
 
 /// Pairs of vertices within [`NEAR`] of the size: looked for in a lattice of cells twice as wide.
-fn split_vertices(mesh: &Mesh) -> Found {
-    let mut found = Found::default();
+fn split_vertices(mesh: &Mesh) -> FoundPlaces {
+    let mut found = FoundPlaces::default();
     let Some((low, high)) = mesh.bounds() else { return found };
     let near = (high - low).length() * NEAR;
     if near.is_nan() || near <= 0.0 {

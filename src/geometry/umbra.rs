@@ -24,18 +24,18 @@ pub enum ConvexBody {
 
 /// A convex body with its size, as something that may hold others in its umbra.
 #[derive(Debug, Clone)]
-pub struct Occluder {
+pub struct ConvexOccluder {
     body: ConvexBody,
     size: f64,
 }
 
-impl Occluder {
+impl ConvexOccluder {
     /// Meshes of more triangles are not looked at: what stands before others is mostly a wall, board or box.
     pub const MOST_TRIANGLES: usize = 64;
 
     /// A mesh, if it is convex and small. `edges` are those of `triangles`.
-    pub fn new(world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Option<Occluder> {
-        if triangles.is_empty() || triangles.len() > Occluder::MOST_TRIANGLES {
+    pub fn new(world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Option<ConvexOccluder> {
+        if triangles.is_empty() || triangles.len() > ConvexOccluder::MOST_TRIANGLES {
             return None;
         }
         let used = || triangles.iter().flatten().map(|vertex| world[*vertex as usize]);
@@ -69,7 +69,7 @@ impl Occluder {
         };
         let (ConvexBody::Solid(outside) | ConvexBody::Sheet(_, outside)) = &body;
         let is_convex = outside.iter().all(|plane| used().all(|point| plane.at(point.extend(1.0)) <= flatness));
-        (is_convex && !outside.is_empty()).then_some(Occluder { body, size })
+        (is_convex && !outside.is_empty()).then_some(ConvexOccluder { body, size })
     }
 
     /// Are all these points deep in its umbra? With no points, no.
@@ -135,7 +135,7 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Con
     let used = |part: &Vec<[u32; 3]>| AxisBox::around(part.iter().flatten().map(|vertex| world[*vertex as usize]));
     let bounds: Vec<AxisBox> = parts.iter().map(used).collect();
     let size = |part: &usize| bounds[*part].diagonal();
-    let may_hold = |part: &usize| parts[*part].len() <= Occluder::MOST_TRIANGLES;
+    let may_hold = |part: &usize| parts[*part].len() <= ConvexOccluder::MOST_TRIANGLES;
     let mut largest: Vec<usize> = (0..parts.len()).filter(may_hold).collect();
     if largest.is_empty() {
         return Vec::new();
@@ -144,9 +144,9 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Con
     let holder = |part: usize| {
         let (vertices, triangles) = alone(world, &parts[part]);
         let edges = EdgeList::new(&triangles, vertices.len());
-        Some((part, Occluder::new(&vertices, &triangles, &edges)?))
+        Some((part, ConvexOccluder::new(&vertices, &triangles, &edges)?))
     };
-    let holders: Vec<(usize, Occluder)> = largest.into_iter().take(MOST_HOLDERS).filter_map(holder).collect();
+    let holders: Vec<(usize, ConvexOccluder)> = largest.into_iter().take(MOST_HOLDERS).filter_map(holder).collect();
     let is_held = |(part, bounds): (usize, &AxisBox)| {
         let corners = bounds.corners();
         holders.iter().any(|(other, holder)| *other != part && holder.darkens_all(&corners, light))
@@ -179,9 +179,9 @@ mod tests {
     use super::*;
     use crate::scene::shapes;
 
-    fn occluder(mesh: &crate::scene::Mesh, offset: DVec3) -> Option<Occluder> {
+    fn occluder(mesh: &crate::scene::Mesh, offset: DVec3) -> Option<ConvexOccluder> {
         let world: Vec<DVec3> = mesh.positions().iter().map(|point| *point + offset).collect();
-        Occluder::new(&world, mesh.triangles(), &EdgeList::new(mesh.triangles(), world.len()))
+        ConvexOccluder::new(&world, mesh.triangles(), &EdgeList::new(mesh.triangles(), world.len()))
     }
 
     const LAMP: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
@@ -254,7 +254,7 @@ mod tests {
         assert!(occluder(&shapes::torus(1.0, 0.3, 4, 3).expect("a torus"), DVec3::ZERO).is_none());
         let of = |points: &[[f64; 3]], triangles: &[[u32; 3]]| {
             let world: Vec<DVec3> = points.iter().map(|point| DVec3::from_array(*point)).collect();
-            Occluder::new(&world, triangles, &EdgeList::new(triangles, world.len()))
+            ConvexOccluder::new(&world, triangles, &EdgeList::new(triangles, world.len()))
         };
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.0, -1.0], [0.3, 0.0, -0.3]];
         assert!(of(&corners, &[[0, 1, 2], [0, 2, 3]]).is_some());

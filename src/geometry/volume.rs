@@ -9,7 +9,7 @@
 //!   are bit-equal to the surface's; those that face the light first (unturned), then those that
 //!   had to be turned, which are drawn with front and back operations swapped.
 //! - *dark cap*: closes the far end ([`FarEnd`]): where all far vertices are one point, with nothing;
-//!   at infinity with a [`Fan`]; else with the same triangles carried away. Those have no indices of their own: they are the light cap's with the number of
+//!   at infinity with a [`CapFan`]; else with the same triangles carried away. Those have no indices of their own: they are the light cap's with the number of
 //!   near vertices added to each, and they must face away from the light, so it is the other of
 //!   the two runs that counts as turned.
 //!
@@ -17,7 +17,7 @@
 //! a buffer that may be kept, by several threads where there are many.
 
 use super::facing::{MIXED, RUN};
-use super::far_end::Fan;
+use super::far_end::CapFan;
 use super::{Carry, ClampedEnd, Facings, SilhouetteEdge, relative};
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
@@ -49,7 +49,7 @@ pub enum FarEnd {
     /// Nothing: all sides meet in one point, where a directional light's rays go.
     Point,
     /// A triangle for each quad of the sides, from its far edge to one direction.
-    Fan(Fan),
+    Fan(CapFan),
     /// The casting triangles, carried away.
     Caps,
 }
@@ -144,7 +144,7 @@ pub enum DarkCap {
     #[default]
     None,
     /// Triangles of its own, that face outwards, with vertices after all others.
-    Fan(Range<usize>, Fan),
+    Fan(Range<usize>, CapFan),
     /// The light cap's triangles with this added to their indices, the number of near vertices.
     Carried(u32),
 }
@@ -185,7 +185,7 @@ pub fn write_indices(
     far_end: FarEnd,
     out: &mut Vec<u32>,
 ) -> VolumeParts {
-    let far = Far { first: vertex_count as u32, is_one_point: matches!(far_end, FarEnd::Point) };
+    let far = FarVertices { first: vertex_count as u32, is_one_point: matches!(far_end, FarEnd::Point) };
     let edges = silhouette.split_at(silhouette.len() - hugging);
     let quads = |edges: &[SilhouetteEdge]| -> usize {
         edges.iter().map(|edge| edge.multiplicity.unsigned_abs() as usize).sum()
@@ -218,7 +218,7 @@ pub fn write_indices(
         spheres.iter_mut().zip(of.sphere_indices(far.apex() + 1)).for_each(|(out, triangle)| *out = triangle);
     }
     let (towards, away) = caps.split_at_mut(facings.towards());
-    let caps = Caps { towards, away };
+    let caps = CapIndices { towards, away };
     if triangles.len() <= 2 * SHARE {
         caps.write(triangles, facings.signs(), facings.runs());
     } else {
@@ -234,12 +234,12 @@ pub fn write_indices(
 
 /// Where far vertices are.
 #[derive(Clone, Copy)]
-struct Far {
+struct FarVertices {
     first: u32,
     is_one_point: bool,
 }
 
-impl Far {
+impl FarVertices {
     fn of(self, vertex: u32) -> u32 {
         if self.is_one_point { self.first } else { self.first + vertex }
     }
@@ -251,17 +251,17 @@ impl Far {
 }
 
 /// Room for the cap's triangles: of those that face the light, and of those that are turned.
-struct Caps<'a> {
+struct CapIndices<'a> {
     towards: &'a mut [[u32; 3]],
     away: &'a mut [[u32; 3]],
 }
 
-impl<'a> Caps<'a> {
+impl<'a> CapIndices<'a> {
     /// The room that the next triangles take, with these signs; the rest stays.
-    fn split_off(&mut self, signs: &[i8]) -> Caps<'a> {
+    fn split_off(&mut self, signs: &[i8]) -> CapIndices<'a> {
         let towards = signs.iter().filter(|sign| **sign > 0).count();
         let away = signs.iter().filter(|sign| **sign < 0).count();
-        Caps { towards: front(&mut self.towards, towards), away: front(&mut self.away, away) }
+        CapIndices { towards: front(&mut self.towards, towards), away: front(&mut self.away, away) }
     }
 
     fn write(mut self, triangles: &[[u32; 3]], signs: &[i8], runs: &[i8]) {
@@ -301,7 +301,7 @@ fn front<'a>(room: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] 
     taken
 }
 
-fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
+fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
     let mut room = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {
         // The turned triangle runs from `low` to `high` where the multiplicity is positive; the
@@ -323,7 +323,7 @@ fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
 }
 
 /// Each side's quad runs along its far edge one way; the fan's triangle must run back.
-fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
+fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
     let mut room = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {
         let (p, q) = (far.of(edge.low), far.of(edge.high));
@@ -334,7 +334,7 @@ fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Casters, EdgeList, Planes, silhouette};
+    use super::super::{CasterPlanes, Casters, EdgeList, silhouette};
     use super::*;
     use crate::math::Sign;
     use std::collections::BTreeMap;
@@ -352,12 +352,12 @@ mod tests {
 
         fn of(world: &[DVec3], corners: &[[u32; 3]], light: DVec4, casters: Casters, extrusion: Extrusion) -> Volume {
             let (mut facings, mut edges, mut indices) = (Facings::default(), Vec::new(), Vec::new());
-            Planes::new(world, corners).facings(world, corners, light, &mut facings);
+            CasterPlanes::new(world, corners).facings(world, corners, light, &mut facings);
             facings.keep_casting(casters);
             silhouette(&EdgeList::new(corners, world.len()), &facings, &mut edges);
             let extruder = Extruder::new(world, light, extrusion);
             let far_end = match extruder.infinite_from() {
-                Some(light) => FarEnd::Fan(Fan::new(world, corners, &facings, &edges, light).expect("a fan")),
+                Some(light) => FarEnd::Fan(CapFan::new(world, corners, &facings, &edges, light).expect("a fan")),
                 None if extruder.is_one_point() => FarEnd::Point,
                 None => FarEnd::Caps,
             };
@@ -373,7 +373,7 @@ mod tests {
                 triangles.extend(towards.into_iter().chain(away));
             }
             let fan = if let DarkCap::Fan(_, fan) = &parts.dark_cap { Some(*fan) } else { None };
-            let vertices = extruder.vertices(world).chain(fan.iter().flat_map(Fan::vertices)).collect();
+            let vertices = extruder.vertices(world).chain(fan.iter().flat_map(CapFan::vertices)).collect();
             Volume { vertices, triangles, parts }
         }
     }

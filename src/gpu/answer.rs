@@ -1,16 +1,16 @@
 //! What a frame is judged by, of a run that has kept no more: the labels of its lights, and the finished picture.
 
 use super::GpuError;
-use super::collect::{Held, Memory, after};
+use super::collect::{SnapshotMemory, SnapshotStorage, after};
 use super::prepared::Prepared;
-use super::readback::{Change, color_change};
+use super::readback::{TargetChange, color_change};
 use crate::capture::{Image, PixelFormat};
 use crate::plan::{AttachmentRole, FramePlan, LightId, Pass};
 use std::sync::Arc;
 
 /// What a frame says of its lights, and what it shows.
 #[derive(Debug)]
-pub struct Answer {
+pub struct LabelsAndPicture {
     /// One a light: its labels.
     pub labels: Vec<Option<Arc<Image>>>,
     /// The picture after the last pass that changes it.
@@ -31,13 +31,13 @@ pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
         let color = pass.color.as_ref();
         color.is_some_and(|target| plan.attachment(target.attachment).role == AttachmentRole::Color)
     };
-    plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != Change::Unchanged)
+    plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != TargetChange::Unchanged)
 }
 
 /// The labels of each light.
 pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
     let plan = prepared.plan;
-    let mut held = Held { memory: Memory::Mapped, room: prepared.room };
+    let mut held = SnapshotStorage { memory: SnapshotMemory::Mapped, room: prepared.room };
     let mut labels = vec![None; plan.lights.len()];
     for (index, pass) in plan.passes.iter().enumerate() {
         if let Some(light) = labelled(plan, pass) {

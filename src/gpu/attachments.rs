@@ -9,18 +9,18 @@ use std::sync::Arc;
 use wgpu::{Device, Texture, TextureFormat};
 
 /// What a texture is made as.
-type Description = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFormat>>;
+type AttachmentKey = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFormat>>;
 
 /// Larger ones go with their plan.
 const MOST_BYTES_KEPT: u64 = 1 << 26;
 
 /// Those of the newest plan.
 #[derive(Debug, Default)]
-pub(super) struct Attachments {
-    kept: Vec<(Description, Arc<Texture>)>,
+pub(super) struct AttachmentPool {
+    kept: Vec<(AttachmentKey, Arc<Texture>)>,
 }
 
-impl Attachments {
+impl AttachmentPool {
     /// A texture for each attachment of a plan, none of which another plan uses; where `given` has one, that one. What the
     /// last plan leaves and this one does not need goes first.
     pub fn hand_out<'a>(

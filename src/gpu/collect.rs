@@ -2,15 +2,15 @@
 
 use super::GpuError;
 use super::prepared::Prepared;
-use super::readback::{Change, Staging, color_change, depth_change, stencil_change};
-use super::room::Room;
+use super::readback::{StagingCopy, TargetChange, color_change, depth_change, stencil_change};
+use super::room::MemoryBudget;
 use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass};
 use std::sync::Arc;
 
 /// What a captured frame left behind.
 #[derive(Debug)]
-pub struct Output {
+pub struct ExecutorOutput {
     /// One a pass.
     pub steps: Vec<Step>,
     /// One a pass: what it left in its own target, where that is not the picture.
@@ -30,19 +30,19 @@ pub(super) struct Collector {
     color: Arc<Image>,
     depth: Arc<Image>,
     stencil: Arc<Image>,
-    output: Output,
-    held: Held,
+    output: ExecutorOutput,
+    held: SnapshotStorage,
 }
 
 /// How pictures are held, and in what room.
-pub(super) struct Held {
-    pub memory: Memory,
-    pub room: Room,
+pub(super) struct SnapshotStorage {
+    pub memory: SnapshotMemory,
+    pub room: MemoryBudget,
 }
 
 /// Where captured pictures lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Memory {
+pub enum SnapshotMemory {
     /// In their mapped copies: nothing is copied once more.
     Mapped,
     /// Rows that are as in the picture before, there: many pictures that differ little take little.
@@ -51,7 +51,7 @@ pub enum Memory {
 
 impl Collector {
     /// Before the first pass. `kept` are the passes that will not run.
-    pub fn new(plan: &FramePlan, kept: Vec<bool>, held: Held) -> Collector {
+    pub fn new(plan: &FramePlan, kept: Vec<bool>, held: SnapshotStorage) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
         let none = vec![None; plan.lights.len()];
@@ -61,7 +61,7 @@ impl Collector {
             color: zero(PixelFormat::Rgba8Srgb),
             depth: zero(PixelFormat::Depth32F),
             stencil: zero(PixelFormat::U8),
-            output: Output { steps, targets, labels: none.clone(), counts: none, maps, kept },
+            output: ExecutorOutput { steps, targets, labels: none.clone(), counts: none, maps, kept },
             held,
         }
     }
@@ -129,7 +129,7 @@ impl Collector {
     }
 
     /// After the last pass. `times` is one a pass, milliseconds.
-    pub fn finish(self, plan: &FramePlan, times: Vec<Option<f64>>) -> Output {
+    pub fn finish(self, plan: &FramePlan, times: Vec<Option<f64>>) -> ExecutorOutput {
         let mut output = self.output;
         for ((step, pass), ms) in output.steps.iter_mut().zip(&plan.passes).zip(times) {
             // What the CPU makes takes the GPU no time.
@@ -153,19 +153,19 @@ fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
 
 /// The picture that a change leaves; `None` where nothing changes.
 pub(super) fn after(
-    change: &Change,
-    staged: &Option<Staging>,
+    change: &TargetChange,
+    staged: &Option<StagingCopy>,
     format: PixelFormat,
     size: [u32; 2],
 ) -> Result<Option<Arc<Image>>, GpuError> {
     match (change, staged) {
-        (Change::Uniform(texel), _) => Ok(Some(Arc::new(Image::uniform(format, size, texel)))),
-        (Change::Drawn, Some(staging)) => staging.image().map(Some),
+        (TargetChange::Uniform(texel), _) => Ok(Some(Arc::new(Image::uniform(format, size, texel)))),
+        (TargetChange::Drawn, Some(staging)) => staging.image().map(Some),
         _ => Ok(None),
     }
 }
 
-impl Held {
+impl SnapshotStorage {
     /// A pass that changes nothing leaves what was there.
     pub fn keep(&mut self, known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) -> Result<(), GpuError> {
         match (known, after) {
@@ -192,7 +192,7 @@ impl Held {
     fn move_on(&mut self, current: &mut Arc<Image>, next: Arc<Image>) -> Result<bool, GpuError> {
         let is_another = next != *current;
         if is_another {
-            let sharing = if self.memory == Memory::Shared { next.sharing(current) } else { None };
+            let sharing = if self.memory == SnapshotMemory::Shared { next.sharing(current) } else { None };
             let next = sharing.map_or(next, Arc::new);
             self.room.take(next.bytes_beside(Some(current)))?;
             *current = next;

@@ -18,7 +18,7 @@ pub const MEMORY_HINTS: wgpu::MemoryHints =
 
 /// An adapter with a device on it.
 #[derive(Debug)]
-pub struct Context {
+pub struct GpuContext {
     /// Who runs the plans.
     pub info: AdapterInfo,
     adapter: Adapter,
@@ -28,9 +28,9 @@ pub struct Context {
     pub(super) timestamp_period: Option<f32>,
 }
 
-impl Context {
+impl GpuContext {
     /// Opens the first adapter whose name contains `wanted` in any case, or the fastest kind.
-    pub fn new(wanted: Option<&str>) -> Result<Context, GpuError> {
+    pub fn new(wanted: Option<&str>) -> Result<GpuContext, GpuError> {
         let instance = instance(wgpu::InstanceDescriptor {
             backends: BACKENDS,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -38,16 +38,16 @@ impl Context {
         let adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
         let adapter = choose(adapters, wanted)?;
         let features = REQUIRED | (adapter.features() & MEASURED);
-        Context::open(adapter, features)
+        GpuContext::open(adapter, features)
     }
 
     /// Another device on the same adapter, that can do what this one can and `needed` too.
-    pub(super) fn with(&self, needed: Features) -> Result<Context, GpuError> {
+    pub(super) fn with(&self, needed: Features) -> Result<GpuContext, GpuError> {
         features::check(needed, self.adapter.features())?;
-        Context::open(self.adapter.clone(), self.device.features() | needed)
+        GpuContext::open(self.adapter.clone(), self.device.features() | needed)
     }
 
-    fn open(adapter: Adapter, features: Features) -> Result<Context, GpuError> {
+    fn open(adapter: Adapter, features: Features) -> Result<GpuContext, GpuError> {
         let info = info_of(&adapter);
         let available = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
@@ -67,7 +67,7 @@ impl Context {
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
         let can_time = features.contains(Features::TIMESTAMP_QUERY);
         let timestamp_period = can_time.then(|| queue.get_timestamp_period());
-        Ok(Context { info, adapter, device, queue, timestamp_period })
+        Ok(GpuContext { info, adapter, device, queue, timestamp_period })
     }
 
     /// Runs `work` and turns whatever the driver complained about into an error.

@@ -1,15 +1,15 @@
 //! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted; more than one
 //! where those copies are many.
 
-use super::answer::{self, Answer};
-use super::collect::{Collector, Held, Memory, Output};
-use super::fragment_log::LogKeeper;
+use super::answer::{self, LabelsAndPicture};
+use super::collect::{Collector, ExecutorOutput, SnapshotMemory, SnapshotStorage};
+use super::fragment_log::LogCache;
 use super::pipelines::Pipelines;
-use super::prepared::{Kept, Prepared, PreparedDraw};
-use super::queries::{Notes, Samples, Timestamps};
-use super::readback::{StagedPass, Staging};
-use super::room::Room;
-use super::{Context, GpuError, features, start};
+use super::prepared::{PlanResources, Prepared, PreparedDraw};
+use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
+use super::readback::{StagedPass, StagingCopy};
+use super::room::MemoryBudget;
+use super::{GpuContext, GpuError, features, start};
 use crate::capture::Image;
 use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
 use std::ops::Range;
@@ -26,16 +26,16 @@ const MOST_BYTES: u64 = 8 << 30;
 /// Runs plans; keeps pipelines and buffers between them.
 #[derive(Debug)]
 pub struct Executor {
-    pub(super) context: Arc<Context>,
+    pub(super) context: Arc<GpuContext>,
     pub(super) pipelines: Pipelines,
-    kept: Kept,
-    pub(super) log: LogKeeper,
+    kept: PlanResources,
+    pub(super) log: LogCache,
     most_bytes: u64,
 }
 
 /// Which passes run, and what is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mode {
+enum RunMode {
     /// Timed passes, nothing kept.
     Frame,
     /// Timed passes, a snapshot after each.
@@ -50,11 +50,11 @@ enum Mode {
 
 impl Executor {
     /// On a context of its own.
-    pub fn new(context: Context) -> Executor {
+    pub fn new(context: GpuContext) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
-            kept: Kept::default(),
-            log: LogKeeper::default(),
+            kept: PlanResources::default(),
+            log: LogCache::default(),
             context: Arc::new(context),
             most_bytes: MOST_BYTES,
         }
@@ -66,7 +66,7 @@ impl Executor {
     }
 
     /// Where it runs.
-    pub fn context(&self) -> &Context {
+    pub fn context(&self) -> &GpuContext {
         &self.context
     }
 
@@ -78,14 +78,14 @@ impl Executor {
     /// Forgets pipelines and buffers, so that the next plan is set up from nothing.
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
-        self.kept = Kept::default();
-        self.log = LogKeeper::default();
+        self.kept = PlanResources::default();
+        self.log = LogCache::default();
     }
 
     /// Uploads what a plan needs and makes its pipelines.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
-        let room = Room::of(self.most_bytes);
+        let room = MemoryBudget::of(self.most_bytes);
         let Executor { context, pipelines, kept, .. } = self;
         let prepared = context.guarded(|| Prepared::new(context, pipelines, kept, plan, room));
         if prepared.is_err() {
@@ -110,9 +110,9 @@ impl Executor {
     /// there stays.
     pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
-        let room = Room::of(self.most_bytes);
+        let room = MemoryBudget::of(self.most_bytes);
         let Executor { context, pipelines, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, &mut Kept::default(), plan, room))
+        context.guarded(|| Prepared::new(context, pipelines, &mut PlanResources::default(), plan, room))
     }
 
     /// Finds what can't be run, and a device for what can.
@@ -138,16 +138,16 @@ impl Executor {
     /// `snapshots`, having every snapshot in memory: all at once, unlike [`Executor::capture`], which looks at a part
     /// of many before it makes the next.
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
-        let mode = if snapshots { Mode::Snapshots } else { Mode::Frame };
+        let mode = if snapshots { RunMode::Snapshots } else { RunMode::Frame };
         if snapshots {
             let mut room = prepared.room;
             room.take(prepared.snapshot_bytes())?;
         }
         let start = Instant::now();
-        run(prepared, mode, &Notes::default())?;
+        run(prepared, mode, &FrameQueries::default())?;
         let took = start.elapsed();
         if snapshots {
-            staged(prepared, mode, all_passes(prepared))?.flat_map(StagedPass::iter).for_each(Staging::unmap);
+            staged(prepared, mode, all_passes(prepared))?.flat_map(StagedPass::iter).for_each(StagingCopy::unmap);
         }
         Ok(took)
     }
@@ -156,9 +156,9 @@ impl Executor {
     /// where it can't tell.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
-        let notes = context.guarded(|| Ok(Notes::of_times(prepared, Mode::Frame)))?;
+        let notes = context.guarded(|| Ok(FrameQueries::of_times(prepared, RunMode::Frame)))?;
         let Some(timestamps) = &notes.timestamps else { return Ok(None) };
-        run(prepared, Mode::Frame, &notes)?;
+        run(prepared, RunMode::Frame, &notes)?;
         let times = timestamps.read(context)?;
         // What the CPU makes takes the GPU no time.
         let passes = prepared.plan.passes.iter().zip(times).filter(|(pass, _)| pass.timed && pass.image.is_none());
@@ -172,9 +172,9 @@ impl Executor {
         let context = &prepared.context;
         // A map that stays is drawn once: a pass that does not run shows no sample of what it holds.
         let asks = |pass: &Pass| !prepared.may_keep(pass);
-        let samples = context.guarded(|| Ok(Samples::new(&context.device, prepared.plan, asks)))?;
-        let notes = Notes { samples, ..Notes::default() };
-        run(prepared, Mode::Frame, &notes)?;
+        let samples = context.guarded(|| Ok(DrawSamples::new(&context.device, prepared.plan, asks)))?;
+        let notes = FrameQueries { samples, ..FrameQueries::default() };
+        run(prepared, RunMode::Frame, &notes)?;
         match &notes.samples {
             Some(samples) => samples.read(),
             None => Ok(prepared.plan.passes.iter().map(|pass| vec![None; pass.draws.len()]).collect()),
@@ -183,9 +183,14 @@ impl Executor {
 
     /// Runs all passes and keeps every attachment after each, in `memory`. With `bracket`, an attached
     /// graphics debugger records the frame.
-    pub fn capture(&self, mut prepared: Prepared, memory: Memory, bracket: bool) -> Result<Output, GpuError> {
+    pub fn capture(
+        &self,
+        mut prepared: Prepared,
+        memory: SnapshotMemory,
+        bracket: bool,
+    ) -> Result<ExecutorOutput, GpuError> {
         let (plan, context) = (prepared.plan, prepared.context.clone());
-        let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
+        let notes = context.guarded(|| Ok(FrameQueries::of_times(&prepared, RunMode::Everything)))?;
         let mut run = || run_in_parts(&mut prepared, &notes, memory);
         let collector = if bracket { context.bracketed(run)? } else { run()? };
         let times = match &notes.timestamps {
@@ -198,37 +203,40 @@ impl Executor {
     /// Runs all passes and keeps the labels of each light: what is lit, and what is in shadow. Nothing
     /// else is copied, so that the largest maps cost no memory twice.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
-        run(&prepared, Mode::Labels, &Notes::default())?;
+        run(&prepared, RunMode::Labels, &FrameQueries::default())?;
         answer::labels(&prepared)
     }
 
     /// The same, and the finished picture.
-    pub fn answer(&self, prepared: Prepared) -> Result<Answer, GpuError> {
-        run(&prepared, Mode::Answer, &Notes::default())?;
-        Ok(Answer { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
+    pub fn answer(&self, prepared: Prepared) -> Result<LabelsAndPicture, GpuError> {
+        run(&prepared, RunMode::Answer, &FrameQueries::default())?;
+        Ok(LabelsAndPicture { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
     }
 }
 
-impl Notes {
+impl FrameQueries {
     /// When the passes of a mode begin and end.
-    fn of_times(prepared: &Prepared, mode: Mode) -> Notes {
+    fn of_times(prepared: &Prepared, mode: RunMode) -> FrameQueries {
         let runs = |pass: &Pass| mode.runs(pass) && !prepared.is_kept(pass);
-        Notes { timestamps: Timestamps::new(&prepared.context, prepared.plan, runs), ..Notes::default() }
+        FrameQueries {
+            timestamps: PassTimestamps::new(&prepared.context, prepared.plan, runs),
+            ..FrameQueries::default()
+        }
     }
 }
 
-impl Mode {
+impl RunMode {
     fn runs(self, pass: &Pass) -> bool {
-        pass.timed || matches!(self, Mode::Labels | Mode::Answer | Mode::Everything)
+        pass.timed || matches!(self, RunMode::Labels | RunMode::Answer | RunMode::Everything)
     }
 
     fn copies(self, plan: &FramePlan, index: usize) -> bool {
         let pass = &plan.passes[index];
         match self {
-            Mode::Frame => false,
-            Mode::Labels => answer::labelled(plan, pass).is_some(),
-            Mode::Answer => answer::labelled(plan, pass).is_some() || answer::last_of_picture(plan) == Some(index),
-            Mode::Snapshots | Mode::Everything => self.runs(pass),
+            RunMode::Frame => false,
+            RunMode::Labels => answer::labelled(plan, pass).is_some(),
+            RunMode::Answer => answer::labelled(plan, pass).is_some() || answer::last_of_picture(plan) == Some(index),
+            RunMode::Snapshots | RunMode::Everything => self.runs(pass),
         }
     }
 }
@@ -236,7 +244,7 @@ impl Mode {
 /// The copies that a mode makes of some passes.
 fn staged<'a>(
     prepared: &'a Prepared,
-    mode: Mode,
+    mode: RunMode,
     passes: Range<usize>,
 ) -> Result<impl Iterator<Item = &'a StagedPass>, GpuError> {
     let plan = prepared.plan;
@@ -245,7 +253,7 @@ fn staged<'a>(
 }
 
 /// Makes the pictures that come from the CPU and hands them to the GPU, before the passes that they are of.
-fn upload_images(prepared: &Prepared, mode: Mode, passes: Range<usize>) {
+fn upload_images(prepared: &Prepared, mode: RunMode, passes: Range<usize>) {
     for (pass, targets) in prepared.plan.passes[passes.clone()].iter().zip(&prepared.passes[passes]) {
         if let (Some(image), Some(texture), true) = (&pass.image, &targets.image_target, mode.runs(pass)) {
             let texels = image.source.make();
@@ -262,7 +270,7 @@ fn all_passes(prepared: &Prepared) -> Range<usize> {
 }
 
 /// Submits and waits. What is kept is kept only of frames that nothing went wrong in.
-fn run(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
+fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
     prepared.context.guarded(|| submit(prepared, mode, notes, all_passes(prepared)))?;
     prepared.set_drawn();
     Ok(())
@@ -270,16 +278,16 @@ fn run(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
 
 /// The same, of all that a capture keeps, in parts: of a frame whose copies are many, those that show what was there
 /// before are let go before the next are made.
-fn run_in_parts(prepared: &mut Prepared, notes: &Notes, memory: Memory) -> Result<Collector, GpuError> {
+fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotMemory) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
     let kept = plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
-    let mut collector = Collector::new(plan, kept, Held { memory, room: prepared.room });
+    let mut collector = Collector::new(plan, kept, SnapshotStorage { memory, room: prepared.room });
     let mut start = 0;
     while start < plan.passes.len() {
         let part = context.guarded(|| {
             let part = start..end_of_part(prepared, start)?;
-            submit(prepared, Mode::Everything, notes, part.clone())?;
+            submit(prepared, RunMode::Everything, notes, part.clone())?;
             Ok(part)
         })?;
         for index in part.clone() {
@@ -297,7 +305,7 @@ fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
     let passes = all_passes(prepared).end;
     let mut bytes = 0;
     for index in start..passes {
-        bytes += prepared.staged(index)?.iter().map(Staging::byte_len).sum::<u64>();
+        bytes += prepared.staged(index)?.iter().map(StagingCopy::byte_len).sum::<u64>();
         if bytes >= PART_BYTES {
             return Ok(index + 1);
         }
@@ -306,7 +314,7 @@ fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
 }
 
 /// One command buffer of some passes; what the frame notes is there after the last.
-fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) -> Result<(), GpuError> {
+fn submit(prepared: &Prepared, mode: RunMode, notes: &FrameQueries, passes: Range<usize>) -> Result<(), GpuError> {
     upload_images(prepared, mode, passes.clone());
     let is_last = passes.end == prepared.plan.passes.len();
     let mut encoder = prepared.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -330,14 +338,14 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
         notes.resolve(&mut encoder);
     }
     prepared.context.queue.submit([encoder.finish()]);
-    staged(prepared, mode, passes)?.flat_map(StagedPass::iter).for_each(Staging::request_map);
+    staged(prepared, mode, passes)?.flat_map(StagedPass::iter).for_each(StagingCopy::request_map);
     if is_last {
         notes.request_map();
     }
     prepared.context.wait()
 }
 
-fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, notes: &Notes) {
+fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, notes: &FrameQueries) {
     let pass = &prepared.plan.passes[index];
     let targets = &prepared.passes[index];
     let color = pass.color.as_ref().zip(targets.color.as_ref()).map(|(target, view)| {
@@ -359,7 +367,7 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
         color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
         depth_stencil_attachment: depth_stencil,
         timestamp_writes: notes.timestamps.as_ref().and_then(|timestamps| timestamps.of_pass(index)),
-        occlusion_query_set: notes.samples.as_ref().map(Samples::set),
+        occlusion_query_set: notes.samples.as_ref().map(DrawSamples::set),
         ..wgpu::RenderPassDescriptor::default()
     });
     if let Some(Viewport { area: [left, top, width, height], depth: [near, far] }) =

@@ -6,7 +6,7 @@ use crate::plan::FramePlan;
 use wgpu::Features;
 
 /// A feature that few plans need.
-struct OnDemand {
+struct OptionalFeature {
     feature: Features,
     is_needed: fn(&FramePlan) -> bool,
     /// In plain words.
@@ -15,14 +15,14 @@ struct OnDemand {
     instead: &'static str,
 }
 
-const ON_DEMAND: [OnDemand; 2] = [
-    OnDemand {
+const ON_DEMAND: [OptionalFeature; 2] = [
+    OptionalFeature {
         feature: Features::DEPTH_CLIP_CONTROL,
         is_needed: |plan| plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.raster.unclipped_depth),
         name: "depth clamping",
         instead: "choose another `depth`, and of a parallel camera z-pass",
     },
-    OnDemand {
+    OptionalFeature {
         feature: Features::FLOAT32_BLENDABLE,
         is_needed: |plan| plan.lights.iter().any(|light| light.count.is_some()),
         name: "blending of 32-bit floats",
@@ -44,7 +44,7 @@ pub(super) fn names(open: Features) -> Vec<&'static str> {
 /// Are all of `needed` among what an adapter offers?
 pub(super) fn check(needed: Features, offered: Features) -> Result<(), GpuError> {
     match ON_DEMAND.iter().find(|one| needed.contains(one.feature) && !offered.contains(one.feature)) {
-        Some(OnDemand { name, instead, .. }) => Err(GpuError::MissingFeature { name, instead }),
+        Some(OptionalFeature { name, instead, .. }) => Err(GpuError::MissingFeature { name, instead }),
         None => Ok(()),
     }
 }

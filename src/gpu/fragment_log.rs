@@ -38,7 +38,7 @@ struct LogKey {
 
 /// What is kept between logs.
 #[derive(Debug, Default)]
-pub(super) struct LogKeeper {
+pub(super) struct LogCache {
     module: Option<wgpu::ShaderModule>,
     layout: Option<BindGroupLayout>,
     pipelines: HashMap<LogKey, RenderPipeline>,
@@ -46,10 +46,10 @@ pub(super) struct LogKeeper {
     target: Option<Texture>,
 }
 
-/// A corner of a triangle, as `Corner` of `fragment_log.wgsl`.
+/// A corner of a triangle, as `LogCorner` of `fragment_log.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct Corner {
+struct LogCorner {
     relative: [f32; 4],
     triangle: u32,
 }
@@ -57,7 +57,7 @@ struct Corner {
 /// `Fragment` of `fragment_log.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct Record {
+struct LogRecord {
     triangle: u32,
     is_front: u32,
     depth: f32,
@@ -102,16 +102,16 @@ impl Executor {
         let Executor { context, pipelines, log, .. } = self;
         let device = &context.device;
         let readable = context.guarded(|| {
-            let corners: Vec<Corner> = (0..)
+            let corners: Vec<LogCorner> = (0..)
                 .zip(covering)
-                .flat_map(|(triangle, one)| one.corners.map(|relative| Corner { relative, triangle }))
+                .flat_map(|(triangle, one)| one.corners.map(|relative| LogCorner { relative, triangle }))
                 .collect();
             let vertices = device.create_buffer_init(&BufferInitDescriptor {
                 label: Some("triangles over a pixel"),
                 contents: bytemuck::cast_slice(&corners),
                 usage: BufferUsages::VERTEX,
             });
-            let size = HEAD_BYTES + room * size_of::<Record>() as u64;
+            let size = HEAD_BYTES + room * size_of::<LogRecord>() as u64;
             let buffer = |usage| {
                 device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("fragment log"),
@@ -159,22 +159,22 @@ impl Executor {
 }
 
 /// Neighbouring triangles that one draw can show.
-struct Run {
+struct TriangleRun {
     key: LogKey,
     view: usize,
     viewport: Viewport,
     triangles: std::ops::Range<usize>,
 }
 
-fn runs(plan: &FramePlan, covering: &[Covering]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+fn runs(plan: &FramePlan, covering: &[Covering]) -> Vec<TriangleRun> {
+    let mut runs: Vec<TriangleRun> = Vec::new();
     for (index, one) in covering.iter().enumerate() {
         let pass = &plan.passes[one.pass];
         let (key, view) = (key_of(plan, pass, &pass.draws[one.draw]), pass.view.0);
         let viewport = pass.viewport(plan.size);
         match runs.last_mut().filter(|run| run.key == key && run.view == view && run.viewport == viewport) {
             Some(run) => run.triangles.end = index + 1,
-            None => runs.push(Run { key, view, viewport, triangles: index..index + 1 }),
+            None => runs.push(TriangleRun { key, view, viewport, triangles: index..index + 1 }),
         }
     }
     runs
@@ -212,8 +212,8 @@ fn read(buffer: &Buffer) -> Result<FragmentLog, GpuError> {
     let bytes = mapped_bytes(buffer)?;
     let (head, records) = bytes.split_at(HEAD_BYTES as usize);
     let counted: u32 = bytemuck::pod_read_unaligned(head);
-    let records = records.chunks_exact(size_of::<Record>()).map(bytemuck::pod_read_unaligned::<Record>);
-    let fragment = |record: Record| LoggedFragment {
+    let records = records.chunks_exact(size_of::<LogRecord>()).map(bytemuck::pod_read_unaligned::<LogRecord>);
+    let fragment = |record: LogRecord| LoggedFragment {
         covering: record.triangle as usize,
         is_front: record.is_front != 0,
         depth: record.depth,
@@ -224,7 +224,7 @@ fn read(buffer: &Buffer) -> Result<FragmentLog, GpuError> {
     Ok(FragmentLog { fragments, counted })
 }
 
-impl LogKeeper {
+impl LogCache {
     fn layout(&mut self, device: &Device) -> &BindGroupLayout {
         self.layout.get_or_insert_with(|| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -281,7 +281,7 @@ impl LogKeeper {
                 entry_point: Some(if key.is_recorded { "vs_log_clip" } else { "vs_log" }),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Corner>() as u64,
+                    array_stride: size_of::<LogCorner>() as u64,
                     step_mode: wgpu::VertexStepMode::Vertex,
                     attributes: &CORNER_ATTRIBUTES,
                 })],

@@ -8,18 +8,18 @@ use wgpu::Texture;
 
 /// By [`FramePlan::kept_by`]; they stay as long as the newest plan that keeps maps uses them.
 #[derive(Debug, Default)]
-pub(super) struct Maps {
-    kept: HashMap<u64, (Arc<KeptMap>, bool)>,
+pub(super) struct MapCache {
+    kept: HashMap<u64, (Arc<CachedMap>, bool)>,
 }
 
 /// A texture, and whether its passes have run.
 #[derive(Debug)]
-pub(super) struct KeptMap {
+pub(super) struct CachedMap {
     pub texture: Arc<Texture>,
     is_drawn: AtomicBool,
 }
 
-impl KeptMap {
+impl CachedMap {
     /// Its passes need not run.
     pub fn is_drawn(&self) -> bool {
         self.is_drawn.load(Ordering::Relaxed)
@@ -31,7 +31,7 @@ impl KeptMap {
     }
 }
 
-impl Maps {
+impl MapCache {
     /// Forgets what has not been asked for since the last call.
     pub fn next_plan(&mut self) {
         self.kept.retain(|_, (_, used)| std::mem::take(used));
@@ -44,8 +44,8 @@ impl Maps {
         plan: &FramePlan,
         id: AttachmentId,
         create: impl FnOnce() -> Arc<Texture>,
-    ) -> Option<Arc<KeptMap>> {
-        let new = || (Arc::new(KeptMap { texture: create(), is_drawn: AtomicBool::new(false) }), true);
+    ) -> Option<Arc<CachedMap>> {
+        let new = || (Arc::new(CachedMap { texture: create(), is_drawn: AtomicBool::new(false) }), true);
         let (map, used) = self.kept.entry(plan.kept_by(id)?).or_insert_with(new);
         *used = true;
         Some(map.clone())

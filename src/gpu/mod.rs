@@ -38,8 +38,8 @@ mod specialization;
 mod start;
 mod uniforms;
 
-pub use collect::{Memory, Output};
-pub use context::Context;
+pub use collect::{ExecutorOutput, SnapshotMemory};
+pub use context::GpuContext;
 #[cfg(feature = "inspector")]
 pub use context::MEMORY_HINTS;
 pub use error::GpuError;

@@ -1,10 +1,10 @@
 //! Pictures on surfaces, with their pyramids, by the hash of their content.
 //!
 //! Equal pictures are uploaded once, and stay as long as the newest plan uses them. Levels are made on the CPU
-//! ([`Picture::levels`]), so that a lookup can be computed again.
+//! ([`TextureImage::levels`]), so that a lookup can be computed again.
 
-use super::Context;
-use crate::scene::Picture;
+use super::GpuContext;
+use crate::scene::TextureImage;
 use std::collections::HashMap;
 use wgpu::{Extent3d, TextureUsages, TextureView, TextureViewDescriptor};
 
@@ -23,7 +23,7 @@ impl Pictures {
     }
 
     /// The texture of a picture, all levels of it.
-    pub fn get(&mut self, context: &Context, picture: &Picture) -> TextureView {
+    pub fn get(&mut self, context: &GpuContext, picture: &TextureImage) -> TextureView {
         let key = (picture.hash(), picture.size());
         let (view, used) = self.kept.entry(key).or_insert_with(|| (upload(context, picture), true));
         *used = true;
@@ -31,7 +31,7 @@ impl Pictures {
     }
 }
 
-fn upload(context: &Context, picture: &Picture) -> TextureView {
+fn upload(context: &GpuContext, picture: &TextureImage) -> TextureView {
     let extent = |[width, height]: [u32; 2]| Extent3d { width, height, depth_or_array_layers: 1 };
     let texture = context.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(picture.name()),

@@ -3,7 +3,7 @@
 //! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data or which fragments are kept, 3 the light and, for
 //! programs that read them, its map or labels. A program has only the groups it uses.
 
-use super::shaders::{Form, Shader, source_of};
+use super::shaders::{ShaderInputs, ShaderKey, source_of};
 use super::specialization::Specialization;
 use crate::plan::{ColorWrite, RasterState, Visibility};
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ use wgpu::{
 /// What a pipeline is made from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
-    pub shader: Shader,
+    pub shader: ShaderKey,
     pub specialization: Specialization,
     /// Its reference is set by the pass, and 0 here.
     pub raster: RasterState,
@@ -29,7 +29,7 @@ pub(super) struct PipelineKey {
 
 /// Layouts of the bind groups.
 #[derive(Debug)]
-pub(super) struct Layouts {
+pub(super) struct BindGroupLayouts {
     pub view: BindGroupLayout,
     pub draw: BindGroupLayout,
     pub surface: BindGroupLayout,
@@ -45,12 +45,12 @@ pub(super) struct Layouts {
 /// Every pipeline made so far.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    pub layouts: Layouts,
+    pub layouts: BindGroupLayouts,
     /// Linear, clamped to the edge.
     pub smooth_sampler: wgpu::Sampler,
     /// Of pictures on surfaces, between texels and levels: repeated, and clamped to the edge.
     pub picture_samplers: [wgpu::Sampler; 2],
-    modules: HashMap<Shader, ShaderModule>,
+    modules: HashMap<ShaderKey, ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
     starts: HashMap<TextureFormat, RenderPipeline>,
 }
@@ -82,7 +82,7 @@ impl Pipelines {
             })
         });
         Pipelines {
-            layouts: Layouts::new(device),
+            layouts: BindGroupLayouts::new(device),
             smooth_sampler,
             picture_samplers,
             modules: HashMap::new(),
@@ -122,7 +122,7 @@ impl Pipelines {
             bind_group_layouts: &groups.map(Some)[..key.shader.group_count()],
             ..wgpu::PipelineLayoutDescriptor::default()
         });
-        let (array_stride, attributes) = if key.shader.form == Form::Extruded {
+        let (array_stride, attributes) = if key.shader.form == ShaderInputs::Extruded {
             (32, &EXTRUDED_ATTRIBUTES[..])
         } else {
             (16, &POSITION_ATTRIBUTES[..])
@@ -135,8 +135,8 @@ impl Pipelines {
         let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
         // Floats are stored as they are.
         let fragment = match key.shader.form {
-            Form::Kept if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
-            Form::Kept => source.fragment,
+            ShaderInputs::Kept if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
+            ShaderInputs::Kept => source.fragment,
             _ => source.fragment.filter(|_| !is_recorded || key.depth_steps.is_some()),
         };
         device.create_render_pipeline(&RenderPipelineDescriptor {
@@ -195,8 +195,8 @@ fn depth_stencil(format: TextureFormat, raster: &RasterState) -> DepthStencilSta
     }
 }
 
-impl Layouts {
-    fn new(device: &Device) -> Layouts {
+impl BindGroupLayouts {
+    fn new(device: &Device) -> BindGroupLayouts {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let uniform = |binding| entry(binding, both, BufferBindingType::Uniform, true);
         // Of programs that branch on them: see `uniforms.rs`.
@@ -225,7 +225,7 @@ impl Layouts {
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        Layouts {
+        BindGroupLayouts {
             view: layout("view", &[uniform(0)]),
             draw: layout("draw", &[uniform(0)]),
             surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
@@ -245,7 +245,7 @@ impl Layouts {
         }
     }
 
-    fn of(&self, shader: Shader) -> [&BindGroupLayout; 4] {
+    fn of(&self, shader: ShaderKey) -> [&BindGroupLayout; 4] {
         let light = match shader.program.visibility() {
             Some(Visibility::Map) => &self.light_with_map,
             Some(Visibility::Labels) => &self.light_with_labels,
@@ -254,9 +254,9 @@ impl Layouts {
             Some(Visibility::Everywhere) | None => &self.light,
         };
         let surface = match shader.form {
-            Form::Textured => &self.textured_surface,
-            Form::Kept => &self.kept,
-            Form::Plain | Form::Extruded => &self.surface,
+            ShaderInputs::Textured => &self.textured_surface,
+            ShaderInputs::Kept => &self.kept,
+            ShaderInputs::Plain | ShaderInputs::Extruded => &self.surface,
         };
         [&self.view, &self.draw, surface, light]
     }

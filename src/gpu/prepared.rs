@@ -1,17 +1,17 @@
 //! A plan with everything the GPU needs to run it: textures, pipelines, buffers, bind groups, and,
 //! once a run wants them, the buffers that snapshots are copied to. Made once, run as often as wanted.
 
-use super::attachments::Attachments;
+use super::attachments::AttachmentPool;
 use super::buffers::{Buffers, check_bound};
-use super::maps::{KeptMap, Maps};
+use super::maps::{CachedMap, MapCache};
 use super::pictures::Pictures;
-use super::pipelines::{Layouts, PipelineKey, Pipelines};
-use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
-use super::room::Room;
-use super::shaders::{Form, Shader};
+use super::pipelines::{BindGroupLayouts, PipelineKey, Pipelines};
+use super::readback::{StagedPass, StagingCopy, TargetChange, color_change, depth_change, stencil_change};
+use super::room::MemoryBudget;
+use super::shaders::{ShaderInputs, ShaderKey};
 use super::specialization::Specialization;
 use super::uniforms::{self, UniformArray};
-use super::{Context, GpuError, start};
+use super::{GpuContext, GpuError, start};
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, PlanTexture, RasterState, SurfaceData,
     Visibility,
@@ -25,17 +25,17 @@ use wgpu::{
 
 /// What serves the next plan too, as long as the newest one uses it.
 #[derive(Debug, Default)]
-pub(super) struct Kept {
+pub(super) struct PlanResources {
     buffers: Buffers,
     pictures: Pictures,
-    pub maps: Maps,
-    attachments: Attachments,
+    pub maps: MapCache,
+    attachments: AttachmentPool,
 }
 
-impl Kept {
+impl PlanResources {
     /// The next plan's attachments are new.
     pub fn forget_attachments(&mut self) {
-        self.attachments = Attachments::default();
+        self.attachments = AttachmentPool::default();
     }
 
     fn next_plan(&mut self) {
@@ -50,7 +50,7 @@ impl Kept {
 pub struct Prepared<'a> {
     pub(super) plan: &'a FramePlan,
     /// Its device stays open as long as it is used, though a later plan may have asked for another.
-    pub(super) context: Arc<Context>,
+    pub(super) context: Arc<GpuContext>,
     pub(super) passes: Vec<PreparedPass>,
     textures: Vec<Arc<Texture>>,
     /// By pass: where its copies go.
@@ -61,9 +61,9 @@ pub struct Prepared<'a> {
     pub(super) draw_group: BindGroup,
     pub(super) lights: UniformArray,
     /// By attachment: the texture that stays from frame to frame.
-    pub(super) kept: Vec<Option<Arc<KeptMap>>>,
+    pub(super) kept: Vec<Option<Arc<CachedMap>>>,
     /// What attachments and pictures leave for copies.
-    pub(super) room: Room,
+    pub(super) room: MemoryBudget,
 }
 
 #[derive(Debug)]
@@ -80,7 +80,7 @@ pub(super) struct PreparedPass {
 
 #[derive(Debug)]
 pub(super) struct PreparedDraw {
-    pub shader: Shader,
+    pub shader: ShaderKey,
     /// With the stencil reference of each: one, or two where front and back faces have masks of their own.
     pub pipelines: Vec<(RenderPipeline, u8)>,
     /// Index among all draws of the plan.
@@ -93,19 +93,19 @@ pub(super) struct PreparedDraw {
 
 impl<'a> Prepared<'a> {
     pub(super) fn new(
-        context: &Arc<Context>,
+        context: &Arc<GpuContext>,
         pipelines: &mut Pipelines,
-        kept: &mut Kept,
+        kept: &mut PlanResources,
         plan: &'a FramePlan,
-        mut room: Room,
+        mut room: MemoryBudget,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
         check_size(device, plan, &mut room)?;
         kept.next_plan();
-        let Kept { buffers, pictures, maps, attachments } = kept;
+        let PlanResources { buffers, pictures, maps, attachments } = kept;
         let describe = |id| described(plan, id);
         let map = |id| maps.get(plan, id, || Arc::new(device.create_texture(&describe(id))));
-        let kept: Vec<Option<Arc<KeptMap>>> = (0..plan.attachments.len()).map(AttachmentId).map(map).collect();
+        let kept: Vec<Option<Arc<CachedMap>>> = (0..plan.attachments.len()).map(AttachmentId).map(map).collect();
         let given: Vec<_> = kept.iter().map(|map| map.as_ref().map(|map| map.texture.clone())).collect();
         let textures = attachments.hand_out(device, plan, &given, describe);
         let views = uniforms::views(device, plan);
@@ -156,9 +156,9 @@ impl<'a> Prepared<'a> {
     }
 
     /// Where a pass's depth and stencil lie; `None` where it has none.
-    pub(super) fn start_target(&self, index: usize) -> Option<start::Target<'_>> {
+    pub(super) fn start_target(&self, index: usize) -> Option<start::StartTarget<'_>> {
         let target = self.plan.passes[index].depth_stencil.as_ref()?;
-        Some(start::Target {
+        Some(start::StartTarget {
             device: &self.context.device,
             texture: &self.textures[target.attachment.0],
             layer: held_layer(self.plan, target.attachment, target.layer),
@@ -184,7 +184,7 @@ impl<'a> Prepared<'a> {
 
     /// Bytes that snapshots of the timed passes copy.
     pub fn snapshot_bytes(&self) -> u64 {
-        let bytes = |[color, depth, stencil]: [Option<Copied>; 3]| {
+        let bytes = |[color, depth, stencil]: [Option<AspectCopy>; 3]| {
             let copied = color.into_iter().chain(depth).chain(stencil);
             copied.map(|copied| copied.bytes(&self.textures)).sum::<u64>()
         };
@@ -200,7 +200,7 @@ impl<'a> Prepared<'a> {
 
 /// What passes are prepared from.
 struct PassPreparer<'a> {
-    context: &'a Context,
+    context: &'a GpuContext,
     plan: &'a FramePlan,
     pipelines: &'a mut Pipelines,
     buffers: &'a mut Buffers,
@@ -237,7 +237,7 @@ impl PassPreparer<'_> {
     fn draw(&mut self, pass: &Pass, draw: &Draw, index: usize) -> Result<PreparedDraw, GpuError> {
         let (device, plan) = (&self.context.device, self.plan);
         let mesh = &plan.meshes[draw.mesh.0];
-        let shader = Shader::of(draw, mesh);
+        let shader = ShaderKey::of(draw, mesh);
         let light = pass.light.map(|light| &plan.lights[light.0]);
         let specialization = Specialization::of(draw, light, plan.wraps_diffuse);
         let of_state = |raster: &RasterState| {
@@ -256,7 +256,7 @@ impl PassPreparer<'_> {
                 let light = pass.light.filter(|_| draw.program.visibility().is_some());
                 Some((group, light.map(|light| self.light_group(draw, light))))
             }
-            (_, Some(kept)) if shader.form == Form::Kept => {
+            (_, Some(kept)) if shader.form == ShaderInputs::Kept => {
                 Some((kept_group(device, self.pipelines, &self.buffers.get(device, kept)?)?, None))
             }
             _ => None,
@@ -283,7 +283,7 @@ impl PassPreparer<'_> {
         let uvs = shown.as_ref().map(|(uvs, _)| uvs);
         storage.into_iter().chain(uvs).try_for_each(|buffer| check_bound(device, buffer))?;
         let view = shown.as_ref().map(|(_, texture)| self.pictures.get(self.context, &texture.picture));
-        let Layouts { surface, textured_surface, .. } = &self.pipelines.layouts;
+        let BindGroupLayouts { surface, textured_surface, .. } = &self.pipelines.layouts;
         let layout = if shown.is_some() { textured_surface } else { surface };
         let mut resources: Vec<BindingResource> = storage.map(Buffer::as_entire_binding).into();
         if let (Some((uvs, texture)), Some(view)) = (&shown, &view) {
@@ -325,7 +325,7 @@ impl PassPreparer<'_> {
 }
 
 /// Takes room for attachments and pictures.
-fn check_size(device: &Device, plan: &FramePlan, room: &mut Room) -> Result<(), GpuError> {
+fn check_size(device: &Device, plan: &FramePlan, room: &mut MemoryBudget) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;
     for (index, attachment) in plan.attachments.iter().enumerate() {
@@ -396,7 +396,7 @@ pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
     })
 }
 
-fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -> PipelineKey {
+fn key_of(plan: &FramePlan, pass: &Pass, shader: ShaderKey, raster: &RasterState) -> PipelineKey {
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     PipelineKey {
         shader,
@@ -417,27 +417,27 @@ fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> Result<B
 
 /// One aspect of a layer of an attachment, which is copied after a pass.
 #[derive(Debug, Clone, Copy)]
-struct Copied {
+struct AspectCopy {
     attachment: AttachmentId,
     layer: u32,
     aspect: TextureAspect,
 }
 
-impl Copied {
+impl AspectCopy {
     fn bytes(self, textures: &[Arc<Texture>]) -> u64 {
-        Staging::bytes_of(&textures[self.attachment.0], self.aspect)
+        StagingCopy::bytes_of(&textures[self.attachment.0], self.aspect)
     }
 
-    fn staging(self, device: &Device, textures: &[Arc<Texture>]) -> Result<Staging, GpuError> {
-        Staging::new(device, &textures[self.attachment.0], self.layer, self.aspect)
+    fn staging(self, device: &Device, textures: &[Arc<Texture>]) -> Result<StagingCopy, GpuError> {
+        StagingCopy::new(device, &textures[self.attachment.0], self.layer, self.aspect)
     }
 }
 
 /// What is copied after a pass: colour, depth, stencil.
-fn copied(plan: &FramePlan, pass: &Pass) -> [Option<Copied>; 3] {
-    let copied = |target: Option<(AttachmentId, u32)>, change: Change, aspect| {
-        let (attachment, layer) = target.filter(|_| change == Change::Drawn)?;
-        Some(Copied { attachment, layer: held_layer(plan, attachment, layer), aspect })
+fn copied(plan: &FramePlan, pass: &Pass) -> [Option<AspectCopy>; 3] {
+    let copied = |target: Option<(AttachmentId, u32)>, change: TargetChange, aspect| {
+        let (attachment, layer) = target.filter(|_| change == TargetChange::Drawn)?;
+        Some(AspectCopy { attachment, layer: held_layer(plan, attachment, layer), aspect })
     };
     let color = pass.color.as_ref().map(|target| (target.attachment, target.layer));
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| (target.attachment, target.layer));
@@ -449,7 +449,7 @@ fn copied(plan: &FramePlan, pass: &Pass) -> [Option<Copied>; 3] {
 }
 
 fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Arc<Texture>]) -> Result<StagedPass, GpuError> {
-    let staging = |copied: Option<Copied>| copied.map(|copied| copied.staging(device, textures)).transpose();
+    let staging = |copied: Option<AspectCopy>| copied.map(|copied| copied.staging(device, textures)).transpose();
     let [color, depth, stencil] = copied(plan, pass);
     Ok(StagedPass { color: staging(color)?, depth: staging(depth)?, stencil: staging(stencil)? })
 }

@@ -1,21 +1,21 @@
 //! What the GPU notes while it runs: when a pass began and ended, and how many samples of a draw passed.
 
 use super::readback;
-use super::{Context, GpuError};
+use super::{GpuContext, GpuError};
 use crate::plan::{FramePlan, Pass};
 use wgpu::{BufferUsages, CommandEncoder, Device, QuerySet, QueryType};
 
 /// Queries of one kind, with the way back to the CPU.
-struct Queries {
+struct QueryReadback {
     set: QuerySet,
     count: u32,
     resolved: wgpu::Buffer,
     readable: wgpu::Buffer,
 }
 
-impl Queries {
+impl QueryReadback {
     /// `None` of none, and of more than a query set holds (4096).
-    fn new(device: &Device, ty: QueryType, count: u32) -> Option<Queries> {
+    fn new(device: &Device, ty: QueryType, count: u32) -> Option<QueryReadback> {
         if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
             return None;
         }
@@ -26,7 +26,7 @@ impl Queries {
         };
         let resolved = buffer(BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC);
         let readable = buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-        Some(Queries { set, count, resolved, readable })
+        Some(QueryReadback { set, count, resolved, readable })
     }
 
     fn resolve(&self, encoder: &mut CommandEncoder) {
@@ -47,13 +47,13 @@ impl Queries {
 
 /// What a frame notes.
 #[derive(Default)]
-pub(super) struct Notes {
-    pub timestamps: Option<Timestamps>,
-    pub samples: Option<Samples>,
+pub(super) struct FrameQueries {
+    pub timestamps: Option<PassTimestamps>,
+    pub samples: Option<DrawSamples>,
 }
 
-impl Notes {
-    fn queries(&self) -> impl Iterator<Item = &Queries> {
+impl FrameQueries {
+    fn queries(&self) -> impl Iterator<Item = &QueryReadback> {
         let timestamps = self.timestamps.as_ref().map(|timestamps| &timestamps.queries);
         timestamps.into_iter().chain(self.samples.as_ref().map(|samples| &samples.queries))
     }
@@ -65,27 +65,27 @@ impl Notes {
 
     /// After the frame was submitted.
     pub fn request_map(&self) {
-        self.queries().for_each(Queries::request_map);
+        self.queries().for_each(QueryReadback::request_map);
     }
 }
 
 /// When each pass began and ended, on adapters that can tell.
-pub(super) struct Timestamps {
+pub(super) struct PassTimestamps {
     /// Which pair of queries is a pass's.
     slots: Vec<Option<u32>>,
-    queries: Queries,
+    queries: QueryReadback,
 }
 
-impl Timestamps {
+impl PassTimestamps {
     /// For the passes that run. A frame of too many goes untimed.
-    pub fn new(context: &Context, plan: &FramePlan, runs: impl Fn(&Pass) -> bool) -> Option<Timestamps> {
+    pub fn new(context: &GpuContext, plan: &FramePlan, runs: impl Fn(&Pass) -> bool) -> Option<PassTimestamps> {
         context.timestamp_period?;
         let mut next_slot = 0..;
         let slots: Vec<Option<u32>> =
             plan.passes.iter().map(|pass| runs(pass).then(|| next_slot.next()).flatten()).collect();
         let count = slots.iter().flatten().count() as u32 * 2;
-        let queries = Queries::new(&context.device, QueryType::Timestamp, count)?;
-        Some(Timestamps { slots, queries })
+        let queries = QueryReadback::new(&context.device, QueryType::Timestamp, count)?;
+        Some(PassTimestamps { slots, queries })
     }
 
     pub fn of_pass(&self, index: usize) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
@@ -97,23 +97,23 @@ impl Timestamps {
     }
 
     /// By pass.
-    pub fn read(&self, context: &Context) -> Result<Vec<Option<f64>>, GpuError> {
+    pub fn read(&self, context: &GpuContext) -> Result<Vec<Option<f64>>, GpuError> {
         let times = readback::milliseconds(context, &self.queries.read()?);
         Ok(self.slots.iter().map(|slot| slot.and_then(|slot| times.get(slot as usize).copied()).flatten()).collect())
     }
 }
 
 /// How many samples of each draw passed its tests, where nothing else of it can matter.
-pub(super) struct Samples {
+pub(super) struct DrawSamples {
     /// By pass and draw.
     slots: Vec<Vec<Option<u32>>>,
-    queries: Queries,
+    queries: QueryReadback,
 }
 
-impl Samples {
+impl DrawSamples {
     /// Of the timed passes among those that `asks` takes; `None` where there is nothing to ask. What is beyond
     /// a query set's room is not asked about.
-    pub fn new(device: &Device, plan: &FramePlan, asks: impl Fn(&Pass) -> bool) -> Option<Samples> {
+    pub fn new(device: &Device, plan: &FramePlan, asks: impl Fn(&Pass) -> bool) -> Option<DrawSamples> {
         let mut next_slot = 0..wgpu::QUERY_SET_MAX_QUERIES;
         let of_pass = |pass: &Pass| -> Vec<Option<u32>> {
             let slots = pass.draws.iter().map(|draw| {
@@ -124,8 +124,8 @@ impl Samples {
         };
         let slots: Vec<Vec<Option<u32>>> = plan.passes.iter().map(of_pass).collect();
         let count = slots.iter().flatten().flatten().count() as u32;
-        let queries = Queries::new(device, QueryType::Occlusion, count)?;
-        Some(Samples { slots, queries })
+        let queries = QueryReadback::new(device, QueryType::Occlusion, count)?;
+        Some(DrawSamples { slots, queries })
     }
 
     /// What a pass hands its samples to.

@@ -5,7 +5,7 @@
 //! between passes, in the command buffer that draws them. A mapped buffer becomes the picture's memory, unless
 //! that is to be [shared](super::Memory).
 
-use super::{Context, GpuError};
+use super::{GpuContext, GpuError};
 use crate::capture::{Image, PixelFormat};
 use crate::plan::{AttachmentRole, ColorWrite, FramePlan, Pass, StartContent};
 use bytes::Bytes;
@@ -16,7 +16,7 @@ const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
 
 /// What a pass leaves in an aspect of its targets.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Change {
+pub(super) enum TargetChange {
     Unchanged,
     /// Every texel has these bytes.
     Uniform(Vec<u8>),
@@ -24,8 +24,8 @@ pub(super) enum Change {
 }
 
 /// What a pass leaves in its colour target.
-pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> Change {
-    let Some(target) = &pass.color else { return Change::Unchanged };
+pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> TargetChange {
+    let Some(target) = &pass.color else { return TargetChange::Unchanged };
     let is_drawn = pass.image.is_some() || pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
     let texel = |value: [f64; 4]| match plan.attachment(target.attachment).role {
         AttachmentRole::Labels(_) => vec![value[0] as u8],
@@ -37,7 +37,7 @@ pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> Change {
 }
 
 /// What a pass leaves in the depth aspect of its target.
-pub(super) fn depth_change(pass: &Pass) -> Change {
+pub(super) fn depth_change(pass: &Pass) -> TargetChange {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_depth);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.depth_write);
     let is_drawn = is_drawn || start(pass).is_some_and(|start| start.depth.is_some());
@@ -45,7 +45,7 @@ pub(super) fn depth_change(pass: &Pass) -> Change {
 }
 
 /// What a pass leaves in the stencil aspect of its target.
-pub(super) fn stencil_change(pass: &Pass) -> Change {
+pub(super) fn stencil_change(pass: &Pass) -> TargetChange {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.writes_stencil());
     let is_drawn = is_drawn || start(pass).is_some_and(|start| start.stencil.is_some());
@@ -56,11 +56,11 @@ fn start(pass: &Pass) -> Option<&StartContent> {
     pass.recorded.as_ref()?.start.as_ref()
 }
 
-fn change(is_drawn: bool, clear: Option<Vec<u8>>) -> Change {
+fn change(is_drawn: bool, clear: Option<Vec<u8>>) -> TargetChange {
     match (is_drawn, clear) {
-        (true, _) => Change::Drawn,
-        (false, Some(texel)) => Change::Uniform(texel),
-        (false, None) => Change::Unchanged,
+        (true, _) => TargetChange::Drawn,
+        (false, Some(texel)) => TargetChange::Uniform(texel),
+        (false, None) => TargetChange::Unchanged,
     }
 }
 
@@ -72,7 +72,7 @@ fn srgb_byte(linear: f64) -> u8 {
 
 /// One aspect of one layer of a texture, and the buffer that it is copied to.
 #[derive(Debug)]
-pub(super) struct Staging {
+pub(super) struct StagingCopy {
     texture: Texture,
     layer: u32,
     aspect: TextureAspect,
@@ -81,10 +81,10 @@ pub(super) struct Staging {
     buffer: Buffer,
 }
 
-impl Staging {
-    pub fn new(device: &Device, texture: &Texture, layer: u32, aspect: TextureAspect) -> Result<Staging, GpuError> {
+impl StagingCopy {
+    pub fn new(device: &Device, texture: &Texture, layer: u32, aspect: TextureAspect) -> Result<StagingCopy, GpuError> {
         let format = format_of(texture, aspect);
-        let (row_stride, size) = (row_stride(texture, format), Staging::bytes_of(texture, aspect));
+        let (row_stride, size) = (row_stride(texture, format), StagingCopy::bytes_of(texture, aspect));
         let most = device.limits().max_buffer_size;
         if size > most {
             let [needed, most] = [size, most].map(|bytes| format!("{bytes} bytes"));
@@ -93,7 +93,7 @@ impl Staging {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
         let descriptor = wgpu::BufferDescriptor { label: Some("snapshot"), size, usage, mapped_at_creation: false };
         let buffer = device.create_buffer(&descriptor);
-        Ok(Staging { texture: texture.clone(), layer, aspect, format, row_stride, buffer })
+        Ok(StagingCopy { texture: texture.clone(), layer, aspect, format, row_stride, buffer })
     }
 
     /// Bytes of such a copy, padding included.
@@ -125,7 +125,7 @@ impl Staging {
         encoder.copy_texture_to_buffer(source, target, size);
     }
 
-    /// Asks for the copy to be mapped once the GPU is done; [`Context::wait`] makes it so.
+    /// Asks for the copy to be mapped once the GPU is done; [`GpuContext::wait`] makes it so.
     pub fn request_map(&self) {
         // A failure shows when the mapped range is asked for.
         self.buffer.map_async(MapMode::Read, .., |_| {});
@@ -162,12 +162,12 @@ fn row_stride(texture: &Texture, format: PixelFormat) -> usize {
 /// The memory of a mapped buffer, which stays mapped as long as the bytes live.
 pub(super) fn mapped_bytes(buffer: &Buffer) -> Result<Bytes, GpuError> {
     let view = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
-    Ok(Bytes::from_owner(Mapped(view)))
+    Ok(Bytes::from_owner(MappedBytes(view)))
 }
 
-struct Mapped(BufferView);
+struct MappedBytes(BufferView);
 
-impl AsRef<[u8]> for Mapped {
+impl AsRef<[u8]> for MappedBytes {
     fn as_ref(&self) -> &[u8] {
         &self.0
     }
@@ -176,19 +176,19 @@ impl AsRef<[u8]> for Mapped {
 /// Copies of a frame in the order of its passes.
 #[derive(Debug, Default)]
 pub(super) struct StagedPass {
-    pub color: Option<Staging>,
-    pub depth: Option<Staging>,
-    pub stencil: Option<Staging>,
+    pub color: Option<StagingCopy>,
+    pub depth: Option<StagingCopy>,
+    pub stencil: Option<StagingCopy>,
 }
 
 impl StagedPass {
-    pub fn iter(&self) -> impl Iterator<Item = &Staging> {
+    pub fn iter(&self) -> impl Iterator<Item = &StagingCopy> {
         [&self.color, &self.depth, &self.stencil].into_iter().flatten()
     }
 }
 
 /// Milliseconds between pairs of timestamps.
-pub(super) fn milliseconds(context: &Context, ticks: &[u64]) -> Vec<Option<f64>> {
+pub(super) fn milliseconds(context: &GpuContext, ticks: &[u64]) -> Vec<Option<f64>> {
     let per_tick = context.timestamp_period.map(|nanoseconds| f64::from(nanoseconds) * 1e-6);
     ticks.chunks_exact(2).map(|pair| per_tick.map(|ms| pair[1].saturating_sub(pair[0]) as f64 * ms)).collect()
 }

@@ -4,15 +4,15 @@ use super::GpuError;
 
 /// What a frame holds, of what it may.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Room {
+pub(super) struct MemoryBudget {
     most: u64,
     held: u64,
 }
 
-impl Room {
+impl MemoryBudget {
     /// Nothing is held yet, of `most` bytes.
-    pub fn of(most: u64) -> Room {
-        Room { most, held: 0 }
+    pub fn of(most: u64) -> MemoryBudget {
+        MemoryBudget { most, held: 0 }
     }
 
     /// Holds so many bytes more.

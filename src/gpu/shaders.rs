@@ -6,14 +6,14 @@ use crate::plan::{Draw, DrawMesh, Program, Visibility};
 
 /// What a shader module is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Shader {
+pub(super) struct ShaderKey {
     pub program: Program,
-    pub form: Form,
+    pub form: ShaderInputs,
 }
 
 /// What a program reads beside what all of its draws have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Form {
+pub(super) enum ShaderInputs {
     Plain,
     /// The picture of the surface.
     Textured,
@@ -23,29 +23,29 @@ pub(super) enum Form {
     Kept,
 }
 
-impl Shader {
+impl ShaderKey {
     /// Of a draw.
-    pub fn of(draw: &Draw, mesh: &DrawMesh) -> Shader {
+    pub fn of(draw: &Draw, mesh: &DrawMesh) -> ShaderKey {
         let form = match (&mesh.extruded, &mesh.kept, draw.constants.texture) {
-            (Some(_), ..) => Form::Extruded,
-            (None, Some(_), _) if draw.program.is_recorded() => Form::Kept,
-            (None, _, Some(_)) => Form::Textured,
-            (None, _, None) => Form::Plain,
+            (Some(_), ..) => ShaderInputs::Extruded,
+            (None, Some(_), _) if draw.program.is_recorded() => ShaderInputs::Kept,
+            (None, _, Some(_)) => ShaderInputs::Textured,
+            (None, _, None) => ShaderInputs::Plain,
         };
-        Shader { program: draw.program, form }
+        ShaderKey { program: draw.program, form }
     }
 
     /// Reads vertices from storage by index, instead of a vertex buffer.
     pub fn pulls_vertices(self) -> bool {
-        self.program.visibility().is_some() || self.form == Form::Textured
+        self.program.visibility().is_some() || self.form == ShaderInputs::Textured
     }
 
     /// How many bind groups it uses, from group 0 on.
     pub fn group_count(self) -> usize {
         match self.program {
-            Program::Ambient { .. } if self.form == Form::Textured => 3,
-            Program::Recorded { .. } if self.form == Form::Kept => 3,
-            Program::Position if self.form == Form::Extruded => 2,
+            Program::Ambient { .. } if self.form == ShaderInputs::Textured => 3,
+            Program::Recorded { .. } if self.form == ShaderInputs::Kept => 3,
+            Program::Position if self.form == ShaderInputs::Extruded => 2,
             Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
             Program::Light(_) | Program::Label(_) | Program::Through => 4,
@@ -68,21 +68,21 @@ macro_rules! file {
     };
 }
 
-pub(super) fn source_of(shader: Shader) -> ProgramSource {
+pub(super) fn source_of(shader: ShaderKey) -> ProgramSource {
     match (shader.form, shader.program) {
-        (Form::Extruded, program) => extruding(program),
-        (Form::Textured, Program::Ambient { from_near }) => {
+        (ShaderInputs::Extruded, program) => extruding(program),
+        (ShaderInputs::Textured, Program::Ambient { from_near }) => {
             let fragment = if from_near { "fs_ambient_textured_from_near" } else { "fs_ambient_textured" };
             let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient.wgsl")];
             joined(&[&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured", Some(fragment))
         }
-        (Form::Textured, Program::Light(visibility)) => {
+        (ShaderInputs::Textured, Program::Light(visibility)) => {
             let files = surface_files(file!("light.wgsl"), visibility);
             let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
             joined(&[&files[..], &textured].concat(), "vs_surface_textured", Some("fs_light_textured"))
         }
-        (Form::Kept, _) => joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", Some("fs_recorded_kept")),
-        (Form::Plain, program) | (Form::Textured, program) => plain(program),
+        (ShaderInputs::Kept, _) => joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", Some("fs_recorded_kept")),
+        (ShaderInputs::Plain, program) | (ShaderInputs::Textured, program) => plain(program),
     }
 }
 
@@ -151,11 +151,12 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        let with = |form| move |program| Shader { program, form };
-        let plain = Program::all().into_iter().map(with(Form::Plain));
-        let textured = Program::all().into_iter().filter(|program| program.shows_texture()).map(with(Form::Textured));
-        let extruded = [Program::Position, Program::Flat, Program::Count].into_iter().map(with(Form::Extruded));
-        let recorded = Program::all().into_iter().filter(|program| program.is_recorded()).map(with(Form::Kept));
+        let with = |form| move |program| ShaderKey { program, form };
+        let plain = Program::all().into_iter().map(with(ShaderInputs::Plain));
+        let textured =
+            Program::all().into_iter().filter(|program| program.shows_texture()).map(with(ShaderInputs::Textured));
+        let extruded = [Program::Position, Program::Flat, Program::Count].into_iter().map(with(ShaderInputs::Extruded));
+        let recorded = Program::all().into_iter().filter(|program| program.is_recorded()).map(with(ShaderInputs::Kept));
         let shaders = plain.chain(textured).chain(extruded).chain(recorded);
         let programs = shaders.map(|shader| (format!("{shader:?}"), source_of(shader).source));
         for (name, source) in

@@ -9,7 +9,7 @@ use wgpu::{BufferUsages, CommandEncoder, Device, LoadOp, Operations, RenderPipel
 const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
 
 /// Where content goes: a layer of a depth-stencil texture.
-pub(super) struct Target<'a> {
+pub(super) struct StartTarget<'a> {
     pub device: &'a Device,
     pub texture: &'a wgpu::Texture,
     pub layer: u32,
@@ -19,8 +19,8 @@ pub(super) struct Target<'a> {
 }
 
 /// Records what brings content there.
-pub(super) fn record(encoder: &mut CommandEncoder, target: &Target, content: &StartContent) {
-    let Target { device, texture, layer, view, pipeline } = *target;
+pub(super) fn record(encoder: &mut CommandEncoder, target: &StartTarget, content: &StartContent) {
+    let StartTarget { device, texture, layer, view, pipeline } = *target;
     if let Some(stencil) = content.stencil.as_ref().filter(|_| texture.format().has_stencil_aspect()) {
         let origin = wgpu::Origin3d { z: layer, ..wgpu::Origin3d::ZERO };
         let aspect = wgpu::TextureAspect::StencilOnly;

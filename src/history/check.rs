@@ -1,9 +1,9 @@
 //! Holds a history against what the GPU stored, and against itself: a list with an event dropped,
 //! doubled or moved is found out.
 
-use super::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory};
+use super::{CapturedAfter, FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues};
 use crate::numbers;
-use crate::stencil_machine::Stored;
+use crate::stencil_machine::DepthStencil;
 use std::fmt;
 
 /// Where a history is wrong: a bug of this program, or of the driver.
@@ -51,7 +51,7 @@ pub enum Disagreement {
         /// Index of the pass.
         pass: usize,
         /// What the events make.
-        computed: Held,
+        computed: PixelValues,
         /// What the GPU stored.
         captured: CapturedAfter,
     },
@@ -77,7 +77,7 @@ impl fmt::Display for Disagreement {
             }
             Disagreement::NotCaptured => f.write_str("the capture holds no depth to compare with"),
             Disagreement::Stored { pass, computed, captured } => {
-                let Stored { depth, stencil } = captured.stored;
+                let DepthStencil { depth, stencil } = captured.stored;
                 write!(
                     f,
                     "after pass {} the events make depth {:?} and stencil {}",
@@ -103,7 +103,8 @@ impl PixelHistory {
     /// Everything that is wrong with it; empty where it agrees with the GPU.
     pub fn disagreements(&self) -> Vec<Disagreement> {
         let mut found = self.contradictions.clone();
-        let is_fragment = |fate: Fate| matches!(fate, Fate::Tested { .. } | Fate::Discarded(_));
+        let is_fragment =
+            |fate: FragmentOutcome| matches!(fate, FragmentOutcome::Tested { .. } | FragmentOutcome::Discarded(_));
         let listed = self.triangles().filter(|(_, one)| is_fragment(one.fate)).count() as u32;
         if listed != self.counted {
             found.push(Disagreement::Counted { counted: self.counted, listed });
@@ -142,12 +143,12 @@ impl PixelHistory {
 }
 
 /// Pass, what comes first in it, draw, triangle.
-fn place(event: &Event) -> (usize, u8, usize, u32) {
+fn place(event: &PixelEvent) -> (usize, u8, usize, u32) {
     match &event.kind {
-        EventKind::Put => (event.pass, 0, 0, 0),
-        EventKind::ClearDepth => (event.pass, 1, 0, 0),
-        EventKind::ClearStencil => (event.pass, 2, 0, 0),
-        EventKind::ClearCount => (event.pass, 3, 0, 0),
-        EventKind::Triangle(one) => (event.pass, 4, one.draw, one.primitive),
+        PixelEventKind::Put => (event.pass, 0, 0, 0),
+        PixelEventKind::ClearDepth => (event.pass, 1, 0, 0),
+        PixelEventKind::ClearStencil => (event.pass, 2, 0, 0),
+        PixelEventKind::ClearCount => (event.pass, 3, 0, 0),
+        PixelEventKind::Triangle(one) => (event.pass, 4, one.draw, one.primitive),
     }
 }

@@ -1,17 +1,17 @@
 //! `pixel --json`; `assets/help/json.md` says what each field means. Names are a contract with scripts.
 
-use super::{Event, EventKind, Fate, PixelHistory, Test, operation_name};
-use crate::plan::Clip;
+use super::{FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, TestResult, operation_name};
+use crate::plan::ClipPlane;
 use serde::Serialize;
 
 /// A pixel's history as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PixelDocument {
     pixel: [u32; 2],
-    events: Vec<EventEntry>,
+    events: Vec<PixelEventEntry>,
     #[serde(rename = "final")]
-    computed: Stored,
-    captured: Option<Stored>,
+    computed: StoredEntry,
+    captured: Option<StoredEntry>,
     agrees: bool,
     /// What is wrong, where something is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -22,13 +22,13 @@ pub struct PixelDocument {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Stored {
+struct StoredEntry {
     stencil: Option<u8>,
     depth: f32,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct EventEntry {
+struct PixelEventEntry {
     pass: usize,
     draw: Option<usize>,
     name: String,
@@ -57,7 +57,7 @@ struct EventEntry {
 impl PixelDocument {
     /// Of a history that took so long to find out.
     pub fn new(history: &PixelHistory, milliseconds: f64) -> PixelDocument {
-        let stored = |depth, stencil| Stored { stencil: history.has_stencil.then_some(stencil), depth };
+        let stored = |depth, stencil| StoredEntry { stencil: history.has_stencil.then_some(stencil), depth };
         let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();
         PixelDocument {
             pixel: history.pixel,
@@ -72,24 +72,24 @@ impl PixelDocument {
     }
 }
 
-fn entry(history: &PixelHistory, event: &Event) -> EventEntry {
+fn entry(history: &PixelHistory, event: &PixelEvent) -> PixelEventEntry {
     let one = event.triangle();
-    let counts = event.before.count != event.after.count || event.kind == EventKind::ClearCount;
+    let counts = event.before.count != event.after.count || event.kind == PixelEventKind::ClearCount;
     let tests = match one.map(|one| one.fate) {
-        Some(Fate::Tested { stencil, depth, operation }) => Some((stencil, depth, operation)),
+        Some(FragmentOutcome::Tested { stencil, depth, operation }) => Some((stencil, depth, operation)),
         _ => None,
     };
     let stencil = |value| history.has_stencil.then_some(value);
     let operation = tests.and_then(|(_, _, operation)| operation);
-    EventEntry {
+    PixelEventEntry {
         pass: event.pass,
         draw: one.map(|one| one.draw),
         name: match &event.kind {
-            EventKind::Put => "other content".to_owned(),
-            EventKind::ClearDepth => "clear depth".to_owned(),
-            EventKind::ClearStencil => "clear stencil".to_owned(),
-            EventKind::ClearCount => "clear count".to_owned(),
-            EventKind::Triangle(_) => event.pass_name.clone(),
+            PixelEventKind::Put => "other content".to_owned(),
+            PixelEventKind::ClearDepth => "clear depth".to_owned(),
+            PixelEventKind::ClearStencil => "clear stencil".to_owned(),
+            PixelEventKind::ClearCount => "clear count".to_owned(),
+            PixelEventKind::Triangle(_) => event.pass_name.clone(),
         },
         light: event.light,
         caster: one.and_then(|one| one.caster.clone()),
@@ -112,21 +112,25 @@ fn entry(history: &PixelHistory, event: &Event) -> EventEntry {
     }
 }
 
-fn word(test: Test) -> Option<&'static str> {
+fn word(test: TestResult) -> Option<&'static str> {
     test.passed().map(|passed| if passed { "pass" } else { "fail" })
 }
 
-impl Fate {
+impl FragmentOutcome {
     /// Why a triangle left no fragment, in words; `None` where it did.
     pub fn note(self) -> Option<&'static str> {
         match self {
-            Fate::Tested { .. } => None,
-            Fate::Culled => Some("culled: the draw shows only the other side of triangles"),
-            Fate::Clipped(Clip::Near) => Some("clipped: it is nearer than the near plane"),
-            Fate::Clipped(Clip::Far) => Some("clipped: it is beyond the far plane"),
-            Fate::Discarded(Some(Clip::Near)) => Some("discarded by the shader: it is nearer than the near plane"),
-            Fate::Discarded(Some(Clip::Far)) => Some("discarded by the shader: it is beyond the far plane"),
-            Fate::Discarded(None) => Some("discarded by the shader"),
+            FragmentOutcome::Tested { .. } => None,
+            FragmentOutcome::Culled => Some("culled: the draw shows only the other side of triangles"),
+            FragmentOutcome::Clipped(ClipPlane::Near) => Some("clipped: it is nearer than the near plane"),
+            FragmentOutcome::Clipped(ClipPlane::Far) => Some("clipped: it is beyond the far plane"),
+            FragmentOutcome::Discarded(Some(ClipPlane::Near)) => {
+                Some("discarded by the shader: it is nearer than the near plane")
+            }
+            FragmentOutcome::Discarded(Some(ClipPlane::Far)) => {
+                Some("discarded by the shader: it is beyond the far plane")
+            }
+            FragmentOutcome::Discarded(None) => Some("discarded by the shader"),
         }
     }
 }

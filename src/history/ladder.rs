@@ -2,9 +2,9 @@
 //! it runs: from infinity towards the surface where faces behind it count (z-fail), else from the
 //! eye; where some volumes count in front of it and others behind (auto), along the whole ray.
 
-use super::{Count, Event, PixelHistory};
+use super::{PixelEvent, PixelHistory, VolumeCount};
 use crate::math::depth::DepthCurve;
-use crate::plan::{CountBits, Side};
+use crate::plan::{CountBits, CountedSide};
 use std::collections::BTreeMap;
 
 /// The faces of one light's volumes along the ray of a pixel.
@@ -13,7 +13,7 @@ pub struct Ladder {
     /// Distance of the visible surface along the view axis in metres; `None` for the background.
     pub surface: Option<f64>,
     /// Where faces count: behind the surface from infinity inwards, else from the eye outwards.
-    pub side: Side,
+    pub side: CountedSide,
     /// What the count began with: what it was cleared to, and the volumes that contain the near plane, where that was
     /// counted.
     pub start: i32,
@@ -24,7 +24,7 @@ pub struct Ladder {
     /// What it ended with.
     pub count: i32,
     /// The same as the light pass tests it: in a stencil eight bits of it.
-    pub tested: Count,
+    pub tested: VolumeCount,
     /// Nearest first.
     pub rungs: Vec<Rung>,
 }
@@ -45,7 +45,7 @@ pub struct Rung {
 impl Ladder {
     /// Does the count run from infinity inwards, and not from the eye outwards?
     pub fn is_from_infinity(&self) -> bool {
-        self.side == Side::Behind
+        self.side == CountedSide::Behind
     }
 }
 
@@ -53,10 +53,10 @@ impl PixelHistory {
     /// The ladder of a light; `None` where none of its volumes' faces is on the ray, and the near
     /// plane was not asked about here. `curve` is the capture's.
     pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
-        let of_light = |event: &&Event| event.light == Some(light) && event.is_of_volume();
+        let of_light = |event: &&PixelEvent| event.light == Some(light) && event.is_of_volume();
         let near = || self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
         let cleared_to = self.cleared_to(light);
-        let start = cleared_to + near().map(Event::counted).sum::<i32>();
+        let start = cleared_to + near().map(PixelEvent::counted).sum::<i32>();
         let bits = self.counts_in.get(light).copied().flatten().unwrap_or(CountBits::EIGHT);
         let faces = || self.events.iter().enumerate().filter(|(_, event)| of_light(event) && event.is_from_camera);
         let first = faces().map(|(_, event)| event).next().or_else(|| near().next())?;
@@ -77,14 +77,14 @@ impl PixelHistory {
         }
         let mut rungs: Vec<Rung> = once.into_values().collect();
         rungs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let side = self.counted_side(light).unwrap_or(Side::InFront);
+        let side = self.counted_side(light).unwrap_or(CountedSide::InFront);
         let tested = self.counted_at(light);
         let mut count = start;
         let mut run = |rung: &mut Rung| {
             count += rung.added;
             rung.running = count;
         };
-        if side == Side::Behind {
+        if side == CountedSide::Behind {
             rungs.iter_mut().rev().for_each(&mut run)
         } else {
             rungs.iter_mut().for_each(&mut run)

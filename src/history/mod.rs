@@ -28,12 +28,12 @@ pub use ladder::{Ladder, Rung};
 #[cfg(feature = "program")]
 pub(crate) use replay::{asks, count_of, counts_in, target_of};
 pub use story::operation_name;
-pub use verdict::{Evidence, TestedCount, Verdict, reason};
-pub use why::{Count, Counted, Faces, Flattened, LightPass, Why};
+pub use verdict::{TestedCount, Verdict, VerdictEvidence, reason};
+pub use why::{CountedFaces, FaceCounts, FlattenedShadow, LightDecision, LightPassResult, VolumeCount};
 
 use crate::capture::{Capture, FrameTarget, Snapshot};
-use crate::plan::{Clip, CountBits, FramePlan, Part, Side, Visibility};
-use crate::stencil_machine::Stored;
+use crate::plan::{ClipPlane, CountBits, CountedSide, DrawPart, FramePlan, Visibility};
+use crate::stencil_machine::DepthStencil;
 use wgpu::StencilOperation;
 
 /// One pixel's history.
@@ -48,13 +48,13 @@ pub struct PixelHistory {
     /// How far the depths that the events make may be from those that were stored: 0 in our own frames.
     pub depth_rounding: f32,
     /// Before the first event: zeros, or what another program's frame began with.
-    pub start: Held,
+    pub start: PixelValues,
     /// In the order in which they happened.
-    pub events: Vec<Event>,
+    pub events: Vec<PixelEvent>,
     /// What the events leave.
-    pub computed: Held,
+    pub computed: PixelValues,
     /// What the GPU stored by the end of the frame; `None` where the capture has no picture.
-    pub captured: Option<Stored>,
+    pub captured: Option<DepthStencil>,
     /// What the GPU stored after each pass of the picture.
     pub captured_after: Vec<CapturedAfter>,
     /// What the technique says of each light here, as in its mask; `None` where it has none.
@@ -72,7 +72,7 @@ pub struct PixelHistory {
 
 /// What a pixel holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Held {
+pub struct PixelValues {
     /// As in the depth buffer.
     pub depth: f32,
     /// Eight bits; 0 where there is no stencil buffer.
@@ -87,21 +87,21 @@ pub struct CapturedAfter {
     /// Index of the pass.
     pub pass: usize,
     /// Depth and stencil; 0 where there is no stencil buffer.
-    pub stored: Stored,
+    pub stored: DepthStencil,
     /// The float count of the pass's light, where this was the last pass to add to it.
     pub count: Option<f32>,
 }
 
-impl Held {
+impl PixelValues {
     /// Depth and stencil.
-    pub fn stored(self) -> Stored {
-        Stored { depth: self.depth, stencil: self.stencil }
+    pub fn stored(self) -> DepthStencil {
+        DepthStencil { depth: self.depth, stencil: self.stencil }
     }
 }
 
 /// One thing that happened.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Event {
+pub struct PixelEvent {
     /// Index of the pass, as in the capture.
     pub pass: usize,
     /// Its name.
@@ -113,16 +113,16 @@ pub struct Event {
     /// What the pass draws into.
     pub target: FrameTarget,
     /// What happened.
-    pub kind: EventKind,
+    pub kind: PixelEventKind,
     /// What the pixel held.
-    pub before: Held,
+    pub before: PixelValues,
     /// What it holds now.
-    pub after: Held,
+    pub after: PixelValues,
 }
 
 /// What can happen to a pixel.
 #[derive(Debug, Clone, PartialEq)]
-pub enum EventKind {
+pub enum PixelEventKind {
     /// Something other than a draw or a clear of everything has set depth and stencil before the pass, in another
     /// program's frame: a copy, a clear of a part, a draw that is not followed.
     Put,
@@ -146,7 +146,7 @@ pub struct TriangleEvent {
     /// The object it shows or whose shadow it makes.
     pub caster: Option<String>,
     /// Which part of the object or of its shadow.
-    pub part: Part,
+    pub part: DrawPart,
     /// Index among the draw's triangles in the order in which they are drawn.
     pub primitive: u32,
     /// Index in the mesh's triangle list.
@@ -162,33 +162,33 @@ pub struct TriangleEvent {
     /// As the depth test sees it; outside 0 to 1 where it was clipped.
     pub depth: f32,
     /// What became of it.
-    pub fate: Fate,
+    pub fate: FragmentOutcome,
 }
 
 /// What became of a triangle at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fate {
+pub enum FragmentOutcome {
     /// Its fragment went through the tests.
     Tested {
         /// The stencil test.
-        stencil: Test,
+        stencil: TestResult,
         /// The depth test.
-        depth: Test,
+        depth: TestResult,
         /// The operation that ran on the stencil; `None` where the draw tests no stencil.
         operation: Option<StencilOperation>,
     },
     /// The shader discarded its fragment: on that side of the depths that are drawn, or of another program for reasons of
     /// its own.
-    Discarded(Option<Clip>),
+    Discarded(Option<ClipPlane>),
     /// The draw shows only the other side of triangles.
     Culled,
     /// It lies before the near or behind the far plane.
-    Clipped(Clip),
+    Clipped(ClipPlane),
 }
 
 /// How a test went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Test {
+pub enum TestResult {
     /// It passed.
     Passed,
     /// It failed.
@@ -199,13 +199,13 @@ pub enum Test {
     NotReached,
 }
 
-impl Test {
+impl TestResult {
     /// Did it let the fragment through? `None` where it was not asked.
     pub fn passed(self) -> Option<bool> {
         match self {
-            Test::Passed | Test::Always => Some(true),
-            Test::Failed => Some(false),
-            Test::NotReached => None,
+            TestResult::Passed | TestResult::Always => Some(true),
+            TestResult::Failed => Some(false),
+            TestResult::NotReached => None,
         }
     }
 }
@@ -218,18 +218,18 @@ impl TriangleEvent {
     }
 }
 
-impl Fate {
+impl FragmentOutcome {
     /// Did the fragment pass all tests, and reach the colour target?
     pub fn passed(self) -> bool {
-        matches!(self, Fate::Tested { depth, .. } if depth.passed() == Some(true))
+        matches!(self, FragmentOutcome::Tested { depth, .. } if depth.passed() == Some(true))
     }
 }
 
-impl Event {
+impl PixelEvent {
     /// The triangle, where it was one.
     pub fn triangle(&self) -> Option<&TriangleEvent> {
         match &self.kind {
-            EventKind::Triangle(triangle) => Some(triangle),
+            PixelEventKind::Triangle(triangle) => Some(triangle),
             _ => None,
         }
     }
@@ -249,7 +249,7 @@ impl Event {
     /// What was done to the stencil, where a fragment was tested against one.
     fn operation(&self) -> Option<StencilOperation> {
         match self.triangle()?.fate {
-            Fate::Tested { operation, .. } => operation,
+            FragmentOutcome::Tested { operation, .. } => operation,
             _ => None,
         }
     }
@@ -289,8 +289,8 @@ impl PixelHistory {
     pub(crate) fn cleared_to(&self, light: usize) -> i32 {
         let clears = self.events.iter().rev().filter(|event| event.light == Some(light));
         let mut cleared = clears.filter_map(|event| match event.kind {
-            EventKind::ClearStencil => Some(i32::from(event.after.stencil)),
-            EventKind::ClearCount => Some(event.after.count as i32),
+            PixelEventKind::ClearStencil => Some(i32::from(event.after.stencil)),
+            PixelEventKind::ClearCount => Some(event.after.count as i32),
             _ => None,
         });
         cleared.next().unwrap_or(0)
@@ -303,16 +303,16 @@ impl PixelHistory {
     }
 
     /// The triangles with their events, in order.
-    pub fn triangles(&self) -> impl Iterator<Item = (&Event, &TriangleEvent)> {
+    pub fn triangles(&self) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
         self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
     }
 
     /// What the pixel held when the light pass tested it: after the last face of the light's volumes, or where there is
     /// none, when the light's last pass began; of what that pass does not draw, when its labels were drawn.
-    fn tested_count(&self, light: usize) -> Held {
+    fn tested_count(&self, light: usize) -> PixelValues {
         let of_light = || self.events.iter().filter(|event| event.light == Some(light));
         let last = of_light().rfind(|event| event.is_of_volume());
-        let tests = |event: &&Event| {
+        let tests = |event: &&PixelEvent| {
             event.triangle().is_some_and(|one| one.lights.is_some() || event.target == FrameTarget::Labels)
         };
         let tested = || of_light().filter(tests).min_by_key(|event| event.target == FrameTarget::Labels);
@@ -321,28 +321,30 @@ impl PixelHistory {
 
     /// On which side of the visible surface a light's volume faces count here. `None` where it has none here that
     /// would tell: what was clipped or culled counts nowhere.
-    pub fn counted_side(&self, light: usize) -> Option<Side> {
-        let is_behind = |event: &Event| {
+    pub fn counted_side(&self, light: usize) -> Option<CountedSide> {
+        let is_behind = |event: &PixelEvent| {
             let depth = event.triangle()?.depth;
             let is_behind = if self.is_reversed { depth <= event.before.depth } else { depth >= event.before.depth };
             Some((event.step() != 0, is_behind))
         };
-        let is_tested = |event: &&Event| event.triangle().is_some_and(|one| matches!(one.fate, Fate::Tested { .. }));
+        let is_tested = |event: &&PixelEvent| {
+            event.triangle().is_some_and(|one| matches!(one.fate, FragmentOutcome::Tested { .. }))
+        };
         let faces = self.events.iter().filter(|event| event.light == Some(light) && event.is_from_camera);
         let faces = faces.filter(is_tested);
         let seen: Vec<(bool, bool)> = faces.filter(|event| event.is_of_volume()).filter_map(is_behind).collect();
         // Where none has counted, those that lie here are on the side that does not.
         let counting = |side: bool| seen.iter().any(|(counts, is_behind)| *counts && *is_behind == side);
         match (counting(false), counting(true), seen.first()?) {
-            (true, true, _) => Some(Side::AsNeeded),
-            (true, false, _) | (false, false, (_, true)) => Some(Side::InFront),
-            (false, true, _) | (false, false, (_, false)) => Some(Side::Behind),
+            (true, true, _) => Some(CountedSide::AsNeeded),
+            (true, false, _) | (false, false, (_, true)) => Some(CountedSide::InFront),
+            (false, true, _) | (false, false, (_, false)) => Some(CountedSide::Behind),
         }
     }
 
     /// Does an event of a pass change what the pixel holds, or reach its colour?
     pub fn is_touched_by(&self, pass: usize) -> bool {
-        self.events.iter().filter(|event| event.pass == pass).any(Event::does_something)
+        self.events.iter().filter(|event| event.pass == pass).any(PixelEvent::does_something)
     }
 }
 
@@ -360,7 +362,7 @@ fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<C
         let light =
             counts(pass).filter(|light| !(pass + 1..plan.passes.len()).any(|later| counts(later) == Some(*light)));
         let count = light.and_then(|light| capture.lights.get(light)?.count.as_ref()?.count_at(pixel));
-        after.push(CapturedAfter { pass, stored: Stored { depth, stencil }, count });
+        after.push(CapturedAfter { pass, stored: DepthStencil { depth, stencil }, count });
     }
     after
 }

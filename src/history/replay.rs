@@ -1,16 +1,19 @@
 //! Takes the fragments of a log through the tests of their draws.
 
-use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
+use super::{
+    Disagreement, FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues, TestResult, TriangleEvent,
+    captured_after,
+};
 use crate::capture::{Capture, FrameTarget};
 use crate::plan::{
-    AttachmentRole, ColorWrite, CountBits, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Part, Pass,
-    Program, StartContent, ViewId, Visibility,
+    AttachmentRole, ColorWrite, CountBits, Coverage, Covering, Draw, DrawPart, FragmentLog, FramePlan, LightId, Pass,
+    Program, StartContent, ViewId, Visibility, VisibleFace,
 };
-use crate::stencil_machine::{self, Fragment};
+use crate::stencil_machine::{self, IncomingFragment};
 use wgpu::CompareFunction;
 
 /// wgpu clears new textures to zero.
-const NEW: Held = Held { depth: 0.0, stencil: 0, count: 0.0 };
+const NEW: PixelValues = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
 
 impl PixelHistory {
     /// The history of `pixel` in the frame of `plan`, which left `capture`: `covering` are the
@@ -23,7 +26,7 @@ impl PixelHistory {
         log: &FragmentLog,
     ) -> PixelHistory {
         let start = start_of(plan, pixel);
-        let mut replay = Replay { plan, pixel, held: start, events: Vec::new(), contradictions: Vec::new() };
+        let mut replay = HistoryReplay { plan, pixel, held: start, events: Vec::new(), contradictions: Vec::new() };
         let is_hidden = |one: &&Covering| matches!(one.coverage, Coverage::Culled(_) | Coverage::Clipped(..));
         let hidden = covering.iter().filter(is_hidden).count() as u32;
         let mut fragments = log.fragments.iter().peekable();
@@ -61,18 +64,18 @@ impl PixelHistory {
     }
 }
 
-struct Replay<'a> {
+struct HistoryReplay<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
-    held: Held,
-    events: Vec<Event>,
+    held: PixelValues,
+    events: Vec<PixelEvent>,
     contradictions: Vec<Disagreement>,
 }
 
-impl Replay<'_> {
-    fn push(&mut self, index: usize, kind: EventKind, after: Held) {
+impl HistoryReplay<'_> {
+    fn push(&mut self, index: usize, kind: PixelEventKind, after: PixelValues) {
         let pass = &self.plan.passes[index];
-        self.events.push(Event {
+        self.events.push(PixelEvent {
             pass: index,
             pass_name: pass.name.clone(),
             light: pass.light.map(|light| light.0),
@@ -90,20 +93,20 @@ impl Replay<'_> {
         // The frame's own start is no event.
         if let Some(start) = start_content(pass).filter(|_| first_with_depth(self.plan) != Some(index)) {
             let put = held_in(start, self.plan, self.pixel, self.held);
-            self.push(index, EventKind::Put, put);
+            self.push(index, PixelEventKind::Put, put);
         }
         if let Some(target) = &pass.depth_stencil {
             if let Some(depth) = target.clear_depth {
-                self.push(index, EventKind::ClearDepth, Held { depth, ..self.held });
+                self.push(index, PixelEventKind::ClearDepth, PixelValues { depth, ..self.held });
             }
             if let Some(stencil) = target.clear_stencil {
-                self.push(index, EventKind::ClearStencil, Held { stencil, ..self.held });
+                self.push(index, PixelEventKind::ClearStencil, PixelValues { stencil, ..self.held });
             }
         }
         if let Some(clear) =
             pass.color.as_ref().and_then(|target| target.clear).filter(|_| self.plan.counts_in_float(pass))
         {
-            self.push(index, EventKind::ClearCount, Held { count: clear[0] as f32, ..self.held });
+            self.push(index, PixelEventKind::ClearCount, PixelValues { count: clear[0] as f32, ..self.held });
         }
     }
 
@@ -111,7 +114,11 @@ impl Replay<'_> {
         let draw = &pass.draws[one.draw];
         let clip = draw.program.discards(depth);
         if clip.is_some() || !self.plan.meshes[draw.mesh.0].keeps(self.pixel, one.triangle) {
-            self.push(one.pass, triangle(draw, one, Face { is_front, depth }, Fate::Discarded(clip)), self.held);
+            self.push(
+                one.pass,
+                triangle(draw, one, VisibleFace { is_front, depth }, FragmentOutcome::Discarded(clip)),
+                self.held,
+            );
             return;
         }
         let [near, far] = pass.viewport(self.plan.size).depth;
@@ -119,17 +126,18 @@ impl Replay<'_> {
         let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
         let depth = target.map_or(depth, |target| target.stored_depth(depth));
         let outcome =
-            stencil_machine::test(&draw.raster, Fragment { depth, front_facing: is_front }, self.held.stored());
+            stencil_machine::test(&draw.raster, IncomingFragment { depth, front_facing: is_front }, self.held.stored());
         let (side, _) = draw.raster.face(is_front);
         let has_test = draw.raster.stencil.is_enabled();
-        let fate = Fate::Tested {
+        let fate = FragmentOutcome::Tested {
             stencil: test_of(Some(outcome.stencil_passed), side.compare),
             depth: test_of(outcome.depth_passed, draw.raster.depth_compare),
             operation: has_test.then_some(outcome.operation),
         };
         let added = if outcome.passed() && self.plan.counts_in_float(pass) { count_of(draw, is_front) } else { 0.0 };
-        let after = Held { depth: outcome.after.depth, stencil: outcome.after.stencil, count: self.held.count + added };
-        self.push(one.pass, triangle(draw, one, Face { is_front, depth }, fate), after);
+        let after =
+            PixelValues { depth: outcome.after.depth, stencil: outcome.after.stencil, count: self.held.count + added };
+        self.push(one.pass, triangle(draw, one, VisibleFace { is_front, depth }, fate), after);
     }
 
     /// What geometry says of the triangle, against whether the GPU made a fragment of it.
@@ -137,8 +145,8 @@ impl Replay<'_> {
         let draw = &pass.draws[one.draw];
         let (face, fate) = match (one.coverage, has_fragment) {
             (Coverage::Doubtful, _) | (Coverage::Sure, true) => return,
-            (Coverage::Culled(face), false) => (face, Fate::Culled),
-            (Coverage::Clipped(face, clip), false) => (face, Fate::Clipped(clip)),
+            (Coverage::Culled(face), false) => (face, FragmentOutcome::Culled),
+            (Coverage::Clipped(face, clip), false) => (face, FragmentOutcome::Clipped(clip)),
             (coverage, _) => {
                 let (pass, draw, primitive) = (one.pass, draw.name.clone(), one.primitive);
                 let is_missing = coverage == Coverage::Sure;
@@ -158,7 +166,7 @@ fn rounding(plan: &FramePlan) -> f32 {
 }
 
 /// What a pixel of the picture holds before the frame's first pass.
-fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> Held {
+fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> PixelValues {
     let first = first_with_depth(plan).and_then(|index| start_content(&plan.passes[index]));
     first.map_or(NEW, |start| held_in(start, plan, pixel, NEW))
 }
@@ -173,11 +181,11 @@ fn start_content(pass: &Pass) -> Option<&StartContent> {
 }
 
 /// What a pixel holds of some content, and of `held` where that says nothing.
-fn held_in(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], held: Held) -> Held {
+fn held_in(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], held: PixelValues) -> PixelValues {
     let index = y as usize * plan.size[0] as usize + x as usize;
     let depth = start.depth.as_ref().and_then(|depth| depth.data().get(index).copied());
     let stencil = start.stencil.as_ref().and_then(|stencil| stencil.data().get(index).copied());
-    Held { depth: depth.unwrap_or(held.depth), stencil: stencil.unwrap_or(held.stencil), ..held }
+    PixelValues { depth: depth.unwrap_or(held.depth), stencil: stencil.unwrap_or(held.stencil), ..held }
 }
 
 /// What a pass of the picture draws into.
@@ -215,8 +223,8 @@ fn clears(plan: &FramePlan) -> u32 {
     put + passes().map(|(_, pass)| of_pass(pass)).sum::<u32>()
 }
 
-fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
-    EventKind::Triangle(Box::new(TriangleEvent {
+fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, fate: FragmentOutcome) -> PixelEventKind {
+    PixelEventKind::Triangle(Box::new(TriangleEvent {
         draw: one.draw,
         draw_name: draw.name.clone(),
         caster: draw.caster.clone(),
@@ -237,17 +245,17 @@ pub(crate) fn asks(draw: &Draw) -> Option<Visibility> {
     match draw.program {
         Program::Light(visibility) => Some(visibility),
         // Whatever else another program's shader asks is not known.
-        Program::Recorded { .. } if draw.part == Part::Surface => Some(Visibility::Everywhere),
+        Program::Recorded { .. } if draw.part == DrawPart::Surface => Some(Visibility::Everywhere),
         _ => None,
     }
 }
 
-fn test_of(passed: Option<bool>, function: CompareFunction) -> Test {
+fn test_of(passed: Option<bool>, function: CompareFunction) -> TestResult {
     match passed {
-        None => Test::NotReached,
-        Some(true) if function == CompareFunction::Always => Test::Always,
-        Some(true) => Test::Passed,
-        Some(false) => Test::Failed,
+        None => TestResult::NotReached,
+        Some(true) if function == CompareFunction::Always => TestResult::Always,
+        Some(true) => TestResult::Passed,
+        Some(false) => TestResult::Failed,
     }
 }
 

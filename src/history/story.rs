@@ -1,9 +1,9 @@
 //! A history as text that a student can follow: pass by pass, a line an event.
 
-use super::{Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
+use super::{FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues, TestResult, TriangleEvent};
 use crate::math::depth::DepthCurve;
 use crate::numbers;
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use std::fmt::Write;
 use wgpu::StencilOperation;
 
@@ -58,7 +58,7 @@ impl PixelHistory {
 
     /// What the pixel ends with, and whether the GPU stored the same.
     fn result(&self, curve: &DepthCurve) -> String {
-        let Held { depth, stencil, .. } = self.computed;
+        let PixelValues { depth, stencil, .. } = self.computed;
         let surface = match curve.distance(depth) {
             Some(distance) => format!(
                 "a surface {} away (depth {})",
@@ -78,32 +78,32 @@ impl PixelHistory {
 
     /// One event in a few words, the same on every machine: for lists that tests compare, such as
     /// `volumes: side of box, back, fails depth, stencil 0 to 1`.
-    pub fn brief(&self, event: &Event) -> String {
+    pub fn brief(&self, event: &PixelEvent) -> String {
         let change = match event {
-            Event { before, after, .. } if before.count != after.count => {
+            PixelEvent { before, after, .. } if before.count != after.count => {
                 format!(", count {} to {}", before.count, after.count)
             }
-            Event { before, after, .. } if before.stencil != after.stencil => {
+            PixelEvent { before, after, .. } if before.stencil != after.stencil => {
                 format!(", stencil {} to {}", before.stencil, after.stencil)
             }
-            Event { before, after, .. } if before.depth != after.depth => ", stores depth".to_owned(),
+            PixelEvent { before, after, .. } if before.depth != after.depth => ", stores depth".to_owned(),
             _ => String::new(),
         };
         let pass = &event.pass_name;
         match &event.kind {
-            EventKind::Put => format!("{pass}: other content"),
-            EventKind::ClearDepth => format!("{pass}: clear depth"),
-            EventKind::ClearStencil => format!("{pass}: clear stencil"),
-            EventKind::ClearCount => format!("{pass}: clear count"),
-            EventKind::Triangle(one) => {
+            PixelEventKind::Put => format!("{pass}: other content"),
+            PixelEventKind::ClearDepth => format!("{pass}: clear depth"),
+            PixelEventKind::ClearStencil => format!("{pass}: clear stencil"),
+            PixelEventKind::ClearCount => format!("{pass}: clear count"),
+            PixelEventKind::Triangle(one) => {
                 let side = if one.shows_outside() { "front" } else { "back" };
                 let fate = match one.fate {
-                    Fate::Tested { stencil: Test::Failed, .. } => "fails stencil",
-                    Fate::Tested { depth: Test::Failed, .. } => "fails depth",
-                    Fate::Tested { .. } => "passes",
-                    Fate::Discarded(_) => "discarded",
-                    Fate::Culled => "culled",
-                    Fate::Clipped(_) => "clipped",
+                    FragmentOutcome::Tested { stencil: TestResult::Failed, .. } => "fails stencil",
+                    FragmentOutcome::Tested { depth: TestResult::Failed, .. } => "fails depth",
+                    FragmentOutcome::Tested { .. } => "passes",
+                    FragmentOutcome::Discarded(_) => "discarded",
+                    FragmentOutcome::Culled => "culled",
+                    FragmentOutcome::Clipped(_) => "clipped",
                 };
                 format!("{pass}: {}, {side}, {fate}{change}", who(one))
             }
@@ -111,17 +111,17 @@ impl PixelHistory {
     }
 
     /// One event in a line.
-    pub fn line(&self, event: &Event, curve: &DepthCurve) -> String {
+    pub fn line(&self, event: &PixelEvent, curve: &DepthCurve) -> String {
         match &event.kind {
-            EventKind::Put => format!(
+            PixelEventKind::Put => format!(
                 "a copy, a clear of a part or a draw that is not followed has left depth {} and stencil {}",
                 numbers::depth(event.after.depth),
                 event.after.stencil
             ),
-            EventKind::ClearDepth => format!("clear depth to {}", numbers::depth(event.after.depth)),
-            EventKind::ClearStencil => format!("clear stencil to {}", event.after.stencil),
-            EventKind::ClearCount => format!("clear count to {}", numbers::count_in_float(event.after.count)),
-            EventKind::Triangle(one) => {
+            PixelEventKind::ClearDepth => format!("clear depth to {}", numbers::depth(event.after.depth)),
+            PixelEventKind::ClearStencil => format!("clear stencil to {}", event.after.stencil),
+            PixelEventKind::ClearCount => format!("clear count to {}", numbers::count_in_float(event.after.count)),
+            PixelEventKind::Triangle(one) => {
                 let who = who(one);
                 let side = if one.shows_outside() { "front" } else { "back" };
                 let distance = match curve.distance(one.depth).filter(|_| event.is_from_camera) {
@@ -141,7 +141,7 @@ impl PixelHistory {
     }
 
     /// Where a volume's face lies, seen from the eye.
-    fn place(&self, event: &Event, one: &TriangleEvent) -> &'static str {
+    fn place(&self, event: &PixelEvent, one: &TriangleEvent) -> &'static str {
         let [face, surface] =
             [one.depth, event.before.depth].map(|depth| if self.is_reversed { -depth } else { depth });
         match face.total_cmp(&surface) {
@@ -151,17 +151,17 @@ impl PixelHistory {
         }
     }
 
-    fn what_became(&self, event: &Event, one: &TriangleEvent) -> String {
-        let Fate::Tested { stencil, depth, operation } = one.fate else {
+    fn what_became(&self, event: &PixelEvent, one: &TriangleEvent) -> String {
+        let FragmentOutcome::Tested { stencil, depth, operation } = one.fate else {
             return one.fate.note().unwrap_or_default().to_owned();
         };
         let place = if event.is_of_volume() && event.is_from_camera { self.place(event, one) } else { "" };
         let tests = match (stencil, depth) {
-            (Test::Failed, _) => "fails the stencil test",
-            (_, Test::Failed) => "fails the depth test",
-            (Test::Passed, Test::Passed) => "passes stencil and depth test",
-            (Test::Passed, _) => "passes the stencil test",
-            (_, Test::Passed) => "passes the depth test",
+            (TestResult::Failed, _) => "fails the stencil test",
+            (_, TestResult::Failed) => "fails the depth test",
+            (TestResult::Passed, TestResult::Passed) => "passes stencil and depth test",
+            (TestResult::Passed, _) => "passes the stencil test",
+            (_, TestResult::Passed) => "passes the depth test",
             _ => "no test stops it",
         };
         let mut text = format!("{place}{tests}");
@@ -192,9 +192,9 @@ impl PixelHistory {
 /// `side of torus 2`.
 fn who(one: &TriangleEvent) -> String {
     match one.part {
-        Part::Surface => one.draw_name.clone(),
-        Part::Receiver => format!("receiver {}", one.draw_name),
-        Part::PlanarShadow => format!("flattened {}", one.draw_name),
+        DrawPart::Surface => one.draw_name.clone(),
+        DrawPart::Receiver => format!("receiver {}", one.draw_name),
+        DrawPart::PlanarShadow => format!("flattened {}", one.draw_name),
         other => match &one.caster {
             Some(caster) => format!("{} of {caster}", other.name().replace('-', " ")),
             // Of another program's volumes sides and caps are not told apart.

@@ -2,14 +2,14 @@
 //!
 //! The mask of a capture has the label. The evidence is as much as is known: what decides about the light, the
 //! count that its light pass tested, or, where the pixel's history is known, the faces that made that count
-//! ([`Why`]). A verdict claims nothing about geometry that neither the capture nor the history holds.
+//! ([`LightDecision`]). A verdict claims nothing about geometry that neither the capture nor the history holds.
 
-use super::{Count, PixelHistory, Why};
+use super::{LightDecision, PixelHistory, VolumeCount};
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot, Step};
 use crate::geometry::Extrusion;
 use crate::numbers;
-use crate::plan::{CountBits, DecidedBy, Side};
-use crate::technique::{CountsBy, VolumeSettings};
+use crate::plan::{CountBits, CountedSide, DecidedBy};
+use crate::technique::{CountOperations, VolumeSettings};
 use crate::truth::PixelLabel::{self, Background, FacesAway, Lit, Shadow};
 
 /// What became of a light at a pixel, and why.
@@ -20,14 +20,14 @@ pub struct Verdict {
     /// What became of it, as the light's mask says; `None` where the capture has no mask.
     pub label: Option<PixelLabel>,
     /// The count of shadow volumes that the light pass tested; `None` where none was, or it was not captured.
-    pub count: Option<Count>,
+    pub count: Option<VolumeCount>,
     /// What the label rests on.
-    pub evidence: Evidence,
+    pub evidence: VerdictEvidence,
 }
 
 /// What a label rests on, as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Evidence {
+pub enum VerdictEvidence {
     /// The label says it all.
     Label,
     /// Shading alone leaves the surface dark; where it is wrapped, some light reaches round to it.
@@ -42,7 +42,7 @@ pub enum Evidence {
     /// The count that the light pass tested.
     Count(TestedCount),
     /// What the pixel's history shows; of a count that needs words of its own, with that.
-    History(Why, Option<TestedCount>),
+    History(LightDecision, Option<TestedCount>),
     /// What the texels of a shadow map store, in a sentence.
     Texels(String),
 }
@@ -51,9 +51,9 @@ pub enum Evidence {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TestedCount {
     /// The count.
-    pub count: Count,
+    pub count: VolumeCount,
     /// On which side of the surface faces count.
-    pub side: Side,
+    pub side: CountedSide,
     /// The bits of the stencil that are counted in.
     pub bits: CountBits,
     /// Each face inverts one bit of the stencil.
@@ -73,22 +73,24 @@ impl Verdict {
         let label = label.map(|byte| PixelLabel::from_byte(byte).unwrap_or(Shadow));
         let decided_by = capture.decided_by(light);
         let in_float = captured.and_then(|light| light.count.as_ref()?.count_at(at));
-        let in_stencil = || tested_stencil(capture, light, at).map(Count::Stencil);
+        let in_stencil = || tested_stencil(capture, light, at).map(VolumeCount::Stencil);
         let count = match (label, decided_by.counted_side()) {
             (None | Some(Background), _) | (_, None) => None,
-            (Some(FacesAway), _) => in_float.map(Count::Float).or_else(in_stencil),
+            (Some(FacesAway), _) => in_float.map(VolumeCount::Float).or_else(in_stencil),
             (Some(Shadow | Lit), _) => {
-                in_float.filter(|_| decided_by.counts_in_floats()).map(Count::Float).or_else(in_stencil)
+                in_float.filter(|_| decided_by.counts_in_floats()).map(VolumeCount::Float).or_else(in_stencil)
             }
         };
         let evidence = match (label, decided_by.counted_side(), count) {
-            (None | Some(Background), ..) => Evidence::Label,
+            (None | Some(Background), ..) => VerdictEvidence::Label,
             (Some(FacesAway), ..) => {
-                Evidence::Shading { wraps: capture.settings.get("diffuse").is_some_and(|how| how == "wrapped") }
+                VerdictEvidence::Shading { wraps: capture.settings.get("diffuse").is_some_and(|how| how == "wrapped") }
             }
-            (_, None, _) => Evidence::Decision(decided_by),
-            (_, Some(_), None) => Evidence::NoCount,
-            (_, Some(side), Some(count)) => Evidence::Count(TestedCount::new(capture, light, (side, count), in_float)),
+            (_, None, _) => VerdictEvidence::Decision(decided_by),
+            (_, Some(_), None) => VerdictEvidence::NoCount,
+            (_, Some(side), Some(count)) => {
+                VerdictEvidence::Count(TestedCount::new(capture, light, (side, count), in_float))
+            }
         };
         Verdict { light, label, count, evidence }
     }
@@ -99,11 +101,15 @@ impl Verdict {
         let is_dark = self.label == Some(Shadow);
         self.evidence = match self.evidence {
             // A history that does not fit the mask explains nothing.
-            Evidence::Count(tested) if tested.contradicts(is_dark) => Evidence::Count(tested),
-            Evidence::Count(tested) => Evidence::History(why, tested.needs_words(is_dark).then_some(tested)),
-            Evidence::NoCount => Evidence::History(why, None),
+            VerdictEvidence::Count(tested) if tested.contradicts(is_dark) => VerdictEvidence::Count(tested),
+            VerdictEvidence::Count(tested) => {
+                VerdictEvidence::History(why, tested.needs_words(is_dark).then_some(tested))
+            }
+            VerdictEvidence::NoCount => VerdictEvidence::History(why, None),
             // A map decides outside of the pixel's own history.
-            Evidence::Decision(decided_by) if decided_by != DecidedBy::Map => Evidence::History(why, None),
+            VerdictEvidence::Decision(decided_by) if decided_by != DecidedBy::Map => {
+                VerdictEvidence::History(why, None)
+            }
             other => other,
         };
         self
@@ -111,8 +117,8 @@ impl Verdict {
 
     /// The same with what the shadow map of a light stores, in a sentence; another light's map is no evidence.
     pub fn with_texels(mut self, light: usize, sentence: impl FnOnce() -> String) -> Verdict {
-        if self.light == light && self.evidence == Evidence::Decision(DecidedBy::Map) {
-            self.evidence = Evidence::Texels(sentence());
+        if self.light == light && self.evidence == VerdictEvidence::Decision(DecidedBy::Map) {
+            self.evidence = VerdictEvidence::Texels(sentence());
         }
         self
     }
@@ -129,8 +135,8 @@ impl Verdict {
         };
         match self.count {
             None => format!("{title}."),
-            Some(Count::Stencil(count)) => format!("{title}: its stencil count is {}.", numbers::signed(count)),
-            Some(Count::Float(count)) => format!("{title}: its count is {}.", numbers::count_in_float(count)),
+            Some(VolumeCount::Stencil(count)) => format!("{title}: its stencil count is {}.", numbers::signed(count)),
+            Some(VolumeCount::Float(count)) => format!("{title}: its count is {}.", numbers::count_in_float(count)),
         }
     }
 
@@ -138,11 +144,11 @@ impl Verdict {
     pub fn reason(&self) -> String {
         let is_dark = self.label == Some(Shadow);
         match &self.evidence {
-            Evidence::Label if self.label == Some(Background) => {
+            VerdictEvidence::Label if self.label == Some(Background) => {
                 "Nothing was drawn here, so there is nothing that a shadow could fall on.".to_owned()
             }
-            Evidence::Label => "The capture holds no mask, so only the values below are known.".to_owned(),
-            Evidence::Shading { wraps } => {
+            VerdictEvidence::Label => "The capture holds no mask, so only the values below are known.".to_owned(),
+            VerdictEvidence::Shading { wraps } => {
                 let name = capitalized(&numbers::light(self.light));
                 let follows = match wraps {
                     false => ", so shading alone leaves it dark.",
@@ -151,30 +157,35 @@ impl Verdict {
                 let count = self.count.map_or_else(String::new, |count| format!(" Its count is {count}."));
                 format!("{name} shines on the other side of this surface{follows}{count}")
             }
-            Evidence::Decision(decided_by) => reason(*decided_by, is_dark).to_owned(),
-            Evidence::NoCount => "The count that decided it was not captured.".to_owned(),
-            Evidence::Count(tested) => tested.reason(is_dark),
-            Evidence::History(why, None) => format!("{}.", capitalized(&why.to_string())),
-            Evidence::History(why, Some(tested)) => {
+            VerdictEvidence::Decision(decided_by) => reason(*decided_by, is_dark).to_owned(),
+            VerdictEvidence::NoCount => "The count that decided it was not captured.".to_owned(),
+            VerdictEvidence::Count(tested) => tested.reason(is_dark),
+            VerdictEvidence::History(why, None) => format!("{}.", capitalized(&why.to_string())),
+            VerdictEvidence::History(why, Some(tested)) => {
                 format!("{}. {}", capitalized(&why.to_string()), tested.reason(is_dark))
             }
-            Evidence::Texels(sentence) => sentence.clone(),
+            VerdictEvidence::Texels(sentence) => sentence.clone(),
         }
     }
 }
 
 impl TestedCount {
-    fn new(capture: &Capture, light: usize, (side, count): (Side, Count), in_float: Option<f32>) -> TestedCount {
+    fn new(
+        capture: &Capture,
+        light: usize,
+        (side, count): (CountedSide, VolumeCount),
+        in_float: Option<f32>,
+    ) -> TestedCount {
         let settings = VolumeSettings::read(&capture.settings);
         let is_point = capture.lights.get(light).is_some_and(|light| light.position.w != 0.0);
         let lacks_caps = settings.extrusion == Extrusion::Infinite && settings.caps[1];
-        let begins_at_infinity = capture.camera.is_parallel() && is_point && side != Side::InFront && lacks_caps;
-        let in_stencil = matches!(count, Count::Stencil(_));
+        let begins_at_infinity = capture.camera.is_parallel() && is_point && side != CountedSide::InFront && lacks_caps;
+        let in_stencil = matches!(count, VolumeCount::Stencil(_));
         TestedCount {
             count,
             side,
             bits: CountBits::of_mask(settings.mask().into()),
-            inverts: in_stencil && settings.operations == CountsBy::Inverting,
+            inverts: in_stencil && settings.operations == CountOperations::Inverting,
             begins_elsewhere: begins_at_infinity || settings.starts_at_eye,
             in_float: in_float.filter(|_| in_stencil),
         }
@@ -188,16 +199,16 @@ impl TestedCount {
     /// More faces were left than entered.
     pub fn is_negative(&self) -> bool {
         match self.count {
-            Count::Stencil(count) => !self.inverts && self.bits == CountBits::EIGHT && count > 127,
-            Count::Float(count) => count < 0.0,
+            VolumeCount::Stencil(count) => !self.inverts && self.bits == CountBits::EIGHT && count > 127,
+            VolumeCount::Float(count) => count < 0.0,
         }
     }
 
     /// The number of volumes, other than 0, that eight bits or fewer read or would read as 0.
     pub fn reads_as_zero(&self) -> Option<f32> {
         match self.count {
-            Count::Stencil(_) => self.in_float.filter(|count| *count != 0.0 && self.count.is_zero()),
-            Count::Float(count) => Some(count).filter(|count| numbers::reads_zero_in_eight_bits(*count)),
+            VolumeCount::Stencil(_) => self.in_float.filter(|count| *count != 0.0 && self.count.is_zero()),
+            VolumeCount::Float(count) => Some(count).filter(|count| numbers::reads_zero_in_eight_bits(*count)),
         }
     }
 
@@ -212,17 +223,17 @@ impl TestedCount {
         let side = self.side.preposition();
         let began = if self.begins_elsewhere { "What the count began with and the" } else { "The" };
         let sum = format!("{began} volume faces {side} the surface");
-        let skips = if matches!(count, Count::Stencil(_)) { "skips this pixel" } else { "adds nothing" };
+        let skips = if matches!(count, VolumeCount::Stencil(_)) { "skips this pixel" } else { "adds nothing" };
         let does = if is_dark { skips } else { "adds the light" };
         match (count, self.reads_as_zero()) {
             // Mask and count disagree: say so, and do not explain it away.
-            (Count::Stencil(count), _) if self.contradicts(is_dark) => {
+            (VolumeCount::Stencil(count), _) if self.contradicts(is_dark) => {
                 format!("The mask does not match the count {count} that the light pass tested.")
             }
             (count, _) if self.contradicts(is_dark) => {
                 format!("The mask does not match the count {count} that the light pass read.")
             }
-            (Count::Stencil(_), Some(count)) => {
+            (VolumeCount::Stencil(_), Some(count)) => {
                 let verb = if bits.modulus() == 2 { "reads" } else { "read" };
                 format!("{count} volumes contain the surface, which {bits} {verb} as 0: the light pass adds the light.")
             }
@@ -241,7 +252,7 @@ impl TestedCount {
             _ if self.is_negative() => format!(
                 "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it {does}."
             ),
-            (Count::Stencil(_), _) if is_dark && *bits != CountBits::EIGHT => {
+            (VolumeCount::Stencil(_), _) if is_dark && *bits != CountBits::EIGHT => {
                 format!("{sum} leave {count} in {bits}, not 0, so the light pass {does}.")
             }
             _ if is_dark => format!("{sum} leave {count}, not 0, so the light pass {does}."),
@@ -310,19 +321,19 @@ fn capitalized(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::history::{Counted, Faces, LightPass};
-    use Evidence::{Decision, History, Label, Shading};
+    use crate::history::{CountedFaces, FaceCounts, LightPassResult};
+    use VerdictEvidence::{Decision, History, Label, Shading};
 
     const IN_STENCIL: TestedCount = TestedCount {
-        count: Count::Stencil(3),
-        side: Side::Behind,
+        count: VolumeCount::Stencil(3),
+        side: CountedSide::Behind,
         bits: CountBits::EIGHT,
         inverts: false,
         begins_elsewhere: false,
         in_float: None,
     };
 
-    fn verdict(label: PixelLabel, count: Option<Count>, evidence: Evidence) -> Verdict {
+    fn verdict(label: PixelLabel, count: Option<VolumeCount>, evidence: VerdictEvidence) -> Verdict {
         Verdict { light: 0, label: Some(label), count, evidence }
     }
 
@@ -330,10 +341,10 @@ mod tests {
     fn a_label_is_worded_with_the_count_that_the_light_pass_tested() {
         let titles = [
             (Background, None, "Background: no surface is at this pixel."),
-            (FacesAway, Some(Count::Stencil(3)), "Turned away from light 1."),
-            (Shadow, Some(Count::Stencil(255)), "Dark under light 1: its stencil count is −1 (255)."),
-            (Lit, Some(Count::Stencil(0)), "Lit by light 1: its stencil count is 0."),
-            (Shadow, Some(Count::Float(1256.0)), "Dark under light 1: its count is 1\u{2009}256."),
+            (FacesAway, Some(VolumeCount::Stencil(3)), "Turned away from light 1."),
+            (Shadow, Some(VolumeCount::Stencil(255)), "Dark under light 1: its stencil count is −1 (255)."),
+            (Lit, Some(VolumeCount::Stencil(0)), "Lit by light 1: its stencil count is 0."),
+            (Shadow, Some(VolumeCount::Float(1256.0)), "Dark under light 1: its count is 1\u{2009}256."),
             (Lit, None, "Lit by light 1."),
         ];
         for (label, count, title) in titles {
@@ -347,7 +358,7 @@ mod tests {
             (Background, None, Label, "Nothing was drawn here, so there is nothing that a shadow could fall on."),
             (
                 FacesAway,
-                Some(Count::Stencil(2)),
+                Some(VolumeCount::Stencil(2)),
                 Shading { wraps: false },
                 "Light 1 shines on the other side of this surface, so shading alone leaves it dark. Its count is 2.",
             ),
@@ -364,8 +375,13 @@ mod tests {
                 Decision(DecidedBy::Map),
                 "The light's map holds something nearer to the light here, so the light pass adds nothing.",
             ),
-            (Lit, None, Evidence::NoCount, "The count that decided it was not captured."),
-            (Lit, None, Evidence::Texels("Texel 1, 2 holds no caster.".to_owned()), "Texel 1, 2 holds no caster."),
+            (Lit, None, VerdictEvidence::NoCount, "The count that decided it was not captured."),
+            (
+                Lit,
+                None,
+                VerdictEvidence::Texels("Texel 1, 2 holds no caster.".to_owned()),
+                "Texel 1, 2 holds no caster.",
+            ),
         ];
         for (label, count, evidence, reason) in reasons {
             assert_eq!(verdict(label, count, evidence).reason(), reason);
@@ -375,8 +391,8 @@ mod tests {
     #[test]
     fn a_count_is_worded_by_what_it_is_the_sum_of() {
         let few = CountBits::of_mask(3);
-        let float = |count| TestedCount { count: Count::Float(count), ..IN_STENCIL };
-        let byte = |count| TestedCount { count: Count::Stencil(count), ..IN_STENCIL };
+        let float = |count| TestedCount { count: VolumeCount::Float(count), ..IN_STENCIL };
+        let byte = |count| TestedCount { count: VolumeCount::Stencil(count), ..IN_STENCIL };
         let bit = |count| TestedCount { inverts: true, ..byte(count) };
         let elsewhere = |of| TestedCount { begins_elsewhere: true, ..of };
         let reasons = [
@@ -443,18 +459,19 @@ mod tests {
             (Shadow, float(0.0), "The mask does not match the count 0 that the light pass read."),
         ];
         for (label, tested, reason) in reasons {
-            assert_eq!(verdict(label, Some(tested.count), Evidence::Count(tested)).reason(), reason);
+            assert_eq!(verdict(label, Some(tested.count), VerdictEvidence::Count(tested)).reason(), reason);
         }
     }
 
     /// A negative count is worded beside the faces that a history lists.
     #[test]
     fn what_a_history_shows_comes_before_what_the_count_needs_said() {
-        let count = Count::Stencil(255);
-        let faces = Faces { front: 1, ..Faces::default() };
+        let count = VolumeCount::Stencil(255);
+        let faces = FaceCounts { front: 1, ..FaceCounts::default() };
         let bits = CountBits::EIGHT;
-        let counted = Counted { side: Side::Behind, faces, cleared_to: 0, near: None, sum: -1, bits, count };
-        let why = Why::Counted(counted, LightPass::Skips);
+        let counted =
+            CountedFaces { side: CountedSide::Behind, faces, cleared_to: 0, near: None, sum: -1, bits, count };
+        let why = LightDecision::Counted(counted, LightPassResult::Skips);
         let tested = TestedCount { count, ..IN_STENCIL };
         assert_eq!(
             verdict(Shadow, Some(count), History(why, Some(tested))).reason(),

@@ -1,31 +1,31 @@
 //! Why a light does or does not arrive at a pixel, in one sentence, from what its history counts.
 
-use super::{Event, EventKind, Fate, PixelHistory, Test, TriangleEvent};
+use super::{FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, TestResult, TriangleEvent};
 use crate::capture::FrameTarget;
 use crate::numbers;
-use crate::plan::{CountBits, Part, Side, Visibility};
+use crate::plan::{CountBits, CountedSide, DrawPart, Visibility};
 use crate::truth::{BACKGROUND, FACES_AWAY};
 use std::collections::BTreeSet;
 use std::fmt;
 
 /// What decided about a light at a pixel.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Why {
+pub enum LightDecision {
     /// No surface is there.
     Background,
     /// Faces of shadow volumes were counted.
-    Counted(Counted, LightPass),
+    Counted(CountedFaces, LightPassResult),
     /// Casters were flattened onto receivers.
-    Flattened(Flattened, LightPass),
+    Flattened(FlattenedShadow, LightPassResult),
 }
 
 /// The faces of a light's volumes at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Counted {
+pub struct CountedFaces {
     /// Where they count: in front of the surface, as their depth test passes; on it or behind it, as it fails.
-    pub side: Side,
+    pub side: CountedSide,
     /// Those that counted.
-    pub faces: Faces,
+    pub faces: FaceCounts,
     /// What the count was cleared to: the volumes around the eye, where z-pass is told to begin with them.
     pub cleared_to: i32,
     /// Volumes that contain the near plane, where that was asked.
@@ -35,22 +35,22 @@ pub struct Counted {
     /// What a stencil keeps of that.
     pub bits: CountBits,
     /// What was left, as the light pass reads it.
-    pub count: Count,
+    pub count: VolumeCount,
 }
 
-impl Counted {
+impl CountedFaces {
     /// No volume holds the surface, as the light pass reads it.
     fn is_zero(&self) -> bool {
         match self.count {
-            Count::Stencil(count) => i32::from(count) % self.bits.modulus() == 0,
-            Count::Float(count) => count == 0.0,
+            VolumeCount::Stencil(count) => i32::from(count) % self.bits.modulus() == 0,
+            VolumeCount::Float(count) => count == 0.0,
         }
     }
 }
 
 /// How many faces of each side, of the outside of their volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Faces {
+pub struct FaceCounts {
     /// Seen from the front.
     pub front: u32,
     /// Seen from the back.
@@ -63,7 +63,7 @@ pub struct Faces {
 
 /// A count as it was kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Count {
+pub enum VolumeCount {
     /// In the stencil.
     Stencil(u8),
     /// In a float.
@@ -72,7 +72,7 @@ pub enum Count {
 
 /// The flattened triangles of a light that cover a pixel.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Flattened {
+pub struct FlattenedShadow {
     /// Names of the casters whose flattened triangles passed all tests here.
     pub casters: Vec<String>,
     /// Triangles that failed the stencil test.
@@ -87,7 +87,7 @@ pub struct Flattened {
 
 /// What the light pass did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum LightPass {
+pub enum LightPassResult {
     /// It added the light.
     Adds,
     /// Its test kept the light out.
@@ -100,36 +100,39 @@ pub enum LightPass {
 
 impl PixelHistory {
     /// What decided about a light; `None` where the technique leaves no events that tell.
-    pub fn why(&self, light: usize) -> Option<Why> {
-        let of_light = |event: &&Event| event.light == Some(light) && event.target != FrameTarget::Labels;
+    pub fn why(&self, light: usize) -> Option<LightDecision> {
+        let of_light = |event: &&PixelEvent| event.light == Some(light) && event.target != FrameTarget::Labels;
         let events = || self.events.iter().filter(of_light);
-        let flattened: Vec<&Event> = events().filter(|event| part(event) == Some(Part::PlanarShadow)).collect();
+        let flattened: Vec<&PixelEvent> =
+            events().filter(|event| part(event) == Some(DrawPart::PlanarShadow)).collect();
         let bits = self.counts_in.get(light).copied().flatten();
         if bits.is_none() && flattened.is_empty() {
             return None;
         }
         let label = self.labels.get(light).copied().flatten();
         if label == Some(BACKGROUND) {
-            return Some(Why::Background);
+            return Some(LightDecision::Background);
         }
         let counted = bits.map(|bits| self.counted(light, bits));
         let pass = match self.light_pass(light, counted.as_ref()) {
-            LightPass::Adds if label == Some(FACES_AWAY) => LightPass::FacesAway,
+            LightPassResult::Adds if label == Some(FACES_AWAY) => LightPassResult::FacesAway,
             // What adds nothing may not be drawn at all.
-            LightPass::Skips if label == Some(FACES_AWAY) && counted.as_ref().is_some_and(Counted::is_zero) => {
-                LightPass::FacesAway
+            LightPassResult::Skips
+                if label == Some(FACES_AWAY) && counted.as_ref().is_some_and(CountedFaces::is_zero) =>
+            {
+                LightPassResult::FacesAway
             }
             pass => pass,
         };
         Some(match counted {
-            Some(counted) => Why::Counted(counted, pass),
-            None => Why::Flattened(flattened_of(&flattened), pass),
+            Some(counted) => LightDecision::Counted(counted, pass),
+            None => LightDecision::Flattened(flattened_of(&flattened), pass),
         })
     }
 
-    fn counted(&self, light: usize, bits: CountBits) -> Counted {
+    fn counted(&self, light: usize, bits: CountBits) -> CountedFaces {
         let faces = || self.events.iter().filter(|event| event.light == Some(light) && event.is_of_volume());
-        let mut counted = Faces::default();
+        let mut counted = FaceCounts::default();
         for event in faces().filter(|event| event.is_from_camera && event.step() != 0) {
             let Some(one) = event.triangle() else { continue };
             *(if one.shows_outside() { &mut counted.front } else { &mut counted.back }) += 1;
@@ -138,25 +141,25 @@ impl PixelHistory {
         }
         let near = faces().filter(|event| !event.is_from_camera);
         let cleared_to = self.cleared_to(light);
-        Counted {
-            side: self.counted_side(light).unwrap_or(Side::InFront),
+        CountedFaces {
+            side: self.counted_side(light).unwrap_or(CountedSide::InFront),
             faces: counted,
             cleared_to,
-            near: near.clone().next().map(|_| near.map(Event::counted).sum()),
-            sum: cleared_to + faces().map(Event::counted).sum::<i32>(),
+            near: near.clone().next().map(|_| near.map(PixelEvent::counted).sum()),
+            sum: cleared_to + faces().map(PixelEvent::counted).sum::<i32>(),
             bits,
             count: self.counted_at(light),
         }
     }
 
     /// The count of a light as its light pass tests it.
-    pub(super) fn counted_at(&self, light: usize) -> Count {
-        let in_float = self.events.iter().any(|event| event.kind == EventKind::ClearCount);
+    pub(super) fn counted_at(&self, light: usize) -> VolumeCount {
+        let in_float = self.events.iter().any(|event| event.kind == PixelEventKind::ClearCount);
         let held = self.tested_count(light);
-        if in_float { Count::Float(held.count) } else { Count::Stencil(held.stencil) }
+        if in_float { VolumeCount::Float(held.count) } else { VolumeCount::Stencil(held.stencil) }
     }
 
-    fn light_pass(&self, light: usize, counted: Option<&Counted>) -> LightPass {
+    fn light_pass(&self, light: usize, counted: Option<&CountedFaces>) -> LightPassResult {
         let lit = self.triangles().find(|(event, one)| {
             event.light == Some(light)
                 && one.lights.is_some()
@@ -164,51 +167,55 @@ impl PixelHistory {
                 && one.fate.passed()
         });
         match lit.map(|(_, one)| (one.lights, one.fate)) {
-            None => LightPass::Skips,
+            None => LightPassResult::Skips,
             Some((Some(Visibility::Count), _)) => match counted.map(|counted| counted.count) {
-                Some(Count::Float(count)) if count != 0.0 => LightPass::Skips,
-                _ => LightPass::Adds,
+                Some(VolumeCount::Float(count)) if count != 0.0 => LightPassResult::Skips,
+                _ => LightPassResult::Adds,
             },
             // Where shadows are counted, what receives them is tested.
-            Some((Some(Visibility::Everywhere), Fate::Tested { operation: None, .. })) if counted.is_some() => {
-                LightPass::AsksNothing
+            Some((Some(Visibility::Everywhere), FragmentOutcome::Tested { operation: None, .. }))
+                if counted.is_some() =>
+            {
+                LightPassResult::AsksNothing
             }
-            Some(_) => LightPass::Adds,
+            Some(_) => LightPassResult::Adds,
         }
     }
 }
 
-fn part(event: &Event) -> Option<Part> {
+fn part(event: &PixelEvent) -> Option<DrawPart> {
     event.triangle().map(|one| one.part)
 }
 
-fn flattened_of(events: &[&Event]) -> Flattened {
-    let mut found =
-        Flattened { is_marked: events.first().is_some_and(|event| event.before.stencil != 0), ..Flattened::default() };
+fn flattened_of(events: &[&PixelEvent]) -> FlattenedShadow {
+    let mut found = FlattenedShadow {
+        is_marked: events.first().is_some_and(|event| event.before.stencil != 0),
+        ..FlattenedShadow::default()
+    };
     let mut casters = BTreeSet::new();
     for TriangleEvent { caster, draw_name, fate, .. } in events.iter().filter_map(|event| event.triangle()) {
         match fate {
             _ if fate.passed() => {
                 casters.insert(caster.clone().unwrap_or_else(|| draw_name.clone()));
             }
-            Fate::Tested { stencil: Test::Failed, .. } => found.failed_stencil += 1,
-            Fate::Tested { .. } => found.failed_depth += 1,
-            Fate::Discarded(_) | Fate::Culled | Fate::Clipped(_) => found.hidden += 1,
+            FragmentOutcome::Tested { stencil: TestResult::Failed, .. } => found.failed_stencil += 1,
+            FragmentOutcome::Tested { .. } => found.failed_depth += 1,
+            FragmentOutcome::Discarded(_) | FragmentOutcome::Culled | FragmentOutcome::Clipped(_) => found.hidden += 1,
         }
     }
     found.casters = casters.into_iter().collect();
     found
 }
 
-impl fmt::Display for Why {
+impl fmt::Display for LightDecision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Why::Background => f.write_str("no surface is here that a shadow could fall on"),
-            Why::Counted(counted, pass) => write!(f, "{counted}, so {pass}"),
-            Why::Flattened(flattened, pass) => {
+            LightDecision::Background => f.write_str("no surface is here that a shadow could fall on"),
+            LightDecision::Counted(counted, pass) => write!(f, "{counted}, so {pass}"),
+            LightDecision::Flattened(flattened, pass) => {
                 write!(f, "{flattened}")?;
                 match (flattened.casters.is_empty(), pass) {
-                    (false, LightPass::Adds) => f.write_str(", and darkens it after the light pass"),
+                    (false, LightPassResult::Adds) => f.write_str(", and darkens it after the light pass"),
                     _ => write!(f, ", so {pass}"),
                 }
             }
@@ -216,9 +223,9 @@ impl fmt::Display for Why {
     }
 }
 
-impl fmt::Display for Counted {
+impl fmt::Display for CountedFaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Counted { side, faces, cleared_to, near, sum, bits, count } = self;
+        let CountedFaces { side, faces, cleared_to, near, sum, bits, count } = self;
         if *cleared_to != 0 {
             write!(f, "the count begins at {cleared_to}; ")?;
         }
@@ -229,25 +236,27 @@ impl fmt::Display for Counted {
         }
         let all = faces.front + faces.back;
         let where_ = match (side, faces.on_surface) {
-            (Side::Behind, 1..) => "on or behind".to_owned(),
+            (CountedSide::Behind, 1..) => "on or behind".to_owned(),
             (side, _) => side.preposition().to_owned(),
         };
         let verb = match (count, side, all) {
             // A float is counted by draws whose tests are the other way round.
-            (Count::Float(_), _, 1) => "is counted",
-            (Count::Float(_), ..) => "are counted",
-            (Count::Stencil(_), Side::Behind, 1) => "fails the depth test",
-            (Count::Stencil(_), Side::Behind, _) => "fail the depth test",
-            (Count::Stencil(_), Side::InFront, 1) => "passes the depth test",
-            (Count::Stencil(_), Side::InFront, _) => "pass the depth test",
-            (Count::Stencil(_), Side::AsNeeded, _) => "count as their volumes need it",
+            (VolumeCount::Float(_), _, 1) => "is counted",
+            (VolumeCount::Float(_), ..) => "are counted",
+            (VolumeCount::Stencil(_), CountedSide::Behind, 1) => "fails the depth test",
+            (VolumeCount::Stencil(_), CountedSide::Behind, _) => "fail the depth test",
+            (VolumeCount::Stencil(_), CountedSide::InFront, 1) => "passes the depth test",
+            (VolumeCount::Stencil(_), CountedSide::InFront, _) => "pass the depth test",
+            (VolumeCount::Stencil(_), CountedSide::AsNeeded, _) => "count as their volumes need it",
         };
-        let Faces { front, back, .. } = faces;
+        let FaceCounts { front, back, .. } = faces;
         let faces_there = format!("{} {where_} the surface {verb}", amount(all, "volume face"));
         match (all, side) {
             (0, _) => f.write_str("no volume face on the view ray counts")?,
-            (_, Side::Behind) => write!(f, "{faces_there}: {back} back, {front} front")?,
-            (_, Side::InFront | Side::AsNeeded) => write!(f, "{faces_there}: {front} front, {back} back")?,
+            (_, CountedSide::Behind) => write!(f, "{faces_there}: {back} back, {front} front")?,
+            (_, CountedSide::InFront | CountedSide::AsNeeded) => {
+                write!(f, "{faces_there}: {front} front, {back} back")?
+            }
         }
         if faces.stopped > 0 {
             write!(
@@ -257,36 +266,36 @@ impl fmt::Display for Counted {
             )?;
         }
         match count {
-            Count::Stencil(byte) if bits.hold_otherwise(*sum, *byte) => {
+            VolumeCount::Stencil(byte) if bits.hold_otherwise(*sum, *byte) => {
                 let sign = if *sum < 0 { "−" } else { "" };
                 let verb = if bits.modulus() == 2 { "holds" } else { "hold" };
                 write!(f, "; together {sign}{}, which {bits} {verb} as {byte}", sum.unsigned_abs())
             }
-            Count::Stencil(byte) if *sum > 127 => write!(f, "; count {byte}"),
+            VolumeCount::Stencil(byte) if *sum > 127 => write!(f, "; count {byte}"),
             count => write!(f, "; count {count}"),
         }
     }
 }
 
-impl Count {
+impl VolumeCount {
     /// Does the light pass take it for lit?
     pub fn is_zero(self) -> bool {
-        matches!(self, Count::Stencil(0)) || self == Count::Float(0.0)
+        matches!(self, VolumeCount::Stencil(0)) || self == VolumeCount::Float(0.0)
     }
 }
 
-impl fmt::Display for Count {
+impl fmt::Display for VolumeCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Count::Stencil(count) => f.write_str(&numbers::signed(*count)),
-            Count::Float(count) => f.write_str(&numbers::count_in_float(*count)),
+            VolumeCount::Stencil(count) => f.write_str(&numbers::signed(*count)),
+            VolumeCount::Float(count) => f.write_str(&numbers::count_in_float(*count)),
         }
     }
 }
 
-impl fmt::Display for Flattened {
+impl fmt::Display for FlattenedShadow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Flattened { casters, failed_stencil, failed_depth, hidden, is_marked } = self;
+        let FlattenedShadow { casters, failed_stencil, failed_depth, hidden, is_marked } = self;
         if !casters.is_empty() {
             return write!(f, "the flattened shadow of {} falls on the surface here", casters.join(" and "));
         }
@@ -308,15 +317,15 @@ impl fmt::Display for Flattened {
     }
 }
 
-impl fmt::Display for LightPass {
+impl fmt::Display for LightPassResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            LightPass::Adds => "the light pass adds the light",
-            LightPass::Skips => "the light pass skips it",
-            LightPass::FacesAway => {
+            LightPassResult::Adds => "the light pass adds the light",
+            LightPassResult::Skips => "the light pass skips it",
+            LightPassResult::FacesAway => {
                 "nothing keeps the light out; but it faces away from the light or is beyond its range, and stays dark"
             }
-            LightPass::AsksNothing => {
+            LightPassResult::AsksNothing => {
                 "it would be lit only at 0; but the object receives no shadows, and the light pass adds the light"
             }
         })
@@ -331,15 +340,15 @@ fn amount(count: u32, noun: &str) -> String {
 mod tests {
     use super::*;
 
-    fn counted(faces: Faces, near: Option<i32>, sum: i32, count: Count) -> Counted {
-        let side = if near.is_none() { Side::Behind } else { Side::InFront };
-        Counted { side, faces, cleared_to: 0, near, sum, bits: CountBits::EIGHT, count }
+    fn counted(faces: FaceCounts, near: Option<i32>, sum: i32, count: VolumeCount) -> CountedFaces {
+        let side = if near.is_none() { CountedSide::Behind } else { CountedSide::InFront };
+        CountedFaces { side, faces, cleared_to: 0, near, sum, bits: CountBits::EIGHT, count }
     }
 
     #[test]
     fn a_near_plane_that_more_volumes_were_left_than_entered_has_a_sign() {
-        let faces = Faces { front: 2, ..Faces::default() };
-        let why = Why::Counted(counted(faces, Some(-1), 1, Count::Stencil(1)), LightPass::Skips);
+        let faces = FaceCounts { front: 2, ..FaceCounts::default() };
+        let why = LightDecision::Counted(counted(faces, Some(-1), 1, VolumeCount::Stencil(1)), LightPassResult::Skips);
         assert_eq!(
             why.to_string(),
             "the near plane is in −1 volume; 2 volume faces in front of the surface pass the depth test: 2 front, 0 \
@@ -349,8 +358,8 @@ mod tests {
 
     #[test]
     fn a_count_beyond_eight_bits_says_what_they_hold() {
-        let faces = Faces { back: 257, front: 1, on_surface: 1, stopped: 0 };
-        let text = counted(faces, None, 256, Count::Stencil(0)).to_string();
+        let faces = FaceCounts { back: 257, front: 1, on_surface: 1, stopped: 0 };
+        let text = counted(faces, None, 256, VolumeCount::Stencil(0)).to_string();
         assert_eq!(
             text,
             "258 volume faces on or behind the surface fail the depth test: 257 back, 1 front; together 256, which \
@@ -360,20 +369,21 @@ mod tests {
 
     #[test]
     fn a_clamped_face_is_counted_and_said_to_have_been_lost() {
-        let faces = Faces { back: 1, front: 2, on_surface: 0, stopped: 1 };
-        let text = counted(faces, None, 0, Count::Stencil(0)).to_string();
+        let faces = FaceCounts { back: 1, front: 2, on_surface: 0, stopped: 1 };
+        let text = counted(faces, None, 0, VolumeCount::Stencil(0)).to_string();
         assert!(text.contains("1 back, 2 front, of which 1 found the count at its limit; count 0"), "{text}");
     }
 
     #[test]
     fn a_flattened_triangle_that_fails_says_which_test() {
-        let marked = Flattened { failed_depth: 2, failed_stencil: 7, is_marked: true, ..Flattened::default() };
+        let marked =
+            FlattenedShadow { failed_depth: 2, failed_stencil: 7, is_marked: true, ..FlattenedShadow::default() };
         assert_eq!(marked.to_string(), "2 flattened triangles over the surface fail the depth test against it");
-        let elsewhere = Flattened { failed_depth: 0, failed_stencil: 1, is_marked: false, ..marked.clone() };
+        let elsewhere = FlattenedShadow { failed_depth: 0, failed_stencil: 1, is_marked: false, ..marked.clone() };
         let expected =
             "1 flattened triangle is over the surface, which is no receiver, and the stencil test keeps shadow off it";
         assert_eq!(elsewhere.to_string(), expected);
-        let of_another = Flattened { failed_depth: 0, ..marked };
+        let of_another = FlattenedShadow { failed_depth: 0, ..marked };
         let expected = "7 flattened triangles are of another receiver: this surface has a mark of its own, and the \
                         stencil test keeps shadow off it";
         assert_eq!(of_another.to_string(), expected);

@@ -3,7 +3,7 @@
 //! No length is believed: each is held against the file and against what may be read in all before any memory is
 //! taken for it.
 
-use super::document::Blob;
+use super::document::RenderDocBlob;
 use super::error::ImportError;
 use flate2::read::ZlibDecoder;
 use std::collections::BTreeMap;
@@ -17,14 +17,14 @@ const MOST_RECENT: u64 = 256 << 20;
 const LARGEST_PIECE: usize = 1 << 20;
 
 /// A file, or bytes in memory.
-trait Source: Read + Seek {}
+trait BlobSource: Read + Seek {}
 
-impl<T: Read + Seek> Source for T {}
+impl<T: Read + Seek> BlobSource for T {}
 
 /// The file, and where each byte string is in it.
-pub struct Blobs {
-    file: Box<dyn Source>,
-    table: Vec<Blob>,
+pub struct BlobFile {
+    file: Box<dyn BlobSource>,
+    table: Vec<RenderDocBlob>,
     /// Of each byte string.
     lengths: Vec<u64>,
     left: u64,
@@ -33,24 +33,26 @@ pub struct Blobs {
     recent_bytes: u64,
 }
 
-impl Blobs {
+impl BlobFile {
     /// Looks through the table.
-    pub fn new(file: impl Read + Seek + 'static, table: Vec<Blob>) -> Result<Self, ImportError> {
+    pub fn new(file: impl Read + Seek + 'static, table: Vec<RenderDocBlob>) -> Result<Self, ImportError> {
         let broken = |what: String| ImportError::Folder(format!("data.bin: {what}"));
         let mut file = Box::new(file);
         let end = file.seek(SeekFrom::End(0)).map_err(|error| broken(error.to_string()))?;
         let stored = |at: usize| match table.get(at) {
-            Some(Blob::Stored([_, _, 0])) => Err(broken(format!("byte string {at} is an empty piece"))),
-            Some(Blob::Stored([_, _, length])) => Ok(*length),
-            Some(Blob::Joined { .. }) => Err(broken(format!("byte string {at} is a piece that has pieces"))),
+            Some(RenderDocBlob::Stored([_, _, 0])) => Err(broken(format!("byte string {at} is an empty piece"))),
+            Some(RenderDocBlob::Stored([_, _, length])) => Ok(*length),
+            Some(RenderDocBlob::Joined { .. }) => Err(broken(format!("byte string {at} is a piece that has pieces"))),
             None => Err(broken(format!("there is no byte string {at}"))),
         };
-        let length = |(at, blob): (usize, &Blob)| match blob {
-            Blob::Stored([start, packed, length]) => match start.checked_add(*packed).is_some_and(|last| last <= end) {
-                true => Ok(*length),
-                false => Err(broken(format!("byte string {at} lies outside of it"))),
-            },
-            Blob::Joined { pieces } => {
+        let length = |(at, blob): (usize, &RenderDocBlob)| match blob {
+            RenderDocBlob::Stored([start, packed, length]) => {
+                match start.checked_add(*packed).is_some_and(|last| last <= end) {
+                    true => Ok(*length),
+                    false => Err(broken(format!("byte string {at} lies outside of it"))),
+                }
+            }
+            RenderDocBlob::Joined { pieces } => {
                 pieces.iter().try_fold(0_u64, |sum, piece| Ok(sum.saturating_add(stored(*piece)?)))
             }
         };
@@ -78,7 +80,7 @@ impl Blobs {
     /// A byte string.
     pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         self.reserve(self.length(index)?)?;
-        let Some(Blob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };
+        let Some(RenderDocBlob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };
         let mut bytes = Vec::new();
         for piece in pieces.clone() {
             if let Some(known) = self.recent.get(&piece) {
@@ -107,7 +109,9 @@ impl Blobs {
 
     /// What is stored under a number.
     fn unpacked(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
-        let Some(Blob::Stored([at, packed, length])) = self.table.get(index) else { return Err(none_of(index)) };
+        let Some(RenderDocBlob::Stored([at, packed, length])) = self.table.get(index) else {
+            return Err(none_of(index));
+        };
         let (at, packed, length) = (*at, *packed, *length);
         let broken =
             |what: &dyn std::fmt::Display| ImportError::Folder(format!("data.bin: byte string {index}: {what}"));

@@ -18,14 +18,14 @@ use super::ImportError;
 use super::raw::RawFrame;
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Timing};
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight, PlanMap,
-    PlanView, Side, ViewId,
+    Attachment, AttachmentId, AttachmentRole, CountedSide, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight,
+    PlanMap, PlanView, ViewId,
 };
 use crate::recorded::{self, FoundLight};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3, DVec4, Mat4};
-use passes::Making;
-use stage::{Place, Stage};
+use passes::PassBuilder;
+use stage::{DrawTarget, FollowedTargets};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ fn map_attachment(map: usize) -> AttachmentId {
 
 /// Another program's frame in our words.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Converted {
+pub struct ConvertedFrame {
     /// What was drawn.
     pub plan: FramePlan,
     /// What was stored.
@@ -54,18 +54,18 @@ pub struct Converted {
 }
 
 /// What was drawn and what was stored, called `name`.
-pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
-    let stage = Stage::of(frame)?;
-    let mut making = Making::new(frame, &stage);
+pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportError> {
+    let stage = FollowedTargets::of(frame)?;
+    let mut making = PassBuilder::new(frame, &stage);
     frame.events.iter().for_each(|event| making.event(event));
     if making.passes.is_empty() {
         return Err(ImportError::NothingDrawn);
     }
     let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, &stage, &making, map)).collect();
-    let Making { passes, steps, meshes, left_out, .. } = making;
-    let mut attachments = vec![stage.attachment(frame, Place::Picture, AttachmentRole::DepthStencil)];
+    let PassBuilder { passes, steps, meshes, left_out, .. } = making;
+    let mut attachments = vec![stage.attachment(frame, DrawTarget::Picture, AttachmentRole::DepthStencil)];
     for map in 0..stage.maps.len() {
-        attachments.push(stage.attachment(frame, Place::Map(map, 0), AttachmentRole::Map(LightId(map))));
+        attachments.push(stage.attachment(frame, DrawTarget::Map(map, 0), AttachmentRole::Map(LightId(map))));
     }
     let size = stage.size(frame);
     let mut plan = FramePlan {
@@ -155,13 +155,13 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
     let positions: Option<Vec<DVec4>> = found.iter().map(|found| found.map(|found| found.position)).collect();
     let scene =
         positions.filter(|_| curve.is_some()).map(|lights| recorded::scene(&plan, capture.camera, name, lights));
-    Ok(Converted { plan, capture, scene, lights: found })
+    Ok(ConvertedFrame { plan, capture, scene, lights: found })
 }
 
 /// What each layer of a depth map holds in the end; nothing drawn is as far as can be.
-fn faces(frame: &RawFrame, stage: &Stage, making: &Making, map: usize) -> Vec<Arc<Image>> {
+fn faces(frame: &RawFrame, stage: &FollowedTargets, making: &PassBuilder, map: usize) -> Vec<Arc<Image>> {
     let Attachment { size, layers, .. } =
-        stage.attachment(frame, Place::Map(map, 0), AttachmentRole::Map(LightId(map)));
+        stage.attachment(frame, DrawTarget::Map(map, 0), AttachmentRole::Map(LightId(map)));
     let clear = Arc::new(Image::uniform(PixelFormat::Depth32F, size, &1.0_f32.to_le_bytes()));
     (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(|| clear.clone())).collect()
 }
@@ -170,12 +170,12 @@ fn faces(frame: &RawFrame, stage: &Stage, making: &Making, map: usize) -> Vec<Ar
 fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
     let of_light = plan.passes.iter().filter(|pass| pass.light == Some(light));
     let draws = of_light.flat_map(|pass: &Pass| &pass.draws);
-    let sides: Vec<Side> = draws.flat_map(|draw| states::counted_sides(&draw.raster)).collect();
-    let decided_by = match (faces > 0, sides.contains(&Side::InFront), sides.contains(&Side::Behind)) {
+    let sides: Vec<CountedSide> = draws.flat_map(|draw| states::counted_sides(&draw.raster)).collect();
+    let decided_by = match (faces > 0, sides.contains(&CountedSide::InFront), sides.contains(&CountedSide::Behind)) {
         (true, ..) => DecidedBy::Map,
-        (_, true, true) => DecidedBy::StencilCount { side: Side::AsNeeded },
-        (_, true, false) => DecidedBy::StencilCount { side: Side::InFront },
-        (_, false, true) => DecidedBy::StencilCount { side: Side::Behind },
+        (_, true, true) => DecidedBy::StencilCount { side: CountedSide::AsNeeded },
+        (_, true, false) => DecidedBy::StencilCount { side: CountedSide::InFront },
+        (_, false, true) => DecidedBy::StencilCount { side: CountedSide::Behind },
         (_, false, false) => DecidedBy::Nothing,
     };
     let map = PlanMap {

@@ -6,22 +6,22 @@ use serde::Deserialize;
 pub const FORMAT: u32 = 1;
 
 #[derive(Debug, Deserialize)]
-pub struct Document {
+pub struct RenderDocDocument {
     pub format: u32,
     pub recorder: String,
     pub api: String,
     pub adapter: String,
-    pub textures: Vec<Texture>,
-    pub before: Vec<Before>,
-    pub events: Vec<Event>,
+    pub textures: Vec<RenderDocTexture>,
+    pub before: Vec<RenderDocStart>,
+    pub events: Vec<RenderDocEvent>,
     pub limits: Vec<String>,
-    pub blobs: Vec<Blob>,
+    pub blobs: Vec<RenderDocBlob>,
 }
 
 /// A byte string.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-pub enum Blob {
+pub enum RenderDocBlob {
     /// Offset in `data.bin`, compressed bytes there, bytes.
     Stored([u64; 3]),
     /// Others, one after the other.
@@ -29,7 +29,7 @@ pub enum Blob {
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Texture {
+pub struct RenderDocTexture {
     pub name: String,
     pub format: String,
     pub size: [u32; 2],
@@ -39,35 +39,35 @@ pub struct Texture {
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
-pub struct Target {
+pub struct RenderDocTarget {
     pub texture: usize,
     pub mip: u32,
     pub layer: u32,
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Before {
-    pub target: Target,
+pub struct RenderDocStart {
+    pub target: RenderDocTarget,
     pub contents: Option<usize>,
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Event {
+pub struct RenderDocEvent {
     pub id: u32,
     pub name: String,
     pub groups: Vec<String>,
     pub kind: String,
-    pub colors: Vec<Option<Target>>,
-    pub depth: Option<Target>,
+    pub colors: Vec<Option<RenderDocTarget>>,
+    pub depth: Option<RenderDocTarget>,
     pub color_after: Option<usize>,
     pub depth_after: Option<usize>,
     /// Colour; depth or stencil.
     pub clears: [bool; 2],
-    pub draw: Option<Draw>,
+    pub draw: Option<RenderDocDraw>,
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Draw {
+pub struct RenderDocDraw {
     pub stencil_test: bool,
     pub depth_test: bool,
     pub depth_write: bool,
@@ -80,8 +80,8 @@ pub struct Draw {
     pub negative_one_to_one: bool,
     pub origin_lower_left: bool,
     pub clip_planes: bool,
-    pub front: Face,
-    pub back: Face,
+    pub front: RenderDocStencilFace,
+    pub back: RenderDocStencilFace,
     pub depth_compare: String,
     pub cull: String,
     pub front_ccw: bool,
@@ -89,15 +89,15 @@ pub struct Draw {
     pub viewport: [f32; 4],
     pub depth_range: [f32; 2],
     pub scissor: Option<[i64; 4]>,
-    pub instances: Vec<Instance>,
+    pub instances: Vec<RenderDocInstance>,
     /// Why there are no instances.
     pub why: String,
-    pub blend: Option<Blend>,
-    pub shader: Option<Shader>,
+    pub blend: Option<RenderDocBlend>,
+    pub shader: Option<RenderDocShader>,
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Face {
+pub struct RenderDocStencilFace {
     pub fail: String,
     pub depth_fail: String,
     pub pass: String,
@@ -108,7 +108,7 @@ pub struct Face {
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Instance {
+pub struct RenderDocInstance {
     pub topology: String,
     pub count: u64,
     pub vertices: usize,
@@ -120,23 +120,23 @@ pub struct Instance {
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Blend {
+pub struct RenderDocBlend {
     pub enabled: bool,
-    pub color: Equation,
-    pub alpha: Equation,
+    pub color: RenderDocBlendEquation,
+    pub alpha: RenderDocBlendEquation,
     pub write_mask: u32,
     pub logic: bool,
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Equation {
+pub struct RenderDocBlendEquation {
     pub source: String,
     pub target: String,
     pub operation: String,
 }
 
 #[derive(Debug, Deserialize)]
-pub struct Shader {
+pub struct RenderDocShader {
     pub encoding: String,
     pub bytes: usize,
 }

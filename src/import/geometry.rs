@@ -1,7 +1,7 @@
 //! The vertices of a draw, instance by instance: positions gathered, indices followed, triangles taken apart.
 
-use super::blobs::Blobs;
-use super::document::Instance;
+use super::blobs::BlobFile;
+use super::document::RenderDocInstance;
 use super::error::ImportError;
 use super::raw::RawTopology;
 use super::unroll;
@@ -12,7 +12,7 @@ const POSITION: usize = 16;
 
 /// What a draw draws.
 #[derive(Debug)]
-pub struct Geometry {
+pub struct DrawGeometry {
     pub topology: RawTopology,
     pub positions: Vec<[f32; 4]>,
     pub triangles: Vec<[u32; 3]>,
@@ -23,10 +23,10 @@ pub struct Geometry {
 }
 
 /// Reads all instances.
-pub fn read(instances: &[Instance], blobs: &mut Blobs) -> Result<Geometry, ImportError> {
+pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<DrawGeometry, ImportError> {
     let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
     let mut all =
-        Geometry { topology, positions: Vec::new(), triangles: Vec::new(), instances: Vec::new(), dropped: 0 };
+        DrawGeometry { topology, positions: Vec::new(), triangles: Vec::new(), instances: Vec::new(), dropped: 0 };
     for instance in instances {
         let first = u32::try_from(all.positions.len()).map_err(|_| too_many())?;
         let bytes = blobs.read(instance.vertices)?;
@@ -84,7 +84,7 @@ fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
 
 /// The corners in order, as indices of the instance's vertices; `None` where the primitive starts again. One that
 /// points to no vertex is `u32::MAX`.
-fn corners(instance: &Instance, vertices: u32, blobs: &mut Blobs) -> Result<Vec<Option<u32>>, ImportError> {
+fn corners(instance: &RenderDocInstance, vertices: u32, blobs: &mut BlobFile) -> Result<Vec<Option<u32>>, ImportError> {
     let Some(indices) = instance.indices else { return Ok((0..vertices).map(Some).collect()) };
     let bytes = blobs.read(indices)?;
     blobs.reserve(bytes.len() as u64 * 8)?;

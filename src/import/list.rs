@@ -1,7 +1,7 @@
 //! A frame's events and states as a table, for whoever wants to see what was recorded.
 
 use super::raw::{
-    RawCull, RawDraw, RawEvent, RawFormat, RawFrame, RawKind, RawMay, RawStencilFace, RawStencilOperation,
+    RawCull, RawDraw, RawEvent, RawFormat, RawFrame, RawKind, RawShaderEffect, RawStencilFace, RawStencilOperation,
 };
 use std::fmt::Write;
 
@@ -78,7 +78,7 @@ fn states(draw: &RawDraw) -> String {
         words.extend(blend.equations.is_some().then(|| "blend".to_owned()));
         words.extend((blend.write == [false; 4]).then(|| "no colour".to_owned()));
     }
-    words.extend((draw.fragment.may_discard != RawMay::No).then(|| "may discard".to_owned()));
+    words.extend((draw.fragment.may_discard != RawShaderEffect::No).then(|| "may discard".to_owned()));
     if draw.samples > 1 {
         words.push(format!("{} samples", draw.samples));
     }

@@ -27,11 +27,11 @@ mod shipped;
 mod states;
 pub(crate) mod unroll;
 
-pub use convert::{Converted, RECORDED, convert};
+pub use convert::{ConvertedFrame, RECORDED, convert};
 pub use error::ImportError;
 pub use list::list;
 pub use raw::*;
 pub use read::read;
 #[cfg(feature = "program")]
-pub use renderdoc::{Options, Recording, import, record};
-pub use shipped::{SHIPPED, Shipped};
+pub use renderdoc::{RecordingRequest, RenderDocOptions, import, record};
+pub use shipped::{SHIPPED, ShippedFrame};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// How RenderDoc gives the bytes of an API.
 #[derive(Debug, Clone, Copy)]
-pub struct Layout {
+pub struct TexelLayout {
     /// Row 0 of the bytes is at the bottom (OpenGL).
     pub bottom_row_first: bool,
     /// Depth of 24 bits is above the stencil, not below it (OpenGL).
@@ -48,7 +48,7 @@ pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
 }
 
 /// The pictures in the bytes of a target of that size; none where the format is not read.
-pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: Layout) -> RawContents {
+pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayout) -> RawContents {
     let Some(texel) = texel_bytes(format) else { return RawContents::default() };
     let rows = bytes.chunks_exact((size[0] as usize * texel).max(1));
     let bytes = match layout.bottom_row_first {
@@ -178,8 +178,8 @@ fn shown(color: [f32; 3], alpha: f32) -> [u8; 4] {
 mod tests {
     use super::*;
 
-    const GL: Layout = Layout { bottom_row_first: true, depth_above_stencil: true };
-    const VULKAN: Layout = Layout { bottom_row_first: false, depth_above_stencil: false };
+    const GL: TexelLayout = TexelLayout { bottom_row_first: true, depth_above_stencil: true };
+    const VULKAN: TexelLayout = TexelLayout { bottom_row_first: false, depth_above_stencil: false };
 
     fn texels(image: &Option<Arc<Image>>) -> Vec<u8> {
         image.as_ref().expect("a picture").rows().flatten().copied().collect()

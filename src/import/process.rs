@@ -24,7 +24,7 @@ const LONGEST_LINE: usize = 2000;
 
 /// What a process may take.
 #[derive(Debug, Clone, Copy)]
-pub struct Limits {
+pub struct ProcessLimits {
     /// From its start to its result.
     pub time: Duration,
     /// Bytes in memory, of the interpreter itself.
@@ -33,7 +33,7 @@ pub struct Limits {
 
 /// Why there is no result.
 #[derive(Debug)]
-pub enum Ended {
+pub enum ProcessEnd {
     TooLong,
     TooMuchMemory,
     Cancelled,
@@ -52,7 +52,7 @@ pub enum Ended {
 
 /// A process that runs; it ends, and its folder goes, with this.
 #[derive(Debug)]
-pub struct Run {
+pub struct ReaderProcess {
     child: Child,
     has_ended: bool,
     folder: tempfile::TempDir,
@@ -61,12 +61,17 @@ pub struct Run {
     /// Ends with standard error.
     errors: Receiver<()>,
     start: Instant,
-    limits: Limits,
+    limits: ProcessLimits,
 }
 
-impl Run {
+impl ReaderProcess {
     /// Starts `python SCRIPT FOLDER ARGUMENTS…`.
-    pub fn start(python: &str, script: &str, arguments: &[OsString], limits: Limits) -> Result<Self, ImportError> {
+    pub fn start(
+        python: &str,
+        script: &str,
+        arguments: &[OsString],
+        limits: ProcessLimits,
+    ) -> Result<Self, ImportError> {
         let temporary = |source| ImportError::Write { file: std::env::temp_dir(), source };
         let folder = tempfile::TempDir::with_prefix("stencilscope-").map_err(temporary)?;
         let file = folder.path().join("script.py");
@@ -109,16 +114,16 @@ impl Run {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn finish(&mut self, progress: &Progress) -> Result<String, Ended> {
+    pub fn finish(&mut self, progress: &Progress) -> Result<String, ProcessEnd> {
         let result = self.wait(progress);
         let signal = self.end();
         match result {
-            Err(Ended::Silent { last, .. }) => Err(Ended::Silent { last, signal }),
+            Err(ProcessEnd::Silent { last, .. }) => Err(ProcessEnd::Silent { last, signal }),
             result => result,
         }
     }
 
-    fn wait(&self, progress: &Progress) -> Result<String, Ended> {
+    fn wait(&self, progress: &Progress) -> Result<String, ProcessEnd> {
         let mut shown = [0; 2];
         loop {
             match self.lines.recv_timeout(TURN) {
@@ -126,20 +131,26 @@ impl Run {
                     ("done", words) => return Ok(words.to_owned()),
                     ("error", words) => {
                         let (kind, words) = words.split_once(' ').unwrap_or((words, ""));
-                        return Err(Ended::Said { kind: kind.to_owned(), words: words.to_owned(), last: self.last() });
+                        return Err(ProcessEnd::Said {
+                            kind: kind.to_owned(),
+                            words: words.to_owned(),
+                            last: self.last(),
+                        });
                     }
                     ("progress", numbers) => show(numbers, &mut shown, progress),
                     _ => {}
                 },
                 Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Silent { last: self.last(), signal: None }),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(ProcessEnd::Silent { last: self.last(), signal: None });
+                }
             }
             if progress.is_cancelled() {
-                return Err(Ended::Cancelled);
+                return Err(ProcessEnd::Cancelled);
             } else if self.start.elapsed() > self.limits.time {
-                return Err(Ended::TooLong);
+                return Err(ProcessEnd::TooLong);
             } else if memory(self.child.id()).is_some_and(|bytes| bytes > self.limits.memory) {
-                return Err(Ended::TooMuchMemory);
+                return Err(ProcessEnd::TooMuchMemory);
             }
         }
     }
@@ -173,7 +184,7 @@ impl Run {
     }
 }
 
-impl Drop for Run {
+impl Drop for ReaderProcess {
     fn drop(&mut self) {
         self.end();
     }

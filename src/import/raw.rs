@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 named_enum! {
     /// Whose calls were recorded.
-    pub enum Api {
+    pub enum RecordedApi {
         /// Vulkan, of any version.
         Vulkan = "Vulkan",
         /// OpenGL, core profile.
@@ -25,7 +25,7 @@ named_enum! {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawFrame {
     /// Whose calls were recorded.
-    pub api: Api,
+    pub api: RecordedApi,
     /// The GPU that replayed the frame, in the driver's words; empty where it has none.
     pub adapter: String,
     /// Who recorded it: `RenderDoc 1.24`.
@@ -403,7 +403,7 @@ pub struct RawBlendEquation {
 
 named_enum! {
     /// Does it?
-    pub enum RawMay {
+    pub enum RawShaderEffect {
         /// It can't.
         No = "no",
         /// It may, for some fragments.
@@ -417,7 +417,7 @@ named_enum! {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawFragment {
     /// It drops fragments (`discard`, alpha to coverage, a sample mask of its own).
-    pub may_discard: RawMay,
+    pub may_discard: RawShaderEffect,
     /// It makes a depth of its own.
-    pub writes_depth: RawMay,
+    pub writes_depth: RawShaderEffect,
 }

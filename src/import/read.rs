@@ -4,13 +4,13 @@
 //! there before memory is taken for them, names against those that are known. Positions are taken as they are, NaN
 //! too.
 
-use super::blobs::Blobs;
-use super::document::{self, Document, FORMAT};
+use super::blobs::BlobFile;
+use super::document::{self, FORMAT, RenderDocDocument};
 use super::error::ImportError;
-use super::pictures::{self, Layout};
+use super::pictures::{self, TexelLayout};
 use super::raw::{
-    Api, RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture,
-    RawTopology,
+    RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawShaderEffect, RawTarget, RawTexture,
+    RawTopology, RecordedApi,
 };
 use super::{geometry, shader, states};
 use crate::files::open_plain;
@@ -36,12 +36,13 @@ pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
 /// Reads its two files.
 pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Result<RawFrame, ImportError> {
     let document = self::document(document)?;
-    let api = Api::from_name(&document.api).ok_or_else(|| broken(format!("it is of the API `{}`", document.api)))?;
+    let api =
+        RecordedApi::from_name(&document.api).ok_or_else(|| broken(format!("it is of the API `{}`", document.api)))?;
     let textures = document.textures.iter().map(texture).collect::<Result<_, _>>()?;
     let limits = document.limits.into_iter().collect();
-    let blobs = Blobs::new(data, document.blobs)?;
+    let blobs = BlobFile::new(data, document.blobs)?;
     let sizes = document.textures.iter().map(|texture| [texture.layers, texture.mips]).collect();
-    let mut reader = Reader {
+    let mut reader = DocumentReader {
         api,
         textures,
         sizes,
@@ -73,14 +74,14 @@ fn broken(what: impl Into<String>) -> ImportError {
     ImportError::Folder(what.into())
 }
 
-fn document(file: impl Read) -> Result<Document, ImportError> {
+fn document(file: impl Read) -> Result<RenderDocDocument, ImportError> {
     let failed = |error: &dyn std::fmt::Display| broken(format!("frame.json: {error}"));
     let mut text = Vec::new();
     file.take(MOST_TEXT + 1).read_to_end(&mut text).map_err(|error| failed(&error))?;
     if text.len() as u64 > MOST_TEXT {
         return Err(ImportError::TooLarge { what: format!("more than {} MiB of states", MOST_TEXT >> 20) });
     }
-    let document: Document = serde_json::from_slice(&text).map_err(|error| failed(&error))?;
+    let document: RenderDocDocument = serde_json::from_slice(&text).map_err(|error| failed(&error))?;
     let [events, textures] = [document.events.len(), document.textures.len()];
     if document.format != FORMAT {
         Err(failed(&format!("it is of format {}, not {FORMAT}", document.format)))
@@ -93,8 +94,8 @@ fn document(file: impl Read) -> Result<Document, ImportError> {
     }
 }
 
-fn texture(one: &document::Texture) -> Result<RawTexture, ImportError> {
-    let document::Texture { name, format, size, layers, samples, .. } = one;
+fn texture(one: &document::RenderDocTexture) -> Result<RawTexture, ImportError> {
+    let document::RenderDocTexture { name, format, size, layers, samples, .. } = one;
     if size.iter().any(|side| *side > LARGEST) {
         return Err(ImportError::TooLarge { what: format!("`{name}` has {}x{} texels", size[0], size[1]) });
     }
@@ -108,12 +109,12 @@ fn texture(one: &document::Texture) -> Result<RawTexture, ImportError> {
     })
 }
 
-struct Reader {
-    api: Api,
+struct DocumentReader {
+    api: RecordedApi,
     textures: Vec<RawTexture>,
     /// Layers and levels of each.
     sizes: Vec<[u32; 2]>,
-    blobs: Blobs,
+    blobs: BlobFile,
     /// Pictures by byte string, format and size: those that are equal are one in memory.
     pictures: BTreeMap<(usize, usize, [u32; 2]), RawContents>,
     /// The last pictures of each target: those of the next are mostly the same rows.
@@ -122,16 +123,16 @@ struct Reader {
     limits: BTreeSet<String>,
 }
 
-impl Reader {
-    fn target(&self, one: document::Target) -> Result<RawTarget, ImportError> {
-        let document::Target { texture, mip, layer } = one;
+impl DocumentReader {
+    fn target(&self, one: document::RenderDocTarget) -> Result<RawTarget, ImportError> {
+        let document::RenderDocTarget { texture, mip, layer } = one;
         let is_there = self.sizes.get(texture).is_some_and(|[layers, mips]| layer < *layers && mip < (*mips).min(32));
         let missing = || broken(format!("there is no level {mip} of layer {layer} of texture {texture}"));
         is_there.then_some(RawTarget { texture, mip, layer }).ok_or_else(missing)
     }
 
     fn is_gl(&self) -> bool {
-        self.api != Api::Vulkan
+        self.api != RecordedApi::Vulkan
     }
 
     /// Width and height of a target.
@@ -168,7 +169,7 @@ impl Reader {
         bytes.truncate(usize::try_from(expected).unwrap_or(usize::MAX));
         // What is made of it is at most as much again, and as much as depths.
         self.blobs.reserve(found.saturating_mul(3))?;
-        let layout = Layout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
+        let layout = TexelLayout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
         let mut contents = pictures::read(&self.textures[target.texture].format, &bytes, [width, height], layout);
         let last = self.last.entry(target).or_default();
         let kept = pictures::share(&mut contents, last);
@@ -179,7 +180,7 @@ impl Reader {
         Ok(contents)
     }
 
-    fn event(&mut self, event: document::Event) -> Result<RawEvent, ImportError> {
+    fn event(&mut self, event: document::RenderDocEvent) -> Result<RawEvent, ImportError> {
         let targets = event.colors.iter().copied().flatten().map(|one| self.target(one));
         let color_targets: Vec<RawTarget> = targets.collect::<Result<_, _>>()?;
         // What is read after an event is the target of output 0.
@@ -204,14 +205,14 @@ impl Reader {
         if kind == RawKind::Compute {
             self.limits.insert("what compute work writes is not followed".to_owned());
         }
-        let document::Event { id, name, groups, .. } = event;
+        let document::RenderDocEvent { id, name, groups, .. } = event;
         Ok(RawEvent { id, name, groups, kind, color_targets, depth_target, after })
     }
 
     fn draw(
         &mut self,
         event: u32,
-        draw: &document::Draw,
+        draw: &document::RenderDocDraw,
         color: Option<RawTarget>,
         depth: Option<RawTarget>,
     ) -> Result<RawDraw, ImportError> {
@@ -258,16 +259,16 @@ impl Reader {
     /// What the fragment shader may do; without one there is nothing that it could.
     fn fragment(
         &mut self,
-        shader: Option<&document::Shader>,
+        shader: Option<&document::RenderDocShader>,
         alpha_to_coverage: bool,
     ) -> Result<RawFragment, ImportError> {
-        let none = RawFragment { may_discard: RawMay::No, writes_depth: RawMay::No };
-        let Some(document::Shader { encoding, bytes }) = shader else { return Ok(none) };
+        let none = RawFragment { may_discard: RawShaderEffect::No, writes_depth: RawShaderEffect::No };
+        let Some(document::RenderDocShader { encoding, bytes }) = shader else { return Ok(none) };
         let key = (encoding.clone(), *bytes);
         let known = self.shaders.get(&key).copied();
         let fragment = known.map_or_else(|| Ok(shader::read(encoding, &self.blobs.read(*bytes)?)), Ok)?;
         self.shaders.insert(key, fragment);
-        let may_discard = if alpha_to_coverage { RawMay::Yes } else { fragment.may_discard };
+        let may_discard = if alpha_to_coverage { RawShaderEffect::Yes } else { fragment.may_discard };
         Ok(RawFragment { may_discard, ..fragment })
     }
 }

@@ -1,7 +1,7 @@
 //! RenderDoc's captures: its Python module in a process of its own takes a frame out of one, or records one first.
 
 use super::error::ImportError;
-use super::process::{Ended, GRACE, Limits, Run};
+use super::process::{GRACE, ProcessEnd, ProcessLimits, ReaderProcess};
 use super::{RawFrame, read};
 use crate::files::open_plain;
 use crate::progress::Progress;
@@ -13,7 +13,7 @@ const LAUNCH: &str = include_str!("launch.py");
 
 /// How RenderDoc's module is reached, and what it may take.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct RenderDocOptions {
     /// The interpreter that has the module `renderdoc`.
     pub python: String,
     /// Seconds until its process is ended.
@@ -24,7 +24,7 @@ pub struct Options {
     pub pictures: bool,
 }
 
-impl Default for Options {
+impl Default for RenderDocOptions {
     fn default() -> Self {
         Self { python: "python3".to_owned(), seconds: 600, most_memory: 8 << 30, pictures: true }
     }
@@ -32,7 +32,7 @@ impl Default for Options {
 
 /// What to record.
 #[derive(Debug, Clone)]
-pub struct Recording {
+pub struct RecordingRequest {
     /// The program and its arguments.
     pub command: Vec<String>,
     /// Which frame it shows; the first is 0.
@@ -43,7 +43,7 @@ pub struct Recording {
     pub keep: Option<PathBuf>,
 }
 
-impl Recording {
+impl RecordingRequest {
     /// The program's name.
     pub fn program(&self) -> &str {
         self.command.first().map_or("", String::as_str)
@@ -51,7 +51,7 @@ impl Recording {
 }
 
 /// Reads the frame of a RenderDoc capture.
-pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<RawFrame, ImportError> {
+pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> Result<RawFrame, ImportError> {
     // RenderDoc has one error for all of these.
     let reason = match std::fs::metadata(file) {
         Ok(found) if found.is_dir() => Some("it is a folder".to_owned()),
@@ -62,23 +62,27 @@ pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<Raw
     if let Some(reason) = reason {
         return Err(ImportError::NoFile { file: file.to_owned(), reason });
     }
-    let limits = Limits { time: Duration::from_secs(options.seconds), memory: options.most_memory };
+    let limits = ProcessLimits { time: Duration::from_secs(options.seconds), memory: options.most_memory };
     let mut arguments = vec![file.as_os_str().to_owned()];
     arguments.extend((!options.pictures).then(|| "states".into()));
-    let mut run = Run::start(&options.python, EXTRACT, &arguments, limits)?;
+    let mut run = ReaderProcess::start(&options.python, EXTRACT, &arguments, limits)?;
     run.finish(progress).map_err(|ended| import_error(ended, file, options))?;
     read(run.folder())
 }
 
 /// Runs a program until it has shown a frame, ends it, and reads that frame.
-pub fn record(recording: &Recording, options: &Options, progress: &Progress) -> Result<RawFrame, ImportError> {
+pub fn record(
+    recording: &RecordingRequest,
+    options: &RenderDocOptions,
+    progress: &Progress,
+) -> Result<RawFrame, ImportError> {
     // The program has its own time; what RenderDoc needs to start and to write comes on top.
     let time = Duration::from_secs(recording.seconds.saturating_add(GRACE));
-    let limits = Limits { time, memory: u64::MAX };
+    let limits = ProcessLimits { time, memory: u64::MAX };
     let mut arguments = vec![recording.frame.to_string(), recording.seconds.to_string()];
     arguments.extend(recording.command.iter().cloned());
     let arguments: Vec<_> = arguments.into_iter().map(Into::into).collect();
-    let mut run = Run::start(&options.python, LAUNCH, &arguments, limits)?;
+    let mut run = ReaderProcess::start(&options.python, LAUNCH, &arguments, limits)?;
     let capture = run.finish(&Progress::default()).map_err(|ended| record_error(ended, recording, options))?;
     let capture = PathBuf::from(capture);
     if let Some(keep) = &recording.keep {
@@ -90,7 +94,7 @@ pub fn record(recording: &Recording, options: &Options, progress: &Progress) -> 
 }
 
 /// What has ended the import of a file.
-fn import_error(ended: Ended, file: &Path, options: &Options) -> ImportError {
+fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> ImportError {
     let file = file.to_owned();
     let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
     let reason = words.to_owned();
@@ -106,11 +110,11 @@ fn import_error(ended: Ended, file: &Path, options: &Options) -> ImportError {
 }
 
 /// What has ended the recording of a program.
-fn record_error(ended: Ended, recording: &Recording, options: &Options) -> ImportError {
+fn record_error(ended: ProcessEnd, recording: &RecordingRequest, options: &RenderDocOptions) -> ImportError {
     let Some([kind, words]) = said(&ended) else {
         return match ended {
             // The script has a clock of its own, and did not get to look at it.
-            Ended::TooLong => never(recording, "RenderDoc does not answer"),
+            ProcessEnd::TooLong => never(recording, "RenderDoc does not answer"),
             _ => common_error(ended, options),
         };
     };
@@ -118,7 +122,7 @@ fn record_error(ended: Ended, recording: &Recording, options: &Options) -> Impor
     match kind {
         "program" => ImportError::NoProgram { program, reason: words.to_owned() },
         "died" => {
-            let Ended::Said { last, .. } = &ended else { return common_error(ended, options) };
+            let ProcessEnd::Said { last, .. } = &ended else { return common_error(ended, options) };
             let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
             let how = if words.is_empty() { String::new() } else { format!(" {words}") };
             ImportError::Died { program, how, frame: recording.frame, and_said, mend: died_mend() }
@@ -132,14 +136,14 @@ fn record_error(ended: Ended, recording: &Recording, options: &Options) -> Impor
     }
 }
 
-fn said(ended: &Ended) -> Option<[&str; 2]> {
+fn said(ended: &ProcessEnd) -> Option<[&str; 2]> {
     match ended {
-        Ended::Said { kind, words, .. } => Some([kind, words]),
+        ProcessEnd::Said { kind, words, .. } => Some([kind, words]),
         _ => None,
     }
 }
 
-fn never(recording: &Recording, seen: &str) -> ImportError {
+fn never(recording: &RecordingRequest, seen: &str) -> ImportError {
     ImportError::NeverPresented {
         program: recording.program().to_owned(),
         frame: recording.frame,
@@ -154,24 +158,24 @@ fn never(recording: &Recording, seen: &str) -> ImportError {
     }
 }
 
-fn common_error(ended: Ended, options: &Options) -> ImportError {
+fn common_error(ended: ProcessEnd, options: &RenderDocOptions) -> ImportError {
     let gibibytes = options.most_memory >> 30;
     match ended {
-        Ended::TooLong => ImportError::TooLong { seconds: options.seconds },
-        Ended::TooMuchMemory => ImportError::TooMuchMemory { gibibytes },
-        Ended::Cancelled => ImportError::Cancelled,
-        Ended::Said { kind, .. } if kind == "memory" => ImportError::TooMuchMemory { gibibytes },
-        Ended::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: options.python.clone() },
-        Ended::Said { kind, words, .. } if kind == "disk" => {
+        ProcessEnd::TooLong => ImportError::TooLong { seconds: options.seconds },
+        ProcessEnd::TooMuchMemory => ImportError::TooMuchMemory { gibibytes },
+        ProcessEnd::Cancelled => ImportError::Cancelled,
+        ProcessEnd::Said { kind, .. } if kind == "memory" => ImportError::TooMuchMemory { gibibytes },
+        ProcessEnd::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: options.python.clone() },
+        ProcessEnd::Said { kind, words, .. } if kind == "disk" => {
             ImportError::Write { file: std::env::temp_dir(), source: std::io::Error::other(words) }
         }
-        Ended::Said { words, .. } => ImportError::Script { last: words },
-        Ended::Silent { last, signal: Some(signal) } => {
+        ProcessEnd::Said { words, .. } => ImportError::Script { last: words },
+        ProcessEnd::Silent { last, signal: Some(signal) } => {
             let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
             ImportError::Crashed { signal, and_said }
         }
-        Ended::Silent { last, .. } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
-        Ended::Silent { last, .. } => ImportError::Script { last },
+        ProcessEnd::Silent { last, .. } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
+        ProcessEnd::Silent { last, .. } => ImportError::Script { last },
     }
 }
 

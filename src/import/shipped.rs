@@ -1,13 +1,13 @@
 //! Frames of other programs that come with this one: they can be looked at where there is no RenderDoc.
 
 use super::read::read_from;
-use super::{Converted, ImportError, convert};
+use super::{ConvertedFrame, ImportError, convert};
 use crate::capture::disk::WholeFrame;
 use std::io::Cursor;
 
 /// A frame that another program drew, built in.
 #[derive(Debug, Clone, Copy)]
-pub struct Shipped {
+pub struct ShippedFrame {
     /// What opens it.
     pub name: &'static str,
     /// What it shows, in a sentence.
@@ -18,7 +18,7 @@ pub struct Shipped {
 
 macro_rules! shipped {
     ($name:literal, $lesson:literal) => {
-        Shipped {
+        ShippedFrame {
             name: $name,
             lesson: $lesson,
             document: include_bytes!(concat!("../../assets/recordings/", $name, "/frame.json")),
@@ -28,22 +28,22 @@ macro_rules! shipped {
 }
 
 /// All of them.
-pub const SHIPPED: &[Shipped] = &[
+pub const SHIPPED: &[ShippedFrame] = &[
     shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
     shipped!("ogre-inside", "the eye in a shadow: OGRE counts that volume behind surfaces"),
     shipped!("ogre-short", "volumes that end at the light's reach: beyond it, shadow is not counted"),
 ];
 
-impl Shipped {
+impl ShippedFrame {
     /// The one of that name.
-    pub fn named(name: &str) -> Option<&'static Shipped> {
+    pub fn named(name: &str) -> Option<&'static ShippedFrame> {
         SHIPPED.iter().find(|shipped| shipped.name == name)
     }
 
     /// Its frame.
     pub fn open(&self) -> Result<WholeFrame, ImportError> {
         let frame = read_from(self.document, Cursor::new(self.data))?;
-        let Converted { plan, capture, scene, .. } = convert(&frame, self.name)?;
+        let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, self.name)?;
         Ok(WholeFrame { capture, plan: Some(plan), scene })
     }
 }

@@ -1,6 +1,6 @@
 //! Fixed-function state, the same way round for every API.
 
-use super::document::{Blend, Draw, Equation, Face};
+use super::document::{RenderDocBlend, RenderDocBlendEquation, RenderDocDraw, RenderDocStencilFace};
 use super::raw::{
     RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawFormat, RawShape, RawStencilFace,
     RawStencilOperation, RawView,
@@ -8,7 +8,7 @@ use super::raw::{
 
 /// The states of a draw.
 #[derive(Debug)]
-pub struct States {
+pub struct DrawStates {
     pub view: RawView,
     pub shape: RawShape,
     pub depth: Option<RawDepth>,
@@ -21,17 +21,17 @@ pub struct States {
 /// # Errors
 /// A name that is not known, in words.
 pub fn read(
-    draw: &Draw,
+    draw: &RenderDocDraw,
     is_gl: bool,
     height: u32,
     format: Option<&RawFormat>,
     has_color: bool,
-) -> Result<States, String> {
+) -> Result<DrawStates, String> {
     let has_depth = format.is_some_and(RawFormat::has_depth);
     let has_stencil = format.is_some_and(RawFormat::has_stencil);
     let depth = RawDepth { compare: compare(&draw.depth_compare)?, write: draw.depth_write, bounds: draw.depth_bounds };
     let stencil = [face(&draw.front)?, face(&draw.back)?];
-    Ok(States {
+    Ok(DrawStates {
         view: view(draw, is_gl, height),
         shape: shape(draw, is_gl)?,
         depth: (draw.depth_test && has_depth).then_some(depth),
@@ -41,7 +41,7 @@ pub fn read(
 }
 
 /// OpenGL counts rows from the bottom; Vulkan from the top, with y down unless the viewport's height is negative.
-fn view(draw: &Draw, is_gl: bool, height: u32) -> RawView {
+fn view(draw: &RenderDocDraw, is_gl: bool, height: u32) -> RawView {
     let [left, y, width, tall] = draw.viewport;
     let [low, high] = [y.min(y + tall), y.max(y + tall)];
     let scissor = draw.scissor.map(|[left, y, width, tall]| {
@@ -59,7 +59,7 @@ fn view(draw: &Draw, is_gl: bool, height: u32) -> RawView {
 
 /// OpenGL tells faces by how they turn in clip space, so that they turn the other way on the picture where its y
 /// points down; Vulkan by how they turn on the picture.
-fn shape(draw: &Draw, is_gl: bool) -> Result<RawShape, String> {
+fn shape(draw: &RenderDocDraw, is_gl: bool) -> Result<RawShape, String> {
     let cull = match draw.cull.as_str() {
         _ if draw.discards_all => RawCull::Both,
         "NoCull" => RawCull::None,
@@ -85,7 +85,7 @@ fn shape(draw: &Draw, is_gl: bool) -> Result<RawShape, String> {
     })
 }
 
-fn face(face: &Face) -> Result<RawStencilFace, String> {
+fn face(face: &RenderDocStencilFace) -> Result<RawStencilFace, String> {
     Ok(RawStencilFace {
         compare: compare(&face.compare)?,
         reference: face.reference.min(255) as u8,
@@ -97,8 +97,8 @@ fn face(face: &Face) -> Result<RawStencilFace, String> {
     })
 }
 
-fn blend(blend: &Blend) -> RawBlend {
-    let equation = |Equation { source, target, operation }: &Equation| RawBlendEquation {
+fn blend(blend: &RenderDocBlend) -> RawBlend {
+    let equation = |RenderDocBlendEquation { source, target, operation }: &RenderDocBlendEquation| RawBlendEquation {
         source: source.clone(),
         target: target.clone(),
         operation: operation.clone(),
@@ -145,7 +145,7 @@ fn unknown(what: &str, name: &str) -> String {
 mod tests {
     use super::*;
 
-    fn draw(viewport: [f32; 4], origin_lower_left: bool) -> Draw {
+    fn draw(viewport: [f32; 4], origin_lower_left: bool) -> RenderDocDraw {
         let face = r#"{"fail": "Keep", "depth_fail": "DecWrap", "pass": "Keep", "compare": "Less", "reference": 300,
             "compare_mask": 4294967295, "write_mask": 15}"#;
         let text = format!(

@@ -1,6 +1,6 @@
 //! What the panels ask of the app, and what is named in it. Panels change nothing outside the inspector.
 
-use crate::ask::{Asked, RunRequest};
+use crate::ask::{PendingQuestion, RunRequest};
 use crate::stress::Entrant;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ pub enum Action {
     /// Render again, with this changed.
     Run(Box<RunRequest>),
     /// Answer a question: with [`Inspector::answer`](super::Inspector::answer).
-    Ask(Asked),
+    Ask(PendingQuestion),
     /// Load the open scene again from its file, which changed.
     Reload,
     /// Write what is shown into a file.
@@ -54,7 +54,7 @@ pub enum Action {
 
 /// A dialog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dialog {
+pub enum DialogKind {
     /// Opens a scene.
     Open,
     /// Asks where to export to.
@@ -65,7 +65,7 @@ pub enum Dialog {
 
 /// A tab.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Panel {
+pub enum PanelKind {
     /// The frame, step by step.
     Passes,
     /// What can be changed.
@@ -92,39 +92,39 @@ pub enum Panel {
     Stress,
 }
 
-impl Panel {
+impl PanelKind {
     /// On its tab.
     pub fn title(self) -> &'static str {
         match self {
-            Panel::Passes => "Passes",
-            Panel::Settings => "Scene settings",
-            Panel::Picture => "Picture",
-            Panel::Scene => "Scene",
-            Panel::ShadowMap => "Shadow map",
-            Panel::Pixel => "Pixel",
-            Panel::State => "State",
-            Panel::Explain => "Explain",
-            Panel::Bench => "Bench",
-            Panel::Report => "Report",
-            Panel::Diagnosis => "Diagnosis",
-            Panel::Stress => "Stress",
+            PanelKind::Passes => "Passes",
+            PanelKind::Settings => "Scene settings",
+            PanelKind::Picture => "Picture",
+            PanelKind::Scene => "Scene",
+            PanelKind::ShadowMap => "Shadow map",
+            PanelKind::Pixel => "Pixel",
+            PanelKind::State => "State",
+            PanelKind::Explain => "Explain",
+            PanelKind::Bench => "Bench",
+            PanelKind::Report => "Report",
+            PanelKind::Diagnosis => "Diagnosis",
+            PanelKind::Stress => "Stress",
         }
     }
 
     /// In the order of their declaration.
-    pub const ALL: [Panel; 12] = [
-        Panel::Passes,
-        Panel::Settings,
-        Panel::Picture,
-        Panel::Scene,
-        Panel::ShadowMap,
-        Panel::Pixel,
-        Panel::State,
-        Panel::Explain,
-        Panel::Bench,
-        Panel::Report,
-        Panel::Diagnosis,
-        Panel::Stress,
+    pub const ALL: [PanelKind; 12] = [
+        PanelKind::Passes,
+        PanelKind::Settings,
+        PanelKind::Picture,
+        PanelKind::Scene,
+        PanelKind::ShadowMap,
+        PanelKind::Pixel,
+        PanelKind::State,
+        PanelKind::Explain,
+        PanelKind::Bench,
+        PanelKind::Report,
+        PanelKind::Diagnosis,
+        PanelKind::Stress,
     ];
 }
 

@@ -22,23 +22,23 @@ mod panels;
 mod shell;
 mod tours;
 
-pub use action::{Action, Dialog, ExportKind, Overlay, Panel};
-pub use model::memory::{Remembered, ThemeChoice};
-pub use panels::picture::as_shown::Drawing;
+pub use action::{Action, DialogKind, ExportKind, Overlay, PanelKind};
+pub use model::memory::{StoredSettings, ThemeChoice};
+pub use panels::picture::as_shown::PictureDrawing;
 pub use shell::export::ExportData;
 pub use shell::open_dialog::SceneEntry;
-pub use tours::{Go, Stop, TOURS, Tour};
+pub use tours::{TOURS, Tour, TourMove, TourStop};
 
-use crate::ask::{Answer, Answers, Kind, Question, RunRequest};
+use crate::ask::{Answer, Answers, Question, QuestionKind, RunRequest};
 use crate::capture::{Capture, Image};
 use crate::plan::FramePlan;
-use crate::reading::moment::Moment;
-use crate::reading::shown::{PictureKind, Zoom};
+use crate::reading::moment::CapturePoint;
+use crate::reading::shown::{PictureKind, TexelZoom};
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
 use look::theme;
 use model::Model;
-use model::looking::{Compare, With};
+use model::looking::{ComparedWith, Comparison};
 use panels::Panels;
 use shell::dock::Dock;
 use shell::export::{self, ExportDialog};
@@ -151,8 +151,8 @@ impl Inspector {
     pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) {
         let failure = result.as_ref().err().cloned();
         match (self.model.answers.answer(ticket, result, is_last), failure) {
-            (Some(Kind::FilmOf), Some(reason)) => self.push_error(reason),
-            (Some(Kind::TruthOf), Some(_)) => self.model.view.older_truth = None,
+            (Some(QuestionKind::FilmOf), Some(reason)) => self.push_error(reason),
+            (Some(QuestionKind::TruthOf), Some(_)) => self.model.view.older_truth = None,
             (Some(kind), None) => self.model.take_in(kind),
             _ => {}
         }
@@ -188,7 +188,7 @@ impl Inspector {
     }
 
     /// Stops what is being found out of a kind, as its panel does.
-    pub fn cancel(&mut self, kind: Kind) {
+    pub fn cancel(&mut self, kind: QuestionKind) {
         self.model.cancel(kind);
     }
 
@@ -225,13 +225,13 @@ impl Inspector {
     }
 
     /// What is to be remembered until the window is opened again.
-    pub fn remembered(&self) -> Remembered {
+    pub fn remembered(&self) -> StoredSettings {
         let layout = self.dock.layout();
-        Remembered { theme: self.model.theme, recent: self.model.recent.clone(), layout }
+        StoredSettings { theme: self.model.theme, recent: self.model.recent.clone(), layout }
     }
 
     /// Looks as it did when this was remembered.
-    pub fn recall(&mut self, remembered: Remembered) {
+    pub fn recall(&mut self, remembered: StoredSettings) {
         self.model.theme = remembered.theme;
         self.model.recent = remembered.recent;
         if let Some(layout) = remembered.layout {
@@ -240,7 +240,7 @@ impl Inspector {
     }
 
     /// Shows a tab.
-    pub fn show_panel(&mut self, panel: Panel) {
+    pub fn show_panel(&mut self, panel: PanelKind) {
         self.model.requests.panels.push(panel);
     }
 
@@ -251,7 +251,8 @@ impl Inspector {
 
     /// Shows the same frame made with another technique beside the picture, under a divider.
     pub fn compare_with(&mut self, technique: Technique) {
-        let compare = Compare { with: With::Technique(technique), ..Compare::new(self.model.selection.step) };
+        let compare =
+            Comparison { with: ComparedWith::Technique(technique), ..Comparison::new(self.model.selection.step) };
         self.model.modes.compare = Some(compare);
     }
 
@@ -301,7 +302,7 @@ impl Inspector {
     /// An export is on its way: what it is and where it goes need not be asked any more.
     pub fn begin_export(&mut self) {
         self.export_dialog = None;
-        if matches!(self.model.dialog, Some(Dialog::Export(_))) {
+        if matches!(self.model.dialog, Some(DialogKind::Export(_))) {
             self.model.dialog = None;
         }
     }
@@ -403,7 +404,7 @@ impl Inspector {
 
     /// Selects a draw of a step; the whole step if it has fewer.
     pub fn select_draw(&mut self, step: usize, draw: usize) {
-        self.model.select(Moment { step, draw: Some(draw) });
+        self.model.select(CapturePoint { step, draw: Some(draw) });
     }
 
     /// The pictures that are shown; none where nothing is drawn yet.
@@ -451,12 +452,12 @@ impl Inspector {
     }
 
     /// How large texels are shown.
-    pub fn zoom(&self) -> Zoom {
+    pub fn zoom(&self) -> TexelZoom {
         self.model.view.zoom
     }
 
     /// Shows texels in a size, `center` (in texels) in the middle.
-    pub fn set_zoom(&mut self, zoom: Zoom, center: [f64; 2]) {
+    pub fn set_zoom(&mut self, zoom: TexelZoom, center: [f64; 2]) {
         self.model.view.zoom = zoom;
         self.model.view.center = center;
     }

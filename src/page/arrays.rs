@@ -18,7 +18,7 @@ use std::io::Write;
 /// What a word is to the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Word {
+pub enum ArrayWord {
     /// A byte.
     U8,
     /// A little-endian integer of four bytes.
@@ -27,17 +27,17 @@ pub enum Word {
     F32,
 }
 
-impl Word {
+impl ArrayWord {
     fn bytes(self) -> usize {
-        if self == Word::U8 { 1 } else { 4 }
+        if self == ArrayWord::U8 { 1 } else { 4 }
     }
 }
 
 /// How elements lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Layout {
+pub struct ArrayLayout {
     /// What a word is.
-    pub word: Word,
+    pub word: ArrayWord,
     /// Words of an element.
     pub lanes: usize,
     /// Elements of a row; 0: all are in one.
@@ -49,15 +49,15 @@ pub type ArrayIndex = usize;
 
 /// The arrays of a page.
 #[derive(Debug, Default)]
-pub struct Arrays {
-    entries: Vec<Entry>,
-    known: BTreeMap<(Layout, usize, u64), ArrayIndex>,
+pub struct PageArrays {
+    entries: Vec<PageArray>,
+    known: BTreeMap<(ArrayLayout, usize, u64), ArrayIndex>,
 }
 
 /// An array as the page holds it.
 #[derive(Debug, Serialize)]
-pub struct Entry {
-    word: Word,
+pub struct PageArray {
+    word: ArrayWord,
     lanes: usize,
     width: usize,
     /// Elements.
@@ -67,9 +67,9 @@ pub struct Entry {
     data: String,
 }
 
-impl Arrays {
+impl PageArrays {
     /// Puts bytes in, little-endian, unless they are there.
-    pub fn put(&mut self, layout: Layout, bytes: &[u8]) -> ArrayIndex {
+    pub fn put(&mut self, layout: ArrayLayout, bytes: &[u8]) -> ArrayIndex {
         let key = (layout, bytes.len(), FixedState::with_seed(0).hash_one(bytes));
         if let Some(index) = self.known.get(&key) {
             return *index;
@@ -80,29 +80,29 @@ impl Arrays {
     }
 
     /// All of them, in the order of their indexes.
-    pub fn into_entries(self) -> Vec<Entry> {
+    pub fn into_entries(self) -> Vec<PageArray> {
         self.entries
     }
 }
 
-fn pack(layout: Layout, bytes: &[u8]) -> Entry {
-    let Layout { word, lanes, width } = layout;
+fn pack(layout: ArrayLayout, bytes: &[u8]) -> PageArray {
+    let ArrayLayout { word, lanes, width } = layout;
     let words = words(word, bytes);
     let [plain, predicted] = [deflated(&planes(&words, layout)), deflated(&planes(&residuals(&words, layout), layout))];
     let is_predicted = predicted.len() < plain.len();
     let data = BASE64_STANDARD.encode(if is_predicted { predicted } else { plain });
-    Entry { word, lanes, width, length: words.len() / lanes, predicted: is_predicted, data }
+    PageArray { word, lanes, width, length: words.len() / lanes, predicted: is_predicted, data }
 }
 
-fn words(word: Word, bytes: &[u8]) -> Vec<u32> {
+fn words(word: ArrayWord, bytes: &[u8]) -> Vec<u32> {
     match word {
-        Word::U8 => bytes.iter().copied().map(u32::from).collect(),
-        Word::U32 | Word::F32 => bytes.as_chunks().0.iter().copied().map(u32::from_le_bytes).collect(),
+        ArrayWord::U8 => bytes.iter().copied().map(u32::from).collect(),
+        ArrayWord::U32 | ArrayWord::F32 => bytes.as_chunks().0.iter().copied().map(u32::from_le_bytes).collect(),
     }
 }
 
 /// What each word adds to what its neighbours foretell; beyond the first row and column are zeros.
-fn residuals(words: &[u32], Layout { word, lanes, width }: Layout) -> Vec<u32> {
+fn residuals(words: &[u32], ArrayLayout { word, lanes, width }: ArrayLayout) -> Vec<u32> {
     let row = if width == 0 { words.len().max(1) } else { width * lanes };
     let at = |index: usize, left: usize, up: usize| {
         let is_inside = index % row >= left && index >= up;
@@ -112,18 +112,20 @@ fn residuals(words: &[u32], Layout { word, lanes, width }: Layout) -> Vec<u32> {
         let foretold = at(index, lanes, 0).wrapping_add(at(index, 0, row)).wrapping_sub(at(index, lanes, row));
         let residual = words[index].wrapping_sub(foretold);
         match word {
-            Word::U8 => {
+            ArrayWord::U8 => {
                 let signed = (residual as u8).cast_signed();
                 u32::from((signed << 1 ^ signed >> 7).cast_unsigned())
             }
-            Word::U32 | Word::F32 => (residual.cast_signed() << 1 ^ residual.cast_signed() >> 31).cast_unsigned(),
+            ArrayWord::U32 | ArrayWord::F32 => {
+                (residual.cast_signed() << 1 ^ residual.cast_signed() >> 31).cast_unsigned()
+            }
         }
     };
     (0..words.len()).map(residual).collect()
 }
 
 /// The first bytes of each lane's words, the second ones, and so on, then those of the next lane.
-fn planes(words: &[u32], Layout { word, lanes, .. }: Layout) -> Vec<u8> {
+fn planes(words: &[u32], ArrayLayout { word, lanes, .. }: ArrayLayout) -> Vec<u8> {
     let plane =
         |lane: usize, byte: usize| words.iter().skip(lane).step_by(lanes).map(move |word| word.to_le_bytes()[byte]);
     (0..lanes).flat_map(|lane| (0..word.bytes()).flat_map(move |byte| plane(lane, byte))).collect()
@@ -142,7 +144,7 @@ mod tests {
     use std::io::Read;
 
     /// As `arrays.js` unpacks.
-    fn unpacked(entry: &Entry) -> Vec<u8> {
+    fn unpacked(entry: &PageArray) -> Vec<u8> {
         let deflated = BASE64_STANDARD.decode(&entry.data).expect("base64");
         let mut planes = Vec::new();
         ZlibDecoder::new(&deflated[..]).read_to_end(&mut planes).expect("zlib");
@@ -177,14 +179,14 @@ mod tests {
     #[test]
     fn every_bit_comes_back() {
         for (word, lanes, width) in [
-            (Word::U8, 1, 12),
-            (Word::U8, 4, 6),
-            (Word::F32, 1, 6),
-            (Word::F32, 4, 0),
-            (Word::U32, 3, 0),
-            (Word::U32, 3, 2),
+            (ArrayWord::U8, 1, 12),
+            (ArrayWord::U8, 4, 6),
+            (ArrayWord::F32, 1, 6),
+            (ArrayWord::F32, 4, 0),
+            (ArrayWord::U32, 3, 0),
+            (ArrayWord::U32, 3, 2),
         ] {
-            let layout = Layout { word, lanes, width };
+            let layout = ArrayLayout { word, lanes, width };
             let smooth: Vec<u8> = (0..144_u32).map(|at| (at / 12 + at % 12) as u8).collect();
             for bytes in [noise(144), smooth, vec![0xff; 144], Vec::new()] {
                 assert_eq!(unpacked(&pack(layout, &bytes)), bytes, "{layout:?}");
@@ -197,16 +199,16 @@ mod tests {
     fn a_plane_of_depths_packs_small() {
         let depth = |x: usize, y: usize| (0.001 + 0.000_01 * x as f64 + 0.000_02 * y as f64) as f32;
         let bytes: Vec<u8> = (0..64 * 64).flat_map(|at| depth(at % 64, at / 64).to_le_bytes()).collect();
-        let entry = pack(Layout { word: Word::F32, lanes: 1, width: 64 }, &bytes);
+        let entry = pack(ArrayLayout { word: ArrayWord::F32, lanes: 1, width: 64 }, &bytes);
         assert!(entry.predicted && entry.data.len() * 3 < bytes.len(), "{} of {}", entry.data.len(), bytes.len());
     }
 
     #[test]
     fn an_array_is_there_once() {
-        let mut arrays = Arrays::default();
-        let layout = Layout { word: Word::U8, lanes: 1, width: 4 };
+        let mut arrays = PageArrays::default();
+        let layout = ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 4 };
         let first = arrays.put(layout, &[1, 2, 3, 4]);
-        let others = [arrays.put(layout, &[1, 2, 3, 5]), arrays.put(Layout { width: 2, ..layout }, &[1, 2, 3, 4])];
+        let others = [arrays.put(layout, &[1, 2, 3, 5]), arrays.put(ArrayLayout { width: 2, ..layout }, &[1, 2, 3, 4])];
         assert_eq!(arrays.put(layout, &[1, 2, 3, 4]), first);
         assert!(!others.contains(&first) && arrays.into_entries().len() == 3);
     }

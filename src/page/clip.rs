@@ -3,7 +3,7 @@
 //! A matrix times a vector adds its columns from the last to the first, each product and each sum rounded to `f32`, as
 //! Mesa's compiler orders it. Another driver's last bits may be others; the page holds what follows against what was stored.
 
-use super::arrays::{ArrayIndex, Arrays, Layout, Word};
+use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::plan::{DrawMesh, FramePlan, ViewId};
 use glam::Mat4;
 use serde::Serialize;
@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A mesh as the passes of the picture show it.
 #[derive(Debug, Serialize)]
-pub struct MeshEntry {
+pub struct PageMesh {
     /// Three corners a triangle.
     indices: ArrayIndex,
     /// For each view that shows it, its corners in clip space.
@@ -19,7 +19,7 @@ pub struct MeshEntry {
 }
 
 /// The meshes of a plan; `None` where no pass of the picture shows one.
-pub fn meshes(plan: &FramePlan, arrays: &mut Arrays) -> Vec<Option<MeshEntry>> {
+pub fn meshes(plan: &FramePlan, arrays: &mut PageArrays) -> Vec<Option<PageMesh>> {
     let mut shown: BTreeMap<usize, BTreeSet<(ViewId, bool)>> = BTreeMap::new();
     for pass in plan.passes.iter().filter(|pass| plan.is_of_picture(pass)) {
         for draw in &pass.draws {
@@ -28,20 +28,20 @@ pub fn meshes(plan: &FramePlan, arrays: &mut Arrays) -> Vec<Option<MeshEntry>> {
     }
     let entry = |(index, mesh): (usize, &DrawMesh)| {
         let views = shown.get(&index)?;
-        let layout = Layout { word: Word::U32, lanes: 3, width: 0 };
+        let layout = ArrayLayout { word: ArrayWord::U32, lanes: 3, width: 0 };
         let indices = arrays.put(layout, bytemuck::cast_slice(mesh.indices.data()));
         let corners = views.iter().map(|(view, is_recorded)| {
             // Another program's corners are in clip space.
             let matrix = (!is_recorded).then(|| plan.views[view.0].clip_from_relative);
             (view.0, put(mesh.vertices.data(), matrix, arrays))
         });
-        Some(MeshEntry { indices, corners: corners.collect() })
+        Some(PageMesh { indices, corners: corners.collect() })
     };
     plan.meshes.iter().enumerate().map(entry).collect()
 }
 
-fn put(corners: &[[f32; 4]], matrix: Option<Mat4>, arrays: &mut Arrays) -> ArrayIndex {
-    let layout = Layout { word: Word::F32, lanes: 4, width: 0 };
+fn put(corners: &[[f32; 4]], matrix: Option<Mat4>, arrays: &mut PageArrays) -> ArrayIndex {
+    let layout = ArrayLayout { word: ArrayWord::F32, lanes: 4, width: 0 };
     match matrix {
         None => arrays.put(layout, bytemuck::cast_slice(corners)),
         Some(matrix) => {

@@ -1,10 +1,10 @@
 //! What a page knows, as JSON: the plan, what was captured after each step and draw, and the palette. Arrays are
 //! named by their index.
 
-use super::arrays::{ArrayIndex, Arrays, Entry, Layout, Word};
-use super::clip::{self, MeshEntry};
-use super::passes::{self, PassEntry};
-use super::reads::{self, ReadsEntry};
+use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArray, PageArrays};
+use super::clip::{self, PageMesh};
+use super::passes::{self, PagePass};
+use super::reads::{self, PageReads};
 use crate::capture::{AdapterInfo, Capture, DrawSummary, FrameSnapshot, Image, Origin, PixelFormat, Snapshot};
 use crate::history;
 use crate::math::depth::DepthCurve;
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct PageDocument<'a> {
     schema: u32,
     program: String,
     scene: &'a str,
@@ -32,33 +32,33 @@ struct Document<'a> {
     origin: Option<&'a Origin>,
     depth_rounding: f32,
     has_stencil: bool,
-    passes: Vec<PassEntry<'a>>,
-    meshes: Vec<Option<MeshEntry>>,
-    steps: Vec<StepEntry<'a>>,
-    lights: Vec<LightEntry>,
+    passes: Vec<PagePass<'a>>,
+    meshes: Vec<Option<PageMesh>>,
+    steps: Vec<PageStep<'a>>,
+    lights: Vec<PageLight>,
     left_out: &'a [LeftOut],
-    palette: Palette,
-    arrays: Vec<Entry>,
+    palette: PagePalette,
+    arrays: Vec<PageArray>,
 }
 
 #[derive(Serialize)]
-struct StepEntry<'a> {
+struct PageStep<'a> {
     name: &'a str,
     /// From 1; null for what stands beside the frame.
     number: Option<usize>,
     purpose: &'a str,
     light: Option<usize>,
-    after: StateEntry,
-    draws: Vec<DrawEntry<'a>>,
+    after: PageState,
+    draws: Vec<PageStepDraw<'a>>,
 }
 
 #[derive(Serialize)]
-struct DrawEntry<'a> {
+struct PageStepDraw<'a> {
     name: &'a str,
     part: &'static str,
     triangles: u64,
     /// Null where it was not captured.
-    after: Option<StateEntry>,
+    after: Option<PageState>,
     /// Pixels at which another program's draw, computed anew, left something else.
     differs: Option<u64>,
 }
@@ -66,13 +66,13 @@ struct DrawEntry<'a> {
 /// What is there after a step or a draw.
 #[derive(Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
-enum StateEntry {
+enum PageState {
     Frame { target: &'static str, color: ArrayIndex, depth: ArrayIndex, stencil: Option<ArrayIndex> },
     Map { light: usize, face: usize },
 }
 
 #[derive(Serialize)]
-struct LightEntry {
+struct PageLight {
     name: String,
     decided_by: DecidedBy,
     counts: Option<&'static str>,
@@ -84,22 +84,22 @@ struct LightEntry {
     count: Option<ArrayIndex>,
     truth: Option<ArrayIndex>,
     findings: Option<ArrayIndex>,
-    faces: Vec<FaceEntry>,
-    reads: Option<ReadsEntry>,
+    faces: Vec<PageMapFace>,
+    reads: Option<PageReads>,
 }
 
 #[derive(Serialize)]
-struct FaceEntry {
+struct PageMapFace {
     name: String,
     size: [u32; 2],
     is_color: bool,
     image: ArrayIndex,
     /// `distance = scale / (depth − offset)`, or `(depth − offset) · scale` where it is linear.
-    measure: Option<MeasureEntry>,
+    measure: Option<PageMeasure>,
 }
 
 #[derive(Serialize)]
-struct MeasureEntry {
+struct PageMeasure {
     scale: f64,
     offset: f64,
     is_linear: bool,
@@ -107,7 +107,7 @@ struct MeasureEntry {
 
 /// The program's own colours.
 #[derive(Serialize)]
-struct Palette {
+struct PagePalette {
     stencil: Vec<colors::Rgb>,
     labels: Vec<colors::Rgb>,
     findings: Vec<colors::Rgb>,
@@ -116,8 +116,8 @@ struct Palette {
 
 /// The document of a frame.
 pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<String> {
-    let mut arrays = Arrays::default();
-    let document = Document {
+    let mut arrays = PageArrays::default();
+    let document = PageDocument {
         schema: 1,
         program: format!("stencilscope {}", env!("CARGO_PKG_VERSION")),
         scene: &capture.scene,
@@ -137,7 +137,7 @@ pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<Stri
         passes: passes::passes(plan, &mut arrays),
         has_stencil: has_stencil(plan),
         left_out: &capture.left_out,
-        palette: Palette {
+        palette: PagePalette {
             stencil: (0..=255).map(colors::stencil).collect(),
             labels: (0..4).map(colors::label).collect(),
             findings: (0..6).map(colors::finding).collect(),
@@ -161,9 +161,9 @@ fn depth_rounding(plan: &FramePlan) -> f32 {
     pass.map_or(0.0, |target| plan.attachment(target.attachment).depth_rounding())
 }
 
-fn step<'a>(capture: &'a Capture, index: usize, arrays: &mut Arrays) -> StepEntry<'a> {
+fn step<'a>(capture: &'a Capture, index: usize, arrays: &mut PageArrays) -> PageStep<'a> {
     let step = &capture.steps[index];
-    let draw = |draw: &'a DrawSummary| DrawEntry {
+    let draw = |draw: &'a DrawSummary| PageStepDraw {
         name: &draw.name,
         part: draw.part.name(),
         triangles: draw.triangles,
@@ -171,7 +171,7 @@ fn step<'a>(capture: &'a Capture, index: usize, arrays: &mut Arrays) -> StepEntr
         differs: draw.differs.map(|differs| differs.depth + differs.stencil),
     };
     let draws = step.draws.iter().map(draw).collect();
-    StepEntry {
+    PageStep {
         name: &step.name,
         number: steps::number(capture, index),
         purpose: &step.purpose,
@@ -181,10 +181,10 @@ fn step<'a>(capture: &'a Capture, index: usize, arrays: &mut Arrays) -> StepEntr
     }
 }
 
-fn state(snapshot: &Snapshot, arrays: &mut Arrays) -> StateEntry {
+fn state(snapshot: &Snapshot, arrays: &mut PageArrays) -> PageState {
     match snapshot {
-        Snapshot::Map { light, face } => StateEntry::Map { light: *light, face: *face },
-        Snapshot::Frame(FrameSnapshot { color, depth, stencil, target }) => StateEntry::Frame {
+        Snapshot::Map { light, face } => PageState::Map { light: *light, face: *face },
+        Snapshot::Frame(FrameSnapshot { color, depth, stencil, target }) => PageState::Frame {
             target: passes::target_name(*target),
             color: image(&color.image, arrays),
             depth: image(&depth.image, arrays),
@@ -193,17 +193,17 @@ fn state(snapshot: &Snapshot, arrays: &mut Arrays) -> StateEntry {
     }
 }
 
-fn light_entry(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut Arrays) -> LightEntry {
+fn light_entry(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut PageArrays) -> PageLight {
     let of = &capture.lights[light];
     let faces = of.map.iter().flat_map(|map| &map.faces).zip(layers::layers(capture, light)).enumerate();
-    let faces = faces.map(|(index, (face, layer))| FaceEntry {
+    let faces = faces.map(|(index, (face, layer))| PageMapFace {
         name: layer.full_name,
         size: face.size(),
         is_color: face.format() == PixelFormat::Rgba8,
         image: image(face, arrays),
         measure: DepthMeasure::of_map(capture, light, index).and_then(measure),
     });
-    LightEntry {
+    PageLight {
         name: crate::numbers::light(light),
         decided_by: of.decided_by,
         counts: of.count_of.map(CountOf::what),
@@ -218,22 +218,22 @@ fn light_entry(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &
     }
 }
 
-fn measure(measure: DepthMeasure) -> Option<MeasureEntry> {
+fn measure(measure: DepthMeasure) -> Option<PageMeasure> {
     match measure {
         DepthMeasure::Raw => None,
-        DepthMeasure::Perspective { scale, offset, .. } => Some(MeasureEntry { scale, offset, is_linear: false }),
+        DepthMeasure::Perspective { scale, offset, .. } => Some(PageMeasure { scale, offset, is_linear: false }),
         DepthMeasure::Parallel { near, length, .. } => {
-            Some(MeasureEntry { scale: length, offset: near, is_linear: true })
+            Some(PageMeasure { scale: length, offset: near, is_linear: true })
         }
     }
 }
 
-fn image(image: &Image, arrays: &mut Arrays) -> ArrayIndex {
+fn image(image: &Image, arrays: &mut PageArrays) -> ArrayIndex {
     let (word, lanes) = match image.format() {
-        PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 => (Word::U8, 4),
-        PixelFormat::Depth32F | PixelFormat::Count32F => (Word::F32, 1),
-        PixelFormat::U8 => (Word::U8, 1),
+        PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 => (ArrayWord::U8, 4),
+        PixelFormat::Depth32F | PixelFormat::Count32F => (ArrayWord::F32, 1),
+        PixelFormat::U8 => (ArrayWord::U8, 1),
     };
     let bytes: Vec<u8> = image.rows().flatten().copied().collect();
-    arrays.put(Layout { word, lanes, width: image.size()[0] as usize }, &bytes)
+    arrays.put(ArrayLayout { word, lanes, width: image.size()[0] as usize }, &bytes)
 }

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 /// A file of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Asset {
+pub struct PageAsset {
     /// Its name in `assets/page/`.
     pub name: &'static str,
     /// What it holds.
@@ -18,7 +18,7 @@ pub struct Asset {
 
 macro_rules! asset {
     ($name:literal) => {
-        Asset { name: $name, text: include_str!(concat!("../../assets/page/", $name)) }
+        PageAsset { name: $name, text: include_str!(concat!("../../assets/page/", $name)) }
     };
 }
 
@@ -28,7 +28,7 @@ pub const TEMPLATE: &str = include_str!("../../assets/page/page.html");
 pub const STYLE: &str = include_str!("../../assets/page/style.css");
 
 /// The modules, each after those that it imports.
-pub fn modules() -> Vec<Asset> {
+pub fn modules() -> Vec<PageAsset> {
     vec![
         asset!("arrays.js"),
         asset!("numbers.js"),
@@ -67,8 +67,9 @@ pub fn page(title: &str, document: &str) -> String {
 /// All modules as one.
 pub fn script() -> String {
     let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
-    let of_module =
-        |module: &Asset| module.text.lines().filter(|line| !line.starts_with("import ")).map(line).collect::<String>();
+    let of_module = |module: &PageAsset| {
+        module.text.lines().filter(|line| !line.starts_with("import ")).map(line).collect::<String>()
+    };
     modules().iter().map(of_module).collect()
 }
 

@@ -18,7 +18,7 @@ mod html;
 mod passes;
 mod reads;
 
-pub use html::{Asset, STYLE, TEMPLATE, modules, script};
+pub use html::{PageAsset, STYLE, TEMPLATE, modules, script};
 
 use crate::capture::Capture;
 use crate::plan::FramePlan;

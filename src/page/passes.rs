@@ -1,17 +1,17 @@
 //! The passes of a plan as the page's history goes through them: what follows from programs and states is said here, so
 //! that the page need not know them.
 
-use super::arrays::{ArrayIndex, Arrays, Layout, Word};
+use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::capture::FrameTarget;
 use crate::history;
 use crate::plan::{
-    Draw, FaceMasks, FramePlan, Part, Pass, Program, RasterState, StartContent, StencilFace, Visibility,
+    Draw, DrawPart, FaceMasks, FramePlan, Pass, Program, RasterState, StartContent, StencilFace, Visibility,
 };
 use serde::Serialize;
 
 /// A pass.
 #[derive(Debug, Serialize)]
-pub struct PassEntry<'a> {
+pub struct PagePass<'a> {
     name: &'a str,
     light: Option<usize>,
     view: usize,
@@ -25,23 +25,23 @@ pub struct PassEntry<'a> {
     range: [f32; 2],
     scissor: Option<[u32; 4]>,
     /// What its depth and stencil hold as it begins, where that is not what the pass before left.
-    start: Option<StartEntry>,
+    start: Option<PageStart>,
     clear_depth: Option<f32>,
     clear_stencil: Option<u8>,
     clear_count: Option<f32>,
     /// The largest stored depth, where depths are integers.
     depth_steps: Option<u32>,
-    draws: Vec<DrawEntry<'a>>,
+    draws: Vec<PageDraw<'a>>,
 }
 
 #[derive(Debug, Serialize)]
-struct StartEntry {
+struct PageStart {
     depth: Option<ArrayIndex>,
     stencil: Option<ArrayIndex>,
 }
 
 #[derive(Debug, Serialize)]
-struct DrawEntry<'a> {
+struct PageDraw<'a> {
     name: &'a str,
     caster: Option<&'a str>,
     part: &'static str,
@@ -56,7 +56,7 @@ struct DrawEntry<'a> {
     faces_inwards: bool,
     raster: &'a RasterState,
     /// Of fronts and of backs.
-    sides: [SideEntry<'a>; 2],
+    sides: [PageStencilFace<'a>; 2],
     tests_stencil: bool,
     /// Its shader throws away what is nearer than the near plane, and what is beyond the far plane.
     discards: [bool; 2],
@@ -67,7 +67,7 @@ struct DrawEntry<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct SideEntry<'a> {
+struct PageStencilFace<'a> {
     #[serde(flatten)]
     face: &'a StencilFace,
     #[serde(flatten)]
@@ -75,16 +75,16 @@ struct SideEntry<'a> {
 }
 
 /// The passes of a plan.
-pub fn passes<'a>(plan: &'a FramePlan, arrays: &mut Arrays) -> Vec<PassEntry<'a>> {
+pub fn passes<'a>(plan: &'a FramePlan, arrays: &mut PageArrays) -> Vec<PagePass<'a>> {
     plan.passes.iter().map(|pass| entry(plan, pass, arrays)).collect()
 }
 
-fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut Arrays) -> PassEntry<'a> {
+fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut PageArrays) -> PagePass<'a> {
     let viewport = pass.viewport(plan.size);
     let target = pass.depth_stencil.as_ref();
     let clear_count = pass.color.as_ref().filter(|_| plan.counts_in_float(pass)).and_then(|color| color.clear);
     let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref());
-    PassEntry {
+    PagePass {
         name: &pass.name,
         light: pass.light.map(|light| light.0),
         view: pass.view.0,
@@ -112,22 +112,22 @@ pub fn target_name(target: FrameTarget) -> &'static str {
     }
 }
 
-fn put_start(StartContent { depth, stencil }: &StartContent, width: u32, arrays: &mut Arrays) -> StartEntry {
-    let mut put = |word, bytes: &[u8]| arrays.put(Layout { word, lanes: 1, width: width as usize }, bytes);
-    let depth = depth.as_ref().map(|depth| put(Word::F32, depth.bytes()));
-    StartEntry { depth, stencil: stencil.as_ref().map(|stencil| put(Word::U8, stencil.bytes())) }
+fn put_start(StartContent { depth, stencil }: &StartContent, width: u32, arrays: &mut PageArrays) -> PageStart {
+    let mut put = |word, bytes: &[u8]| arrays.put(ArrayLayout { word, lanes: 1, width: width as usize }, bytes);
+    let depth = depth.as_ref().map(|depth| put(ArrayWord::F32, depth.bytes()));
+    PageStart { depth, stencil: stencil.as_ref().map(|stencil| put(ArrayWord::U8, stencil.bytes())) }
 }
 
-fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut Arrays) -> DrawEntry<'a> {
+fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDraw<'a> {
     let side = |is_front| {
         let (face, masks) = draw.raster.face(is_front);
-        SideEntry { face, masks }
+        PageStencilFace { face, masks }
     };
-    DrawEntry {
+    PageDraw {
         name: &draw.name,
         caster: draw.caster.as_deref(),
         part: draw.part.name(),
-        is_dark: (draw.part == Part::Caps).then(|| dark_caps(plan, draw, arrays)),
+        is_dark: (draw.part == DrawPart::Caps).then(|| dark_caps(plan, draw, arrays)),
         mesh: draw.mesh.0,
         triangles: [draw.triangles.start, draw.triangles.end],
         base_vertex: draw.base_vertex,
@@ -144,14 +144,14 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut Arrays) -> DrawEntry<
 }
 
 /// Which triangles of a draw are in the dark cap.
-fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut Arrays) -> ArrayIndex {
+fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut PageArrays) -> ArrayIndex {
     let mesh = &plan.meshes[draw.mesh.0];
     let corners = mesh.indices.data().as_chunks::<3>().0;
     let range = draw.triangles.start as usize..draw.triangles.end as usize;
     let is_dark = |corners: &[u32; 3]| {
         let part = draw.part_of(mesh, corners.map(|corner| corner + draw.base_vertex));
-        u8::from(part == Part::DarkCap)
+        u8::from(part == DrawPart::DarkCap)
     };
     let dark: Vec<u8> = corners.get(range).into_iter().flatten().map(is_dark).collect();
-    arrays.put(Layout { word: Word::U8, lanes: 1, width: 0 }, &dark)
+    arrays.put(ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 0 }, &dark)
 }

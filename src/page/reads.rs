@@ -1,6 +1,6 @@
 //! Which texels of a light's shadow map each pixel reads, as arrays.
 
-use super::arrays::{ArrayIndex, Arrays, Layout, Word};
+use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::capture::Capture;
 use crate::plan::{DecidedBy, FramePlan};
 use crate::reading::map_readers::{MapReaders, MapTexel};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// What pixels read of a map.
 #[derive(Debug, Serialize)]
-pub struct ReadsEntry {
+pub struct PageReads {
     /// Of each pixel the face, column and row of the texel in the middle of those that it reads, each with one added;
     /// zeros where it reads none.
     texels: ArrayIndex,
@@ -23,7 +23,7 @@ pub struct ReadsEntry {
 }
 
 /// Of a light; `None` where no map decides, or it is not known how it is read.
-pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut Arrays) -> Option<ReadsEntry> {
+pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut PageArrays) -> Option<PageReads> {
     if capture.origin.is_some() || capture.decided_by(light) != DecidedBy::Map {
         return None;
     }
@@ -44,11 +44,11 @@ pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mu
             false => (readers.depth_of(pixel).unwrap_or(0.0) as f32, [0.0; 2]),
         })
         .unzip();
-    Some(ReadsEntry {
-        texels: arrays.put(Layout { word: Word::U32, lanes: 3, width }, bytemuck::cast_slice(&texels)),
-        depths: arrays.put(Layout { word: Word::F32, lanes: 1, width }, bytemuck::cast_slice(&depths)),
+    Some(PageReads {
+        texels: arrays.put(ArrayLayout { word: ArrayWord::U32, lanes: 3, width }, bytemuck::cast_slice(&texels)),
+        depths: arrays.put(ArrayLayout { word: ArrayWord::F32, lanes: 1, width }, bytemuck::cast_slice(&depths)),
         slopes: is_by_plane
-            .then(|| arrays.put(Layout { word: Word::F32, lanes: 2, width }, bytemuck::cast_slice(&slopes))),
+            .then(|| arrays.put(ArrayLayout { word: ArrayWord::F32, lanes: 2, width }, bytemuck::cast_slice(&slopes))),
         filter,
     })
 }

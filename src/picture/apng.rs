@@ -12,21 +12,21 @@ pub const ROUNDED_BY: u8 = 1;
 
 /// How colours are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Colors {
+pub enum ColorDepth {
     /// To the bit.
     Exact,
     /// Each channel to within [`ROUNDED_BY`] of 255: gently shaded surfaces take some two thirds of the room.
     Rounded,
 }
 
-impl Colors {
+impl ColorDepth {
     /// What becomes of a colour.
     pub fn kept(self, color: Rgb) -> Rgb {
         let step = u16::from(2 * ROUNDED_BY + 1);
         match self {
-            Colors::Exact => color,
+            ColorDepth::Exact => color,
             // 255 is a multiple of the step: white and black stay.
-            Colors::Rounded => {
+            ColorDepth::Rounded => {
                 color.map(|channel| ((u16::from(channel) + u16::from(ROUNDED_BY)) / step * step).min(255) as u8)
             }
         }
@@ -35,15 +35,15 @@ impl Colors {
     /// The PNG filter that suits: rounded surfaces are runs of one colour already.
     fn filter(self) -> png::Filter {
         match self {
-            Colors::Exact => png::Filter::Adaptive,
-            Colors::Rounded => png::Filter::NoFilter,
+            ColorDepth::Exact => png::Filter::Adaptive,
+            ColorDepth::Rounded => png::Filter::NoFilter,
         }
     }
 }
 
 /// What an animation is like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Format {
+pub struct AnimationFormat {
     /// Width and height of every picture.
     pub size: [u32; 2],
     /// How many pictures there will be.
@@ -51,7 +51,7 @@ pub struct Format {
     /// How long each is shown, milliseconds.
     pub milliseconds: u16,
     /// How their colours are kept.
-    pub colors: Colors,
+    pub colors: ColorDepth,
 }
 
 /// Why a picture can't be added.
@@ -73,14 +73,14 @@ pub enum AnimationError {
 /// An animated PNG that is being written.
 pub struct AnimatedPng<W: Write> {
     writer: png::Writer<W>,
-    format: Format,
+    format: AnimationFormat,
     /// The last picture, as it is kept.
     shown: Option<Picture>,
 }
 
 impl<W: Write> AnimatedPng<W> {
     /// Begins one.
-    pub fn new(out: W, format: Format) -> Result<AnimatedPng<W>, AnimationError> {
+    pub fn new(out: W, format: AnimationFormat) -> Result<AnimatedPng<W>, AnimationError> {
         let mut encoder = png::Encoder::new(out, format.size[0], format.size[1]);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -155,8 +155,8 @@ mod tests {
     const BLACK: Rgb = [0; 3];
     const RED: Rgb = [255, 0, 0];
 
-    fn format(size: [u32; 2], pictures: usize) -> Format {
-        Format { size, pictures: pictures as u32, milliseconds: 500, colors: Colors::Exact }
+    fn format(size: [u32; 2], pictures: usize) -> AnimationFormat {
+        AnimationFormat { size, pictures: pictures as u32, milliseconds: 500, colors: ColorDepth::Exact }
     }
 
     /// The file of some pictures.
@@ -239,9 +239,9 @@ mod tests {
     #[test]
     fn a_rounded_colour_is_near_and_black_and_white_stay() {
         for value in 0..=255 {
-            let [kept, ..] = Colors::Rounded.kept([value; 3]);
+            let [kept, ..] = ColorDepth::Rounded.kept([value; 3]);
             assert!(kept.abs_diff(value) <= ROUNDED_BY, "{value} became {kept}");
         }
-        assert_eq!([BLACK, [255; 3]].map(|color| Colors::Rounded.kept(color)), [BLACK, [255; 3]]);
+        assert_eq!([BLACK, [255; 3]].map(|color| ColorDepth::Rounded.kept(color)), [BLACK, [255; 3]]);
     }
 }

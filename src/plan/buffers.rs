@@ -1,7 +1,7 @@
 //! Vertices, indices and pictures of draws, named by the hash of their content.
 
 use crate::geometry::{Blob, Extruded};
-use crate::scene::Picture;
+use crate::scene::TextureImage;
 use std::sync::Arc;
 
 /// An indexed triangle list.
@@ -87,7 +87,7 @@ pub struct SurfaceData {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanTexture {
     /// Its texels and their pyramid.
-    pub picture: Arc<Picture>,
+    pub picture: Arc<TextureImage>,
     /// Beyond it, its last texels go on; else it repeats.
     pub clamps: bool,
 }

@@ -10,7 +10,7 @@
 //! tells what it must be asked about, what it must say yes to, and what it never sees: triangles
 //! that are culled, or clipped away at the near or far plane.
 
-use super::{Draw, FramePlan, MeshId, Part, Pass, Program, ViewId, Viewport};
+use super::{Draw, DrawPart, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
@@ -35,7 +35,7 @@ pub struct Covering {
     /// Index in the mesh's triangle list.
     pub triangle: u32,
     /// The draw's, or of caps that a vertex shader carries light cap or dark cap.
-    pub part: Part,
+    pub part: DrawPart,
     /// Corners as the mesh has them: homogeneous, relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
     /// What geometry says.
@@ -50,14 +50,14 @@ pub enum Coverage {
     /// The pixel's centre is too near to an edge, or the triangle too thin, to tell.
     Doubtful,
     /// It covers the pixel, but the draw throws this side of triangles away.
-    Culled(Face),
+    Culled(VisibleFace),
     /// It covers the pixel, but lies outside the depths that are drawn there.
-    Clipped(Face, Clip),
+    Clipped(VisibleFace, ClipPlane),
 }
 
 /// The side of a triangle that is seen, and how deep it is at the pixel's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Face {
+pub struct VisibleFace {
     /// The front: corners run counterclockwise on the screen.
     pub is_front: bool,
     /// Depth as it would be stored; outside 0 to 1 where clipped.
@@ -66,7 +66,7 @@ pub struct Face {
 
 /// Which plane clipped a triangle away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Clip {
+pub enum ClipPlane {
     /// It is nearer than the near plane.
     Near,
     /// It is beyond the far plane.
@@ -112,7 +112,8 @@ impl FramePlan {
     /// Every triangle of every pass of the picture that lies over the centre of `pixel` or within a
     /// pixel of it, in the order in which the GPU draws them.
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
-        let mut search = Search { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
+        let mut search =
+            CoverageSearch { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
         let mut covering = Vec::new();
         let passes = self.passes.iter().enumerate();
         for (pass_index, pass) in passes.filter(|(_, pass)| self.is_of_picture(pass) && pass.reaches(pixel)) {
@@ -126,18 +127,18 @@ impl FramePlan {
 }
 
 /// Triangles of a mesh are looked through once, however many draws show them.
-type Searched = (MeshId, ViewId, [u32; 4], [u32; 3]);
+type SearchedMesh = (MeshId, ViewId, [u32; 4], [u32; 3]);
 
-struct Search<'a> {
+struct CoverageSearch<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
     /// For each vertex of the last mesh, which of the four planes it is outside of.
     sieve: Vec<u8>,
     sieve_of: Option<(MeshId, ViewId, Viewport)>,
-    found: BTreeMap<Searched, Vec<u32>>,
+    found: BTreeMap<SearchedMesh, Vec<u32>>,
 }
 
-impl Search<'_> {
+impl CoverageSearch<'_> {
     fn add(
         &mut self,
         (pass, view, viewport): (usize, ViewId, &Viewport),
@@ -149,7 +150,7 @@ impl Search<'_> {
         let (vertices, indices) = (mesh.vertices.data(), mesh.indices.data());
         // Another program's vertices are in clip space.
         let matrix = (!draw.program.is_recorded()).then(|| self.plan.views[view.0].clip_from_relative);
-        let square = Square::new(self.pixel, viewport);
+        let square = PixelSquare::new(self.pixel, viewport);
         // Nothing is drawn outside of the viewport.
         if square.inside < -DOUBT {
             return;
@@ -193,10 +194,10 @@ impl Search<'_> {
 }
 
 impl FramePlan {
-    fn coverage(&self, draw: &Draw, viewport: &Viewport, seen: Seen) -> Coverage {
-        let Seen::Inside { runs_counterclockwise, depth, is_safe } = seen else { return Coverage::Doubtful };
+    fn coverage(&self, draw: &Draw, viewport: &Viewport, seen: CenterCoverage) -> Coverage {
+        let CenterCoverage::Inside { runs_counterclockwise, depth, is_safe } = seen else { return Coverage::Doubtful };
         let is_front = runs_counterclockwise == (draw.raster.front_face == wgpu::FrontFace::Ccw);
-        let face = Face { is_front, depth: viewport.stored(depth) as f32 };
+        let face = VisibleFace { is_front, depth: viewport.stored(depth) as f32 };
         let is_culled = match draw.raster.cull {
             Some(wgpu::Face::Front) => face.is_front,
             Some(wgpu::Face::Back) => !face.is_front,
@@ -208,7 +209,7 @@ impl FramePlan {
         let is_between = (SAFE_DEPTH..=1.0 - SAFE_DEPTH).contains(&depth);
         match clip {
             _ if !is_safe => Coverage::Doubtful,
-            Some((_, is_near)) => Coverage::Clipped(face, if is_near { Clip::Near } else { Clip::Far }),
+            Some((_, is_near)) => Coverage::Clipped(face, if is_near { ClipPlane::Near } else { ClipPlane::Far }),
             None if is_culled => Coverage::Culled(face),
             None if is_between || draw.raster.unclipped_depth => Coverage::Sure,
             None => Coverage::Doubtful,
@@ -217,7 +218,7 @@ impl FramePlan {
 }
 
 /// A pixel's centre and the square round it, in normalized device coordinates.
-struct Square {
+struct PixelSquare {
     center: DVec2,
     /// Half of a pixel's sides.
     half_pixel: DVec2,
@@ -226,7 +227,7 @@ struct Square {
 }
 
 /// How a triangle lies to the centre.
-enum Seen {
+enum CenterCoverage {
     /// Its depth is that of clip space.
     Inside {
         runs_counterclockwise: bool,
@@ -236,13 +237,13 @@ enum Seen {
     Near,
 }
 
-impl Square {
-    fn new(pixel: [u32; 2], viewport: &Viewport) -> Square {
+impl PixelSquare {
+    fn new(pixel: [u32; 2], viewport: &Viewport) -> PixelSquare {
         let [left, top, width, height] = viewport.area.map(f64::from);
         let size = DVec2::new(width, height);
         let center = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5 - DVec2::new(left, top)) / size;
         let inside = (center.min(1.0 - center) * size).min_element();
-        Square { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
+        PixelSquare { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
     }
 
     /// Four bits for each vertex: right of, left of, above and below the square, as far as `f32` can
@@ -270,7 +271,7 @@ impl Square {
     }
 
     /// `None` where the triangle is farther from the centre than doubt reaches.
-    fn look(&self, clip_from_relative: Option<Mat4>, corners: [[f32; 4]; 3]) -> Option<Seen> {
+    fn look(&self, clip_from_relative: Option<Mat4>, corners: [[f32; 4]; 3]) -> Option<CenterCoverage> {
         let corners = corners.map(|corner| DVec4::from_array(corner.map(f64::from)));
         let clip = clip_from_relative.map_or(corners, |matrix| corners.map(|corner| matrix.as_dmat4() * corner));
         // The centre becomes the axis: a corner on the ray through it has x = y = 0.
@@ -294,10 +295,10 @@ impl Square {
         let w = interpolated(clip.map(|corner| corner.w));
         let is_inside = (least > 0.0 || most < 0.0) && w > 0.0;
         if !is_inside {
-            return Some(Seen::Near);
+            return Some(CenterCoverage::Near);
         }
         let depth = interpolated(clip.map(|corner| corner.z)) / w;
         let is_safe = (least > SAFE || most < -SAFE) && self.inside > SAFE;
-        Some(Seen::Inside { runs_counterclockwise: sum > 0.0, depth, is_safe })
+        Some(CenterCoverage::Inside { runs_counterclockwise: sum > 0.0, depth, is_safe })
     }
 }

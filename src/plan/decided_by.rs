@@ -12,12 +12,12 @@ pub enum DecidedBy {
     /// How many shadow volumes hold the surface, as eight bits of stencil: 0 is lit.
     StencilCount {
         /// On which side of the surface faces count.
-        side: Side,
+        side: CountedSide,
     },
     /// How many shadow volumes hold the surface, as a signed float: 0 is lit.
     FloatCount {
         /// On which side of the surface faces count.
-        side: Side,
+        side: CountedSide,
     },
     /// The depth that the light sees in its map.
     Map,
@@ -36,7 +36,7 @@ pub enum DecidedBy {
 /// On which side of the visible surface the faces of shadow volumes count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Side {
+pub enum CountedSide {
     /// Between the eye and the surface: z-pass.
     InFront,
     /// Between the surface and infinity: z-fail.
@@ -99,7 +99,7 @@ impl DecidedBy {
     }
 
     /// The side on which shadow volumes count; `None` where none are counted.
-    pub fn counted_side(self) -> Option<Side> {
+    pub fn counted_side(self) -> Option<CountedSide> {
         match self {
             DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side } => Some(side),
             DecidedBy::Map
@@ -112,13 +112,13 @@ impl DecidedBy {
     }
 }
 
-impl Side {
+impl CountedSide {
     /// `behind`, as in "faces behind the surface".
     pub fn preposition(self) -> &'static str {
         match self {
-            Side::InFront => "in front of",
-            Side::Behind => "behind",
-            Side::AsNeeded => "on either side of",
+            CountedSide::InFront => "in front of",
+            CountedSide::Behind => "behind",
+            CountedSide::AsNeeded => "on either side of",
         }
     }
 }

@@ -32,13 +32,13 @@ pub mod words;
 pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner};
 pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
 pub use count_bits::CountBits;
-pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
-pub use decided_by::{CountOf, DecidedBy, Side};
+pub use coverage::{ClipPlane, Coverage, Covering, FragmentLog, LoggedFragment, VisibleFace};
+pub use decided_by::{CountOf, CountedSide, DecidedBy};
 pub use decision::Decision;
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
 pub use raster::{ColorWrite, FaceMasks, RasterState, StencilFace};
-pub use recorded::{May, RecordedPass, StartContent, Viewport};
+pub use recorded::{RecordedPass, ShaderEffect, StartContent, Viewport};
 
 use crate::math::depth::DepthCurve;
 use glam::{DMat4, DVec3, Mat4, Vec4};
@@ -305,7 +305,7 @@ pub struct Draw {
     /// The object it shows or whose shadow it makes.
     pub caster: Option<String>,
     /// Which part of the object or of its shadow.
-    pub part: Part,
+    pub part: DrawPart,
     /// The shader.
     pub program: Program,
     /// The whole raster state.
@@ -325,10 +325,10 @@ pub struct Draw {
 
 impl Draw {
     /// Which part one of its triangles is: of caps that a vertex shader carries, light cap or dark cap.
-    pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> Part {
+    pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> DrawPart {
         match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
-            (Part::Caps, Some([true, ..])) => Part::DarkCap,
-            (Part::Caps, Some([false, ..])) => Part::LightCap,
+            (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
+            (DrawPart::Caps, Some([false, ..])) => DrawPart::LightCap,
             (part, _) => part,
         }
     }
@@ -336,7 +336,7 @@ impl Draw {
     /// A draw of a whole mesh by position only, as into the stencil.
     pub fn of_positions(
         name: impl Into<String>,
-        part: Part,
+        part: DrawPart,
         mesh: MeshId,
         triangles: u32,
         raster: RasterState,
@@ -358,7 +358,7 @@ impl Draw {
 
 named_enum! {
     /// Which part of a frame's geometry a draw is.
-    pub enum Part {
+    pub enum DrawPart {
         /// Visible surface.
         Surface = "surface",
         /// Side of a shadow volume.
@@ -378,15 +378,15 @@ named_enum! {
     }
 }
 
-impl Part {
+impl DrawPart {
     /// Is it a part of a shadow volume?
     pub fn is_of_volume(self) -> bool {
-        matches!(self, Part::Side | Part::LightCap | Part::DarkCap | Part::Caps)
+        matches!(self, DrawPart::Side | DrawPart::LightCap | DrawPart::DarkCap | DrawPart::Caps)
     }
 
     /// Is it this part, or does it hold it?
-    pub fn includes(self, part: Part) -> bool {
-        self == part || (self == Part::Caps && matches!(part, Part::LightCap | Part::DarkCap))
+    pub fn includes(self, part: DrawPart) -> bool {
+        self == part || (self == DrawPart::Caps && matches!(part, DrawPart::LightCap | DrawPart::DarkCap))
     }
 }
 
@@ -417,9 +417,9 @@ pub enum Program {
     /// Another program's shader: vertices are clip-space positions, and pass through. Its colours are not known.
     Recorded {
         /// May it drop fragments?
-        may_discard: May,
+        may_discard: ShaderEffect,
         /// May it make a depth of its own?
-        writes_depth: May,
+        writes_depth: ShaderEffect,
     },
 }
 
@@ -468,16 +468,16 @@ impl Program {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
         let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
-        let recorded = Program::Recorded { may_discard: May::No, writes_depth: May::No };
+        let recorded = Program::Recorded { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
         flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
     }
 
     /// Which side of the range of depths a fragment lies on that the shader throws away: where depth
     /// is clamped, nothing else clips at near and far (`discard` in the shaders' files).
-    pub fn discards(self, depth: f32) -> Option<Clip> {
+    pub fn discards(self, depth: f32) -> Option<ClipPlane> {
         match self {
-            Program::Ambient { from_near: true } if depth < 0.0 => Some(Clip::Near),
-            Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(Clip::Far),
+            Program::Ambient { from_near: true } if depth < 0.0 => Some(ClipPlane::Near),
+            Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(ClipPlane::Far),
             _ => None,
         }
     }

@@ -7,7 +7,7 @@ use wgpu::TextureFormat;
 
 named_enum! {
     /// May a shader do it?
-    pub enum May {
+    pub enum ShaderEffect {
         /// It can't.
         No = "no",
         /// It may, for some fragments.
@@ -113,6 +113,7 @@ impl Pass {
 impl Draw {
     /// May its shader discard fragments without it being known which? `mesh` is the draw's.
     pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
-        matches!(self.program, Program::Recorded { may_discard: May::Yes | May::Unknown, .. }) && mesh.kept.is_none()
+        matches!(self.program, Program::Recorded { may_discard: ShaderEffect::Yes | ShaderEffect::Unknown, .. })
+            && mesh.kept.is_none()
     }
 }

@@ -14,7 +14,7 @@ use wgpu::{CompareFunction, StencilOperation};
 named_enum! {
     /// Whose words.
     #[derive(Default)]
-    pub enum Api {
+    pub enum RasterApi {
         /// As a WebGPU pipeline is described.
         #[default]
         WebGpu = "WebGPU",
@@ -26,11 +26,11 @@ named_enum! {
 }
 
 /// The state as lines that one would write in `api`, in the order depth, stencil, raster, colour.
-pub fn lines(raster: &RasterState, api: Api) -> Vec<String> {
+pub fn lines(raster: &RasterState, api: RasterApi) -> Vec<String> {
     match api {
-        Api::WebGpu => web_gpu(raster),
-        Api::OpenGl => open_gl(raster),
-        Api::Direct3D => direct3d(raster),
+        RasterApi::WebGpu => web_gpu(raster),
+        RasterApi::OpenGl => open_gl(raster),
+        RasterApi::Direct3D => direct3d(raster),
     }
 }
 
@@ -320,33 +320,34 @@ mod tests {
         state.with_faces(face(StencilOperation::DecrementWrap), face(StencilOperation::IncrementWrap), 0)
     }
 
-    fn has(api: Api, line: &str) {
+    fn has(api: RasterApi, line: &str) {
         let lines = lines(&z_fail(), api);
         assert!(lines.iter().any(|one| one == line), "{line} is missing in {lines:#?}");
     }
 
     #[test]
     fn each_api_is_told_the_same_in_its_own_words() {
-        has(Api::WebGpu, "depthCompare: \"greater\",");
+        has(RasterApi::WebGpu, "depthCompare: \"greater\",");
         has(
-            Api::WebGpu,
+            RasterApi::WebGpu,
             "stencilBack: { compare: \"always\", failOp: \"keep\", depthFailOp: \"increment-wrap\", passOp: \"keep\" },",
         );
-        has(Api::OpenGl, "glDepthMask(GL_FALSE);");
-        has(Api::OpenGl, "glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_KEEP);");
-        has(Api::OpenGl, "glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 0, 0xff);");
-        has(Api::Direct3D, "BackFace.StencilDepthFailOp = D3D12_STENCIL_OP_INCR;");
-        has(Api::Direct3D, "DepthFunc = D3D12_COMPARISON_FUNC_GREATER;");
-        has(Api::Direct3D, "list->OMSetStencilRef(0);");
+        has(RasterApi::OpenGl, "glDepthMask(GL_FALSE);");
+        has(RasterApi::OpenGl, "glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_KEEP);");
+        has(RasterApi::OpenGl, "glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 0, 0xff);");
+        has(RasterApi::Direct3D, "BackFace.StencilDepthFailOp = D3D12_STENCIL_OP_INCR;");
+        has(RasterApi::Direct3D, "DepthFunc = D3D12_COMPARISON_FUNC_GREATER;");
+        has(RasterApi::Direct3D, "list->OMSetStencilRef(0);");
     }
 
     #[test]
     fn comparisons_of_two_words_are_spelled_as_each_api_spells_them() {
         let state = RasterState { depth_compare: CompareFunction::LessEqual, ..RasterState::surface() };
-        let first = |api: Api| lines(&state, api).into_iter().find(|line| line.contains("epth")).unwrap_or_default();
-        assert_eq!(first(Api::WebGpu), "depthCompare: \"less-equal\",");
-        assert_eq!(lines(&state, Api::OpenGl)[2], "glDepthFunc(GL_LEQUAL);");
-        assert_eq!(first(Api::Direct3D), "DepthFunc = D3D12_COMPARISON_FUNC_LESS_EQUAL;");
+        let first =
+            |api: RasterApi| lines(&state, api).into_iter().find(|line| line.contains("epth")).unwrap_or_default();
+        assert_eq!(first(RasterApi::WebGpu), "depthCompare: \"less-equal\",");
+        assert_eq!(lines(&state, RasterApi::OpenGl)[2], "glDepthFunc(GL_LEQUAL);");
+        assert_eq!(first(RasterApi::Direct3D), "DepthFunc = D3D12_COMPARISON_FUNC_LESS_EQUAL;");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use crate::history::operation_name;
 use crate::numbers;
 use crate::plan::{ColorWrite, RasterState, StencilFace};
-use crate::stencil_machine::{self, Fragment, Outcome, Stored};
+use crate::stencil_machine::{self, DepthStencil, IncomingFragment, TestOutcome};
 use wgpu::{CompareFunction, StencilOperation};
 
 /// Fragments that are kept; older ones go.
@@ -23,31 +23,31 @@ pub const COMPARES: [(CompareFunction, &str, &str); 8] = [
 ];
 /// A pixel, a draw's tests, and what went through them.
 #[derive(Debug)]
-pub struct Bench {
+pub struct TestBench {
     /// The draw's tests.
     pub state: RasterState,
     /// What the pixel holds.
-    pub held: Stored,
+    pub held: DepthStencil,
     /// Of the next fragment.
     pub depth: f32,
     /// The oldest first.
-    pub pushed: Vec<Pushed>,
+    pub pushed: Vec<TestedDraw>,
     /// How many there were, the forgotten ones too.
     count: usize,
 }
 
 /// A fragment that went through the tests.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pushed {
+pub struct TestedDraw {
     /// From 1.
     pub number: usize,
     /// What became of it.
     pub words: String,
 }
 
-impl Default for Bench {
+impl Default for TestBench {
     /// Z-fail's counting over a surface at half depth.
-    fn default() -> Bench {
+    fn default() -> TestBench {
         let face = |operation| StencilFace {
             compare: CompareFunction::Always,
             depth_fail_op: operation,
@@ -55,9 +55,9 @@ impl Default for Bench {
         };
         let state = RasterState { depth_write: false, color: ColorWrite::None, ..RasterState::surface() };
         let [front, back] = [StencilOperation::DecrementWrap, StencilOperation::IncrementWrap].map(face);
-        Bench {
+        TestBench {
             state: state.with_faces(front, back, 0),
-            held: Stored { depth: 0.5, stencil: 0 },
+            held: DepthStencil { depth: 0.5, stencil: 0 },
             depth: 0.25,
             pushed: Vec::new(),
             count: 0,
@@ -65,16 +65,16 @@ impl Default for Bench {
     }
 }
 
-impl Bench {
+impl TestBench {
     /// Tests a fragment of one side, and keeps what comes out.
     pub fn push(&mut self, front_facing: bool) {
-        let fragment = Fragment { depth: self.depth, front_facing };
+        let fragment = IncomingFragment { depth: self.depth, front_facing };
         let before = self.held;
         let outcome = stencil_machine::test(&self.state, fragment, before);
         self.held = outcome.after;
         self.count += 1;
         let words = words(&self.state, fragment, before, &outcome);
-        self.pushed.push(Pushed { number: self.count, words });
+        self.pushed.push(TestedDraw { number: self.count, words });
         if self.pushed.len() > MOST_PUSHED {
             self.pushed.remove(0);
         }
@@ -82,7 +82,7 @@ impl Bench {
 }
 
 /// What became of a fragment, from what was tested and what came out.
-fn words(state: &RasterState, fragment: Fragment, before: Stored, outcome: &Outcome) -> String {
+fn words(state: &RasterState, fragment: IncomingFragment, before: DepthStencil, outcome: &TestOutcome) -> String {
     let (face, masks) = state.face(fragment.front_facing);
     let side = if fragment.front_facing { "front" } else { "back" };
     let verb = |passes: bool| if passes { "passes" } else { "fails" };
@@ -126,9 +126,9 @@ mod tests {
     /// A front face at 0.75 lies before the surface at 0.5, reversed; at 0.25 behind it.
     #[test]
     fn what_is_said_is_what_the_machine_did() {
-        let mut bench = Bench::default();
+        let mut bench = TestBench::default();
         bench.push(false);
-        assert_eq!(bench.held, Stored { depth: 0.5, stencil: 1 });
+        assert_eq!(bench.held, DepthStencil { depth: 0.5, stencil: 1 });
         let said = &bench.pushed[0].words;
         assert_eq!(
             said,
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn old_fragments_are_forgotten_and_numbers_go_on() {
-        let mut bench = Bench::default();
+        let mut bench = TestBench::default();
         (0..300).for_each(|_| bench.push(false));
         assert_eq!((bench.pushed.len(), bench.pushed[0].number, bench.held.stencil), (MOST_PUSHED, 101, 44));
     }

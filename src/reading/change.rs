@@ -16,7 +16,7 @@ const GROUND_LIGHT: f32 = 0.42;
 
 /// What changed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Change {
+pub struct StepChange {
     /// By how much, drawn in the colours of [`ChangeKind`].
     pub image: Arc<Image>,
     /// What kind of values changed.
@@ -24,7 +24,7 @@ pub struct Change {
     /// Texels that changed.
     pub texels: u64,
     /// What became of them, with how many.
-    pub sorts: Sorts,
+    pub sorts: ChangedTexels,
 }
 
 /// What kind of values changed.
@@ -40,7 +40,7 @@ pub enum ChangeKind {
 
 /// What became of the texels that changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Sorts {
+pub enum ChangedTexels {
     /// Texels by how much they count more.
     Counts(BTreeMap<i8, u64>),
     /// Nearer, farther, with a surface now, without one now.
@@ -52,7 +52,7 @@ pub enum Sorts {
 /// Changes of pictures, made on first use.
 #[derive(Debug, Default)]
 pub struct ChangeCache {
-    changes: Vec<([Arc<Image>; 2], DepthMeasure, Option<Change>)>,
+    changes: Vec<([Arc<Image>; 2], DepthMeasure, Option<StepChange>)>,
     grounds: Vec<(Arc<Image>, Arc<Image>)>,
     differing: Vec<([Arc<Image>; 2], Option<u64>)>,
 }
@@ -64,7 +64,7 @@ impl ChangeCache {
     }
 
     /// What changed from one picture to another; `None` where they can't be compared.
-    pub fn change(&mut self, pair: [&Arc<Image>; 2], measure: DepthMeasure) -> Option<Change> {
+    pub fn change(&mut self, pair: [&Arc<Image>; 2], measure: DepthMeasure) -> Option<StepChange> {
         let is_it = |of: &[Arc<Image>; 2]| is_pair(of, pair);
         if let Some((_, _, change)) = self.changes.iter().find(|(of, by, _)| is_it(of) && *by == measure) {
             return change.clone();
@@ -106,7 +106,7 @@ fn keep<T>(items: &mut Vec<T>, item: T) {
     items.push(item);
 }
 
-fn change(before: &Image, after: &Image, measure: DepthMeasure) -> Option<Change> {
+fn change(before: &Image, after: &Image, measure: DepthMeasure) -> Option<StepChange> {
     if before.format() != after.format() || before.size() != after.size() {
         return None;
     }
@@ -118,7 +118,7 @@ fn change(before: &Image, after: &Image, measure: DepthMeasure) -> Option<Change
     })
 }
 
-fn counts(before: &Image, after: &Image) -> Change {
+fn counts(before: &Image, after: &Image) -> StepChange {
     let mut sorts = BTreeMap::new();
     let mut bytes = Vec::with_capacity(before.size()[0] as usize * before.size()[1] as usize);
     for (old, new) in before.rows().zip(after.rows()) {
@@ -131,10 +131,10 @@ fn counts(before: &Image, after: &Image) -> Change {
     }
     let texels = sorts.values().sum();
     let image = Arc::new(Image::packed(PixelFormat::U8, before.size(), bytes));
-    Change { image, kind: ChangeKind::Count, texels, sorts: Sorts::Counts(sorts) }
+    StepChange { image, kind: ChangeKind::Count, texels, sorts: ChangedTexels::Counts(sorts) }
 }
 
-fn depths(before: &Image, after: &Image, measure: DepthMeasure) -> Change {
+fn depths(before: &Image, after: &Image, measure: DepthMeasure) -> StepChange {
     let mut sorts = [0_u64; 4];
     let mut bytes = Vec::with_capacity(before.size()[0] as usize * before.size()[1] as usize * 4);
     for (old, new) in before.rows().zip(after.rows()) {
@@ -153,7 +153,7 @@ fn depths(before: &Image, after: &Image, measure: DepthMeasure) -> Change {
         }
     }
     let image = Arc::new(Image::packed(PixelFormat::Count32F, before.size(), bytes));
-    Change { image, kind: ChangeKind::Depth, texels: sorts.iter().sum(), sorts: Sorts::Depths(sorts) }
+    StepChange { image, kind: ChangeKind::Depth, texels: sorts.iter().sum(), sorts: ChangedTexels::Depths(sorts) }
 }
 
 /// How much farther, in the measure's unit; never 0, as the stored bits differ.
@@ -168,7 +168,7 @@ fn moved(measure: DepthMeasure, [old, new]: [f32; 2]) -> f32 {
     if by == 0.0 || by.is_nan() { f32::MIN_POSITIVE } else { by }
 }
 
-fn colors(before: &Image, after: &Image) -> Change {
+fn colors(before: &Image, after: &Image) -> StepChange {
     let mut texels = 0;
     let mut bytes = Vec::with_capacity(before.size()[0] as usize * before.size()[1] as usize * 4);
     for (old, new) in before.rows().zip(after.rows()) {
@@ -179,7 +179,7 @@ fn colors(before: &Image, after: &Image) -> Change {
         }
     }
     let image = Arc::new(Image::packed(after.format(), before.size(), bytes));
-    Change { image, kind: ChangeKind::Color, texels, sorts: Sorts::Colors }
+    StepChange { image, kind: ChangeKind::Color, texels, sorts: ChangedTexels::Colors }
 }
 
 fn ground(colors: &Image) -> Image {
@@ -215,7 +215,7 @@ mod tests {
             ChangeCache::default().change([&bytes(&[0, 0, 5, 255]), &bytes(&[1, 255, 5, 0])], DepthMeasure::Raw);
         let change = change.expect("pictures of one kind");
         assert_eq!(change.texels, 3);
-        assert_eq!(change.sorts, Sorts::Counts(BTreeMap::from([(1, 2), (-1, 1)])));
+        assert_eq!(change.sorts, ChangedTexels::Counts(BTreeMap::from([(1, 2), (-1, 1)])));
         assert_eq!(change.image.row(0), [1, 255, 0, 1]);
         assert_eq!(signed(-3).as_deref(), Some("−3"));
         assert_eq!(signed(0), None);
@@ -230,7 +230,7 @@ mod tests {
         let measure = DepthMeasure::Perspective { scale: 1.0, offset: 0.0, clear: 0.0 };
         let pair = [depth([0.0, 0.5, 0.25, 0.5]), depth([0.5, 1.0, 0.25, 0.25])];
         let change = ChangeCache::default().change([&pair[0], &pair[1]], measure).expect("pictures of one kind");
-        assert_eq!(change.sorts, Sorts::Depths([1, 1, 1, 0]));
+        assert_eq!(change.sorts, ChangedTexels::Depths([1, 1, 1, 0]));
         let at = |x| change.image.count_at([x, 0]).expect("a texel");
         assert_eq!([at(1), at(2), at(3)], [-1.0, 0.0, 2.0]);
         assert_eq!(at(0), f32::NEG_INFINITY);

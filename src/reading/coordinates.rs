@@ -4,7 +4,7 @@
 //! (after the division by w) and window space (pixels from the top left, and depth).
 
 use super::depth::DepthMeasure;
-use super::fragments::Surface;
+use super::fragments::PixelUnprojection;
 use super::shading::seen;
 use crate::capture::Capture;
 use crate::history::PixelHistory;
@@ -37,7 +37,7 @@ pub struct Coordinates {
 
 /// A vertex in every space.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Vertex {
+pub struct VertexCoordinates {
     /// Of the object that it is of.
     pub object: String,
     /// Which vertex of its mesh, counted from 0.
@@ -88,14 +88,14 @@ pub struct VertexPlaces {
     /// The camera around its target.
     pub camera: Spherical,
     /// World to window.
-    pub chain: Vec<Step>,
+    pub chain: Vec<TransformStep>,
     /// Those that were asked for, in order.
-    pub vertices: Vec<Vertex>,
+    pub vertices: Vec<VertexCoordinates>,
 }
 
 /// A matrix of the chain, in rows, and its inverse.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Step {
+pub struct TransformStep {
     /// `eye from world`, `clip from eye`, `window from NDC`.
     pub name: &'static str,
     /// Rows; points are columns on its right.
@@ -126,21 +126,21 @@ pub struct Spherical {
 
 /// All that is told of a pixel's place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Place {
+pub struct PixelCoordinates {
     /// The camera around its target.
     pub camera: Spherical,
     /// World to window.
-    pub chain: Vec<Step>,
+    pub chain: Vec<TransformStep>,
     /// The surface at the pixel's middle; `None` where the picture shows none.
     pub point: Option<Coordinates>,
     /// The corners of the triangle that the pixel shows, as the GPU is given them; empty where it shows none.
-    pub vertices: Vec<Vertex>,
+    pub vertices: Vec<VertexCoordinates>,
     /// How finely depth is kept there, the coarsest buffer first; empty without a surface.
     pub depth_steps: Vec<DepthStep>,
 }
 
 /// The three matrices of a camera, in f64.
-struct Matrices {
+struct CameraMatrices {
     eye_from_world: DMat4,
     clip_from_eye: DMat4,
     window_from_ndc: DMat4,
@@ -148,15 +148,15 @@ struct Matrices {
     is_reversed: bool,
 }
 
-impl Place {
+impl PixelCoordinates {
     /// Of a pixel of a capture, with the depth that its picture ends with.
-    pub fn of(capture: &Capture, pixel: [u32; 2]) -> Place {
-        let matrices = Matrices::of(capture);
+    pub fn of(capture: &Capture, pixel: [u32; 2]) -> PixelCoordinates {
+        let matrices = CameraMatrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
         let depth = last.and_then(|frame| frame.depth.image.depth_at(pixel));
-        let seen = depth.and_then(|depth| Some((depth, Surface::new(capture).at(pixel, depth)?)));
+        let seen = depth.and_then(|depth| Some((depth, PixelUnprojection::new(capture).at(pixel, depth)?)));
         let measure = DepthMeasure::of_camera(capture);
-        Place {
+        PixelCoordinates {
             camera: Spherical::of(&capture.camera),
             chain: matrices.chain(),
             point: seen.map(|(_, world)| matrices.carry(world)),
@@ -167,14 +167,14 @@ impl Place {
 
     /// The same with the corners of the triangle that the pixel's history ends with.
     #[must_use]
-    pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Place {
-        Place { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
+    pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> PixelCoordinates {
+        PixelCoordinates { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
     }
 }
 
-fn corners(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Vec<Vertex>> {
+fn corners(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Vec<VertexCoordinates>> {
     let (_, draw, triangle) = seen(plan, history)?;
-    let matrices = Matrices::of(capture);
+    let matrices = CameraMatrices::of(capture);
     let mesh = plan.meshes.get(draw.mesh.0)?;
     let indices = mesh.indices.data().get(triangle * 3..triangle * 3 + 3)?;
     let object = draw.caster.as_ref().unwrap_or(&draw.name);
@@ -191,7 +191,7 @@ impl VertexPlaces {
     /// # Errors
     /// The first that is not there.
     pub fn of(capture: &Capture, scene: &Scene, asked: &[String]) -> Result<VertexPlaces, NoVertex> {
-        let matrices = Matrices::of(capture);
+        let matrices = CameraMatrices::of(capture);
         let vertex = |asked: &String| {
             let parts = asked.rsplit_once(':').and_then(|(object, index)| Some((object, index.parse().ok()?)));
             let (name, index): (&str, u32) = parts.ok_or_else(|| NoVertex::Form(asked.escape_debug().to_string()))?;
@@ -216,12 +216,12 @@ impl VertexPlaces {
 
     /// In lines, for `pixel --vertex`.
     pub fn text(&self) -> String {
-        let vertices: String = self.vertices.iter().map(Vertex::text).collect();
+        let vertices: String = self.vertices.iter().map(VertexCoordinates::text).collect();
         self.camera.text() + &vertices + &chain_text(&self.chain)
     }
 }
 
-impl Vertex {
+impl VertexCoordinates {
     /// `vertex 3 of floor`.
     pub fn name(&self) -> String {
         format!("vertex {} of {}", self.index, self.object)
@@ -260,12 +260,12 @@ fn depth_steps(measure: DepthMeasure, depth: f32) -> Vec<DepthStep> {
     fixed.into_iter().chain([float]).map(|(stored_in, metres)| DepthStep { stored_in, metres }).collect()
 }
 
-impl Matrices {
-    fn of(capture: &Capture) -> Matrices {
+impl CameraMatrices {
+    fn of(capture: &Capture) -> CameraMatrices {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
         let rotation = camera.world_from_view().transpose();
-        Matrices {
+        CameraMatrices {
             is_reversed: capture.depth.mapping.is_reversed(),
             eye_from_world: DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye),
             clip_from_eye: camera.clip_from_view(width / height, &capture.depth),
@@ -293,7 +293,7 @@ impl Matrices {
         }
     }
 
-    fn vertex(&self, object: &str, index: u32, world: DVec3) -> Vertex {
+    fn vertex(&self, object: &str, index: u32, world: DVec3) -> VertexCoordinates {
         let eye = self.eye_from_world * world.extend(1.0);
         let clip = self.clip_from_eye * eye;
         let ndc = (clip.w > 0.0).then(|| clip.truncate() / clip.w);
@@ -308,7 +308,7 @@ impl Matrices {
             (least, clip.z < 0.0),
             (most, clip.z > clip.w),
         ];
-        Vertex {
+        VertexCoordinates {
             object: object.to_owned(),
             index,
             world: world.to_array(),
@@ -320,9 +320,9 @@ impl Matrices {
         }
     }
 
-    fn chain(&self) -> Vec<Step> {
+    fn chain(&self) -> Vec<TransformStep> {
         let rows = |matrix: DMat4| matrix.transpose().to_cols_array_2d();
-        let step = |name, matrix: DMat4| Step { name, matrix: rows(matrix), inverse: rows(matrix.inverse()) };
+        let step = |name, matrix: DMat4| TransformStep { name, matrix: rows(matrix), inverse: rows(matrix.inverse()) };
         vec![
             step("eye from world", self.eye_from_world),
             step("clip from eye", self.clip_from_eye),
@@ -348,7 +348,7 @@ impl Spherical {
     }
 }
 
-impl Place {
+impl PixelCoordinates {
     /// In lines, for `pixel --coordinates`.
     pub fn text(&self) -> String {
         let mut text = self.camera.text();
@@ -365,12 +365,12 @@ impl Place {
             let metres = step.metres.map_or_else(|| "to infinity".to_owned(), crate::numbers::metres);
             let _ = writeln!(text, "depth in {:13} one step is {metres}", step.stored_in);
         }
-        text.extend(self.vertices.iter().map(Vertex::text));
+        text.extend(self.vertices.iter().map(VertexCoordinates::text));
         text + &chain_text(&self.chain)
     }
 }
 
-fn chain_text(chain: &[Step]) -> String {
+fn chain_text(chain: &[TransformStep]) -> String {
     let mut text = String::new();
     for step in chain {
         // Writing to a string can't fail.

@@ -4,21 +4,21 @@
 //! casters, light, or labels. Where a pixel is picked the numbers are that pixel's, else the picture's.
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
-use crate::history::{Event, EventKind, PixelHistory};
+use crate::history::{PixelEvent, PixelEventKind, PixelHistory};
 use crate::numbers;
-use crate::plan::{CountBits, DecidedBy, Decision, LeftOut, Part, Side};
+use crate::plan::{CountBits, CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
 use crate::scene::Light;
-use crate::technique::{CountsBy, VolumeSettings};
+use crate::technique::{CountOperations, VolumeSettings};
 use crate::truth::{LIT, PixelLabel, SHADOW};
 use std::collections::BTreeSet;
 
 /// A rule, and what it comes to here.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fact {
+pub struct ExplainFact {
     /// The rule.
     pub formula: String,
     /// With numbers.
@@ -27,7 +27,7 @@ pub struct Fact {
 
 /// What is known of the shown frame.
 #[derive(Debug, Clone, Copy)]
-pub struct Known<'a> {
+pub struct ExplainContext<'a> {
     /// The frame.
     pub capture: &'a Capture,
     /// Index of the step.
@@ -43,22 +43,22 @@ pub struct Known<'a> {
 }
 
 /// The facts of a step, the most important first.
-pub fn facts(known: &Known) -> Vec<Fact> {
+pub fn facts(known: &ExplainContext) -> Vec<ExplainFact> {
     let Some(step) = known.capture.steps.get(known.step) else { return Vec::new() };
-    let has = |part: Part| step.draws.iter().any(|draw| draw.part == part);
+    let has = |part: DrawPart| step.draws.iter().any(|draw| draw.part == part);
     if matches!(step.snapshot, Snapshot::Map { .. }) {
         return vec![map(known, step)];
     }
     if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
         // Of another program's volumes sides and caps are not told apart.
-        let has_sides = has(Part::Side);
+        let has_sides = has(DrawPart::Side);
         let parts = (known.capture.origin.is_none() && has_sides).then(|| triangles(known, step));
         return std::iter::once(volumes(known)).chain(parts).collect();
     }
-    if has(Part::PlanarShadow) {
+    if has(DrawPart::PlanarShadow) {
         return vec![flattened(known, step)];
     }
-    if has(Part::Receiver) {
+    if has(DrawPart::Receiver) {
         return vec![receivers(known)];
     }
     match &step.snapshot {
@@ -70,12 +70,12 @@ pub fn facts(known: &Known) -> Vec<Fact> {
     }
 }
 
-fn fact(formula: &str, here: Vec<String>) -> Fact {
-    Fact { formula: formula.to_owned(), here }
+fn fact(formula: &str, here: Vec<String>) -> ExplainFact {
+    ExplainFact { formula: formula.to_owned(), here }
 }
 
 /// `stored depth = offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
-fn depth(known: &Known) -> Fact {
+fn depth(known: &ExplainContext) -> ExplainFact {
     let curve = known.capture.depth;
     // With fewer digits the sum would not be what is stored.
     let sign = if curve.scale < 0.0 { "−" } else { "+" };
@@ -104,35 +104,38 @@ fn depth(known: &Known) -> Fact {
 }
 
 /// By the side of the surface on which the light's volumes count.
-fn volumes(known: &Known) -> Fact {
+fn volumes(known: &ExplainContext) -> ExplainFact {
     let light = known.capture.steps.get(known.step).and_then(|step| step.light);
     let side = light.and_then(|light| known.capture.decided_by(light).counted_side());
     let step = &known.capture.steps[known.step];
     let of_light = |other: &&Step| other.light == light;
     // Triangles between light and near plane have no sides: what z-pass-plus begins with.
-    let is_at_near_plane = !step.draws.iter().any(|draw| draw.part == Part::Side) && !step.draws.is_empty();
+    let is_at_near_plane = !step.draws.iter().any(|draw| draw.part == DrawPart::Side) && !step.draws.is_empty();
     let is_last = !known.capture.steps[known.step + 1..].iter().filter(of_light).any(has_volumes);
     let formula = match side {
         _ if is_at_near_plane => {
             "count at the near plane = casting triangles between the light and the pixel's point of that plane"
         }
-        Some(Side::InFront) => "count = front faces before the surface − back faces before it, seen from the eye",
-        Some(Side::Behind) => "count = back faces behind the surface − front faces behind it, seen from the eye",
-        Some(Side::AsNeeded) | None => {
+        Some(CountedSide::InFront) => {
+            "count = front faces before the surface − back faces before it, seen from the eye"
+        }
+        Some(CountedSide::Behind) => "count = back faces behind the surface − front faces behind it, seen from the eye",
+        Some(CountedSide::AsNeeded) | None => {
             "count = volumes that contain the surface: each face the ray crosses adds or takes 1"
         }
     };
     let mut here = Vec::new();
     match (known.pick, known.history) {
         (Some([x, y]), Some(history)) => {
-            let begins_here = |event: &&Event| {
-                event.pass == known.step && matches!(event.kind, EventKind::ClearStencil | EventKind::ClearCount)
+            let begins_here = |event: &&PixelEvent| {
+                event.pass == known.step
+                    && matches!(event.kind, PixelEventKind::ClearStencil | PixelEventKind::ClearCount)
             };
             let began = history.events.iter().find(begins_here).and(light).map_or(0, |light| history.cleared_to(light));
             let (mut up, mut down, mut idle) = (0_u32, 0_u32, 0_u32);
             let mut last = None;
             for event in history.events.iter().filter(|event| event.pass == known.step) {
-                let EventKind::Triangle(triangle) = &event.kind else { continue };
+                let PixelEventKind::Triangle(triangle) = &event.kind else { continue };
                 if !triangle.part.is_of_volume() {
                     continue;
                 }
@@ -146,7 +149,7 @@ fn volumes(known: &Known) -> Fact {
             let settings = VolumeSettings::read(&known.capture.settings);
             let in_float = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
             here.push(match settings.operations {
-                CountsBy::Inverting if !in_float => {
+                CountOperations::Inverting if !in_float => {
                     format!("pixel {x}, {y}: {up} faces turn the bit over, {idle} do not count here")
                 }
                 _ => {
@@ -184,7 +187,7 @@ fn has_volumes(step: &Step) -> bool {
 }
 
 /// What the whole picture's counts are after a step, in the stencil or in floats.
-fn counted(known: &Known, light: Option<usize>) -> Vec<String> {
+fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
     let of_light = light.and_then(|light| known.capture.lights.get(light));
     let in_floats = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
     let told = |marked: u64, all: u64| {
@@ -221,15 +224,16 @@ fn counted(known: &Known, light: Option<usize>) -> Vec<String> {
     vec![told(all - counts[0], all), highest]
 }
 
-fn triangles(known: &Known, step: &Step) -> Fact {
-    let of = |part: Part| step.draws.iter().filter(|draw| draw.part == part).map(|draw| draw.triangles).sum::<u64>();
-    let [sides, light, dark] = [Part::Side, Part::LightCap, Part::DarkCap].map(of);
+fn triangles(known: &ExplainContext, step: &Step) -> ExplainFact {
+    let of =
+        |part: DrawPart| step.draws.iter().filter(|draw| draw.part == part).map(|draw| draw.triangles).sum::<u64>();
+    let [sides, light, dark] = [DrawPart::Side, DrawPart::LightCap, DrawPart::DarkCap].map(of);
     let is_sun = step.light.and_then(|light| known.lights.get(light)).is_some_and(Light::is_directional);
     let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
     let is_parallel = known.capture.camera.is_parallel();
     let settings = VolumeSettings::read(&known.capture.settings);
     if settings.by_vertex_shader && (is_finite || !is_parallel) {
-        let (sides, caps) = (format::count(sides), format::count(of(Part::Caps)));
+        let (sides, caps) = (format::count(sides), format::count(of(DrawPart::Caps)));
         let here = vec![
             format!(
                 "sides, two triangles at every edge of what is one closed volume, and at those of each triangle of what is \
@@ -244,9 +248,9 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     // Whose count does not begin there has none, or lacks it.
     let side = step.light.and_then(|light| known.capture.decided_by(light).counted_side());
     let draws_them = settings.caps[1];
-    let begins_there = is_parallel && side != Some(Side::InFront) && draws_them;
+    let begins_there = is_parallel && side != Some(CountedSide::InFront) && draws_them;
     let ends = |left: &LeftOut| left.decision == Some(Decision::BeyondReceivers);
-    let ends_early = side != Some(Side::Behind) && known.capture.left_out.iter().any(ends);
+    let ends_early = side != Some(CountedSide::Behind) && known.capture.left_out.iter().any(ends);
     let dark_cap = match (is_sun, is_finite) {
         (false, false) if begins_there => {
             "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there"
@@ -268,7 +272,7 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     fact("a closed volume = sides + light cap + dark cap", here)
 }
 
-fn light(known: &Known, step: &Step) -> Fact {
+fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     let index = step.light.unwrap_or(0);
     let mut here = Vec::new();
     if let Some(light) = known.lights.get(index) {
@@ -292,7 +296,7 @@ fn light(known: &Known, step: &Step) -> Fact {
     let stencil = before.and_then(|frame| frame.stencil.as_ref());
     // Shadows that are blended come after the light, which then asks nothing.
     let has_shadows =
-        |step: &Step| step.light == Some(index) && step.draws.iter().any(|draw| draw.part == Part::PlanarShadow);
+        |step: &Step| step.light == Some(index) && step.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow);
     let is_flattened = known.capture.steps[..known.step].iter().any(has_shadows);
     let settings = VolumeSettings::read(&known.capture.settings);
     // What the stencil test of the light pass lets through.
@@ -328,7 +332,7 @@ fn kept_in(settings: &VolumeSettings) -> String {
 }
 
 /// How the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.
-fn compared(known: &Known, light: usize) -> Option<Fact> {
+fn compared(known: &ExplainContext, light: usize) -> Option<ExplainFact> {
     if known.capture.decided_by(light) != DecidedBy::Map {
         return None;
     }
@@ -350,7 +354,7 @@ fn compared(known: &Known, light: usize) -> Option<Fact> {
     Some(fact(formula, here))
 }
 
-fn labels(known: &Known, step: &Step) -> Fact {
+fn labels(known: &ExplainContext, step: &Step) -> ExplainFact {
     let index = step.light.unwrap_or(0);
     let mut here = Vec::new();
     if let Some(light) = known.capture.lights.get(index) {
@@ -375,7 +379,7 @@ fn labels(known: &Known, step: &Step) -> Fact {
     fact("label = 0 lit, 1 shadow, 2 background, 3 out of reach: the technique's answer, pixel by pixel", here)
 }
 
-fn map(known: &Known, step: &Step) -> Fact {
+fn map(known: &ExplainContext, step: &Step) -> ExplainFact {
     let Snapshot::Map { light, face } = step.snapshot else { return fact("", Vec::new()) };
     let mut here = Vec::new();
     let map = known.capture.lights.get(light).and_then(|light| light.map.as_ref());
@@ -400,7 +404,7 @@ fn map(known: &Known, step: &Step) -> Fact {
     fact(formula, here)
 }
 
-fn flattened(known: &Known, step: &Step) -> Fact {
+fn flattened(known: &ExplainContext, step: &Step) -> ExplainFact {
     let index = step.light.unwrap_or(0);
     let mut here = Vec::new();
     if let Some(light) = known.lights.get(index) {
@@ -410,7 +414,7 @@ fn flattened(known: &Known, step: &Step) -> Fact {
             if light.is_directional() { ": a direction, as w = 0" } else { "" }
         ));
     }
-    let flattened = || step.draws.iter().filter(|draw| draw.part == Part::PlanarShadow);
+    let flattened = || step.draws.iter().filter(|draw| draw.part == DrawPart::PlanarShadow);
     let casters: BTreeSet<&str> = flattened().filter_map(|draw| draw.caster.as_deref()).collect();
     let [casters, draws] = [casters.len(), flattened().count()].map(|count| count as u64);
     here.push(format!(
@@ -421,7 +425,7 @@ fn flattened(known: &Known, step: &Step) -> Fact {
     fact("shadow matrix = (P·L) I − L Pt, with the plane P = (n, d) and the light L = (x, y, z, w)", here)
 }
 
-fn receivers(known: &Known) -> Fact {
+fn receivers(known: &ExplainContext) -> ExplainFact {
     let mut here = Vec::new();
     if let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) {
         let counts = stencil.image.histogram();

@@ -9,7 +9,7 @@ use crate::plan::{DrawMesh, FramePlan, LightId, Program, ViewId, Visibility};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::object_ids::fill;
 use crate::reading::projected::Projector;
-use crate::scene::{Sight, Sights};
+use crate::scene::{CameraRays, Ray};
 use glam::{DVec2, DVec3, DVec4};
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ const SAME_SURFACE: f64 = 0.01;
 
 /// What the shader is given at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fragment {
+pub struct FragmentInputs {
     /// A triangle that was drawn is known to be the one that is seen; else `normal`, `reads` and `layer` are guesses.
     pub is_drawn: bool,
     /// World space.
@@ -40,18 +40,18 @@ pub struct Fragment {
 
 /// The fragments of a picture's surfaces.
 #[derive(Debug)]
-pub struct Fragments {
-    surface: Surface,
+pub struct SurfaceFragments {
+    surface: PixelUnprojection,
     depth: Arc<Image>,
-    drawn: Option<Drawn>,
+    drawn: Option<DrawnTriangles>,
 }
 
-impl Fragments {
+impl SurfaceFragments {
     /// Of the picture after a frame, with those that look the map of `light` up; `None` where nothing is drawn.
-    pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Fragments> {
+    pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<SurfaceFragments> {
         let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
-        let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| Drawn::new(capture, plan, light));
-        Some(Fragments { surface: Surface::new(capture), depth, drawn })
+        let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| DrawnTriangles::new(capture, plan, light));
+        Some(SurfaceFragments { surface: PixelUnprojection::new(capture), depth, drawn })
     }
 
     /// Are planes and normals those of the triangles that were drawn?
@@ -60,14 +60,14 @@ impl Fragments {
     }
 
     /// The one at a pixel; `None` where no surface is.
-    pub fn at(&self, at: [u32; 2]) -> Option<Fragment> {
+    pub fn at(&self, at: [u32; 2]) -> Option<FragmentInputs> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         let most = SAME_SURFACE * world.distance(self.surface.eye);
         let drawn = self.drawn.as_ref().and_then(|drawn| drawn.at(at, &self.surface));
         let drawn = drawn.filter(|fragment| fragment.world.distance(world) <= most);
         Some(drawn.unwrap_or_else(|| {
             let plane = self.guessed(at, world);
-            Fragment { is_drawn: false, world, normal: plane, plane, reads: true, layer: None }
+            FragmentInputs { is_drawn: false, world, normal: plane, plane, reads: true, layer: None }
         }))
     }
 
@@ -79,7 +79,7 @@ impl Fragments {
     }
 
     /// Where the corners of a pixel lie on a plane, in order round it; `None` where one sees nothing of it.
-    pub fn corners(&self, [x, y]: [u32; 2], fragment: &Fragment) -> Option<[DVec3; 4]> {
+    pub fn corners(&self, [x, y]: [u32; 2], fragment: &FragmentInputs) -> Option<[DVec3; 4]> {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
         let corner = |right: f64, down: f64| {
@@ -112,24 +112,24 @@ impl Fragments {
 
 /// Which triangle of a plan is seen at each pixel.
 #[derive(Debug)]
-struct Drawn {
+struct DrawnTriangles {
     plan: Arc<FramePlan>,
     /// Of each pixel the index of its place and one more; 0 where there is none.
     ids: Vec<u32>,
-    places: Vec<Place>,
+    places: Vec<PlanTriangle>,
 }
 
 /// A triangle of a plan.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct PlanTriangle {
     mesh: u32,
     triangle: u32,
     reads: bool,
     layer: Option<u32>,
 }
 
-impl Drawn {
-    fn new(capture: &Capture, plan: &Arc<FramePlan>, light: usize) -> Drawn {
+impl DrawnTriangles {
+    fn new(capture: &Capture, plan: &Arc<FramePlan>, light: usize) -> DrawnTriangles {
         let places = places(plan, light);
         let size = capture.size.map(|side| side as usize);
         let projector = Projector::new(capture);
@@ -147,15 +147,15 @@ impl Drawn {
                 });
             }
         }
-        Drawn { plan: plan.clone(), ids, places }
+        DrawnTriangles { plan: plan.clone(), ids, places }
     }
 
-    fn place(&self, [x, y]: [u32; 2]) -> Option<Place> {
+    fn place(&self, [x, y]: [u32; 2]) -> Option<PlanTriangle> {
         let index = (y as usize).checked_mul(self.plan.size[0] as usize)? + x as usize;
         self.places.get((*self.ids.get(index)? as usize).checked_sub(1)?).copied()
     }
 
-    fn at(&self, [x, y]: [u32; 2], surface: &Surface) -> Option<Fragment> {
+    fn at(&self, [x, y]: [u32; 2], surface: &PixelUnprojection) -> Option<FragmentInputs> {
         let place = self.place([x, y])?;
         let (mesh, [a, b, c]) = triangle(&self.plan, place)?;
         let sight = surface.sight([f64::from(x) + 0.5, f64::from(y) + 0.5]);
@@ -168,7 +168,7 @@ impl Drawn {
         let normals = data.normals.data().get(first..first + 3)?;
         let normal: DVec3 = normals.iter().zip(shares).map(|(normal, share)| xyz(*normal).truncate() * share).sum();
         let sees_back = data.sides.data().get(place.triangle as usize)? & SEES_BACK != 0;
-        let fragment = Fragment {
+        let fragment = FragmentInputs {
             is_drawn: true,
             world: surface.eye + relative,
             normal: if sees_back { -normal } else { normal }.try_normalize()?,
@@ -181,7 +181,7 @@ impl Drawn {
 }
 
 /// The triangles that the camera's passes draw with normals, each once.
-fn places(plan: &FramePlan, light: usize) -> Vec<Place> {
+fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
     const DRAWN: u8 = 1;
     const READS: u8 = 2;
     let mut found: Vec<Vec<(u8, Option<u32>)>> = vec![Vec::new(); plan.meshes.len()];
@@ -211,7 +211,7 @@ fn places(plan: &FramePlan, light: usize) -> Vec<Place> {
     }
     let places = found.iter().enumerate().flat_map(|(mesh, triangles)| {
         let drawn = triangles.iter().enumerate().filter(|(_, (how, _))| *how != 0);
-        drawn.map(move |(triangle, (how, layer))| Place {
+        drawn.map(move |(triangle, (how, layer))| PlanTriangle {
             mesh: mesh as u32,
             triangle: triangle as u32,
             reads: how & READS != 0,
@@ -222,7 +222,7 @@ fn places(plan: &FramePlan, light: usize) -> Vec<Place> {
 }
 
 /// Corners relative to the eye.
-fn triangle(plan: &FramePlan, place: Place) -> Option<(&DrawMesh, [DVec3; 3])> {
+fn triangle(plan: &FramePlan, place: PlanTriangle) -> Option<(&DrawMesh, [DVec3; 3])> {
     let mesh = plan.meshes.get(place.mesh as usize)?;
     let first = place.triangle as usize * 3;
     let indices = mesh.indices.data().get(first..first + 3)?;
@@ -236,9 +236,9 @@ fn xyz(value: [f32; 4]) -> DVec4 {
 
 /// From a pixel and its depth to the world.
 #[derive(Debug)]
-pub struct Surface {
+pub struct PixelUnprojection {
     measure: DepthMeasure,
-    sights: Sights,
+    sights: CameraRays,
     /// World space.
     pub eye: DVec3,
     /// Where lines of sight meet: homogeneous, world space.
@@ -246,12 +246,12 @@ pub struct Surface {
     size: [f64; 2],
 }
 
-impl Surface {
+impl PixelUnprojection {
     /// Of the camera of a capture.
-    pub fn new(capture: &Capture) -> Surface {
+    pub fn new(capture: &Capture) -> PixelUnprojection {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
-        Surface {
+        PixelUnprojection {
             measure: DepthMeasure::of_camera(capture),
             sights: camera.sights(width / height),
             eye: camera.eye,
@@ -267,7 +267,7 @@ impl Surface {
     }
 
     /// The line of sight through a texel position.
-    fn sight(&self, [x, y]: [f64; 2]) -> Sight {
+    fn sight(&self, [x, y]: [f64; 2]) -> Ray {
         let [width, height] = self.size;
         self.sights.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))
     }

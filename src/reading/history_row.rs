@@ -1,22 +1,24 @@
 //! An event of a pixel's history as the cells of a row, and as the row's name.
 
 use crate::capture::Capture;
-use crate::history::{Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
+use crate::history::{
+    FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues, TestResult, TriangleEvent,
+};
 use crate::math::depth::DepthCurve;
 use crate::numbers;
-use crate::plan::{Clip, Part};
+use crate::plan::{ClipPlane, DrawPart};
 use crate::reading::steps;
 use wgpu::StencilOperation;
 
 /// What stands in a row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cells {
+pub struct HistoryCells {
     /// Number of the pass, from 1; `None` for a mask.
     pub number: Option<usize>,
     /// `pass 2`, `mask`.
     pub pass: String,
     /// What the fragment is of, for its colour.
-    pub part: Option<Part>,
+    pub part: Option<DrawPart>,
     /// The part in words, or what is cleared.
     pub what: String,
     /// Of which object.
@@ -24,7 +26,7 @@ pub struct Cells {
     /// `front` or `back`; empty for a clear.
     pub side: &'static str,
     /// What came of it.
-    pub outcome: Outcome,
+    pub outcome: EventOutcome,
     /// Before and after, or what stayed.
     pub change: String,
     /// It changed what the pixel holds.
@@ -33,15 +35,15 @@ pub struct Cells {
 
 /// What came of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Outcome {
+pub enum EventOutcome {
     /// A clear.
     Cleared,
     /// Tests and what they led to.
     Tested {
         /// The depth test.
-        depth: Test,
+        depth: TestResult,
         /// The stencil test.
-        stencil: Test,
+        stencil: TestResult,
         /// What was done to the stencil; `None` without a stencil test.
         operation: Option<StencilOperation>,
     },
@@ -49,28 +51,28 @@ pub enum Outcome {
     Nothing(&'static str),
 }
 
-impl Cells {
+impl HistoryCells {
     /// The cells of an event.
-    pub fn of(history: &PixelHistory, event: &Event, capture: &Capture) -> Cells {
+    pub fn of(history: &PixelHistory, event: &PixelEvent, capture: &Capture) -> HistoryCells {
         let (change, has_changed) = change(history, event, &capture.depth);
         let number = steps::number(capture, event.pass);
-        let mut cells = Cells {
+        let mut cells = HistoryCells {
             number,
             pass: number.map_or_else(|| event.pass_name.clone(), |number| format!("pass {number}")),
             part: None,
             what: String::new(),
             of: String::new(),
             side: "",
-            outcome: Outcome::Cleared,
+            outcome: EventOutcome::Cleared,
             change,
             has_changed,
         };
         match &event.kind {
-            EventKind::Put => cells.what = "other content".to_owned(),
-            EventKind::ClearDepth => cells.what = "clear depth".to_owned(),
-            EventKind::ClearStencil => cells.what = "clear stencil".to_owned(),
-            EventKind::ClearCount => cells.what = "clear count".to_owned(),
-            EventKind::Triangle(one) => {
+            PixelEventKind::Put => cells.what = "other content".to_owned(),
+            PixelEventKind::ClearDepth => cells.what = "clear depth".to_owned(),
+            PixelEventKind::ClearStencil => cells.what = "clear stencil".to_owned(),
+            PixelEventKind::ClearCount => cells.what = "clear count".to_owned(),
+            PixelEventKind::Triangle(one) => {
                 cells.part = Some(one.part);
                 (cells.what, cells.of) = named(one);
                 cells.side = side(one);
@@ -92,12 +94,12 @@ impl Cells {
         add(" of ", &self.of);
         add(", ", self.side);
         match self.outcome {
-            Outcome::Cleared => {}
-            Outcome::Tested { depth, stencil, operation } => {
+            EventOutcome::Cleared => {}
+            EventOutcome::Tested { depth, stencil, operation } => {
                 add("; ", &format!("depth {}, stencil {}", sign(depth), sign(stencil)));
                 add("; ", operation.map_or("", short));
             }
-            Outcome::Nothing(why) => add("; ", why),
+            EventOutcome::Nothing(why) => add("; ", why),
         }
         add("; ", &self.change);
         name
@@ -105,7 +107,7 @@ impl Cells {
 }
 
 /// The whole event in words; the face that words are set in has no arrow.
-pub fn line(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> String {
+pub fn line(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> String {
     history.line(event, curve).replace('→', "to")
 }
 
@@ -113,9 +115,9 @@ pub fn line(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> String
 pub fn named(one: &TriangleEvent) -> (String, String) {
     let caster = || one.caster.clone().unwrap_or_else(|| one.draw_name.clone());
     match one.part {
-        Part::Surface => (one.draw_name.clone(), String::new()),
-        Part::Receiver => ("receiver".to_owned(), one.draw_name.clone()),
-        Part::PlanarShadow => ("flattened".to_owned(), caster()),
+        DrawPart::Surface => (one.draw_name.clone(), String::new()),
+        DrawPart::Receiver => ("receiver".to_owned(), one.draw_name.clone()),
+        DrawPart::PlanarShadow => ("flattened".to_owned(), caster()),
         // Of another program's volumes sides and caps are not told apart.
         part if part.is_of_volume() && one.caster.is_none() => (one.draw_name.clone(), String::new()),
         other => (other.name().replace('-', " "), caster()),
@@ -127,25 +129,25 @@ pub fn side(one: &TriangleEvent) -> &'static str {
     if one.shows_outside() { "front" } else { "back" }
 }
 
-fn outcome(fate: Fate) -> Outcome {
+fn outcome(fate: FragmentOutcome) -> EventOutcome {
     match fate {
-        Fate::Tested { stencil, depth, operation } => Outcome::Tested { depth, stencil, operation },
-        Fate::Culled => Outcome::Nothing("culled"),
-        Fate::Clipped(Clip::Near) => Outcome::Nothing("clipped at near"),
-        Fate::Clipped(Clip::Far) => Outcome::Nothing("clipped at far"),
-        Fate::Discarded(Some(Clip::Near)) => Outcome::Nothing("discarded before near"),
-        Fate::Discarded(Some(Clip::Far)) => Outcome::Nothing("discarded beyond far"),
-        Fate::Discarded(None) => Outcome::Nothing("discarded by the shader"),
+        FragmentOutcome::Tested { stencil, depth, operation } => EventOutcome::Tested { depth, stencil, operation },
+        FragmentOutcome::Culled => EventOutcome::Nothing("culled"),
+        FragmentOutcome::Clipped(ClipPlane::Near) => EventOutcome::Nothing("clipped at near"),
+        FragmentOutcome::Clipped(ClipPlane::Far) => EventOutcome::Nothing("clipped at far"),
+        FragmentOutcome::Discarded(Some(ClipPlane::Near)) => EventOutcome::Nothing("discarded before near"),
+        FragmentOutcome::Discarded(Some(ClipPlane::Far)) => EventOutcome::Nothing("discarded beyond far"),
+        FragmentOutcome::Discarded(None) => EventOutcome::Nothing("discarded by the shader"),
     }
 }
 
 /// The sign of a test beside its colour.
-pub fn sign(test: Test) -> &'static str {
+pub fn sign(test: TestResult) -> &'static str {
     match test {
-        Test::Passed => "✓",
-        Test::Failed => "✗",
-        Test::Always => "always",
-        Test::NotReached => "-",
+        TestResult::Passed => "✓",
+        TestResult::Failed => "✗",
+        TestResult::Always => "always",
+        TestResult::NotReached => "-",
     }
 }
 
@@ -173,18 +175,18 @@ fn float(value: f32) -> String {
 
 /// What changed at the pixel, and whether anything did: the count, else the depth, else the stencil
 /// as it stayed.
-fn change(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> (String, bool) {
-    let Held { depth, stencil, count } = event.before;
+fn change(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> (String, bool) {
+    let PixelValues { depth, stencil, count } = event.before;
     let after = event.after;
     match event.kind {
-        EventKind::ClearDepth => {
+        PixelEventKind::ClearDepth => {
             return (format!("→ {}", numbers::digits(f64::from(after.depth))), depth != after.depth);
         }
-        EventKind::Put | EventKind::ClearStencil => {
+        PixelEventKind::Put | PixelEventKind::ClearStencil => {
             return (format!("→ {}", signed(after.stencil)), stencil != after.stencil);
         }
-        EventKind::ClearCount => return (format!("→ {}", float(after.count)), count != after.count),
-        EventKind::Triangle(_) => {}
+        PixelEventKind::ClearCount => return (format!("→ {}", float(after.count)), count != after.count),
+        PixelEventKind::Triangle(_) => {}
     }
     if stencil != after.stencil {
         (format!("{} → {}", signed(stencil), signed(after.stencil)), true)
@@ -214,7 +216,7 @@ mod tests {
 
     #[test]
     fn no_two_outcomes_of_a_test_have_the_same_sign() {
-        let signs = [Test::Passed, Test::Failed, Test::Always, Test::NotReached].map(sign);
+        let signs = [TestResult::Passed, TestResult::Failed, TestResult::Always, TestResult::NotReached].map(sign);
         assert_eq!(signs.iter().collect::<std::collections::BTreeSet<_>>().len(), signs.len());
     }
 }

@@ -7,7 +7,7 @@
 //! closer, and then more rungs are folded.
 
 use crate::history::Ladder;
-use crate::plan::Side;
+use crate::plan::CountedSide;
 use std::ops::Range;
 
 /// Between two marks where there is room for all, and the least where there is not, points.
@@ -25,7 +25,7 @@ const OTHERS: usize = 4;
 
 /// Something on the view ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum LadderMark {
     /// Where the ray begins.
     Eye,
     /// The near plane.
@@ -41,11 +41,11 @@ pub enum Mark {
 }
 
 /// A mark and its height, points below the ladder's top.
-pub type Placed = (Mark, f32);
+pub type PlacedMark = (LadderMark, f32);
 
 /// A stretch of the ray, from a height to a lower one, and the count there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
+pub struct CountStretch {
     /// Its nearer end, points below the ladder's top.
     pub top: f32,
     /// Its farther end.
@@ -62,9 +62,9 @@ pub fn place(
     selected: Option<usize>,
     open: &[Range<usize>],
     room: f32,
-) -> (Vec<Placed>, f32) {
+) -> (Vec<PlacedMark>, f32) {
     let fitting = ((room / LEAST_LINE) as usize + 1).saturating_sub(OTHERS).min(MOST_RUNGS);
-    let is_whole = |marks: &Vec<Mark>| LEAST_LINE * (marks.len() - 1) as f32 <= room;
+    let is_whole = |marks: &Vec<LadderMark>| LEAST_LINE * (marks.len() - 1) as f32 <= room;
     let mut marks_of = [(MOST_RUNGS, ENDS), (fitting, ENDS), (fitting, 1)]
         .into_iter()
         .map(|(most, ends)| marks(ladder, near, selected, open, [most, ends]));
@@ -73,7 +73,7 @@ pub fn place(
     let marks = if is_whole(&all) || !open.is_empty() {
         all
     } else {
-        let fewer: Vec<Vec<Mark>> = marks_of.collect();
+        let fewer: Vec<Vec<LadderMark>> = marks_of.collect();
         let first = fewer.iter().position(is_whole).unwrap_or(fewer.len() - 1);
         fewer.into_iter().nth(first).unwrap_or(all)
     };
@@ -81,16 +81,16 @@ pub fn place(
     let scale = ladder.surface.unwrap_or_else(|| middle_distance(ladder).unwrap_or(near * 10.0));
     let share = |distance: f64| if distance.is_finite() { distance / (distance + scale) } else { 1.0 };
     let distance = |rung: usize| ladder.rungs[rung].distance;
-    let share_of = |mark: Mark| match mark {
-        Mark::Eye => 0.0,
-        Mark::Near => share(near),
-        Mark::Rung(rung) => share(distance(rung)),
-        Mark::More(from, to) => (share(distance(from)) + share(distance(to - 1))) / 2.0,
-        Mark::Surface => share(scale),
-        Mark::Infinity => 1.0,
+    let share_of = |mark: LadderMark| match mark {
+        LadderMark::Eye => 0.0,
+        LadderMark::Near => share(near),
+        LadderMark::Rung(rung) => share(distance(rung)),
+        LadderMark::More(from, to) => (share(distance(from)) + share(distance(to - 1))) / 2.0,
+        LadderMark::Surface => share(scale),
+        LadderMark::Infinity => 1.0,
     };
     let height = (line * (marks.len() - 1) as f32).max(room.min(LEAST_HEIGHT));
-    let mut placed: Vec<Placed> = marks.into_iter().map(|mark| (mark, share_of(mark) as f32 * height)).collect();
+    let mut placed: Vec<PlacedMark> = marks.into_iter().map(|mark| (mark, share_of(mark) as f32 * height)).collect();
     for index in 1..placed.len() {
         placed[index].1 = placed[index].1.max(placed[index - 1].1 + line);
     }
@@ -104,25 +104,25 @@ pub fn place(
 
 /// The count along the ray: from where counting begins as far as the surface; where faces count on both sides of
 /// it, along all of the ray.
-pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
+pub fn stretches(ladder: &Ladder, placed: &[PlacedMark]) -> Vec<CountStretch> {
     let mut stretches = Vec::new();
     let mut count = ladder.start;
-    let running = |mark: Mark| match mark {
-        Mark::Rung(rung) => Some(ladder.rungs[rung].running),
-        Mark::More(from, to) => Some(ladder.rungs[if ladder.is_from_infinity() { from } else { to - 1 }].running),
+    let running = |mark: LadderMark| match mark {
+        LadderMark::Rung(rung) => Some(ladder.rungs[rung].running),
+        LadderMark::More(from, to) => Some(ladder.rungs[if ladder.is_from_infinity() { from } else { to - 1 }].running),
         _ => None,
     };
-    let mut go = |from: &Placed, to: &Placed| {
+    let mut go = |from: &PlacedMark, to: &PlacedMark| {
         count = running(from.0).unwrap_or(count);
-        stretches.push(Stretch { top: from.1.min(to.1), bottom: from.1.max(to.1), count });
-        to.0 != Mark::Surface || ladder.side == Side::AsNeeded
+        stretches.push(CountStretch { top: from.1.min(to.1), bottom: from.1.max(to.1), count });
+        to.0 != LadderMark::Surface || ladder.side == CountedSide::AsNeeded
     };
     // Stops after the stretch that reaches the surface, unless faces count beyond it too.
     if ladder.is_from_infinity() {
         placed.windows(2).rev().all(|pair| go(&pair[1], &pair[0]));
     } else {
         // What lies before the near plane is not drawn.
-        let from_near = placed.iter().skip_while(|(mark, _)| *mark != Mark::Near).copied().collect::<Vec<_>>();
+        let from_near = placed.iter().skip_while(|(mark, _)| *mark != LadderMark::Near).copied().collect::<Vec<_>>();
         from_near.windows(2).all(|pair| go(&pair[0], &pair[1]));
     }
     stretches
@@ -135,7 +135,7 @@ fn marks(
     selected: Option<usize>,
     open: &[Range<usize>],
     [most, ends]: [usize; 2],
-) -> Vec<Mark> {
+) -> Vec<LadderMark> {
     let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
     let before_surface = ladder.surface.map(|surface| {
         // A face as far as the surface is on the side that its test says.
@@ -151,32 +151,32 @@ fn marks(
             || edges.iter().flatten().any(|edge| near_edge(*edge))
             || open.iter().any(|open| open.contains(&rung))
     };
-    let mut marks = vec![Mark::Eye];
+    let mut marks = vec![LadderMark::Eye];
     for rung in 0..=ladder.rungs.len() {
         if rung == before_near {
-            marks.push(Mark::Near);
+            marks.push(LadderMark::Near);
         }
         if Some(rung) == before_surface {
-            marks.push(Mark::Surface);
+            marks.push(LadderMark::Surface);
         }
         if rung == ladder.rungs.len() {
             break;
         }
         match marks.last_mut() {
-            _ if is_kept(rung) => marks.push(Mark::Rung(rung)),
-            Some(Mark::More(_, to)) if *to == rung => *to += 1,
-            _ => marks.push(Mark::More(rung, rung + 1)),
+            _ if is_kept(rung) => marks.push(LadderMark::Rung(rung)),
+            Some(LadderMark::More(_, to)) if *to == rung => *to += 1,
+            _ => marks.push(LadderMark::More(rung, rung + 1)),
         }
     }
     // A line for one rung says less than the rung.
     for mark in &mut marks {
-        if let Mark::More(from, to) = *mark
+        if let LadderMark::More(from, to) = *mark
             && to == from + 1
         {
-            *mark = Mark::Rung(from);
+            *mark = LadderMark::Rung(from);
         }
     }
-    marks.push(Mark::Infinity);
+    marks.push(LadderMark::Infinity);
     marks
 }
 
@@ -189,11 +189,11 @@ fn middle_distance(ladder: &Ladder) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::history::{Count, Rung};
+    use crate::history::{Rung, VolumeCount};
     use crate::plan::CountBits;
 
     /// With room for all.
-    fn placed(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Placed> {
+    fn placed(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<PlacedMark> {
         place(ladder, near, selected, open, 2000.0).0
     }
 
@@ -201,12 +201,12 @@ mod tests {
     fn ladder(surface: Option<f64>, rungs: &[(f64, i32)]) -> Ladder {
         let mut ladder = Ladder {
             surface,
-            side: Side::Behind,
+            side: CountedSide::Behind,
             start: 0,
             cleared_to: 0,
             bits: CountBits::EIGHT,
             count: 0,
-            tested: Count::Stencil(0),
+            tested: VolumeCount::Stencil(0),
             rungs: Vec::new(),
         };
         let rung = |(event, (distance, added)): (usize, &(f64, i32))| Rung {
@@ -227,8 +227,8 @@ mod tests {
     fn the_surface_is_between_what_is_before_and_behind_it() {
         let ladder = ladder(Some(5.0), &[(0.05, 0), (2.0, 0), (7.0, -1), (9.0, 1), (f64::INFINITY, 1)]);
         let placed = placed(&ladder, 0.1, None, &[]);
-        let marks: Vec<Mark> = placed.iter().map(|(mark, _)| *mark).collect();
-        use Mark::{Eye, Infinity, Near, Rung, Surface};
+        let marks: Vec<LadderMark> = placed.iter().map(|(mark, _)| *mark).collect();
+        use LadderMark::{Eye, Infinity, Near, Rung, Surface};
         assert_eq!(marks, [Eye, Rung(0), Near, Rung(1), Surface, Rung(2), Rung(3), Rung(4), Infinity]);
         assert!(placed.windows(2).all(|pair| pair[1].1 - pair[0].1 >= LINE - 1e-3), "{placed:?}");
         assert!(placed.iter().all(|(_, y)| (0.0..=LEAST_HEIGHT).contains(y)), "{placed:?}");
@@ -238,7 +238,7 @@ mod tests {
     fn a_face_as_far_as_the_surface_is_on_the_side_that_its_test_says() {
         for (added, expected) in [(1, 2), (0, 3)] {
             let placed = placed(&ladder(Some(5.0), &[(5.0, added)]), 0.1, None, &[]);
-            assert_eq!(placed.iter().position(|(mark, _)| *mark == Mark::Surface), Some(expected));
+            assert_eq!(placed.iter().position(|(mark, _)| *mark == LadderMark::Surface), Some(expected));
         }
     }
 
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn from_the_eye_the_count_begins_with_what_holds_the_near_plane() {
         let mut ladder = ladder(Some(5.0), &[(2.0, -1), (7.0, 0)]);
-        (ladder.side, ladder.start) = (Side::InFront, 1);
+        (ladder.side, ladder.start) = (CountedSide::InFront, 1);
         ladder.rungs[0].running = 0;
         let stretches = stretches(&ladder, &placed(&ladder, 0.1, None, &[]));
         assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 0]);
@@ -267,11 +267,11 @@ mod tests {
             let mut next = 0;
             for (mark, _) in &placed {
                 match mark {
-                    Mark::Rung(rung) => {
+                    LadderMark::Rung(rung) => {
                         assert_eq!(*rung, next);
                         next += 1;
                     }
-                    Mark::More(from, to) => {
+                    LadderMark::More(from, to) => {
                         assert!(*from == next && to > from);
                         next = *to;
                     }
@@ -280,7 +280,7 @@ mod tests {
             }
             assert_eq!(next, 600);
             assert!(placed.len() < 28, "{} marks", placed.len());
-            assert!(selected.is_none_or(|rung| placed.iter().any(|(mark, _)| *mark == Mark::Rung(rung))));
+            assert!(selected.is_none_or(|rung| placed.iter().any(|(mark, _)| *mark == LadderMark::Rung(rung))));
         }
     }
 
@@ -288,7 +288,8 @@ mod tests {
     fn in_little_room_lines_are_closer_and_then_more_rungs_are_folded() {
         let rungs: Vec<(f64, i32)> = (0..12).map(|index| (1.0 + f64::from(index), 1 - index % 2 * 2)).collect();
         let ladder = ladder(Some(6.5), &rungs);
-        let rungs_of = |placed: &[Placed]| placed.iter().filter(|(mark, _)| matches!(mark, Mark::Rung(_))).count();
+        let rungs_of =
+            |placed: &[PlacedMark]| placed.iter().filter(|(mark, _)| matches!(mark, LadderMark::Rung(_))).count();
         for (room, all) in [(400.0, true), (300.0, true), (215.0, true), (180.0, false), (140.0, false)] {
             let (placed, line) = place(&ladder, 0.1, None, &[], room);
             assert!((LEAST_LINE..=LINE).contains(&line), "{line} in {room}");
@@ -304,7 +305,7 @@ mod tests {
         let (open, line) = place(&ladder, 0.1, None, &opened, 140.0);
         assert_eq!((rungs_of(&open), line), (12, LEAST_LINE));
         let (selected, _) = place(&ladder, 0.1, Some(3), &[], 140.0);
-        assert!(selected.iter().any(|(mark, _)| *mark == Mark::Rung(3)));
+        assert!(selected.iter().any(|(mark, _)| *mark == LadderMark::Rung(3)));
     }
 
     #[test]
@@ -313,14 +314,14 @@ mod tests {
         let ladder = ladder(Some(100.0), &rungs);
         let opened = [2..20, 20..38];
         let folded = placed(&ladder, 0.1, None, &[]);
-        assert!(folded.iter().any(|(mark, _)| *mark == Mark::More(2, 38)));
+        assert!(folded.iter().any(|(mark, _)| *mark == LadderMark::More(2, 38)));
         let open = placed(&ladder, 0.1, None, &opened[..1]);
-        assert!((2..20).all(|rung| open.iter().any(|(mark, _)| *mark == Mark::Rung(rung))));
-        assert!(open.iter().any(|(mark, _)| *mark == Mark::More(20, 38)));
+        assert!((2..20).all(|rung| open.iter().any(|(mark, _)| *mark == LadderMark::Rung(rung))));
+        assert!(open.iter().any(|(mark, _)| *mark == LadderMark::More(20, 38)));
         let all = placed(&ladder, 0.1, None, &opened);
-        assert!(all.iter().all(|(mark, _)| !matches!(mark, Mark::More(..))));
+        assert!(all.iter().all(|(mark, _)| !matches!(mark, LadderMark::More(..))));
         assert!(all.windows(2).all(|pair| pair[1].1 >= pair[0].1 + LINE - 0.01));
-        let last = |placed: &[Placed]| stretches(&ladder, placed).last().map(|one| one.count);
+        let last = |placed: &[PlacedMark]| stretches(&ladder, placed).last().map(|one| one.count);
         assert_eq!(last(&all), last(&folded));
     }
 
@@ -328,7 +329,7 @@ mod tests {
     fn without_a_surface_the_count_runs_to_the_eye() {
         let ladder = ladder(None, &[(3.0, 1)]);
         let placed = placed(&ladder, 0.1, None, &[]);
-        assert!(!placed.iter().any(|(mark, _)| *mark == Mark::Surface));
+        assert!(!placed.iter().any(|(mark, _)| *mark == LadderMark::Surface));
         assert_eq!(stretches(&ladder, &placed).last().map(|one| (one.top, one.count)), Some((0.0, 1)));
     }
 }

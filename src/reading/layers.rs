@@ -20,7 +20,7 @@ pub enum MapContent {
 
 /// One layer of a light's map.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layer {
+pub struct MapLayer {
     /// Short: `−x`, `floor, flat piece 1`.
     pub name: String,
     /// In full: `face −x`, `texture of floor, flat piece 1`.
@@ -84,31 +84,31 @@ impl MapContent {
 }
 
 /// The layers of a light's map, in order; empty where there is none.
-pub fn layers(capture: &Capture, light: usize) -> Vec<Layer> {
+pub fn layers(capture: &Capture, light: usize) -> Vec<MapLayer> {
     let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
     let count = map.map_or(0, |map| map.faces.len());
     let Some(content) = MapContent::of(capture, light) else { return Vec::new() };
     (0..count).map(|index| layer(capture, light, content, index, count)).collect()
 }
 
-fn layer(capture: &Capture, light: usize, content: MapContent, index: usize, count: usize) -> Layer {
+fn layer(capture: &Capture, light: usize, content: MapContent, index: usize, count: usize) -> MapLayer {
     if content == MapContent::Depth {
         let name = match (count, CUBE_FACES.get(index)) {
             (6, Some(name)) => (*name).to_owned(),
             _ => (index + 1).to_string(),
         };
-        return Layer { full_name: format!("face {name}"), name, note: None };
+        return MapLayer { full_name: format!("face {name}"), name, note: None };
     }
     let drew = Snapshot::Map { light, face: index };
     match capture.steps.iter().find(|step| step.snapshot == drew) {
         Some(step) => {
             let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
             let name = map.and_then(|map| map.layer_names.get(index)).unwrap_or(&step.name);
-            Layer { name: name.clone(), full_name: step.name.clone(), note: None }
+            MapLayer { name: name.clone(), full_name: step.name.clone(), note: None }
         }
         None => {
             let name = format!("layer {}", index + 1);
-            Layer { full_name: name.clone(), name, note: Some("not drawn: all light arrives") }
+            MapLayer { full_name: name.clone(), name, note: Some("not drawn: all light arrives") }
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::truth::{LIT, SHADOW};
 
 /// A texel that is compared with a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compared {
+pub struct ComparedTexel {
     /// The texel.
     pub texel: MapTexel,
     /// What it stores, its bias included.
@@ -29,9 +29,9 @@ pub struct MapDecision {
     /// Index of the light.
     pub light: usize,
     /// The texels that are compared, row by row: one, or those of a filter.
-    pub compared: Vec<Compared>,
+    pub compared: Vec<ComparedTexel>,
     /// The one in the middle of them.
-    pub middle: Compared,
+    pub middle: ComparedTexel,
     /// What the face is called; empty where there is one only.
     pub face: String,
     /// What depths of this face stand for, where that is known.
@@ -50,9 +50,9 @@ impl MapDecision {
             let depth = depth as f32;
             let is_caster = stored != clear;
             let is_nearest = if clear == 0.0 { depth >= stored } else { depth <= stored };
-            Some(Compared { texel, stored, depth, is_caster, is_lit: !is_caster || is_nearest })
+            Some(ComparedTexel { texel, stored, depth, is_caster, is_lit: !is_caster || is_nearest })
         };
-        let compared: Vec<Compared> = readers.compared(pixel).into_iter().filter_map(compare).collect();
+        let compared: Vec<ComparedTexel> = readers.compared(pixel).into_iter().filter_map(compare).collect();
         let at = readers.texel_of(pixel)?;
         let middle = *compared.iter().find(|one| one.texel == at)?;
         let layers = layers::layers(capture, light);

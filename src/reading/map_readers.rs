@@ -3,7 +3,7 @@
 
 use crate::capture::{Capture, CapturedMap};
 use crate::plan::FramePlan;
-use crate::reading::fragments::{Fragment, Fragments};
+use crate::reading::fragments::{FragmentInputs, SurfaceFragments};
 use crate::technique::MapSettings;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
@@ -25,8 +25,8 @@ pub struct MapTexel {
 #[derive(Debug)]
 pub struct MapReaders {
     size: [u32; 2],
-    lookup: Lookup,
-    fragments: Fragments,
+    lookup: MapProjection,
+    fragments: SurfaceFragments,
     /// Of each pixel the first texel that it reads: face, column, row.
     first: Vec<Option<[i16; 3]>>,
 }
@@ -35,8 +35,8 @@ impl MapReaders {
     /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
         // Where another program's map looks is not known.
-        let lookup = Lookup::new(capture, plan, light).filter(|_| capture.origin.is_none())?;
-        let fragments = Fragments::new(capture, plan, light)?;
+        let lookup = MapProjection::new(capture, plan, light).filter(|_| capture.origin.is_none())?;
+        let fragments = SurfaceFragments::new(capture, plan, light)?;
         let of_pixel = |at: [u32; 2]| match lookup.bias_normal == 0.0 {
             // Normals take time, and change nothing.
             true => fragments.place(at).filter(|(_, reads)| *reads).and_then(|(world, _)| lookup.first_of(world)),
@@ -157,7 +157,7 @@ impl MapReaders {
 
 /// How points are carried into a light's map.
 #[derive(Debug)]
-struct Lookup {
+struct MapProjection {
     /// Clip space of each face from world space.
     matrices: Vec<DMat4>,
     /// Of each face: no pass draws it. Empty where that is not known, as of a folder.
@@ -174,13 +174,13 @@ struct Lookup {
     by_plane: bool,
 }
 
-impl Lookup {
+impl MapProjection {
     /// `None` where the light has no shadow map.
-    fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Lookup> {
+    fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapProjection> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
         let settings = MapSettings::read(&capture.settings);
-        Some(Lookup {
+        Some(MapProjection {
             left_out: plan
                 .and_then(|plan| plan.lights.get(light)?.map.as_ref())
                 .map_or_else(Vec::new, |map| map.faces.iter().map(Option::is_none).collect()),
@@ -205,14 +205,14 @@ impl Lookup {
 
     /// The face that a fragment reads, and where it is looked up in its clip space. The face is chosen before the
     /// point is moved.
-    fn place(&self, fragment: &Fragment) -> Option<(usize, DVec4)> {
+    fn place(&self, fragment: &FragmentInputs) -> Option<(usize, DVec4)> {
         let (face, _) = self.seen(fragment.world)?;
         Some((face, self.matrices[face] * (fragment.world + self.push(face, fragment)?).extend(1.0)))
     }
 
     /// How far a fragment is moved off its surface before it is looked up in a face, metres: some texels along its
     /// normal, more where light grazes it.
-    fn push(&self, face: usize, fragment: &Fragment) -> Option<DVec3> {
+    fn push(&self, face: usize, fragment: &FragmentInputs) -> Option<DVec3> {
         if self.bias_normal == 0.0 {
             return Some(DVec3::ZERO);
         }
@@ -252,7 +252,7 @@ impl Lookup {
     }
 
     /// Face and first texel that a fragment reads.
-    fn first(&self, fragment: &Fragment) -> Option<[i16; 3]> {
+    fn first(&self, fragment: &FragmentInputs) -> Option<[i16; 3]> {
         let (face, clip) = self.place(fragment)?;
         Some(self.first_at(face, clip))
     }

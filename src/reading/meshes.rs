@@ -2,7 +2,7 @@
 
 use crate::geometry::Topology;
 use crate::reading::format;
-use crate::scene::{Object, Texture};
+use crate::scene::{MaterialTexture, Object};
 use std::sync::Arc;
 
 /// An object of the open scene, and how its mesh hangs together.
@@ -16,7 +16,7 @@ pub struct ObjectMesh {
 
 /// The pictures on an object, and how they lie on it, a line each.
 pub fn pictures(object: &Object) -> Vec<String> {
-    let line = |texture: &Texture| {
+    let line = |texture: &MaterialTexture| {
         let [width, height] = texture.picture.size();
         let lies =
             texture.side.map_or_else(|| "as its corners say".to_owned(), |side| format!("{side} m along X and Z"));

@@ -10,20 +10,20 @@ use std::sync::Arc;
 
 /// After a step, or after one of its draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Moment {
+pub struct CapturePoint {
     /// Index of the step.
     pub step: usize,
     /// Index of the draw; `None`: after the whole step.
     pub draw: Option<usize>,
 }
 
-impl From<usize> for Moment {
-    fn from(step: usize) -> Moment {
-        Moment { step, draw: None }
+impl From<usize> for CapturePoint {
+    fn from(step: usize) -> CapturePoint {
+        CapturePoint { step, draw: None }
     }
 }
 
-impl Moment {
+impl CapturePoint {
     /// `step 2`, `draw 3 of step 2`, `the mask of light 1`.
     pub fn words(self, capture: &Capture) -> String {
         let step = steps::words(capture, self.step);
@@ -77,21 +77,21 @@ impl Moment {
     }
 
     /// The moment one draw later; `None` at the end.
-    pub fn next(self, capture: &Capture) -> Option<Moment> {
+    pub fn next(self, capture: &Capture) -> Option<CapturePoint> {
         let following = self.draw.map(|draw| draw + 1).filter(|draw| *draw < draws(capture, self.step).len());
-        let in_step = following.map(|draw| Moment { draw: Some(draw), ..self });
+        let in_step = following.map(|draw| CapturePoint { draw: Some(draw), ..self });
         in_step.or_else(|| {
             let step = steps::next(capture, self.step)?;
-            Some(Moment { step, draw: (!draws(capture, step).is_empty()).then_some(0) })
+            Some(CapturePoint { step, draw: (!draws(capture, step).is_empty()).then_some(0) })
         })
     }
 
     /// The moment one draw earlier; `None` at the start.
-    pub fn previous(self, capture: &Capture) -> Option<Moment> {
+    pub fn previous(self, capture: &Capture) -> Option<CapturePoint> {
         let last = |step: usize| draws(capture, step).len().checked_sub(1);
         match self.draw.or_else(|| last(self.step)).and_then(|draw| draw.checked_sub(1)) {
-            Some(draw) => Some(Moment { draw: Some(draw), ..self }),
-            None => steps::previous(capture, self.step).map(|step| Moment { step, draw: last(step) }),
+            Some(draw) => Some(CapturePoint { draw: Some(draw), ..self }),
+            None => steps::previous(capture, self.step).map(|step| CapturePoint { step, draw: last(step) }),
         }
     }
 }

@@ -1,16 +1,16 @@
 //! The ray through a pixel of the picture, and the surface that it meets.
 
 use crate::capture::Capture;
-use crate::scene::Sight;
+use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 
 /// The line of sight through the middle of a pixel.
-pub fn sight(capture: &Capture, at: [u32; 2]) -> Sight {
+pub fn sight(capture: &Capture, at: [u32; 2]) -> Ray {
     sight_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }
 
 /// The line of sight through any position in texels.
-pub fn sight_at(capture: &Capture, at: [f64; 2]) -> Sight {
+pub fn sight_at(capture: &Capture, at: [f64; 2]) -> Ray {
     let [width, height] = capture.size.map(f64::from);
     let place = DVec2::new(at[0] / width * 2.0 - 1.0, 1.0 - at[1] / height * 2.0);
     capture.camera.sights(width / height).through(place)

@@ -5,7 +5,7 @@ use crate::capture::Capture;
 use crate::history::PixelHistory;
 use crate::numbers;
 use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
-use crate::reading::fragments::Surface;
+use crate::reading::fragments::PixelUnprojection;
 use crate::reading::pick_ray::sight_at;
 use crate::scene::Shading;
 use crate::truth::PixelLabel;
@@ -18,7 +18,7 @@ const DARK_CHECK: f64 = 1.0 / 3.0;
 
 /// How the surface of a pixel is lit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Shaded {
+pub struct SurfaceShading {
     /// Name of the draw that shows it.
     pub surface: String,
     /// Where its light is computed: `flat`, `gouraud`, `phong`.
@@ -83,22 +83,22 @@ pub struct LightTerms {
 
 /// A place of a surface, relative to the eye, with its unit normal.
 #[derive(Debug, Clone, Copy)]
-struct Point {
+struct ShadingPoint {
     relative: DVec3,
     normal: DVec3,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Terms {
+struct ShadingTerms {
     cosine: f64,
     diffuse: f64,
     highlight: f64,
     fading: f64,
 }
 
-impl Shaded {
+impl SurfaceShading {
     /// Of the surface that a pixel's history ends with; `None` where there is none, or another program drew it.
-    pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Shaded> {
+    pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<SurfaceShading> {
         if capture.origin.is_some() {
             return None;
         }
@@ -113,13 +113,13 @@ impl Shaded {
         let corners = [vertex(0)?, vertex(1)?, vertex(2)?];
         let sides = *surface.sides.data().get(triangle)?;
         let normals = normals(surface, first, sides)?;
-        let world = Surface::new(capture).at(history.pixel, history.computed.depth)?;
+        let world = PixelUnprojection::new(capture).at(history.pixel, history.computed.depth)?;
         let relative = world - capture.camera.eye;
         let weights = weights(corners, relative);
         let mixed = (0..3).map(|corner| normals[corner] * weights[corner]).sum::<DVec3>();
-        let at = Point { relative, normal: mixed.try_normalize()? };
+        let at = ShadingPoint { relative, normal: mixed.try_normalize()? };
         let material = &draw.constants.material;
-        let seen = Seen {
+        let seen = SeenTriangle {
             capture,
             pixel: history.pixel,
             corners,
@@ -136,7 +136,7 @@ impl Shaded {
             let here = terms(at, eye, light, draw, plan.wraps_diffuse);
             let of_corners = (material.shading == Shading::Gouraud).then(|| {
                 [0, 1, 2].map(|corner| {
-                    let point = Point { relative: corners[corner], normal: normals[corner] };
+                    let point = ShadingPoint { relative: corners[corner], normal: normals[corner] };
                     terms(point, eye, light, draw, plan.wraps_diffuse)
                 })
             });
@@ -161,7 +161,7 @@ impl Shaded {
                 label: label.and_then(PixelLabel::from_byte),
             }
         };
-        Some(Shaded {
+        Some(SurfaceShading {
             surface: draw.name.clone(),
             shading: material.shading.name(),
             diffuse: if plan.wraps_diffuse { "wrapped" } else { "lambert" },
@@ -206,7 +206,7 @@ impl Shaded {
 
 impl LightTerms {
     /// The cosine, and the formula with its numbers.
-    fn text(&self, of: &Shaded) -> String {
+    fn text(&self, of: &SurfaceShading) -> String {
         let cosines = self.corner_cosines.map_or_else(String::new, |cosines| {
             format!(" (at the corners, where light is computed and then mixed: {})", three(cosines))
         });
@@ -263,7 +263,7 @@ fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(point - from)) / area)
 }
 
-fn terms(at: Point, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bool) -> Terms {
+fn terms(at: ShadingPoint, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bool) -> ShadingTerms {
     let position = wide(light.relative_position);
     let to_light = position.truncate() - at.relative * position.w;
     let direction = to_light.normalize_or_zero();
@@ -276,7 +276,7 @@ fn terms(at: Point, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bool) -> 
         None => 1.0,
         Some(range) => (1.0 - to_light.length_squared() / f64::from(range).powi(2)).max(0.0).powi(2),
     };
-    Terms {
+    ShadingTerms {
         cosine,
         diffuse: if wraps { 0.5 * cosine + 0.5 } else { cosine.max(0.0) },
         highlight: if cosine > 0.0 { gloss } else { 0.0 },
@@ -285,18 +285,19 @@ fn terms(at: Point, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bool) -> 
 }
 
 /// Light of the corners, mixed.
-fn mix(corners: [Terms; 3], weights: [f64; 3], cosine: f64) -> Terms {
-    let sum =
-        |of: fn(&Terms) -> f64| corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>();
+fn mix(corners: [ShadingTerms; 3], weights: [f64; 3], cosine: f64) -> ShadingTerms {
+    let sum = |of: fn(&ShadingTerms) -> f64| {
+        corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>()
+    };
     let fading = sum(|corner| corner.fading);
     let part = |sum: f64| if fading == 0.0 { 0.0 } else { sum / fading };
     let diffuse = part(sum(|corner| corner.fading * corner.diffuse));
     let highlight = part(sum(|corner| corner.fading * corner.highlight));
-    Terms { cosine, diffuse, highlight, fading }
+    ShadingTerms { cosine, diffuse, highlight, fading }
 }
 
 /// A triangle, relative to the eye, and the pixel that shows it.
-struct Seen<'a> {
+struct SeenTriangle<'a> {
     capture: &'a Capture,
     pixel: [u32; 2],
     corners: [DVec3; 3],
@@ -304,7 +305,7 @@ struct Seen<'a> {
     normal: DVec3,
 }
 
-impl Seen<'_> {
+impl SeenTriangle<'_> {
     /// The point of the triangle's plane behind the middle of a pixel.
     fn point(&self, [x, y]: [u32; 2]) -> DVec3 {
         let sight = sight_at(self.capture, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
@@ -313,7 +314,13 @@ impl Seen<'_> {
 }
 
 /// What the picture on a surface has at a pixel, as `texture.wgsl` looks it up.
-fn texture(plan: &FramePlan, draw: &Draw, surface: &SurfaceData, first: usize, seen: &Seen) -> Option<TextureTerm> {
+fn texture(
+    plan: &FramePlan,
+    draw: &Draw,
+    surface: &SurfaceData,
+    first: usize,
+    seen: &SeenTriangle,
+) -> Option<TextureTerm> {
     let shown = plan.textures.get(draw.constants.texture?.0)?;
     let of_corners: [[f32; 2]; 3] = surface.uvs.as_ref()?.data().get(first..first + 3)?.try_into().ok()?;
     let place = |pixel: [u32; 2]| {

@@ -10,8 +10,8 @@ use crate::capture::{
 };
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
-use crate::reading::layers::{self, Layer, MapContent};
-use crate::reading::moment::Moment;
+use crate::reading::layers::{self, MapContent, MapLayer};
+use crate::reading::moment::CapturePoint;
 use std::sync::Arc;
 
 /// A kind of picture that a capture may hold.
@@ -116,7 +116,7 @@ pub enum FaceChoice {
 
 /// How large a texel is on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Zoom {
+pub enum TexelZoom {
     /// The whole picture fills its panel.
     #[default]
     Fit,
@@ -144,7 +144,7 @@ pub struct PictureView {
     /// Which layer of a map.
     pub face: FaceChoice,
     /// Size of a texel.
-    pub zoom: Zoom,
+    pub zoom: TexelZoom,
     /// The texel position in the middle of the panel, unless it fits.
     pub center: [f64; 2],
     /// Distance or stored value.
@@ -165,7 +165,7 @@ impl Default for PictureView {
             kind: None,
             light: 0,
             face: FaceChoice::Grid,
-            zoom: Zoom::Fit,
+            zoom: TexelZoom::Fit,
             center: [0.0; 2],
             depth_mode: DepthMode::Linear,
             depth_range: None,
@@ -178,13 +178,13 @@ impl Default for PictureView {
 
 /// A picture of the capture, ready to be drawn.
 #[derive(Debug, Clone)]
-pub struct Shown {
+pub struct ShownPicture {
     /// Its kind: the one wished for, or what exists instead.
     pub kind: PictureKind,
     /// One, or all layers of a light's map.
     pub images: Vec<Arc<Image>>,
     /// What each image is, where they are layers of a light's map.
-    pub layers: Vec<Layer>,
+    pub layers: Vec<MapLayer>,
     /// How depths are measured; [`DepthMeasure::Raw`] for other kinds.
     pub measure: DepthMeasure,
     /// For the status bar: `stencil after step 4`.
@@ -246,14 +246,14 @@ impl PictureView {
     }
 
     /// The picture to show at a moment: the kind wished for, or what stands in for it.
-    pub fn shown(&self, capture: &Capture, at: impl Into<Moment>) -> Option<Shown> {
+    pub fn shown(&self, capture: &Capture, at: impl Into<CapturePoint>) -> Option<ShownPicture> {
         let at = at.into();
         self.shown_as(capture, at, self.kind_at(capture, at)?)
     }
 
     /// The kind of picture to show at a moment: the one wished for; its twin, as a light's counts are kept in one of
     /// two places; or what the step writes.
-    pub fn kind_at(&self, capture: &Capture, at: Moment) -> Option<PictureKind> {
+    pub fn kind_at(&self, capture: &Capture, at: CapturePoint) -> Option<PictureKind> {
         let kinds = available(capture, at);
         let lacks_truth = self.wants_truth() && self.truth_to_show(capture).is_none();
         let wished = if lacks_truth { self.kind_before_truth } else { self.kind };
@@ -270,7 +270,7 @@ impl PictureView {
     }
 
     /// The picture of this kind at a moment.
-    pub fn shown_as(&self, capture: &Capture, at: Moment, kind: PictureKind) -> Option<Shown> {
+    pub fn shown_as(&self, capture: &Capture, at: CapturePoint, kind: PictureKind) -> Option<ShownPicture> {
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words(capture));
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
@@ -300,18 +300,18 @@ impl PictureView {
             PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
             PictureKind::Map => return self.shown_map(capture, at),
         };
-        Some(Shown { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
+        Some(ShownPicture { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
     }
 
-    fn tests_of(&self, at: Moment) -> Option<&Arc<StepTests>> {
-        self.tests.as_ref().filter(|tests| Moment { step: tests.step, draw: tests.draw } == at)
+    fn tests_of(&self, at: CapturePoint) -> Option<&Arc<StepTests>> {
+        self.tests.as_ref().filter(|tests| CapturePoint { step: tests.step, draw: tests.draw } == at)
     }
 
-    fn shown_truth(&self, capture: &Capture, kind: PictureKind) -> Option<Shown> {
+    fn shown_truth(&self, capture: &Capture, kind: PictureKind) -> Option<ShownPicture> {
         let (light, truth) = self.truth_to_show(capture)?;
         let (image, word) =
             if kind == PictureKind::Truth { (&truth.labels, "truth") } else { (&truth.findings, "error") };
-        Some(Shown {
+        Some(ShownPicture {
             kind,
             images: vec![image.clone()],
             layers: Vec::new(),
@@ -346,7 +346,7 @@ impl PictureView {
 
 impl PictureView {
     /// The chosen layer of a light's map, or all.
-    fn shown_map(&self, capture: &Capture, at: Moment) -> Option<Shown> {
+    fn shown_map(&self, capture: &Capture, at: CapturePoint) -> Option<ShownPicture> {
         let light = self.light_with(capture, |light| light.map.is_some())?;
         let map = capture.lights.get(light)?.map.as_ref()?;
         let content = MapContent::of(capture, light)?;
@@ -382,11 +382,11 @@ impl PictureView {
             }
             _ => (DepthMeasure::Raw, "Rgba8Unorm"),
         };
-        Some(Shown { kind: PictureKind::Map, images, layers, measure, title, format, is_older: false })
+        Some(ShownPicture { kind: PictureKind::Map, images, layers, measure, title, format, is_older: false })
     }
 }
 
-impl Shown {
+impl ShownPicture {
     /// Does it show colours that a light's map lets through?
     pub fn is_let_through(&self) -> bool {
         self.kind == PictureKind::Map && self.images.first().is_some_and(|image| image.format() == PixelFormat::Rgba8)
@@ -417,7 +417,7 @@ pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
 }
 
 /// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.
-pub fn available(capture: &Capture, at: impl Into<Moment>) -> Vec<PictureKind> {
+pub fn available(capture: &Capture, at: impl Into<CapturePoint>) -> Vec<PictureKind> {
     let at = at.into();
     let frame = at.frame(capture);
     let exists = |kind: &PictureKind| match kind {

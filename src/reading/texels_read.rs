@@ -6,8 +6,8 @@ use crate::capture::Capture;
 use crate::history::Verdict;
 use crate::numbers;
 use crate::plan::{DecidedBy, FramePlan};
-use crate::reading::fragments::Fragments;
-use crate::reading::map_decision::{Compared, MapDecision};
+use crate::reading::fragments::SurfaceFragments;
+use crate::reading::map_decision::{ComparedTexel, MapDecision};
 use crate::reading::map_readers::MapReaders;
 use crate::reading::texture_decision::{LayerRead, TextureDecision};
 use crate::technique::MapSettings;
@@ -21,13 +21,13 @@ const MOST_LINES: usize = 25;
 /// Who reads which texels in a frame: made once, asked for any pixel.
 #[derive(Debug)]
 pub struct TexelReaders {
-    lights: Vec<Reader>,
+    lights: Vec<TexelReader>,
 }
 
 #[derive(Debug)]
-enum Reader {
+enum TexelReader {
     Map(Box<MapReaders>),
-    Textures(Box<Fragments>),
+    Textures(Box<SurfaceFragments>),
     /// No texel decides about this light, or it is not known which.
     None,
 }
@@ -54,7 +54,7 @@ pub struct DepthsCompared {
     /// How many of them let the light pass.
     lit: usize,
     lit_where: &'static str,
-    bias: Bias,
+    bias: BiasEntry,
     /// The GPU's answer where depths computed anew give another.
     gpu_says: Option<&'static str>,
 }
@@ -71,7 +71,7 @@ struct DepthTexel {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Bias {
+struct BiasEntry {
     constant: i32,
     slope: f64,
     normal: f64,
@@ -107,23 +107,26 @@ impl TexelReaders {
     pub fn new(capture: &Capture, plan: &Arc<FramePlan>) -> TexelReaders {
         let reader = |light: usize| match capture.decided_by(light) {
             _ if capture.origin.is_some() => None,
-            DecidedBy::Map => MapReaders::new(capture, Some(plan), light).map(|readers| Reader::Map(Box::new(readers))),
-            DecidedBy::ReceiverTextures | DecidedBy::Silhouettes => {
-                Fragments::new(capture, Some(plan), light).map(|fragments| Reader::Textures(Box::new(fragments)))
+            DecidedBy::Map => {
+                MapReaders::new(capture, Some(plan), light).map(|readers| TexelReader::Map(Box::new(readers)))
             }
+            DecidedBy::ReceiverTextures | DecidedBy::Silhouettes => SurfaceFragments::new(capture, Some(plan), light)
+                .map(|fragments| TexelReader::Textures(Box::new(fragments))),
             _ => None,
         };
-        TexelReaders { lights: (0..capture.lights.len()).map(|light| reader(light).unwrap_or(Reader::None)).collect() }
+        TexelReaders {
+            lights: (0..capture.lights.len()).map(|light| reader(light).unwrap_or(TexelReader::None)).collect(),
+        }
     }
 
     /// For each light what the pixel read of it; `None` where it read nothing.
     pub fn at(&self, capture: &Capture, pixel: [u32; 2]) -> Vec<Option<TexelsRead>> {
-        let of_light = |(light, reader): (usize, &Reader)| match reader {
-            Reader::Map(readers) => {
+        let of_light = |(light, reader): (usize, &TexelReader)| match reader {
+            TexelReader::Map(readers) => {
                 let decision = MapDecision::of(capture, readers, light, pixel)?;
                 Some(TexelsRead::ShadowMap(DepthsCompared::new(capture, &decision, pixel)))
             }
-            Reader::Textures(fragments) => {
+            TexelReader::Textures(fragments) => {
                 let decision = TextureDecision::of(capture, fragments, light, pixel)?;
                 let told = LightLetThrough::new(capture, &decision, pixel);
                 Some(match capture.decided_by(light) {
@@ -131,7 +134,7 @@ impl TexelReaders {
                     _ => TexelsRead::ReceiverTexture(told),
                 })
             }
-            Reader::None => None,
+            TexelReader::None => None,
         };
         self.lights.iter().enumerate().map(of_light).collect()
     }
@@ -157,7 +160,7 @@ impl DepthsCompared {
     fn new(capture: &Capture, decision: &MapDecision, pixel: [u32; 2]) -> DepthsCompared {
         let light = decision.light;
         let metres = |depth: f32| decision.measure.and_then(|measure| measure.value(depth));
-        let texel = |one: &Compared| DepthTexel {
+        let texel = |one: &ComparedTexel| DepthTexel {
             at: one.texel.at,
             stored: one.is_caster.then_some(one.stored),
             stored_metres: metres(one.stored).filter(|_| one.is_caster),
@@ -172,7 +175,7 @@ impl DepthsCompared {
             texels: decision.compared.iter().map(texel).collect(),
             lit: decision.lit(),
             lit_where: if capture.depth.mapping.is_reversed() { "surface >= stored" } else { "surface <= stored" },
-            bias: Bias {
+            bias: BiasEntry {
                 constant: settings.bias_constant,
                 slope: settings.bias_slope,
                 normal: settings.bias_normal,
@@ -198,7 +201,7 @@ impl DepthsCompared {
         if let Some(more) = self.texels.len().checked_sub(MOST_LINES).filter(|more| *more > 0) {
             let _ = writeln!(text, "    and {more} texels more: `--json` has them all");
         }
-        let Bias { constant, slope, normal, receiver_plane } = self.bias;
+        let BiasEntry { constant, slope, normal, receiver_plane } = self.bias;
         let plane = if receiver_plane { ", each texel with the depth of the surface's own plane there" } else { "" };
         let moved = match normal {
             0.0 => "not moved off the surface".to_owned(),

@@ -2,7 +2,7 @@
 //! each silhouette that is on its way; as `arriving_by_receiver.wgsl` and `arriving_by_projection.wgsl` read them.
 
 use crate::capture::{Capture, CapturedMap};
-use crate::reading::fragments::{Fragment, Fragments};
+use crate::reading::fragments::{FragmentInputs, SurfaceFragments};
 use crate::reading::layers::{self, MapContent};
 use crate::technique::TextureSettings;
 use crate::truth::{LIT, SHADOW};
@@ -52,7 +52,12 @@ pub struct TextureDecision {
 
 impl TextureDecision {
     /// Of a pixel under a light; `None` where it looks no texture up, or it is not known which is its own.
-    pub fn of(capture: &Capture, fragments: &Fragments, light: usize, pixel: [u32; 2]) -> Option<TextureDecision> {
+    pub fn of(
+        capture: &Capture,
+        fragments: &SurfaceFragments,
+        light: usize,
+        pixel: [u32; 2],
+    ) -> Option<TextureDecision> {
         let content = MapContent::of(capture, light).filter(|content| *content != MapContent::Depth)?;
         // Whose own a layer is, draws tell.
         if capture.origin.is_some() || !fragments.are_drawn() {
@@ -100,7 +105,7 @@ impl TextureDecision {
 fn texels(
     map: &CapturedMap,
     layer: usize,
-    fragment: &Fragment,
+    fragment: &FragmentInputs,
     settings: &TextureSettings,
     content: MapContent,
 ) -> Option<Vec<TexelShare>> {

@@ -11,18 +11,18 @@ use std::sync::Arc;
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Written {
+pub struct WrittenAspects {
     /// After it.
     pub image: Arc<Image>,
     /// What its texels are.
-    pub content: Content,
+    pub content: TexelContent,
     /// In a word or two: `stencil`.
     pub name: &'static str,
 }
 
 /// What the texels of a picture are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Content {
+pub enum TexelContent {
     /// sRGB bytes.
     Color,
     /// Linear shares of light that come through.
@@ -37,72 +37,71 @@ pub enum Content {
     Depth(DepthMeasure),
 }
 
-impl Written {
-    fn new(image: &Arc<Image>, content: Content) -> Written {
+impl WrittenAspects {
+    fn new(image: &Arc<Image>, content: TexelContent) -> WrittenAspects {
         let name = match content {
-            Content::Color => "colour",
-            Content::LetThrough => "light that comes through",
-            Content::Stencil => "stencil",
-            Content::Count => "count",
-            Content::Labels => "mask",
-            Content::Depth(_) => "depth",
+            TexelContent::Color => "colour",
+            TexelContent::LetThrough => "light that comes through",
+            TexelContent::Stencil => "stencil",
+            TexelContent::Count => "count",
+            TexelContent::Labels => "mask",
+            TexelContent::Depth(_) => "depth",
         };
-        Written { image: Arc::clone(image), content, name }
+        WrittenAspects { image: Arc::clone(image), content, name }
     }
 
     /// By a step: its map, its finished count, its mask, or the first of colour, stencil and depth that it changed.
-    pub fn by_step(capture: &Capture, index: usize) -> Option<Written> {
+    pub fn by_step(capture: &Capture, index: usize) -> Option<WrittenAspects> {
         let step = capture.steps.get(index)?;
         match &step.snapshot {
             Snapshot::Map { light, face } => {
                 let map = capture.lights.get(*light)?.map.as_ref()?;
-                Some(Written::layer(capture, [*light, *face], map.faces.get(*face)?))
+                Some(WrittenAspects::layer(capture, [*light, *face], map.faces.get(*face)?))
             }
             Snapshot::Frame(frame) => match frame.target {
-                FrameTarget::Picture => Written::aspect(capture, frame),
-                FrameTarget::Count => {
-                    counts::finished_by(capture, index).map(|(_, count)| Written::new(count, Content::Count))
-                }
+                FrameTarget::Picture => WrittenAspects::aspect(capture, frame),
+                FrameTarget::Count => counts::finished_by(capture, index)
+                    .map(|(_, count)| WrittenAspects::new(count, TexelContent::Count)),
                 FrameTarget::Labels => {
-                    Some(Written::new(capture.lights.get(step.light?)?.shadow.as_ref()?, Content::Labels))
+                    Some(WrittenAspects::new(capture.lights.get(step.light?)?.shadow.as_ref()?, TexelContent::Labels))
                 }
             },
         }
     }
 
     /// By a draw; `None` too where the state after it is not known.
-    pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<Written> {
+    pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<WrittenAspects> {
         let after = capture.steps.get(step)?.draws.get(draw)?.after.as_ref()?;
         let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
         match &after.snapshot {
-            Snapshot::Map { light, face } => Some(Written::layer(capture, [*light, *face], target?)),
+            Snapshot::Map { light, face } => Some(WrittenAspects::layer(capture, [*light, *face], target?)),
             Snapshot::Frame(frame) => match frame.target {
-                FrameTarget::Picture => Written::aspect(capture, frame),
-                FrameTarget::Labels => Some(Written::new(target?, Content::Labels)),
-                FrameTarget::Count => Some(Written::new(target?, Content::Count)),
+                FrameTarget::Picture => WrittenAspects::aspect(capture, frame),
+                FrameTarget::Labels => Some(WrittenAspects::new(target?, TexelContent::Labels)),
+                FrameTarget::Count => Some(WrittenAspects::new(target?, TexelContent::Count)),
             },
         }
     }
 
     /// A layer of a light's map.
-    fn layer(capture: &Capture, [light, face]: [usize; 2], image: &Arc<Image>) -> Written {
+    fn layer(capture: &Capture, [light, face]: [usize; 2], image: &Arc<Image>) -> WrittenAspects {
         let content = match image.format() {
-            PixelFormat::Rgba8 => Content::LetThrough,
-            _ => Content::Depth(DepthMeasure::of_map(capture, light, face).unwrap_or(DepthMeasure::Raw)),
+            PixelFormat::Rgba8 => TexelContent::LetThrough,
+            _ => TexelContent::Depth(DepthMeasure::of_map(capture, light, face).unwrap_or(DepthMeasure::Raw)),
         };
         let name = MapContent::of(capture, light).map_or("map", MapContent::whole);
-        Written { name, ..Written::new(image, content) }
+        WrittenAspects { name, ..WrittenAspects::new(image, content) }
     }
 
-    fn aspect(capture: &Capture, frame: &FrameSnapshot) -> Option<Written> {
+    fn aspect(capture: &Capture, frame: &FrameSnapshot) -> Option<WrittenAspects> {
         let stencil = frame.stencil.as_ref().filter(|stencil| !stencil.unchanged);
         if !frame.color.unchanged {
-            Some(Written::new(&frame.color.image, Content::Color))
+            Some(WrittenAspects::new(&frame.color.image, TexelContent::Color))
         } else if let Some(stencil) = stencil {
-            Some(Written::new(&stencil.image, Content::Stencil))
+            Some(WrittenAspects::new(&stencil.image, TexelContent::Stencil))
         } else {
-            let content = Content::Depth(DepthMeasure::of_camera(capture));
-            (!frame.depth.unchanged).then(|| Written::new(&frame.depth.image, content))
+            let content = TexelContent::Depth(DepthMeasure::of_camera(capture));
+            (!frame.depth.unchanged).then(|| WrittenAspects::new(&frame.depth.image, content))
         }
     }
 
@@ -114,12 +113,12 @@ impl Written {
         };
         let rgb = |at| image.rgba_at(at).map(|[red, green, blue, _]| [red, green, blue]);
         match self.content {
-            Content::Color => in_color(&rgb),
-            Content::LetThrough => in_color(&|at| rgb(at).map(colors::linear)),
-            Content::Stencil => in_color(&|at| image.byte_at(at).map(colors::stencil)),
-            Content::Count => in_color(&|at| image.count_at(at).map(colors::count)),
-            Content::Labels => in_color(&|at| image.byte_at(at).map(colors::label)),
-            Content::Depth(measure) => {
+            TexelContent::Color => in_color(&rgb),
+            TexelContent::LetThrough => in_color(&|at| rgb(at).map(colors::linear)),
+            TexelContent::Stencil => in_color(&|at| image.byte_at(at).map(colors::stencil)),
+            TexelContent::Count => in_color(&|at| image.count_at(at).map(colors::count)),
+            TexelContent::Labels => in_color(&|at| image.byte_at(at).map(colors::label)),
+            TexelContent::Depth(measure) => {
                 let scale = DepthScale { measure, range: measure.range_of(image).unwrap_or([0.0, 1.0]) };
                 in_color(&|at| scale.place(image.depth_at(at)?).map(colors::near_far))
             }

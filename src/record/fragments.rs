@@ -3,11 +3,11 @@
 //!
 //! What a shader discards depends on what it reads, as it was when the draw began: this runs before the draw does.
 
-use super::probe::{Gpu, Probe, ProbeParts, ProbeStage, begin, free_group, target};
+use super::probe::{Probe, ProbeGpu, ProbeParts, ProbeStage, begin, free_group, target};
 use super::readback;
-use super::rewrite::{self, FRAGMENT_RECORD, HEAD, Logging};
+use super::rewrite::{self, FRAGMENT_RECORD, HEAD, LoggingModule};
 use super::states::PassState;
-use crate::wrap::Described;
+use crate::wrap::PipelineSource;
 use crate::wrap::command::{DrawCommand, PassCommand};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -15,7 +15,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 ///
 /// # Errors
 /// Why there is none, in words.
-pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'static str> {
+pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe, &'static str> {
     if !device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
         return Err("fragment shaders can't tell triangles on this GPU");
     }
@@ -26,7 +26,7 @@ pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'st
     let fragment = stage.source.module().ok_or("its fragment shader is in no language that is read")?;
     let vertex = described.vertex.source.module().ok_or("its vertex shader is in no language that is read")?;
     let group = free_group(device, described, &[&vertex, &fragment])?;
-    let Logging { module, entry_point, mut bindings } =
+    let LoggingModule { module, entry_point, mut bindings } =
         rewrite::fragment_log(&fragment, stage.entry_point.as_deref(), group)?;
     bindings.extend(rewrite::vertex_bindings(&vertex, described.vertex.entry_point.as_deref())?);
     let vertex = (*vertex).clone();
@@ -49,7 +49,7 @@ pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'st
 /// There are more than `most`, or the GPU fails.
 pub fn kept(
     probe: &Probe,
-    gpu: Gpu<'_>,
+    gpu: ProbeGpu<'_>,
     state: &PassState,
     draws: &[(DrawCommand, u32)],
     size: [u32; 2],
@@ -87,7 +87,7 @@ fn word(bytes: &[u8], at: usize) -> u32 {
 
 fn log(
     probe: &Probe,
-    Gpu { device, queue }: Gpu<'_>,
+    ProbeGpu { device, queue }: ProbeGpu<'_>,
     state: &PassState,
     draws: &[(DrawCommand, u32)],
     size: [u32; 2],

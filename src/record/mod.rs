@@ -48,7 +48,7 @@ mod states;
 mod vertices;
 
 pub use error::RecordError;
-pub use recorder::{Cost, OfSeries, Recorded};
+pub use recorder::{RecordedFrame, RecordingCost, SeriesFrame};
 
 use crate::wrap;
 use recorder::Recorder;
@@ -74,7 +74,7 @@ pub fn frame(
     queue: &wgpu::Queue,
     folder: &Path,
     draw: impl FnOnce(&mut wgpu::CommandEncoder),
-) -> Result<Recorded, RecordError> {
+) -> Result<RecordedFrame, RecordError> {
     let (shared, recorder) = recorder_of(device)?;
     let recording = recorder.begin(folder.to_owned())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("recorded frame") });
@@ -99,11 +99,11 @@ pub fn start(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
 
 /// Records no further frame, and says what became of each since [`start`]. A frame that has begun is still written when it
 /// ends, and said on standard error.
-pub fn stop(device: &wgpu::Device) -> Result<Vec<OfSeries>, RecordError> {
+pub fn stop(device: &wgpu::Device) -> Result<Vec<SeriesFrame>, RecordError> {
     Ok(recorder_of(device)?.1.stop_series())
 }
 
-fn recorder_of(device: &wgpu::Device) -> Result<(&wrap::Shared, &Recorder), RecordError> {
+fn recorder_of(device: &wgpu::Device) -> Result<(&wrap::SharedDevice, &Recorder), RecordError> {
     let shared = &device.as_custom::<wrap::Device>().ok_or(RecordError::NotWrapped)?.shared;
     let recorder: &dyn Any = &*shared.recorder;
     Ok((shared, recorder.downcast_ref().ok_or(RecordError::NotWrapped)?))

@@ -2,7 +2,7 @@
 
 use super::states::PassState;
 use crate::wrap::command::PassCommand;
-use crate::wrap::{Described, Layout, Stage, VertexBuffer, real_group};
+use crate::wrap::{PipelineLayoutSource, PipelineSource, ProgrammableStage, VertexBufferSource, real_group};
 use std::collections::BTreeSet;
 
 /// A pipeline that writes a log while it does what the program's own does.
@@ -23,7 +23,7 @@ pub(super) struct Probe {
 /// None is; or it draws in a way that is not followed.
 pub(super) fn free_group(
     device: &wgpu::Device,
-    described: &Described,
+    described: &PipelineSource,
     modules: &[&naga::Module],
 ) -> Result<u32, &'static str> {
     if described.multiview_mask.is_some() {
@@ -49,7 +49,12 @@ pub(super) struct ProbeStage {
 
 impl ProbeStage {
     /// Of a stage of the program's, with another module.
-    pub fn of(device: &wgpu::Device, stage: &Stage, module: naga::Module, entry_point: Option<String>) -> ProbeStage {
+    pub fn of(
+        device: &wgpu::Device,
+        stage: &ProgrammableStage,
+        module: naga::Module,
+        entry_point: Option<String>,
+    ) -> ProbeStage {
         let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module));
         let label = Some("stencilscope probe");
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
@@ -76,8 +81,8 @@ pub(super) struct ProbeParts {
 
 impl Probe {
     /// `described` is the program's.
-    pub fn new(device: &wgpu::Device, described: &Described, parts: ProbeParts) -> Probe {
-        let layout = described.layout.as_ref().map(|Layout { groups, immediate_size, .. }| {
+    pub fn new(device: &wgpu::Device, described: &PipelineSource, parts: ProbeParts) -> Probe {
+        let layout = described.layout.as_ref().map(|PipelineLayoutSource { groups, immediate_size, .. }| {
             let entry = |(binding, (visibility, read_only)): (u32, &(wgpu::ShaderStages, bool))| {
                 let ty = wgpu::BufferBindingType::Storage { read_only: *read_only };
                 let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
@@ -174,8 +179,8 @@ impl Probe {
     }
 }
 
-fn layout_of(buffer: &VertexBuffer) -> wgpu::VertexBufferLayout<'_> {
-    let VertexBuffer { stride, step, attributes } = buffer;
+fn layout_of(buffer: &VertexBufferSource) -> wgpu::VertexBufferLayout<'_> {
+    let VertexBufferSource { stride, step, attributes } = buffer;
     wgpu::VertexBufferLayout { array_stride: *stride, step_mode: *step, attributes }
 }
 
@@ -211,12 +216,12 @@ pub(super) fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::Te
 
 /// The two devices' ends that everything here needs.
 #[derive(Debug, Clone, Copy)]
-pub struct Gpu<'a> {
+pub struct ProbeGpu<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
 }
 
-impl Gpu<'_> {
+impl ProbeGpu<'_> {
     /// Does what was encoded; `None` where wgpu refuses it.
     pub fn does(self, encoder: wgpu::CommandEncoder) -> Option<()> {
         accepted(self.device, || {

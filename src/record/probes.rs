@@ -1,11 +1,11 @@
 //! Where the vertices of draws land, and which fragments their shaders keep: draws are done once more, by pipelines that
 //! are made once for all of the program's that differ in nothing that counts here.
 
-use super::probe::{Gpu, Probe, accepted};
+use super::probe::{Probe, ProbeGpu, accepted};
 use super::states::PassState;
-use super::vertices::{Landed, MOST_CORNERS, corners, direct, instances};
+use super::vertices::{MOST_CORNERS, ResolvedVertices, corners, direct, instances};
 use super::{fragments, vertices};
-use crate::wrap::Described;
+use crate::wrap::PipelineSource;
 use crate::wrap::command::DrawCommand;
 use std::sync::Arc;
 
@@ -14,39 +14,39 @@ const MOST_INSTANCES: usize = 1 << 14;
 
 /// How many corners and kept fragments of a frame there is still memory for.
 #[derive(Debug)]
-pub struct Room {
+pub struct ProbeBudget {
     pub corners: u64,
     pub fragments: u64,
 }
 
-impl Default for Room {
+impl Default for ProbeBudget {
     /// Half a gigabyte each.
-    fn default() -> Room {
-        Room { corners: 1 << 25, fragments: 1 << 26 }
+    fn default() -> ProbeBudget {
+        ProbeBudget { corners: 1 << 25, fragments: 1 << 26 }
     }
 }
 
 /// The pipelines that write logs.
 #[derive(Debug, Default)]
 pub struct Probes {
-    of_vertices: Made,
-    of_fragments: Made,
+    of_vertices: ProbePipelines,
+    of_fragments: ProbePipelines,
 }
 
 /// Pipelines of one kind: those of the program that differ in nothing that counts here share one.
 #[derive(Debug, Default)]
-struct Made(Vec<(Arc<Described>, MadeProbe)>);
+struct ProbePipelines(Vec<(Arc<PipelineSource>, ProbeResult)>);
 
 /// Why there is none, in words, is kept as well.
-type MadeProbe = Result<Arc<Probe>, &'static str>;
+type ProbeResult = Result<Arc<Probe>, &'static str>;
 
-impl Made {
+impl ProbePipelines {
     fn get(
         &mut self,
-        described: &Arc<Described>,
-        is_alike: impl Fn(&Described, &Described) -> bool,
+        described: &Arc<PipelineSource>,
+        is_alike: impl Fn(&PipelineSource, &PipelineSource) -> bool,
         make: impl FnOnce() -> Result<Probe, &'static str>,
-    ) -> MadeProbe {
+    ) -> ProbeResult {
         if let Some((_, made)) = self.0.iter().find(|(of, _)| Arc::ptr_eq(of, described) || is_alike(of, described)) {
             return made.clone();
         }
@@ -57,16 +57,16 @@ impl Made {
 }
 
 /// Have two pipelines the same vertices?
-fn have_same_vertices(one: &Described, other: &Described) -> bool {
-    let of = |of: &Described| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
-    let layout = |of: &Described| of.layout.as_ref().map(|layout| (layout.groups.clone(), layout.immediate_size));
+fn have_same_vertices(one: &PipelineSource, other: &PipelineSource) -> bool {
+    let of = |of: &PipelineSource| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
+    let layout = |of: &PipelineSource| of.layout.as_ref().map(|layout| (layout.groups.clone(), layout.immediate_size));
     of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && layout(one) == layout(other)
 }
 
 /// And the same fragments, before any test?
-fn have_same_fragments(one: &Described, other: &Described) -> bool {
-    let bias = |of: &Described| of.depth_stencil.as_ref().map(|state| state.bias);
-    let of = |of: &Described| (of.primitive, of.multisample, bias(of));
+fn have_same_fragments(one: &PipelineSource, other: &PipelineSource) -> bool {
+    let bias = |of: &PipelineSource| of.depth_stencil.as_ref().map(|state| state.bias);
+    let of = |of: &PipelineSource| (of.primitive, of.multisample, bias(of));
     have_same_vertices(one, other) && of(one) == of(other) && one.fragment == other.fragment
 }
 
@@ -82,16 +82,16 @@ impl Probes {
     /// Why that can't be found, in words.
     pub fn landed(
         &mut self,
-        gpu: Gpu<'_>,
+        gpu: ProbeGpu<'_>,
         state: &PassState,
         draw: &DrawCommand,
-        room: &mut Room,
-    ) -> Result<Landed, &'static str> {
+        room: &mut ProbeBudget,
+    ) -> Result<ResolvedVertices, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
         let make = || guarded(gpu.device, || vertices::probe(gpu.device, described));
         let probe = self.of_vertices.get(described, have_same_vertices, make)?;
         let parts = direct(gpu, draw)?;
-        let mut all = Landed::default();
+        let mut all = ResolvedVertices::default();
         for part in &parts {
             let corners = corners(gpu, state, described, part)?;
             let all_corners = corners.len() as u64 * instances(part).len() as u64;
@@ -111,12 +111,12 @@ impl Probes {
     /// Why that can't be found, in words.
     pub fn kept(
         &mut self,
-        gpu: Gpu<'_>,
+        gpu: ProbeGpu<'_>,
         state: &PassState,
         draw: &DrawCommand,
-        landed: &Landed,
+        landed: &ResolvedVertices,
         size: [u32; 2],
-        room: &mut Room,
+        room: &mut ProbeBudget,
     ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
         let make = || guarded(gpu.device, || fragments::probe(gpu.device, described));

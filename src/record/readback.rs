@@ -63,16 +63,16 @@ pub fn format(format: Format) -> RawFormat {
 
 /// A level of a layer of a texture.
 #[derive(Debug, Clone, Copy)]
-pub struct Part<'a> {
+pub struct TextureSubresource<'a> {
     pub texture: &'a wgpu::Texture,
     pub mip: u32,
     pub layer: u32,
 }
 
 /// The pictures of some parts, all of them copied before any is waited for.
-pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[Part<'_>]) -> Vec<RawContents> {
+pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[TextureSubresource<'_>]) -> Vec<RawContents> {
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let copies: Vec<Vec<Copy>> = parts
+    let copies: Vec<Vec<AspectReadback>> = parts
         .iter()
         .map(|part| aspects(part, |aspect, format| part.copy(device, &mut encoder, aspect, format)))
         .collect();
@@ -80,15 +80,18 @@ pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[Part<'_>]) 
     // A failure shows when a range is asked for.
     copies.iter().flatten().for_each(|copy| copy.buffer.map_async(wgpu::MapMode::Read, .., |_| {}));
     let is_done = device.poll(wgpu::PollType::wait_indefinitely()).is_ok();
-    let read = |copies: Vec<Copy>| {
-        let read = copies.iter().filter(|_| is_done).filter_map(Copy::read);
+    let read = |copies: Vec<AspectReadback>| {
+        let read = copies.iter().filter(|_| is_done).filter_map(AspectReadback::read);
         read.fold(RawContents::default(), RawContents::or)
     };
     copies.into_iter().map(read).collect()
 }
 
 /// What is copied of a part: depth, stencil or colour, each as far as it can be read.
-fn aspects(part: &Part<'_>, mut copy: impl FnMut(wgpu::TextureAspect, RawFormat) -> Option<Copy>) -> Vec<Copy> {
+fn aspects(
+    part: &TextureSubresource<'_>,
+    mut copy: impl FnMut(wgpu::TextureAspect, RawFormat) -> Option<AspectReadback>,
+) -> Vec<AspectReadback> {
     let of = part.texture.format();
     let depth = match of {
         Format::Depth16Unorm => Some(RawFormat::D16),
@@ -103,7 +106,7 @@ fn aspects(part: &Part<'_>, mut copy: impl FnMut(wgpu::TextureAspect, RawFormat)
 }
 
 /// An aspect on its way.
-struct Copy {
+struct AspectReadback {
     buffer: wgpu::Buffer,
     format: RawFormat,
     size: [u32; 2],
@@ -112,15 +115,15 @@ struct Copy {
     stride: usize,
 }
 
-impl Part<'_> {
+impl TextureSubresource<'_> {
     fn copy(
         self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         aspect: wgpu::TextureAspect,
         format: RawFormat,
-    ) -> Option<Copy> {
-        let Part { texture, mip: mip_level, layer } = self;
+    ) -> Option<AspectReadback> {
+        let TextureSubresource { texture, mip: mip_level, layer } = self;
         let can_be_copied = texture.usage().contains(wgpu::TextureUsages::COPY_SRC) && texture.sample_count() == 1;
         if !can_be_copied || texture.dimension() != wgpu::TextureDimension::D2 {
             return None;
@@ -137,19 +140,19 @@ impl Part<'_> {
             wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
-        Some(Copy { buffer, format, size: [width, height], row, stride })
+        Some(AspectReadback { buffer, format, size: [width, height], row, stride })
     }
 }
 
-impl Copy {
+impl AspectReadback {
     fn read(&self) -> Option<RawContents> {
-        let Copy { buffer, format, size, row, stride } = self;
+        let AspectReadback { buffer, format, size, row, stride } = self;
         let mapped = buffer.get_mapped_range(..).ok()?;
         let bytes: Vec<u8> = match row == stride {
             true => mapped.to_vec(),
             false => mapped.chunks_exact(*stride).map(|padded| &padded[..*row]).collect::<Vec<_>>().concat(),
         };
-        let layout = pictures::Layout { bottom_row_first: false, depth_above_stencil: false };
+        let layout = pictures::TexelLayout { bottom_row_first: false, depth_above_stencil: false };
         Some(pictures::read(format, &bytes, *size, layout))
     }
 }

@@ -2,13 +2,13 @@
 
 use super::RecordError;
 use super::probes::Probes;
-use super::replay::Replay;
-use crate::capture::disk::{self, Contents};
-use crate::import::{Converted, convert};
+use super::replay::FrameReplay;
+use crate::capture::disk::{self, FolderContents};
+use crate::import::{ConvertedFrame, convert};
 use crate::progress::Progress;
 use crate::session::{Session, SessionError};
-use crate::wrap::command::Finished;
-use crate::wrap::{Record, Shared};
+use crate::wrap::command::FinishedCommands;
+use crate::wrap::{CallRecorder, SharedDevice};
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 /// Frames that were asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Wish {
+struct FrameRequest {
     folder: PathBuf,
     /// Of those that begin from now on, counted from 0.
     frames: Range<u32>,
@@ -29,28 +29,28 @@ struct Wish {
     begun: u32,
 }
 
-impl Wish {
-    fn one(folder: PathBuf, number: u32) -> Wish {
-        Wish { folder, frames: number..number.saturating_add(1), is_series: false, begun: 0 }
+impl FrameRequest {
+    fn one(folder: PathBuf, number: u32) -> FrameRequest {
+        FrameRequest { folder, frames: number..number.saturating_add(1), is_series: false, begun: 0 }
     }
 
-    fn series(folder: PathBuf, frames: Range<u32>) -> Wish {
-        Wish { folder, frames, is_series: true, begun: 0 }
+    fn series(folder: PathBuf, frames: Range<u32>) -> FrameRequest {
+        FrameRequest { folder, frames, is_series: true, begun: 0 }
     }
 
     /// Of `DIR`, `DIR:N` or `DIR:A..B`.
-    fn of(text: &str) -> Wish {
+    fn of(text: &str) -> FrameRequest {
         let parted = text.rsplit_once(':');
         let one = || {
             let (folder, number) = parted?;
-            Some(Wish::one(folder.into(), number.parse().ok()?))
+            Some(FrameRequest::one(folder.into(), number.parse().ok()?))
         };
         let series = || {
             let (folder, frames) = parted?;
             let (from, to) = frames.split_once("..")?;
-            Some(Wish::series(folder.into(), from.parse().ok()?..to.parse().ok()?))
+            Some(FrameRequest::series(folder.into(), from.parse().ok()?..to.parse().ok()?))
         };
-        one().or_else(series).unwrap_or_else(|| Wish::one(text.into(), 0))
+        one().or_else(series).unwrap_or_else(|| FrameRequest::one(text.into(), 0))
     }
 
     /// A frame begins: where it is recorded to, if it is.
@@ -67,15 +67,15 @@ impl Wish {
 }
 
 /// The wish of the environment, which the first device takes that encodes something.
-fn of_environment() -> Option<Wish> {
+fn of_environment() -> Option<FrameRequest> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let text = std::env::var(super::VARIABLE).ok().filter(|text| !text.is_empty())?;
-    (!TAKEN.swap(true, Ordering::Relaxed)).then(|| Wish::of(&text))
+    (!TAKEN.swap(true, Ordering::Relaxed)).then(|| FrameRequest::of(&text))
 }
 
 /// What recording a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Cost {
+pub struct RecordingCost {
     /// Draws that were done one by one.
     pub draws: usize,
     /// Time that the program would not have spent otherwise: doing each submission in parts, computing the frame anew,
@@ -85,31 +85,31 @@ pub struct Cost {
     pub bytes: u64,
 }
 
-impl fmt::Display for Cost {
+impl fmt::Display for RecordingCost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Cost { draws, time, bytes } = self;
+        let RecordingCost { draws, time, bytes } = self;
         write!(f, "{draws} draws, {:.2} s, {:.1} MB", time.as_secs_f64(), *bytes as f64 / 1e6)
     }
 }
 
 /// What was recorded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recorded {
+pub struct RecordedFrame {
     /// The frame in our words: plan, pictures, scene and lights as far as they were found.
-    pub frame: Converted,
+    pub frame: ConvertedFrame,
     /// Where it was written.
     pub folder: PathBuf,
     /// What that took.
-    pub cost: Cost,
+    pub cost: RecordingCost,
 }
 
 /// A frame of a series.
 #[derive(Debug)]
-pub struct OfSeries {
+pub struct SeriesFrame {
     /// Where it was to be written.
     pub folder: PathBuf,
     /// What it took, or why it was not written.
-    pub outcome: Result<Cost, RecordError>,
+    pub outcome: Result<RecordingCost, RecordError>,
 }
 
 /// The recording of a device.
@@ -118,43 +118,43 @@ pub struct Recorder {
     is_recording: AtomicBool,
     /// An encoder was made since the last frame ended.
     has_begun: AtomicBool,
-    asked: Mutex<Asked>,
-    stage: Stage,
+    asked: Mutex<PendingRecording>,
+    stage: ReplayTurns,
 }
 
 /// What was asked for, and has not ended. Nothing of wgpu's is called while it is locked.
 #[derive(Debug, Default)]
-struct Asked {
-    wish: Option<Wish>,
-    series: Series,
+struct PendingRecording {
+    wish: Option<FrameRequest>,
+    series: FrameSeries,
 }
 
 /// What lasts from frame to frame of a series.
 #[derive(Debug, Default)]
-struct Series {
+struct FrameSeries {
     number: u64,
-    recorded: Vec<OfSeries>,
-    tools: Tools,
+    recorded: Vec<SeriesFrame>,
+    tools: RecordingTools,
 }
 
 /// What recording a frame needs, and takes time to make.
 #[derive(Debug, Default)]
-struct Tools {
+struct RecordingTools {
     probes: Probes,
     session: Option<Session>,
 }
 
 #[derive(Debug)]
-struct Running {
+struct RunningRecording {
     folder: PathBuf,
-    replay: Replay,
+    replay: FrameReplay,
     time: Duration,
-    end: End,
+    end: RecordingEnd,
 }
 
 /// What ends a recorded frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum RecordingEnd {
     /// A closure that is done.
     Closure,
     /// The program, by showing it or, without a surface, by submitting it. Maybe it is one of a series.
@@ -164,30 +164,30 @@ enum End {
 /// Where a frame is played. Threads take turns; what a thread submits while it has its turn, in a callback of wgpu's, goes
 /// past.
 #[derive(Debug, Default)]
-struct Stage {
-    running: Mutex<Option<Running>>,
+struct ReplayTurns {
+    running: Mutex<Option<RunningRecording>>,
     player: Mutex<Option<ThreadId>>,
 }
 
-impl Stage {
+impl ReplayTurns {
     /// `None` in a callback.
-    fn turn(&self) -> Option<Turn<'_>> {
+    fn turn(&self) -> Option<ReplayTurn<'_>> {
         let thread = std::thread::current().id();
         if *lock(&self.player) == Some(thread) {
             return None;
         }
         let running = lock(&self.running);
         *lock(&self.player) = Some(thread);
-        Some(Turn { running, player: &self.player })
+        Some(ReplayTurn { running, player: &self.player })
     }
 }
 
-struct Turn<'a> {
-    running: MutexGuard<'a, Option<Running>>,
+struct ReplayTurn<'a> {
+    running: MutexGuard<'a, Option<RunningRecording>>,
     player: &'a Mutex<Option<ThreadId>>,
 }
 
-impl Drop for Turn<'_> {
+impl Drop for ReplayTurn<'_> {
     fn drop(&mut self) {
         *lock(self.player) = None;
     }
@@ -195,19 +195,19 @@ impl Drop for Turn<'_> {
 
 /// A frame that a closure draws: recorded until it ends, or given up where the closure panics.
 #[derive(Debug)]
-pub struct OfClosure<'a>(&'a Recorder);
+pub struct ClosureFrame<'a>(&'a Recorder);
 
-impl OfClosure<'_> {
+impl ClosureFrame<'_> {
     /// Writes what was recorded.
-    pub fn end(self, shared: &Shared) -> Result<Recorded, RecordError> {
-        let running = self.0.take(|running| running.end == End::Closure).ok_or(RecordError::Busy)?;
-        running.write(shared, &mut Tools::default())
+    pub fn end(self, shared: &SharedDevice) -> Result<RecordedFrame, RecordError> {
+        let running = self.0.take(|running| running.end == RecordingEnd::Closure).ok_or(RecordError::Busy)?;
+        running.write(shared, &mut RecordingTools::default())
     }
 }
 
-impl Drop for OfClosure<'_> {
+impl Drop for ClosureFrame<'_> {
     fn drop(&mut self) {
-        drop(self.0.take(|running| running.end == End::Closure));
+        drop(self.0.take(|running| running.end == RecordingEnd::Closure));
     }
 }
 
@@ -217,13 +217,17 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Recorder {
     /// Wishes for the next frame that begins.
-    pub fn wish(&self, shared: &Shared, folder: PathBuf) -> Result<(), RecordError> {
-        self.ask(shared, |_| Wish::one(folder, 0))
+    pub fn wish(&self, shared: &SharedDevice, folder: PathBuf) -> Result<(), RecordError> {
+        self.ask(shared, |_| FrameRequest::one(folder, 0))
     }
 
-    fn ask(&self, shared: &Shared, wish: impl FnOnce(&mut Series) -> Wish) -> Result<(), RecordError> {
+    fn ask(
+        &self,
+        shared: &SharedDevice,
+        wish: impl FnOnce(&mut FrameSeries) -> FrameRequest,
+    ) -> Result<(), RecordError> {
         let mut asked = lock(&self.asked);
-        let Asked { wish: asked, series } = &mut *asked;
+        let PendingRecording { wish: asked, series } = &mut *asked;
         if asked.is_some() {
             return Err(RecordError::Busy);
         }
@@ -237,20 +241,20 @@ impl Recorder {
     }
 
     /// Wishes for each frame that begins from now on.
-    pub fn start_series(&self, shared: &Shared, folder: PathBuf) -> Result<(), RecordError> {
+    pub fn start_series(&self, shared: &SharedDevice, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |series| {
-            *series = Series { number: series.number + 1, ..Series::default() };
-            Wish::series(folder, 0..u32::MAX)
+            *series = FrameSeries { number: series.number + 1, ..FrameSeries::default() };
+            FrameRequest::series(folder, 0..u32::MAX)
         })
     }
 
     /// No further frame is wished for; those of the series that are written.
-    pub fn stop_series(&self) -> Vec<OfSeries> {
+    pub fn stop_series(&self) -> Vec<SeriesFrame> {
         let mut asked = lock(&self.asked);
         asked.wish.take_if(|wish| wish.is_series);
         // A frame that goes on is of no series from now on.
         let number = asked.series.number + 1;
-        std::mem::replace(&mut asked.series, Series { number, ..Series::default() }).recorded
+        std::mem::replace(&mut asked.series, FrameSeries { number, ..FrameSeries::default() }).recorded
     }
 
     /// A frame begins: is it recorded?
@@ -260,7 +264,7 @@ impl Recorder {
             return;
         }
         let mut asked = lock(&self.asked);
-        let Asked { wish, series } = &mut *asked;
+        let PendingRecording { wish, series } = &mut *asked;
         if wish.is_none() {
             *wish = of_environment();
         }
@@ -270,28 +274,28 @@ impl Recorder {
         let Some(folder) = folder else { return };
         let probes = of_series.map(|_| std::mem::take(&mut series.tools.probes)).unwrap_or_default();
         drop(asked);
-        self.start(&mut turn, folder, probes, End::Frame(of_series));
+        self.start(&mut turn, folder, probes, RecordingEnd::Frame(of_series));
     }
 
-    fn start(&self, turn: &mut Turn<'_>, folder: PathBuf, probes: Probes, end: End) {
-        *turn.running = Some(Running { folder, replay: Replay::with(probes), time: Duration::ZERO, end });
+    fn start(&self, turn: &mut ReplayTurn<'_>, folder: PathBuf, probes: Probes, end: RecordingEnd) {
+        *turn.running = Some(RunningRecording { folder, replay: FrameReplay::with(probes), time: Duration::ZERO, end });
         self.has_begun.store(true, Ordering::Release);
         self.is_recording.store(true, Ordering::Release);
     }
 
     /// Begins a frame that a closure draws.
-    pub fn begin(&self, folder: PathBuf) -> Result<OfClosure<'_>, RecordError> {
+    pub fn begin(&self, folder: PathBuf) -> Result<ClosureFrame<'_>, RecordError> {
         let mut turn = self.stage.turn().ok_or(RecordError::Busy)?;
         if turn.running.is_some() {
             return Err(RecordError::Busy);
         }
         disk::check_target(&folder, false)?;
-        self.start(&mut turn, folder, Probes::default(), End::Closure);
-        Ok(OfClosure(self))
+        self.start(&mut turn, folder, Probes::default(), RecordingEnd::Closure);
+        Ok(ClosureFrame(self))
     }
 
     /// The frame that is recorded, if it ends so.
-    fn take(&self, ends: impl FnOnce(&Running) -> bool) -> Option<Running> {
+    fn take(&self, ends: impl FnOnce(&RunningRecording) -> bool) -> Option<RunningRecording> {
         let mut turn = self.stage.turn()?;
         let running = turn.running.take_if(|running| ends(running));
         if turn.running.is_none() {
@@ -302,15 +306,15 @@ impl Recorder {
     }
 
     /// A frame ends that is recorded, or one that is not and has drawn.
-    fn frame_ends(&self, shared: &Shared) {
+    fn frame_ends(&self, shared: &SharedDevice) {
         // A submission that draws nothing, such as an upload, is no frame.
-        let running = self.take(|running| running.end != End::Closure && running.replay.has_drawn());
+        let running = self.take(|running| running.end != RecordingEnd::Closure && running.replay.has_drawn());
         let Some(running) = running else { return };
         let (folder, end) = (running.folder.clone(), running.end);
-        let is_of = |series: &Series| end == End::Frame(Some(series.number));
+        let is_of = |series: &FrameSeries| end == RecordingEnd::Frame(Some(series.number));
         let mut tools = {
             let mut asked = lock(&self.asked);
-            if is_of(&asked.series) { std::mem::take(&mut asked.series.tools) } else { Tools::default() }
+            if is_of(&asked.series) { std::mem::take(&mut asked.series.tools) } else { RecordingTools::default() }
         };
         let outcome = running.write(shared, &mut tools).map(|recorded| recorded.cost);
         match &outcome {
@@ -326,13 +330,17 @@ impl Recorder {
         if asked.wish.is_some() {
             asked.series.tools = tools;
         }
-        asked.series.recorded.push(OfSeries { folder, outcome });
+        asked.series.recorded.push(SeriesFrame { folder, outcome });
     }
 }
 
-impl Tools {
+impl RecordingTools {
     /// Computes each draw anew, and notes where that differs.
-    fn hold_against_itself(&mut self, of: &mut Converted, adapter: &wgpu::AdapterInfo) -> Result<(), SessionError> {
+    fn hold_against_itself(
+        &mut self,
+        of: &mut ConvertedFrame,
+        adapter: &wgpu::AdapterInfo,
+    ) -> Result<(), SessionError> {
         let session = match &mut self.session {
             Some(session) => session,
             none => none.insert(Session::new(Some(&adapter.name))?),
@@ -342,9 +350,9 @@ impl Tools {
     }
 }
 
-impl Running {
-    fn write(self, shared: &Shared, tools: &mut Tools) -> Result<Recorded, RecordError> {
-        let Running { folder, replay, mut time, .. } = self;
+impl RunningRecording {
+    fn write(self, shared: &SharedDevice, tools: &mut RecordingTools) -> Result<RecordedFrame, RecordError> {
+        let RunningRecording { folder, replay, mut time, .. } = self;
         let begin = Instant::now();
         let adapter = shared.adapter.get_info();
         let draws = replay.draws();
@@ -361,11 +369,11 @@ impl Running {
         time += begin.elapsed();
         let bytes = std::fs::read_dir(&folder).into_iter().flatten().flatten();
         let bytes = bytes.filter_map(|file| Some(file.metadata().ok()?.len())).sum();
-        Ok(Recorded { frame: converted, folder, cost: Cost { draws, time, bytes } })
+        Ok(RecordedFrame { frame: converted, folder, cost: RecordingCost { draws, time, bytes } })
     }
 }
 
-impl Record for Recorder {
+impl CallRecorder for Recorder {
     fn is_recording(&self) -> bool {
         // An encoder asks: the first since the last frame begins the next.
         if !self.has_begun.swap(true, Ordering::AcqRel) {
@@ -374,11 +382,11 @@ impl Record for Recorder {
         self.is_recording.load(Ordering::Acquire)
     }
 
-    fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex {
+    fn submit(&self, shared: &SharedDevice, buffers: Vec<FinishedCommands>) -> wgpu::SubmissionIndex {
         let has_passes = buffers.iter().any(|finished| finished.has_passes);
         let mut turn = if self.is_recording.load(Ordering::Acquire) { self.stage.turn() } else { None };
         let index = match turn.as_mut().and_then(|turn| turn.running.as_mut()) {
-            Some(Running { replay, time, .. }) => {
+            Some(RunningRecording { replay, time, .. }) => {
                 let begin = Instant::now();
                 let index = replay.submit(&shared.device, &shared.queue, buffers);
                 *time += begin.elapsed();
@@ -396,14 +404,14 @@ impl Record for Recorder {
         index
     }
 
-    fn presented(&self, shared: &Shared) {
+    fn presented(&self, shared: &SharedDevice) {
         self.frame_ends(shared);
     }
 }
 
-fn write(frame: &Converted, folder: &Path) -> Result<(), RecordError> {
-    let Converted { plan, capture, scene, .. } = frame;
-    disk::write(Contents { capture, plan: Some(plan), scene: scene.as_ref() }, folder, false)?;
+fn write(frame: &ConvertedFrame, folder: &Path) -> Result<(), RecordError> {
+    let ConvertedFrame { plan, capture, scene, .. } = frame;
+    disk::write(FolderContents { capture, plan: Some(plan), scene: scene.as_ref() }, folder, false)?;
     Ok(())
 }
 
@@ -413,25 +421,25 @@ mod tests {
 
     #[test]
     fn a_wish_names_a_folder_and_maybe_frames() {
-        let one = |folder: &str, number| Wish::one(folder.into(), number);
-        assert_eq!(Wish::of("out"), one("out", 0));
-        assert_eq!(Wish::of("out:12"), one("out", 12));
-        assert_eq!(Wish::of("out:3..7"), Wish::series("out".into(), 3..7));
+        let one = |folder: &str, number| FrameRequest::one(folder.into(), number);
+        assert_eq!(FrameRequest::of("out"), one("out", 0));
+        assert_eq!(FrameRequest::of("out:12"), one("out", 12));
+        assert_eq!(FrameRequest::of("out:3..7"), FrameRequest::series("out".into(), 3..7));
         // A drive, or a folder with a colon or points in its name.
-        assert_eq!(Wish::of("C:/out"), one("C:/out", 0));
-        assert_eq!(Wish::of("a:b:3"), one("a:b", 3));
-        assert_eq!(Wish::of("a:../b"), one("a:../b", 0));
+        assert_eq!(FrameRequest::of("C:/out"), one("C:/out", 0));
+        assert_eq!(FrameRequest::of("a:b:3"), one("a:b", 3));
+        assert_eq!(FrameRequest::of("a:../b"), one("a:../b", 0));
     }
 
     #[test]
     fn frames_are_counted_as_they_begin() {
-        let folders = |mut wish: Wish| -> Vec<Option<String>> {
+        let folders = |mut wish: FrameRequest| -> Vec<Option<String>> {
             let named = |folder: PathBuf| folder.to_string_lossy().into_owned();
             std::iter::from_fn(|| (!wish.is_over()).then(|| wish.next().map(named))).collect()
         };
-        assert_eq!(folders(Wish::of("out:2")), [None, None, Some("out".to_owned())]);
+        assert_eq!(folders(FrameRequest::of("out:2")), [None, None, Some("out".to_owned())]);
         let numbered = |number: &str| Some(format!("out/frame-{number}"));
-        assert_eq!(folders(Wish::of("out:1..3")), [None, numbered("0001"), numbered("0002")]);
-        assert_eq!(folders(Wish::of("out:3..3")), [None, None, None]);
+        assert_eq!(folders(FrameRequest::of("out:1..3")), [None, numbered("0001"), numbered("0002")]);
+        assert_eq!(folders(FrameRequest::of("out:3..3")), [None, None, None]);
     }
 }

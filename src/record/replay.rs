@@ -1,20 +1,21 @@
 //! A recorded frame done draw by draw, with what each draw left read back.
 
-use super::probe::{Gpu, accepted};
-use super::probes::{Probes, Room};
+use super::probe::{ProbeGpu, accepted};
+use super::probes::{ProbeBudget, Probes};
 use super::states::{self, PassState};
-use super::vertices::Landed;
+use super::vertices::ResolvedVertices;
 use super::{readback, rewrite};
 use crate::import::{
-    Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture, pictures,
+    RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawShaderEffect, RawTarget, RawTexture,
+    RecordedApi, pictures,
 };
-use crate::wrap::command::{Command, DrawCommand, Finished, PassCommand, Targets};
-use crate::wrap::{Described, Part};
+use crate::wrap::command::{DrawCommand, EncoderCommand, FinishedCommands, PassCommand, PassTargets};
+use crate::wrap::{PipelineSource, ViewSubresource};
 use std::collections::{BTreeMap, HashMap};
 
 /// A frame in the making.
 #[derive(Debug, Default)]
-pub struct Replay {
+pub struct FrameReplay {
     textures: HashMap<wgpu::Texture, usize>,
     raw: Vec<RawTexture>,
     of_target: BTreeMap<RawTarget, wgpu::Texture>,
@@ -25,21 +26,21 @@ pub struct Replay {
     groups: Vec<String>,
     limits: Vec<String>,
     probes: Probes,
-    room: Room,
+    room: ProbeBudget,
     draws: usize,
 }
 
 /// What a pass draws into.
 #[derive(Debug, Clone, Default)]
-struct Into {
+struct PassTarget {
     colors: Vec<RawTarget>,
     depth: Option<RawTarget>,
 }
 
-impl Replay {
+impl FrameReplay {
     /// With probes of frames before, if there are any.
-    pub fn with(probes: Probes) -> Replay {
-        Replay { probes, ..Replay::default() }
+    pub fn with(probes: Probes) -> FrameReplay {
+        FrameReplay { probes, ..FrameReplay::default() }
     }
 
     /// How many draws were done yet.
@@ -57,9 +58,9 @@ impl Replay {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        buffers: Vec<Finished>,
+        buffers: Vec<FinishedCommands>,
     ) -> wgpu::SubmissionIndex {
-        for Finished { inner, list, .. } in buffers {
+        for FinishedCommands { inner, list, .. } in buffers {
             let Some(list) = list else {
                 self.limit("some commands were encoded before the frame began, and are not recorded");
                 queue.submit([inner]);
@@ -71,7 +72,7 @@ impl Replay {
                 let mut encoder = new_encoder(device);
                 commands.iter().for_each(|command| command.encode(&mut encoder));
                 accepted(device, || drop(encoder.finish()))?;
-                self.play(Gpu { device, queue }, commands)
+                self.play(ProbeGpu { device, queue }, commands)
             });
             if played.flatten().is_none() {
                 self.limit("wgpu refused some of its commands");
@@ -89,20 +90,20 @@ impl Replay {
     }
 
     /// `None` where wgpu refuses a part: what follows it is not done.
-    fn play(&mut self, gpu: Gpu<'_>, commands: Vec<Command>) -> Option<()> {
+    fn play(&mut self, gpu: ProbeGpu<'_>, commands: Vec<EncoderCommand>) -> Option<()> {
         let mut pending = new_encoder(gpu.device);
         let depth = self.groups.len();
         for command in commands {
             match command {
-                Command::PushGroup(name) => self.groups.push(name),
-                Command::PopGroup => drop(self.groups.pop()),
-                Command::Encode(_) => command.encode(&mut pending),
-                Command::ComputePass { ref label, .. } => {
+                EncoderCommand::PushGroup(name) => self.groups.push(name),
+                EncoderCommand::PopGroup => drop(self.groups.pop()),
+                EncoderCommand::Encode(_) => command.encode(&mut pending),
+                EncoderCommand::ComputePass { ref label, .. } => {
                     command.encode(&mut pending);
                     let name = label.clone().unwrap_or_else(|| "compute pass".into());
-                    self.event(name, RawKind::Compute, &Into::default());
+                    self.event(name, RawKind::Compute, &PassTarget::default());
                 }
-                Command::RenderPass(..) => {
+                EncoderCommand::RenderPass(..) => {
                     gpu.does(std::mem::replace(&mut pending, new_encoder(gpu.device)))?;
                     self.pass(gpu, &command)?;
                 }
@@ -113,8 +114,8 @@ impl Replay {
     }
 
     /// A pass in as many parts as it has draws, where it can be taken apart.
-    fn pass(&mut self, gpu: Gpu<'_>, whole: &Command) -> Option<()> {
-        let Command::RenderPass(targets, commands) = whole else { return Some(()) };
+    fn pass(&mut self, gpu: ProbeGpu<'_>, whole: &EncoderCommand) -> Option<()> {
+        let EncoderCommand::RenderPass(targets, commands) = whole else { return Some(()) };
         let into = self.targets(gpu, targets);
         let name = targets.label.clone().unwrap_or_else(|| "render pass".to_owned());
         let depth = self.groups.len();
@@ -177,14 +178,19 @@ impl Replay {
     }
 
     /// The targets of a pass; what they hold is read where they are met for the first time.
-    fn targets(&mut self, gpu: Gpu<'_>, targets: &Targets) -> Into {
+    fn targets(&mut self, gpu: ProbeGpu<'_>, targets: &PassTargets) -> PassTarget {
         let colors = targets.colors.iter().flatten();
         let colors: Vec<RawTarget> = colors.map(|color| self.target(gpu, color.view.texture(), color.part)).collect();
         let depth = targets.depth_stencil.as_ref();
-        Into { colors, depth: depth.map(|depth| self.target(gpu, depth.view.texture(), depth.part)) }
+        PassTarget { colors, depth: depth.map(|depth| self.target(gpu, depth.view.texture(), depth.part)) }
     }
 
-    fn target(&mut self, gpu: Gpu<'_>, texture: &wgpu::Texture, Part { mip, layer }: Part) -> RawTarget {
+    fn target(
+        &mut self,
+        gpu: ProbeGpu<'_>,
+        texture: &wgpu::Texture,
+        ViewSubresource { mip, layer }: ViewSubresource,
+    ) -> RawTarget {
         let index = *self.textures.entry(texture.clone()).or_insert_with(|| {
             self.raw.push(RawTexture {
                 name: format!("texture {}", self.raw.len() + 1),
@@ -204,8 +210,9 @@ impl Replay {
     }
 
     /// What targets hold, each of which has been met; rows that stay are in the memory of what it held before.
-    fn read(&mut self, gpu: Gpu<'_>, targets: &[RawTarget]) -> Vec<RawContents> {
-        let part = |RawTarget { mip, layer, .. }: RawTarget, texture| readback::Part { texture, mip, layer };
+    fn read(&mut self, gpu: ProbeGpu<'_>, targets: &[RawTarget]) -> Vec<RawContents> {
+        let part =
+            |RawTarget { mip, layer, .. }: RawTarget, texture| readback::TextureSubresource { texture, mip, layer };
         let met: Vec<_> =
             targets.iter().filter_map(|target| Some((*target, self.of_target.get(target)?.clone()))).collect();
         let parts: Vec<_> = met.iter().map(|(target, texture)| part(*target, texture)).collect();
@@ -222,7 +229,7 @@ impl Replay {
         all
     }
 
-    fn event(&mut self, name: String, kind: RawKind, into: &Into) {
+    fn event(&mut self, name: String, kind: RawKind, into: &PassTarget) {
         let id = self.events.len() as u32 + 1;
         let (groups, after) = (self.groups.clone(), RawContents::default());
         let (color_targets, depth_target) = (into.colors.clone(), into.depth);
@@ -230,7 +237,7 @@ impl Replay {
     }
 
     /// An event, with what it left.
-    fn after(&mut self, gpu: Gpu<'_>, name: String, kind: RawKind, into: &Into) {
+    fn after(&mut self, gpu: ProbeGpu<'_>, name: String, kind: RawKind, into: &PassTarget) {
         self.event(name, kind, into);
         let targets: Vec<RawTarget> = into.depth.into_iter().chain(into.colors.first().copied()).collect();
         let after = self.read(gpu, &targets).into_iter().fold(RawContents::default(), RawContents::or);
@@ -239,12 +246,12 @@ impl Replay {
         }
     }
 
-    fn draw(&mut self, gpu: Gpu<'_>, targets: &Targets, state: &PassState, draw: &DrawCommand) -> RawDraw {
+    fn draw(&mut self, gpu: ProbeGpu<'_>, targets: &PassTargets, state: &PassState, draw: &DrawCommand) -> RawDraw {
         let landed = self.probes.landed(gpu, state, draw, &mut self.room).unwrap_or_else(|why| {
             self.limit(&format!("a draw has states alone: {why}"));
-            Landed::default()
+            ResolvedVertices::default()
         });
-        let size = |view: &wgpu::TextureView, part: Part| {
+        let size = |view: &wgpu::TextureView, part: ViewSubresource| {
             [view.texture().width(), view.texture().height()].map(|side| (side >> part.mip).max(1))
         };
         let of_color = targets.colors.iter().flatten().next().map(|color| size(&color.view, color.part));
@@ -260,12 +267,12 @@ impl Replay {
         // What is not followed has no fragments to tell apart.
         let is_followed =
             !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
-        let is_asked = is_followed && fragment.may_discard == RawMay::Yes;
+        let is_asked = is_followed && fragment.may_discard == RawShaderEffect::Yes;
         let kept =
             is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size, &mut self.room)).and_then(|kept| {
                 kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
             });
-        let Landed { positions, triangles, instances } = landed;
+        let ResolvedVertices { positions, triangles, instances } = landed;
         RawDraw {
             topology: described.map_or(crate::import::RawTopology::Other, states::topology),
             positions,
@@ -287,7 +294,7 @@ impl Replay {
         let program = std::env::current_exe().ok();
         let program = program.and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
         let frame = RawFrame {
-            api: Api::Wgpu,
+            api: RecordedApi::Wgpu,
             adapter: adapter.name.clone(),
             recorder: format!("stencilscope {}", env!("CARGO_PKG_VERSION")),
             program,
@@ -306,13 +313,13 @@ fn new_encoder(device: &wgpu::Device) -> wgpu::CommandEncoder {
 
 const CLIPS: &str = "a draw is cut by planes of its shader's, which are not followed";
 
-fn clips(described: &Described) -> bool {
+fn clips(described: &PipelineSource) -> bool {
     let stage = &described.vertex;
     stage.source.module().is_some_and(|module| rewrite::clips(&module, stage.entry_point.as_deref()))
 }
 
 /// What a pipeline does that is not followed, in words.
-fn unlike(described: &Described) -> Vec<&'static str> {
+fn unlike(described: &PipelineSource) -> Vec<&'static str> {
     let all = if described.multisample.count >= 64 { u64::MAX } else { (1 << described.multisample.count) - 1 };
     let masks = described.multisample.mask & all != all;
     let masks = masks.then_some("a draw leaves out samples by a mask, which is not followed");
@@ -323,7 +330,8 @@ fn unlike(described: &Described) -> Vec<&'static str> {
         .collect()
 }
 
-const UNKNOWN: RawFragment = RawFragment { may_discard: RawMay::Unknown, writes_depth: RawMay::Unknown };
+const UNKNOWN: RawFragment =
+    RawFragment { may_discard: RawShaderEffect::Unknown, writes_depth: RawShaderEffect::Unknown };
 
 /// Of a draw without a pipeline, which wgpu refuses.
 fn no_shape() -> crate::import::RawShape {
@@ -339,17 +347,17 @@ fn no_shape() -> crate::import::RawShape {
 }
 
 /// What a pipeline's fragment shader may do.
-fn fragment(described: &Described) -> RawFragment {
+fn fragment(described: &PipelineSource) -> RawFragment {
     let Some(stage) = &described.fragment else {
-        return RawFragment { may_discard: RawMay::No, writes_depth: RawMay::No };
+        return RawFragment { may_discard: RawShaderEffect::No, writes_depth: RawShaderEffect::No };
     };
     let module = stage.source.module();
     let Some(found) = module.and_then(|module| rewrite::fragment(&module, stage.entry_point.as_deref())) else {
         return UNKNOWN;
     };
-    let may = |does: bool| if does { RawMay::Yes } else { RawMay::No };
+    let may = |does: bool| if does { RawShaderEffect::Yes } else { RawShaderEffect::No };
     let may_discard = match found.masks {
-        true => RawMay::Unknown,
+        true => RawShaderEffect::Unknown,
         false => may(found.discards || described.multisample.alpha_to_coverage_enabled),
     };
     RawFragment { may_discard, writes_depth: may(found.writes_depth) }

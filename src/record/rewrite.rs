@@ -30,7 +30,7 @@ pub const FRAGMENT_RECORD: u64 = 8;
 
 /// A module with an entry point that writes a log.
 #[derive(Debug)]
-pub struct Logging {
+pub struct LoggingModule {
     pub module: Module,
     pub entry_point: String,
     /// Group and binding of what the entry point reads.
@@ -41,7 +41,7 @@ pub struct Logging {
 ///
 /// # Errors
 /// Why it can't be rewritten.
-pub fn vertex_log(module: &Module, name: Option<&str>, group: u32) -> Result<Logging, &'static str> {
+pub fn vertex_log(module: &Module, name: Option<&str>, group: u32) -> Result<LoggingModule, &'static str> {
     let entry = entry_of(module, ShaderStage::Vertex, name).ok_or("its shader has no such vertex entry point")?;
     let before = used(module, entry)?;
     if before.writes {
@@ -72,7 +72,7 @@ pub fn vertex_bindings(module: &Module, name: Option<&str>) -> Result<BTreeSet<(
 ///
 /// # Errors
 /// Why it can't be rewritten.
-pub fn fragment_log(module: &Module, name: Option<&str>, group: u32) -> Result<Logging, &'static str> {
+pub fn fragment_log(module: &Module, name: Option<&str>, group: u32) -> Result<LoggingModule, &'static str> {
     let entry = entry_of(module, ShaderStage::Fragment, name).ok_or("its shader has no such fragment entry point")?;
     let before = used(module, entry)?;
     if before.writes {
@@ -97,16 +97,16 @@ fn entry_of<'a>(module: &'a Module, stage: ShaderStage, name: Option<&str>) -> O
 fn logging(
     module: &Module,
     entry: &EntryPoint,
-    before: Used,
+    before: UsedBindings,
     rewrite: impl FnOnce(&mut Module, &Function) -> Option<Function>,
-) -> Option<Logging> {
+) -> Option<LoggingModule> {
     let (mut module, mut entry) = (module.clone(), entry.clone());
     module.entry_points.clear();
     entry.function = rewrite(&mut module, &entry.function)?;
     let entry_point = entry.name.clone();
     module.entry_points.push(entry);
     validated(&module).ok()?;
-    Some(Logging { module, entry_point, bindings: before.bindings })
+    Some(LoggingModule { module, entry_point, bindings: before.bindings })
 }
 
 fn validated(module: &Module) -> Result<naga::valid::ModuleInfo, Box<naga::WithSpan<naga::valid::ValidationError>>> {
@@ -114,17 +114,17 @@ fn validated(module: &Module) -> Result<naga::valid::ModuleInfo, Box<naga::WithS
     naga::valid::Validator::new(flags, capabilities).validate(module).map_err(Box::new)
 }
 
-struct Used {
+struct UsedBindings {
     bindings: BTreeSet<(u32, u32)>,
     writes: bool,
 }
 
 /// What an entry point reads and writes.
-fn used(module: &Module, entry: &EntryPoint) -> Result<Used, &'static str> {
+fn used(module: &Module, entry: &EntryPoint) -> Result<UsedBindings, &'static str> {
     let info = validated(module).map_err(|_| "its shader is not valid")?;
     let index = module.entry_points.iter().position(|one| one.name == entry.name && one.stage == entry.stage);
     let info = info.get_entry_point(index.ok_or("its shader has no such entry point")?);
-    let mut used = Used { bindings: BTreeSet::new(), writes: false };
+    let mut used = UsedBindings { bindings: BTreeSet::new(), writes: false };
     for (handle, variable) in module.global_variables.iter() {
         let usage = info[handle];
         if let (false, Some(binding)) = (usage.is_empty(), variable.binding) {
@@ -167,7 +167,7 @@ fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], reco
     let access = StorageAccess::LOAD | StorageAccess::STORE;
     let variable = global(module, "stencilscope_log", access, [group, 0], log);
     let mut function = Function { name: Some("stencilscope_note".into()), arguments, ..Function::default() };
-    let mut code = Code { expressions: &mut function.expressions, body: Block::new() };
+    let mut code = FunctionCode { expressions: &mut function.expressions, body: Block::new() };
     let components = (0..fields.len() as u32).map(|index| code.plain(Expression::FunctionArgument(index))).collect();
     let log = code.plain(Expression::GlobalVariable(variable));
     let one = code.plain(Expression::Literal(Literal::U32(1)));
@@ -208,12 +208,12 @@ fn global(
 }
 
 /// A function's code in the making.
-struct Code<'a> {
+struct FunctionCode<'a> {
     expressions: &'a mut Arena<Expression>,
     body: Block,
 }
 
-impl Code<'_> {
+impl FunctionCode<'_> {
     /// An expression that is there without being computed.
     fn plain(&mut self, expression: Expression) -> Handle<Expression> {
         self.expressions.append(expression, Span::UNDEFINED)
@@ -234,10 +234,10 @@ impl Code<'_> {
     }
 
     /// One of the arguments, or a member of one.
-    fn given(&mut self, arguments: &[Handle<Expression>], place: Place) -> Handle<Expression> {
+    fn given(&mut self, arguments: &[Handle<Expression>], place: BuiltinPlace) -> Handle<Expression> {
         match place {
-            Place::Whole(index) => arguments[index as usize],
-            Place::Member(base, index) => {
+            BuiltinPlace::Whole(index) => arguments[index as usize],
+            BuiltinPlace::Member(base, index) => {
                 self.emitted(Expression::AccessIndex { base: arguments[base as usize], index })
             }
         }
@@ -249,19 +249,25 @@ impl Code<'_> {
 }
 
 /// Where an entry point has a built-in value: an argument or result of its own, or a member of one.
-enum Place {
+enum BuiltinPlace {
     Whole(u32),
     Member(u32, u32),
 }
 
-fn place(module: &Module, index: u32, ty: Handle<Type>, binding: Option<&Binding>, wanted: BuiltIn) -> Option<Place> {
+fn place(
+    module: &Module,
+    index: u32,
+    ty: Handle<Type>,
+    binding: Option<&Binding>,
+    wanted: BuiltIn,
+) -> Option<BuiltinPlace> {
     let is_wanted = |binding: Option<&Binding>| matches!(binding, Some(Binding::BuiltIn(of)) if is_same(*of, wanted));
     if is_wanted(binding) {
-        return Some(Place::Whole(index));
+        return Some(BuiltinPlace::Whole(index));
     }
     let TypeInner::Struct { members, .. } = &module.types[ty].inner else { return None };
     let member = members.iter().position(|member| is_wanted(member.binding.as_ref()))?;
-    Some(Place::Member(index, member as u32))
+    Some(BuiltinPlace::Member(index, member as u32))
 }
 
 /// Positions may be invariant, or not.
@@ -285,14 +291,14 @@ fn input(
     wanted: BuiltIn,
     name: &str,
     inner: TypeInner,
-) -> Place {
+) -> BuiltinPlace {
     let found = (0..)
         .zip(&*arguments)
         .find_map(|(index, argument)| place(module, index, argument.ty, argument.binding.as_ref(), wanted));
     found.unwrap_or_else(|| {
         let (name, ty) = (Some(name.to_owned()), add_type(module, inner));
         arguments.push(FunctionArgument { name, ty, binding: Some(Binding::BuiltIn(wanted)) });
-        Place::Whole(arguments.len() as u32 - 1)
+        BuiltinPlace::Whole(arguments.len() as u32 - 1)
     })
 }
 
@@ -306,14 +312,14 @@ fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>
     let numbers =
         numbers.map(|(wanted, name)| input(module, &mut arguments, wanted, name, TypeInner::Scalar(Scalar::U32)));
     let mut function = Function { name: entry.name.clone(), arguments, result: Some(result), ..Function::default() };
-    let mut code = Code { expressions: &mut function.expressions, body: Block::new() };
+    let mut code = FunctionCode { expressions: &mut function.expressions, body: Block::new() };
     let given = code.arguments(function.arguments.len());
     let made = code.plain(Expression::CallResult(inner));
     let arguments = given[..entry.arguments.len()].to_vec();
     code.push(Statement::Call { function: inner, arguments, result: Some(made) });
     let position = match position {
-        Place::Whole(_) => made,
-        Place::Member(_, index) => code.emitted(Expression::AccessIndex { base: made, index }),
+        BuiltinPlace::Whole(_) => made,
+        BuiltinPlace::Member(_, index) => code.emitted(Expression::AccessIndex { base: made, index }),
     };
     let [vertex, instance] = numbers.map(|place| code.given(&given, place));
     code.push(Statement::Call { function: note, arguments: vec![position, vertex, instance], result: None });
@@ -383,7 +389,7 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
     let first = module.types.insert(first, Span::UNDEFINED);
     let first = global(module, "stencilscope_first", StorageAccess::LOAD, [group, 1], first);
     let mut function = Function { name: entry.name.clone(), arguments, ..Function::default() };
-    let mut code = Code { expressions: &mut function.expressions, body: Block::new() };
+    let mut code = FunctionCode { expressions: &mut function.expressions, body: Block::new() };
     let given = code.arguments(function.arguments.len());
     let made = entry.result.as_ref().map(|_| code.plain(Expression::CallResult(inner)));
     let arguments = given[..entry.arguments.len()].to_vec();
@@ -414,7 +420,7 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
 
 /// What a fragment shader may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fragment {
+pub struct FragmentEffects {
     pub discards: bool,
     /// It says which samples of a fragment are kept.
     pub masks: bool,
@@ -427,17 +433,17 @@ pub fn clips(module: &Module, name: Option<&str>) -> bool {
     entry.is_some_and(|entry| output(module, entry, BuiltIn::ClipDistances).is_some())
 }
 
-fn output(module: &Module, entry: &EntryPoint, wanted: BuiltIn) -> Option<Place> {
+fn output(module: &Module, entry: &EntryPoint, wanted: BuiltIn) -> Option<BuiltinPlace> {
     let result = entry.function.result.as_ref()?;
     place(module, 0, result.ty, result.binding.as_ref(), wanted)
 }
 
 /// What the fragment entry point of that name, or the only one, may do; `None` where there is no such.
-pub fn fragment(module: &Module, name: Option<&str>) -> Option<Fragment> {
+pub fn fragment(module: &Module, name: Option<&str>) -> Option<FragmentEffects> {
     let entry = entry_of(module, ShaderStage::Fragment, name)?;
     let has = |wanted| output(module, entry, wanted).is_some();
     let discards = kills(module, &entry.function.body, &mut BTreeSet::new());
-    Some(Fragment { discards, masks: has(BuiltIn::SampleMask), writes_depth: has(BuiltIn::FragDepth) })
+    Some(FragmentEffects { discards, masks: has(BuiltIn::SampleMask), writes_depth: has(BuiltIn::FragDepth) })
 }
 
 /// Does a fragment's life end in a block, or in what it calls?
@@ -487,7 +493,8 @@ mod tests {
     #[test]
     fn positions_are_noted_wherever_the_result_has_them() {
         for name in ["structured", "plain"] {
-            let Logging { module, entry_point, bindings } = vertex_log(&module(), Some(name), 2).expect("rewritten");
+            let LoggingModule { module, entry_point, bindings } =
+                vertex_log(&module(), Some(name), 2).expect("rewritten");
             assert_eq!((entry_point.as_str(), bindings), (name, BTreeSet::from([(0, 0)])));
             assert_eq!(module.entry_points.len(), 1);
             let log = module.global_variables.iter().find(|(_, of)| of.binding.is_some_and(|of| of.group == 2));
@@ -500,7 +507,7 @@ mod tests {
     #[test]
     fn kept_fragments_are_noted() {
         for name in ["keeps", "may_drop", "deep", "knows"] {
-            let Logging { module, bindings, .. } = fragment_log(&module(), Some(name), 2).expect("rewritten");
+            let LoggingModule { module, bindings, .. } = fragment_log(&module(), Some(name), 2).expect("rewritten");
             assert_eq!(bindings, BTreeSet::from([(0, 0)]));
             assert!(module.entry_points[0].function.result.is_none());
             validated(&module).expect("valid");
@@ -521,10 +528,10 @@ mod tests {
     #[test]
     fn a_discard_is_found_in_what_a_shader_calls() {
         let found = |name| fragment(&module(), Some(name));
-        assert_eq!(found("keeps"), Some(Fragment { discards: false, masks: false, writes_depth: false }));
-        assert_eq!(found("may_drop"), Some(Fragment { discards: true, masks: false, writes_depth: false }));
-        assert_eq!(found("deep"), Some(Fragment { discards: false, masks: false, writes_depth: true }));
-        assert_eq!(found("masked"), Some(Fragment { discards: false, masks: true, writes_depth: false }));
+        assert_eq!(found("keeps"), Some(FragmentEffects { discards: false, masks: false, writes_depth: false }));
+        assert_eq!(found("may_drop"), Some(FragmentEffects { discards: true, masks: false, writes_depth: false }));
+        assert_eq!(found("deep"), Some(FragmentEffects { discards: false, masks: false, writes_depth: true }));
+        assert_eq!(found("masked"), Some(FragmentEffects { discards: false, masks: true, writes_depth: false }));
         assert_eq!(found("nobody"), None);
     }
 }

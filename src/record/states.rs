@@ -4,7 +4,7 @@ use crate::import::{
     RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawShape, RawStencilFace, RawStencilOperation,
     RawTopology, RawView,
 };
-use crate::wrap::Described;
+use crate::wrap::PipelineSource;
 use crate::wrap::command::PassCommand;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use wgpu::{BlendFactor, BlendOperation, CompareFunction, StencilOperation};
 /// What a pass has been told and still holds.
 #[derive(Debug, Clone, Default)]
 pub struct PassState {
-    held: BTreeMap<Slot, PassCommand>,
+    held: BTreeMap<StateSlot, PassCommand>,
 }
 
 /// What a state is of: the kind, and which of its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Slot {
+enum StateSlot {
     Pipeline,
     BindGroup(u32),
     IndexBuffer,
@@ -31,23 +31,26 @@ enum Slot {
     StencilReference,
 }
 
-impl Slot {
+impl StateSlot {
     /// Is it there after a bundle as it was before?
     fn outlasts_bundles(self) -> bool {
-        matches!(self, Slot::BlendConstant | Slot::Scissor | Slot::Viewport | Slot::StencilReference)
+        matches!(
+            self,
+            StateSlot::BlendConstant | StateSlot::Scissor | StateSlot::Viewport | StateSlot::StencilReference
+        )
     }
 }
 
-fn slot(command: &PassCommand) -> Option<Slot> {
+fn slot(command: &PassCommand) -> Option<StateSlot> {
     Some(match command {
-        PassCommand::Pipeline { .. } => Slot::Pipeline,
-        PassCommand::BindGroup { index, .. } => Slot::BindGroup(*index),
-        PassCommand::IndexBuffer { .. } => Slot::IndexBuffer,
-        PassCommand::VertexBuffer { slot, .. } => Slot::VertexBuffer(*slot),
-        PassCommand::BlendConstant(_) => Slot::BlendConstant,
-        PassCommand::Scissor(_) => Slot::Scissor,
-        PassCommand::Viewport { .. } => Slot::Viewport,
-        PassCommand::StencilReference(_) => Slot::StencilReference,
+        PassCommand::Pipeline { .. } => StateSlot::Pipeline,
+        PassCommand::BindGroup { index, .. } => StateSlot::BindGroup(*index),
+        PassCommand::IndexBuffer { .. } => StateSlot::IndexBuffer,
+        PassCommand::VertexBuffer { slot, .. } => StateSlot::VertexBuffer(*slot),
+        PassCommand::BlendConstant(_) => StateSlot::BlendConstant,
+        PassCommand::Scissor(_) => StateSlot::Scissor,
+        PassCommand::Viewport { .. } => StateSlot::Viewport,
+        PassCommand::StencilReference(_) => StateSlot::StencilReference,
         _ => return None,
     })
 }
@@ -60,7 +63,7 @@ impl PassState {
             PassCommand::Immediates { offset, data } => {
                 for (offset, word) in (*offset..).step_by(4).zip(data.chunks(4)) {
                     let word = PassCommand::Immediates { offset, data: word.to_vec() };
-                    self.held.insert(Slot::Immediates(offset), word);
+                    self.held.insert(StateSlot::Immediates(offset), word);
                 }
             }
             command => {
@@ -75,7 +78,7 @@ impl PassState {
     }
 
     /// A pipeline of another layout finds zeros.
-    fn clear_immediates(&mut self, next: &Arc<Described>) {
+    fn clear_immediates(&mut self, next: &Arc<PipelineSource>) {
         let is_same = self.pipeline().is_some_and(|held| match (&held.layout, &next.layout) {
             (Some(held), Some(next)) => held.real == next.real,
             _ => Arc::ptr_eq(held, next),
@@ -85,7 +88,7 @@ impl PassState {
         }
         // How much a layout of wgpu's own has room for is not known.
         let room = next.layout.as_ref().map_or(0, |layout| layout.immediate_size);
-        self.held.retain(|slot, _| !matches!(slot, Slot::Immediates(offset) if *offset >= room));
+        self.held.retain(|slot, _| !matches!(slot, StateSlot::Immediates(offset) if *offset >= room));
         for command in self.held.values_mut() {
             if let PassCommand::Immediates { data, .. } = command {
                 data.fill(0);
@@ -98,8 +101,8 @@ impl PassState {
         self.held.values()
     }
 
-    pub fn pipeline(&self) -> Option<&Arc<Described>> {
-        match self.held.get(&Slot::Pipeline) {
+    pub fn pipeline(&self) -> Option<&Arc<PipelineSource>> {
+        match self.held.get(&StateSlot::Pipeline) {
             Some(PassCommand::Pipeline { described, .. }) => Some(described),
             _ => None,
         }
@@ -107,14 +110,14 @@ impl PassState {
 
     /// The index buffer, its format, where it begins.
     pub fn index_buffer(&self) -> Option<(&wgpu::Buffer, wgpu::IndexFormat, u64)> {
-        match self.held.get(&Slot::IndexBuffer) {
+        match self.held.get(&StateSlot::IndexBuffer) {
             Some(PassCommand::IndexBuffer { buffer, format, offset, .. }) => Some((buffer, *format, *offset)),
             _ => None,
         }
     }
 
     fn reference(&self) -> u8 {
-        match self.held.get(&Slot::StencilReference) {
+        match self.held.get(&StateSlot::StencilReference) {
             Some(PassCommand::StencilReference(reference)) => *reference as u8,
             _ => 0,
         }
@@ -122,11 +125,11 @@ impl PassState {
 
     /// Where clip space lands in a target of that size.
     pub fn view(&self, [width, height]: [u32; 2]) -> RawView {
-        let (viewport, depth_range) = match self.held.get(&Slot::Viewport) {
+        let (viewport, depth_range) = match self.held.get(&StateSlot::Viewport) {
             Some(PassCommand::Viewport { area, depth }) => (*area, *depth),
             _ => ([0.0, 0.0, width as f32, height as f32], [0.0, 1.0]),
         };
-        let scissor = match self.held.get(&Slot::Scissor) {
+        let scissor = match self.held.get(&StateSlot::Scissor) {
             Some(PassCommand::Scissor(area)) => Some(area.map(|value| value.min(i32::MAX as u32) as i32)),
             _ => None,
         };
@@ -134,7 +137,7 @@ impl PassState {
     }
 
     /// The stencil test, where it does something.
-    pub fn stencil(&self, pipeline: &Described) -> Option<[RawStencilFace; 2]> {
+    pub fn stencil(&self, pipeline: &PipelineSource) -> Option<[RawStencilFace; 2]> {
         let state = &pipeline.depth_stencil.as_ref()?.stencil;
         let face = |face: &wgpu::StencilFaceState| RawStencilFace {
             compare: compare(face.compare),
@@ -150,7 +153,7 @@ impl PassState {
 }
 
 /// Which triangles make fragments; maybe they are cut by planes of the shader's.
-pub fn shape(pipeline: &Described, clip_planes: bool) -> RawShape {
+pub fn shape(pipeline: &PipelineSource, clip_planes: bool) -> RawShape {
     let primitive = &pipeline.primitive;
     let bias = pipeline.depth_stencil.as_ref().map(|state| state.bias).unwrap_or_default();
     RawShape {
@@ -172,7 +175,7 @@ pub fn shape(pipeline: &Described, clip_planes: bool) -> RawShape {
     }
 }
 
-pub fn topology(pipeline: &Described) -> RawTopology {
+pub fn topology(pipeline: &PipelineSource) -> RawTopology {
     match pipeline.primitive.topology {
         wgpu::PrimitiveTopology::PointList => RawTopology::Points,
         wgpu::PrimitiveTopology::LineList | wgpu::PrimitiveTopology::LineStrip => RawTopology::Lines,
@@ -182,14 +185,14 @@ pub fn topology(pipeline: &Described) -> RawTopology {
 }
 
 /// The depth test.
-pub fn depth(pipeline: &Described) -> Option<RawDepth> {
+pub fn depth(pipeline: &PipelineSource) -> Option<RawDepth> {
     let state = pipeline.depth_stencil.as_ref().filter(|state| state.format.has_depth_aspect())?;
     let (compare_with, write) = (state.depth_compare?, state.depth_write_enabled.unwrap_or(false));
     Some(RawDepth { compare: compare(compare_with), write, bounds: false })
 }
 
 /// How the first colour target is written.
-pub fn blend(pipeline: &Described) -> Option<RawBlend> {
+pub fn blend(pipeline: &PipelineSource) -> Option<RawBlend> {
     let target = pipeline.targets.first()?.as_ref()?;
     let write = [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];
     Some(RawBlend {

@@ -1,12 +1,12 @@
 //! Where a draw's vertices land: the draw is done once more into a target of one pixel that nobody looks at, by a shader
 //! that writes it down.
 
-use super::probe::{Gpu, Probe, ProbeParts, ProbeStage, begin, free_group, target};
+use super::probe::{Probe, ProbeGpu, ProbeParts, ProbeStage, begin, free_group, target};
 use super::readback;
-use super::rewrite::{self, HEAD, Logging, RECORD};
+use super::rewrite::{self, HEAD, LoggingModule, RECORD};
 use super::states::{PassState, topology};
 use crate::import::unroll;
-use crate::wrap::Described;
+use crate::wrap::PipelineSource;
 use crate::wrap::command::DrawCommand;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -15,20 +15,20 @@ use std::ops::Range;
 pub const MOST_CORNERS: u64 = 1 << 22;
 /// What a draw's vertices are and how they make triangles, as `RawDraw` has them.
 #[derive(Debug, Default)]
-pub struct Landed {
+pub struct ResolvedVertices {
     pub positions: Vec<[f32; 4]>,
     pub triangles: Vec<[u32; 3]>,
     pub instances: Vec<Range<usize>>,
 }
 
 /// The pipeline that notes where vertices land.
-pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'static str> {
+pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe, &'static str> {
     if !device.features().contains(wgpu::Features::VERTEX_WRITABLE_STORAGE) {
         return Err("vertex shaders can't write to storage on this GPU");
     }
     let module = described.vertex.source.module().ok_or("its vertex shader is in no language that is read")?;
     let group = free_group(device, described, &[&module])?;
-    let Logging { module, entry_point, bindings } =
+    let LoggingModule { module, entry_point, bindings } =
         rewrite::vertex_log(&module, described.vertex.entry_point.as_deref(), group)?;
     let primitive = wgpu::PrimitiveState {
         topology: described.primitive.topology,
@@ -51,12 +51,12 @@ pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'st
 /// Each vertex of each instance, and where it lands.
 pub fn log(
     probe: &Probe,
-    gpu: Gpu<'_>,
+    gpu: ProbeGpu<'_>,
     state: &PassState,
     draw: &DrawCommand,
     corners: u64,
-) -> Result<Log, &'static str> {
-    let Gpu { device, queue } = gpu;
+) -> Result<PositionLog, &'static str> {
+    let ProbeGpu { device, queue } = gpu;
     let instances = instances(draw).len() as u64;
     let room = corners * instances;
     let size = HEAD + RECORD * room.max(1);
@@ -78,14 +78,14 @@ pub fn log(
     drop(pass);
     queue.submit([encoder.finish()]);
     let bytes = readback::buffer(device, queue, &log, 0, size).ok_or("the GPU did not say where its vertices land")?;
-    Log::read(&bytes)
+    PositionLog::read(&bytes)
 }
 
 /// Positions by instance and vertex.
-pub struct Log(HashMap<(u32, u32), [f32; 4]>);
+pub struct PositionLog(HashMap<(u32, u32), [f32; 4]>);
 
-impl Log {
-    fn read(bytes: &[u8]) -> Result<Log, &'static str> {
+impl PositionLog {
+    fn read(bytes: &[u8]) -> Result<PositionLog, &'static str> {
         let (head, records) = bytes.split_at(HEAD as usize);
         let word = |bytes: &[u8], at: usize| bytemuck::pod_read_unaligned::<u32>(&bytes[4 * at..4 * at + 4]);
         let count = word(head, 0) as usize;
@@ -96,17 +96,17 @@ impl Log {
         let read = |record: &[u8]| {
             ((word(record, 5), word(record, 4)), [0, 1, 2, 3].map(|at| f32::from_bits(word(record, at))))
         };
-        Ok(Log(records.take(count).map(read).collect()))
+        Ok(PositionLog(records.take(count).map(read).collect()))
     }
 }
 
-impl Landed {
+impl ResolvedVertices {
     pub fn add(
         &mut self,
-        described: &Described,
+        described: &PipelineSource,
         draw: &DrawCommand,
         corners: &[Option<u32>],
-        Log(log): &Log,
+        PositionLog(log): &PositionLog,
     ) -> Result<(), &'static str> {
         for instance in instances(draw) {
             let mut places: HashMap<u32, u32> = HashMap::new();
@@ -140,7 +140,7 @@ pub fn instances(draw: &DrawCommand) -> Range<u32> {
 }
 
 /// A draw whose numbers may be on the GPU as draws whose numbers are known, and of which none is empty.
-pub fn direct(gpu: Gpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static str> {
+pub fn direct(gpu: ProbeGpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static str> {
     let words = |buffer: &wgpu::Buffer, offset: u64, count: u64| {
         let bytes = readback::buffer(gpu.device, gpu.queue, buffer, offset, 4 * count);
         let bytes = bytes.ok_or("its indirect buffer can't be read")?;
@@ -189,9 +189,9 @@ fn draws_some(draw: &DrawCommand) -> bool {
 
 /// The vertices of a direct draw in the order drawn, `None` where a strip starts again.
 pub fn corners(
-    gpu: Gpu<'_>,
+    gpu: ProbeGpu<'_>,
     state: &PassState,
-    described: &Described,
+    described: &PipelineSource,
     draw: &DrawCommand,
 ) -> Result<Vec<Option<u32>>, &'static str> {
     let (indices, base_vertex) = match draw {

@@ -4,20 +4,20 @@ use crate::plan::{Draw, FramePlan};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A corner by its bits.
-type Corner = [u32; 4];
+type CornerBits = [u32; 4];
 
 /// Open edges of some draws together. What is drawn twice, once for each face, counts once.
 #[derive(Debug, Clone, Default)]
 pub struct OpenEdges {
     /// From and to, and how often more it is run along so than the other way.
-    edges: Vec<([Corner; 2], u32)>,
+    edges: Vec<([CornerBits; 2], u32)>,
 }
 
 impl OpenEdges {
     /// Of draws of a plan.
     pub fn of<'a>(plan: &FramePlan, draws: impl Iterator<Item = &'a Draw>) -> OpenEdges {
-        let mut seen: BTreeSet<[Corner; 3]> = BTreeSet::new();
-        let mut sums: BTreeMap<[Corner; 2], i64> = BTreeMap::new();
+        let mut seen: BTreeSet<[CornerBits; 3]> = BTreeSet::new();
+        let mut sums: BTreeMap<[CornerBits; 2], i64> = BTreeMap::new();
         for draw in draws {
             let mesh = &plan.meshes[draw.mesh.0];
             let range = draw.triangles.start as usize..draw.triangles.end as usize;
@@ -37,7 +37,7 @@ impl OpenEdges {
             }
         }
         let open = sums.into_iter().filter(|([from, to], sum)| from != to && *sum != 0);
-        let edge = |([low, high], sum): ([Corner; 2], i64)| {
+        let edge = |([low, high], sum): ([CornerBits; 2], i64)| {
             (if sum > 0 { [low, high] } else { [high, low] }, sum.unsigned_abs() as u32)
         };
         OpenEdges { edges: open.map(edge).collect() }
@@ -50,8 +50,8 @@ impl OpenEdges {
 
     /// Triangles that close them: of each connected run of edges a fan round its middle.
     pub fn caps(&self) -> Vec<[[f32; 4]; 3]> {
-        let mut root: BTreeMap<Corner, Corner> = BTreeMap::new();
-        fn find(root: &BTreeMap<Corner, Corner>, corner: Corner) -> Corner {
+        let mut root: BTreeMap<CornerBits, CornerBits> = BTreeMap::new();
+        fn find(root: &BTreeMap<CornerBits, CornerBits>, corner: CornerBits) -> CornerBits {
             let mut at = corner;
             while let Some(next) = root.get(&at).filter(|next| **next != at) {
                 at = *next;
@@ -63,8 +63,8 @@ impl OpenEdges {
             root.insert(a, b);
             root.entry(b).or_insert(b);
         }
-        let place = |corner: Corner| corner.map(f32::from_bits);
-        let mut middles: BTreeMap<Corner, [f64; 4]> = BTreeMap::new();
+        let place = |corner: CornerBits| corner.map(f32::from_bits);
+        let mut middles: BTreeMap<CornerBits, [f64; 4]> = BTreeMap::new();
         for ([from, _], _) in &self.edges {
             let middle = middles.entry(find(&root, *from)).or_default();
             middle.iter_mut().zip(place(*from)).for_each(|(sum, value)| *sum += f64::from(value));

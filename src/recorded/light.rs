@@ -5,7 +5,7 @@
 //! a point, and the point that most edges point away from is the light; where most run the same way, it is a direction.
 //! The winner is fitted by least squares over its voters, again and again with a finer measure of who they are.
 
-use super::space::{Space, triangles};
+use super::space::{PassSpace, triangles};
 use crate::plan::{FramePlan, LightId};
 use glam::{DMat3, DVec3, DVec4};
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ pub struct FoundLight {
 
 /// An edge of a volume, as a line.
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct EdgeLine {
     from: DVec3,
     /// Of unit length.
     along: DVec3,
@@ -56,10 +56,10 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
 }
 
 /// Edges that may run away from the light: towards infinity where some do, else all.
-fn lines(plan: &FramePlan, light: LightId) -> Vec<Line> {
+fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
     let (mut infinite, mut finite) = (Vec::new(), BTreeMap::new());
     for pass in plan.passes.iter().filter(|pass| pass.light == Some(light) && plan.is_of_picture(pass)) {
-        let space = Space::new(plan, pass);
+        let space = PassSpace::new(plan, pass);
         for draw in pass.draws.iter().filter(|draw| draw.part.is_of_volume()) {
             let places = space.places(plan, draw);
             for (_, corners) in triangles(plan, draw, &places) {
@@ -68,7 +68,7 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<Line> {
                     let (from, to) = if from.w == 0.0 { (to, from) } else { (from, to) };
                     let along = (to.truncate() - from.truncate() * to.w).try_normalize();
                     let Some(along) = along.filter(|_| from.w != 0.0) else { continue };
-                    let line = Line { from: from.truncate(), along };
+                    let line = EdgeLine { from: from.truncate(), along };
                     if to.w == 0.0 {
                         infinite.push(line);
                     } else {
@@ -84,13 +84,13 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<Line> {
 }
 
 /// Some of them, evenly.
-fn thinned(lines: Vec<Line>) -> Vec<Line> {
+fn thinned(lines: Vec<EdgeLine>) -> Vec<EdgeLine> {
     let step = lines.len().div_ceil(MOST_EDGES).max(1);
     lines.into_iter().step_by(step).collect()
 }
 
 /// Where pairs of lines come nearest to each other, and the ways they run.
-fn candidates(lines: &[Line]) -> Vec<DVec4> {
+fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
     let count = lines.len();
     let mut found = Vec::new();
     // Steps that have no common pattern with how meshes list their edges.
@@ -121,7 +121,7 @@ fn candidates(lines: &[Line]) -> Vec<DVec4> {
 }
 
 /// Lines that point away from the light.
-fn voters(lines: &[Line], position: DVec4, reach: f64) -> impl Iterator<Item = Line> + '_ {
+fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item = EdgeLine> + '_ {
     lines.iter().copied().filter(move |line| {
         let away = (line.from * position.w - position.truncate()).normalize_or_zero();
         line.along.cross(away).length() < reach && (line.along.dot(away) > 0.0 || position.w != 0.0)
@@ -129,7 +129,7 @@ fn voters(lines: &[Line], position: DVec4, reach: f64) -> impl Iterator<Item = L
 }
 
 /// The point nearest to all lines, or their mean way.
-fn fitted(lines: &[Line], position: DVec4) -> Option<DVec4> {
+fn fitted(lines: &[EdgeLine], position: DVec4) -> Option<DVec4> {
     if position.w == 0.0 {
         let towards = -lines.iter().map(|line| line.along).sum::<DVec3>();
         return towards.try_normalize().map(|towards| towards.extend(0.0));
@@ -152,8 +152,8 @@ fn fitted(lines: &[Line], position: DVec4) -> Option<DVec4> {
 mod tests {
     use super::*;
 
-    fn line(from: [f64; 3], along: [f64; 3]) -> Line {
-        Line { from: DVec3::from_array(from), along: DVec3::from_array(along).normalize() }
+    fn line(from: [f64; 3], along: [f64; 3]) -> EdgeLine {
+        EdgeLine { from: DVec3::from_array(from), along: DVec3::from_array(along).normalize() }
     }
 
     #[test]
@@ -163,11 +163,11 @@ mod tests {
             let at = index as f64;
             DVec3::new((at * 1.7).sin() * 4.0, (at * 0.9).cos() * 2.0 - 3.0, -10.0 - (at * 2.3).sin() * 5.0)
         };
-        let mut lines: Vec<Line> =
+        let mut lines: Vec<EdgeLine> =
             (0..40).map(|index| line(corner(index).to_array(), (corner(index) - light).to_array())).collect();
         lines.extend((0..60).map(|index| line(corner(index).to_array(), corner(index * 3 + 1).to_array())));
         let best = candidates(&lines).into_iter().max_by_key(|one| voters(&lines, *one, REACH).count());
-        let fine: Vec<Line> = voters(&lines, best.expect("one"), REACH).collect();
+        let fine: Vec<EdgeLine> = voters(&lines, best.expect("one"), REACH).collect();
         let found = fitted(&fine, best.expect("one")).expect("a light");
         assert!((found.truncate() - light).length() < 1e-6 && found.w == 1.0, "{found}");
     }
@@ -175,7 +175,8 @@ mod tests {
     #[test]
     fn lines_that_run_the_same_way_find_a_direction_towards_the_light() {
         let along = DVec3::new(-1.0, -3.0, 0.5);
-        let mut lines: Vec<Line> = (0..30).map(|index| line([f64::from(index), 0.0, -9.0], along.to_array())).collect();
+        let mut lines: Vec<EdgeLine> =
+            (0..30).map(|index| line([f64::from(index), 0.0, -9.0], along.to_array())).collect();
         lines.extend((0..20).map(|index| line([f64::from(index), 1.0, -5.0], [1.0, f64::from(index), 0.3])));
         let best = candidates(&lines).into_iter().max_by_key(|one| voters(&lines, *one, REACH).count()).expect("one");
         assert!((best - (-along.normalize()).extend(0.0)).length() < 1e-9, "{best}");

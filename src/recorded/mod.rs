@@ -23,4 +23,4 @@ pub use ends::far_ends;
 pub use labels::labels;
 pub use light::{FoundLight, light};
 pub use scene::{casters, scene};
-pub use space::Space;
+pub use space::PassSpace;

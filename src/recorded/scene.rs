@@ -4,8 +4,8 @@
 //! begins at none is of a caster out of view: its near end casts, unseen, or where it has none, a fan over its near edges.
 
 use super::ends::far_ends;
-use super::space::{Space, neighbours, triangles};
-use crate::plan::{Draw, FramePlan, Part, Pass};
+use super::space::{PassSpace, neighbours, triangles};
+use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,11 +16,11 @@ const SAME_PLACE: f64 = 1e-4;
 
 /// The scene that a frame is of, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
-    let surfaces = draws(plan, |draw| draw.part == Part::Surface && draw.raster.depth_write);
+    let surfaces = draws(plan, |draw| draw.part == DrawPart::Surface && draw.raster.depth_write);
     let volumes = draws(plan, |draw| draw.part.is_of_volume());
-    let (mut objects, mut corners): (Vec<Object>, _) = (Vec::new(), Corners::default());
+    let (mut objects, mut corners): (Vec<Object>, _) = (Vec::new(), KnownCorners::default());
     for (pass, draw) in surfaces {
-        let space = Space::new(plan, pass);
+        let space = PassSpace::new(plan, pass);
         let places = space.places(plan, draw);
         let Some(mesh) = mesh(plan, draw, &places, |corners| corners.iter().all(|corner| corner.w == 1.0)) else {
             continue;
@@ -36,7 +36,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     }
     let mut unseen = Vec::new();
     for (pass, draw) in volumes {
-        let places = Space::new(plan, pass).places(plan, draw);
+        let places = PassSpace::new(plan, pass).places(plan, draw);
         let finite = finite(&places);
         // Most of a volume's finite corners are its caster's: those of a finite far end are not.
         match corners.most(&finite) {
@@ -60,12 +60,12 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
 /// The draws of shadow volumes with their passes, and the index of the object of `scene` that throws each: most of a
 /// volume's corners that are not at infinity are its caster's.
 pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Draw, usize)> {
-    let mut corners = Corners::default();
+    let mut corners = KnownCorners::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
         corners.add(index, &object.world_positions());
     }
     let thrown = |(pass, draw)| {
-        let (caster, _) = corners.most(&finite(&Space::new(plan, pass).places(plan, draw)))?;
+        let (caster, _) = corners.most(&finite(&PassSpace::new(plan, pass).places(plan, draw)))?;
         Some((pass, draw, caster))
     };
     draws(plan, |draw| draw.part.is_of_volume()).into_iter().filter_map(thrown).collect()
@@ -132,12 +132,12 @@ fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec
 
 /// Corners of objects, to be found again though they were rounded on the way.
 #[derive(Default)]
-struct Corners(BTreeMap<[i64; 3], Vec<usize>>);
+struct KnownCorners(BTreeMap<[i64; 3], Vec<usize>>);
 
-impl Corners {
+impl KnownCorners {
     fn add(&mut self, object: usize, places: &[DVec3]) {
         for place in places {
-            let of_cell = self.0.entry(Corners::cell(*place)).or_default();
+            let of_cell = self.0.entry(KnownCorners::cell(*place)).or_default();
             if of_cell.last() != Some(&object) {
                 of_cell.push(object);
             }
@@ -155,7 +155,7 @@ impl Corners {
     fn most(&self, places: &[DVec3]) -> Option<(usize, usize)> {
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
         for place in places {
-            let objects = neighbours(Corners::cell(*place)).filter_map(|cell| self.0.get(&cell)).flatten();
+            let objects = neighbours(KnownCorners::cell(*place)).filter_map(|cell| self.0.get(&cell)).flatten();
             for object in objects.copied().collect::<BTreeSet<usize>>() {
                 *counts.entry(object).or_default() += 1;
             }

@@ -14,16 +14,16 @@ const INFINITE: f64 = 0.5;
 
 /// How a pass's clip space lies in the eye's.
 #[derive(Debug, Clone, Copy)]
-pub struct Space {
+pub struct PassSpace {
     curve: DepthCurve,
     viewport: Viewport,
     size: [f64; 2],
 }
 
-impl Space {
+impl PassSpace {
     /// Of a pass of the picture.
-    pub fn new(plan: &FramePlan, pass: &Pass) -> Space {
-        Space { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
+    pub fn new(plan: &FramePlan, pass: &Pass) -> PassSpace {
+        PassSpace { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
     }
 
     /// A vertex as a homogeneous point of view space: w is 1, or 0 where it is a direction. `None` where it is no number.
@@ -45,7 +45,7 @@ impl Space {
         Some(if h.abs() > INFINITE { (place / h).truncate().extend(1.0) } else { place.truncate().extend(0.0) })
     }
 
-    /// The vertex of a homogeneous place of view space: the inverse of [`Space::place`].
+    /// The vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`].
     pub fn clip(&self, place: DVec4) -> [f32; 4] {
         let [left, top, width, height] = self.viewport.area.map(f64::from);
         let [columns, rows] = self.size;

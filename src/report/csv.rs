@@ -1,6 +1,6 @@
 //! The report as comma-separated values (RFC 4180), for spreadsheets and data frames.
 
-use super::{Report, Row};
+use super::{Report, ReportRow};
 
 const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,false_shadow,missing_shadow,\
 wrong_surface,edge_band,wrong_fraction,wrong_color,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
@@ -12,7 +12,7 @@ pub fn csv(report: &Report) -> String {
     std::iter::once(COLUMNS.to_owned()).chain(lines).map(|line| line + "\r\n").collect()
 }
 
-fn line(row: &Row, adapter: &str) -> String {
+fn line(row: &ReportRow, adapter: &str) -> String {
     let settings: Vec<String> = row.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
     let fields = [
         field(&row.scene),

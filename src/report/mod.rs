@@ -22,7 +22,7 @@ pub use page::PageOrigin;
 
 use crate::capture::AdapterInfo;
 use crate::numbers;
-use crate::shards::{self, MergeError, Part, PartOf};
+use crate::shards::{self, MergeError, ResultsFile, ShardPart};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -31,14 +31,14 @@ const SCHEMA: u32 = 1;
 
 /// Error against run time: every technique with every setting that was measured, on one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Document", into = "Document")]
+#[serde(try_from = "ReportDocument", into = "ReportDocument")]
 pub struct Report {
     /// What it was measured on.
     pub adapter: AdapterInfo,
     /// One a scene, technique and settings, in the order in which they are listed.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ReportRow>,
     /// Which part of a run it is; `None` of a whole one.
-    pub part: Option<Part>,
+    pub part: Option<ShardPart>,
 }
 
 /// A report that was measured where not all may have had room.
@@ -52,7 +52,7 @@ pub struct MeasuredReport {
 
 /// One scene, rendered by one technique with one choice of settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct ReportRow {
     /// Name of the scene.
     pub scene: String,
     /// Name of the technique.
@@ -66,7 +66,7 @@ pub struct Row {
     pub size: [u32; 2],
     /// At which value of a sweep; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sweep: Option<Swept>,
+    pub sweep: Option<SweepValue>,
     /// Pixels whose label was compared with the truth, summed over lights.
     pub compared: u64,
     /// Of these: dark, but lit in truth.
@@ -88,7 +88,7 @@ pub struct Row {
     pub frame_ms: FrameTimes,
     /// With its set-up, where the scene moves; `None` where it stands still and set-up is done once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub moving: Option<Moving>,
+    pub moving: Option<MotionCost>,
     /// GPU time of a frame in milliseconds; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
     /// Planning, geometry, pipelines and uploads of this row alone, milliseconds; opening the scene
@@ -105,7 +105,7 @@ pub struct Row {
 
 /// What a frame of a scene that moves costs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Moving {
+pub struct MotionCost {
     /// Setting it up: silhouettes, proofs, uploads; median, milliseconds.
     pub setup_ms: f64,
     /// That and drawing it; median, milliseconds.
@@ -116,7 +116,7 @@ pub struct Moving {
 
 /// A value of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Swept {
+pub struct SweepValue {
     /// What changes: `size`, `lights`, `casters`, `triangles` or `map-size`.
     pub name: String,
     /// The value; of sizes how many pixels.
@@ -161,24 +161,24 @@ pub enum ReportError {
 
 /// A report as it is in a JSON file.
 #[derive(Serialize, Deserialize)]
-struct Document {
+struct ReportDocument {
     schema: u32,
     adapter: AdapterInfo,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    shard: Option<Part>,
-    rows: Vec<Row>,
+    shard: Option<ShardPart>,
+    rows: Vec<ReportRow>,
 }
 
-impl From<Report> for Document {
-    fn from(report: Report) -> Document {
-        Document { schema: SCHEMA, adapter: report.adapter, shard: report.part, rows: report.rows }
+impl From<Report> for ReportDocument {
+    fn from(report: Report) -> ReportDocument {
+        ReportDocument { schema: SCHEMA, adapter: report.adapter, shard: report.part, rows: report.rows }
     }
 }
 
-impl TryFrom<Document> for Report {
+impl TryFrom<ReportDocument> for Report {
     type Error = ReportError;
 
-    fn try_from(document: Document) -> Result<Report, ReportError> {
+    fn try_from(document: ReportDocument) -> Result<Report, ReportError> {
         match document.schema {
             SCHEMA => Ok(Report { adapter: document.adapter, rows: document.rows, part: document.shard }),
             found => Err(ReportError::Schema { found }),
@@ -187,8 +187,8 @@ impl TryFrom<Document> for Report {
 }
 
 impl Report {
-    /// Rows with what follows from them filled in: [`Row::wrong_fraction`] and [`Row::pareto`].
-    pub fn new(adapter: AdapterInfo, rows: Vec<Row>) -> Report {
+    /// Rows with what follows from them filled in: [`ReportRow::wrong_fraction`] and [`ReportRow::pareto`].
+    pub fn new(adapter: AdapterInfo, rows: Vec<ReportRow>) -> Report {
         let mut report = Report { adapter, rows, part: None };
         for row in &mut report.rows {
             row.wrong_fraction = if row.compared == 0 { 0.0 } else { row.wrong() as f64 / row.compared as f64 };
@@ -200,7 +200,7 @@ impl Report {
     /// Reports of all parts of a run, each with its file's name, as of one run.
     pub fn merged(parts: Vec<(String, Report)>) -> Result<Report, MergeError> {
         let adapter = parts.first().map(|(_, report)| report.adapter.clone()).ok_or(MergeError::Nothing)?;
-        let part = |(name, Report { adapter, rows, part }): (String, Report)| PartOf {
+        let part = |(name, Report { adapter, rows, part }): (String, Report)| ResultsFile {
             name,
             adapter: adapter.in_words(),
             part,
@@ -278,7 +278,7 @@ impl Report {
     /// The plot for paper, as SVG.
     #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
-        svg::svg(&if self.is_swept() { plot::sweep(self) } else { plot::layout(self, &plot::Page::PAPER) })
+        svg::svg(&if self.is_swept() { plot::sweep(self) } else { plot::layout(self, &plot::PlotPage::PAPER) })
     }
 
     /// The plot for paper, as PNG with two pixels a point.
@@ -303,15 +303,15 @@ impl plot::Plot {
 }
 
 /// Is `one` at least as fast and right as `other`, and one of the two more?
-fn beats(one: &Row, other: &Row) -> bool {
+fn beats(one: &ReportRow, other: &ReportRow) -> bool {
     let (time, error) = (one.cost_ms(), one.wrong_fraction);
     let (other_time, other_error) = (other.cost_ms(), other.wrong_fraction);
     one.is_measured() && time <= other_time && error <= other_error && (time < other_time || error < other_error)
 }
 
-impl Row {
+impl ReportRow {
     /// Is it of the same scene, at the same value of a sweep?
-    pub fn is_beside(&self, other: &Row) -> bool {
+    pub fn is_beside(&self, other: &ReportRow) -> bool {
         self.scene == other.scene && self.sweep == other.sweep
     }
 

@@ -3,7 +3,7 @@
 //! One small chart a scene, all on the same axes. Across: the median frame time, log. Up: wrong
 //! pixels of those compared, log; as zero has no place on a log axis, rows without a wrong pixel
 //! have a band of their own below it, in lanes so that they do not cover each other. SVG, PNG and
-//! the inspector draw the same layout; each gives [`Ink`]s its own colours.
+//! the inspector draw the same layout; each gives [`PlotInk`]s its own colours.
 //!
 //! ```text
 //! plot.rs    what a layout is made of; charts in rows on a page
@@ -23,12 +23,12 @@ mod swept;
 #[cfg(test)]
 mod tests;
 
-pub use marks::{Mark, STYLES, Style, UNKNOWN, style_of};
+pub use marks::{MarkShape, STYLES, TechniqueStyle, UNKNOWN, style_of};
 pub use swept::sweep;
 
 use super::Report;
 use around::{heading, legend, notes, summary};
-use chart::Frame;
+use chart::ChartFrame;
 
 /// Size of words in points; titles are larger.
 pub const TEXT_SIZE: f64 = 12.0;
@@ -56,7 +56,7 @@ const LINE: f64 = 18.0;
 
 /// A place for a plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Page {
+pub struct PlotPage {
     /// Width in points.
     pub width: f64,
     /// Height in points, to be filled where charts need not be lower than they can be; `None`:
@@ -68,28 +68,28 @@ pub struct Page {
     pub compact: bool,
 }
 
-impl Page {
+impl PlotPage {
     /// A sheet of paper, or a picture in a web page.
-    pub const PAPER: Page = Page { width: 760.0, height: None, most_columns: 2, compact: false };
+    pub const PAPER: PlotPage = PlotPage { width: 760.0, height: None, most_columns: 2, compact: false };
 }
 
 /// A rectangle in points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rect {
+pub struct PlotRect {
     /// Upper left corner.
     pub min: [f64; 2],
     /// Lower right corner.
     pub max: [f64; 2],
 }
 
-impl Rect {
+impl PlotRect {
     /// Do the two share more than an edge?
-    pub fn overlaps(&self, other: &Rect) -> bool {
+    pub fn overlaps(&self, other: &PlotRect) -> bool {
         (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
     }
 
     /// Does it hold all of `other`?
-    pub fn holds(&self, other: &Rect) -> bool {
+    pub fn holds(&self, other: &PlotRect) -> bool {
         (0..2).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
@@ -106,7 +106,7 @@ impl Rect {
 
 /// What a thing means, for whoever colours it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ink {
+pub enum PlotInk {
     /// Words that matter.
     Text,
     /// Words beside them.
@@ -116,12 +116,12 @@ pub enum Ink {
     /// The Pareto front.
     Front,
     /// A technique's.
-    Technique(&'static Style),
+    Technique(&'static TechniqueStyle),
 }
 
 /// Which side of a text is at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
+pub enum TextAnchor {
     /// The left.
     Start,
     /// The middle.
@@ -132,7 +132,7 @@ pub enum Anchor {
 
 /// Words.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Text {
+pub struct PlotText {
     /// Across: as `anchor` says; down: the middle of the line.
     pub at: [f64; 2],
     /// The words.
@@ -140,29 +140,29 @@ pub struct Text {
     /// Size in points.
     pub size: f64,
     /// What `at` means.
-    pub anchor: Anchor,
+    pub anchor: TextAnchor,
     /// What it means.
-    pub ink: Ink,
+    pub ink: PlotInk,
     /// A title.
     pub strong: bool,
 }
 
 /// A line through points.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct PlotLine {
     /// Two or more.
     pub points: Vec<[f64; 2]>,
     /// Thickness in points.
     pub width: f64,
     /// What it means.
-    pub ink: Ink,
+    pub ink: PlotInk,
     /// Drawn so that marks stand out from it.
     pub faint: bool,
 }
 
 /// A row's mark.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Spot {
+pub struct PlotPoint {
     /// Index of the row in the report.
     pub row: usize,
     /// Its middle.
@@ -170,7 +170,7 @@ pub struct Spot {
     /// From the fastest to the slowest frame, across.
     pub whisker: [f64; 2],
     /// Shape and colour.
-    pub style: &'static Style,
+    pub style: &'static TechniqueStyle,
     /// On the Pareto front; others are hollow.
     pub filled: bool,
     /// For who can't see it: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
@@ -181,30 +181,30 @@ pub struct Spot {
 
 /// One scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chart {
+pub struct SceneChart {
     /// The scene's name.
     pub title: String,
     /// Where points with wrong pixels are.
-    pub area: Rect,
+    pub area: PlotRect,
     /// Where points without one are.
-    pub band: Rect,
+    pub band: PlotRect,
     /// Grid, joined settings, front: to be drawn in this order, below marks.
-    pub lines: Vec<Line>,
+    pub lines: Vec<PlotLine>,
     /// Marks, those on the front last.
-    pub spots: Vec<Spot>,
+    pub spots: Vec<PlotPoint>,
     /// Title and axes.
-    pub texts: Vec<Text>,
+    pub texts: Vec<PlotText>,
     /// Words beside marks; no two overlap, and none covers a mark.
-    pub labels: Vec<Text>,
+    pub labels: Vec<PlotText>,
 }
 
 /// A mark of the legend, without a row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Key {
+pub struct LegendKey {
     /// Its middle.
     pub at: [f64; 2],
     /// Shape and colour.
-    pub style: &'static Style,
+    pub style: &'static TechniqueStyle,
     /// As on the front.
     pub filled: bool,
 }
@@ -219,13 +219,13 @@ pub struct Plot {
     /// In a sentence, for who can't see it.
     pub summary: String,
     /// One a scene.
-    pub charts: Vec<Chart>,
+    pub charts: Vec<SceneChart>,
     /// Heading, legend, notes.
-    pub texts: Vec<Text>,
+    pub texts: Vec<PlotText>,
     /// Marks of the legend.
-    pub keys: Vec<Key>,
+    pub keys: Vec<LegendKey>,
     /// Lines of the legend.
-    pub lines: Vec<Line>,
+    pub lines: Vec<PlotLine>,
 }
 
 /// Estimated width of words in points: those of Helvetica and its like, a little more than most
@@ -244,35 +244,35 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     text.chars().map(width).sum::<f64>() * size
 }
 
-impl Text {
+impl PlotText {
     /// A line of words.
-    pub(crate) fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: Ink) -> Text {
-        Text { at, text: text.into(), size, anchor: Anchor::Start, ink, strong: false }
+    pub(crate) fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: PlotInk) -> PlotText {
+        PlotText { at, text: text.into(), size, anchor: TextAnchor::Start, ink, strong: false }
     }
 
-    pub(crate) fn anchored(self, anchor: Anchor) -> Text {
-        Text { anchor, ..self }
+    pub(crate) fn anchored(self, anchor: TextAnchor) -> PlotText {
+        PlotText { anchor, ..self }
     }
 
-    pub(crate) fn strong(self) -> Text {
-        Text { strong: true, ..self }
+    pub(crate) fn strong(self) -> PlotText {
+        PlotText { strong: true, ..self }
     }
 
     /// What the words cover, by [`text_width`].
-    pub fn rect(&self) -> Rect {
+    pub fn rect(&self) -> PlotRect {
         let width = text_width(&self.text, self.size);
         let left = match self.anchor {
-            Anchor::Start => self.at[0],
-            Anchor::Middle => self.at[0] - width / 2.0,
-            Anchor::End => self.at[0] - width,
+            TextAnchor::Start => self.at[0],
+            TextAnchor::Middle => self.at[0] - width / 2.0,
+            TextAnchor::End => self.at[0] - width,
         };
         let half = self.size * 0.6;
-        Rect { min: [left, self.at[1] - half], max: [left + width, self.at[1] + half] }
+        PlotRect { min: [left, self.at[1] - half], max: [left + width, self.at[1] + half] }
     }
 }
 
 /// Lays out the plot of `report`.
-pub fn layout(report: &Report, page: &Page) -> Plot {
+pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     let width = page.width.max(LEAST_CHART_WIDTH);
     let scenes: Vec<(&str, Vec<usize>)> = report
         .scenes()
@@ -294,7 +294,7 @@ pub fn layout(report: &Report, page: &Page) -> Plot {
     let gaps = rows.saturating_sub(1) as f64 * GAP / 2.0;
     let room = page.height.map_or(CHART_HEIGHT, |height| (height - top - below - gaps) / rows.max(1) as f64);
     let least = if rows > 1 { LEAST_STACKED_HEIGHT } else { LEAST_CHART_HEIGHT };
-    let frame = Frame::new(report, &scenes, [chart_width, room.max(least)], page.compact);
+    let frame = ChartFrame::new(report, &scenes, [chart_width, room.max(least)], page.compact);
     let mut bottom = top;
     for (index, (scene, rows)) in scenes.iter().enumerate() {
         let column = index % columns;
@@ -304,7 +304,7 @@ pub fn layout(report: &Report, page: &Page) -> Plot {
         bottom = corner[1] + frame.size[1];
     }
     if scenes.is_empty() {
-        plot.texts.push(Text::new([8.0, bottom + LINE], "Nothing was measured.", TEXT_SIZE, Ink::Dim));
+        plot.texts.push(PlotText::new([8.0, bottom + LINE], "Nothing was measured.", TEXT_SIZE, PlotInk::Dim));
         bottom += 2.0 * LINE;
     }
     plot.add(legend, bottom + around_legend);
@@ -312,7 +312,7 @@ pub fn layout(report: &Report, page: &Page) -> Plot {
     let notes_top = plot.size[1];
     for (index, note) in notes.into_iter().enumerate() {
         let at = [8.0, notes_top + (index as f64 + 0.5) * LINE];
-        plot.texts.push(Text::new(at, note, SMALL_SIZE, Ink::Dim));
+        plot.texts.push(PlotText::new(at, note, SMALL_SIZE, PlotInk::Dim));
         plot.size[1] = at[1] + LINE / 2.0;
     }
     plot
@@ -341,10 +341,10 @@ impl Plot {
     /// Puts a part of the page below `top`.
     fn add(&mut self, part: Plot, top: f64) {
         let down = |[x, y]: [f64; 2]| [x, y + top];
-        self.texts.extend(part.texts.into_iter().map(|text| Text { at: down(text.at), ..text }));
-        self.keys.extend(part.keys.into_iter().map(|key| Key { at: down(key.at), ..key }));
+        self.texts.extend(part.texts.into_iter().map(|text| PlotText { at: down(text.at), ..text }));
+        self.keys.extend(part.keys.into_iter().map(|key| LegendKey { at: down(key.at), ..key }));
         let lines = part.lines.into_iter();
-        self.lines.extend(lines.map(|line| Line { points: line.points.into_iter().map(down).collect(), ..line }));
+        self.lines.extend(lines.map(|line| PlotLine { points: line.points.into_iter().map(down).collect(), ..line }));
         self.size[1] = top + part.size[1];
     }
 }

@@ -1,6 +1,9 @@
 //! The plot as SVG: for papers, web pages and READMEs, and what the PNG is made from.
 
-use super::plot::{Anchor, Chart, Ink, Key, Line, Mark, Plot, Rect, Spot, Style, Text};
+use super::plot::{
+    LegendKey, MarkShape, Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SceneChart, TechniqueStyle,
+    TextAnchor,
+};
 use crate::picture::svg::escaped;
 use std::fmt::Write;
 
@@ -35,7 +38,7 @@ pub fn svg(plot: &Plot) -> String {
     out + "</svg>\n"
 }
 
-fn chart_group(chart: &Chart) -> String {
+fn chart_group(chart: &SceneChart) -> String {
     let mut out = format!("<g>\n<title>{}</title>\n", escaped(&chart.title));
     out += &band(&chart.band);
     out.extend(chart.lines.iter().map(line));
@@ -46,13 +49,13 @@ fn chart_group(chart: &Chart) -> String {
     out + "</g>\n"
 }
 
-fn band(rect: &Rect) -> String {
+fn band(rect: &PlotRect) -> String {
     let [x, y] = rect.min.map(number);
     let [width, height] = [rect.width(), rect.height()].map(number);
     format!("<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n", hex(BAND))
 }
 
-fn line(line: &Line) -> String {
+fn line(line: &PlotLine) -> String {
     let opacity = if line.faint { " stroke-opacity=\"0.45\"" } else { "" };
     format!(
         "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{opacity}/>\n",
@@ -62,26 +65,26 @@ fn line(line: &Line) -> String {
     )
 }
 
-fn whisker(spot: &Spot) -> String {
+fn whisker(spot: &PlotPoint) -> String {
     let [left, right] = spot.whisker.map(number);
     let (y, color) = (number(spot.at[1]), hex(spot.style.paper));
     format!("<line x1=\"{left}\" y1=\"{y}\" x2=\"{right}\" y2=\"{y}\" stroke=\"{color}\"/>\n")
 }
 
-fn spot(spot: &Spot) -> String {
+fn spot(spot: &PlotPoint) -> String {
     let mark = mark(spot.at, spot.style, spot.filled);
     format!("<g>\n<title>{}</title>\n{mark}</g>\n", escaped(&spot.details))
 }
 
-fn key(key: &Key) -> String {
+fn key(key: &LegendKey) -> String {
     mark(key.at, key.style, key.filled)
 }
 
-fn mark([x, y]: [f64; 2], style: &Style, filled: bool) -> String {
+fn mark([x, y]: [f64; 2], style: &TechniqueStyle, filled: bool) -> String {
     let color = hex(style.paper);
     let fill = if filled { color.clone() } else { hex(PAPER) };
     let shape = match style.mark {
-        Mark::Circle => {
+        MarkShape::Circle => {
             format!("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"", number(x), number(y), number(super::plot::RADIUS))
         }
         shape => {
@@ -93,11 +96,11 @@ fn mark([x, y]: [f64; 2], style: &Style, filled: bool) -> String {
 }
 
 /// Words; `halo` parts them from lines that they cover.
-fn text(words: &Text, halo: bool) -> String {
+fn text(words: &PlotText, halo: bool) -> String {
     let anchor = match words.anchor {
-        Anchor::Start => "start",
-        Anchor::Middle => "middle",
-        Anchor::End => "end",
+        TextAnchor::Start => "start",
+        TextAnchor::Middle => "middle",
+        TextAnchor::End => "end",
     };
     let ink = color(words.ink);
     // A thin outline in place of a bold face: it looks the same in every one.
@@ -123,12 +126,12 @@ fn text(words: &Text, halo: bool) -> String {
     out
 }
 
-fn color(ink: Ink) -> String {
+fn color(ink: PlotInk) -> String {
     hex(match ink {
-        Ink::Text => TEXT,
-        Ink::Dim | Ink::Front => DIM,
-        Ink::Grid => GRID,
-        Ink::Technique(style) => style.paper,
+        PlotInk::Text => TEXT,
+        PlotInk::Dim | PlotInk::Front => DIM,
+        PlotInk::Grid => GRID,
+        PlotInk::Technique(style) => style.paper,
     })
 }
 
@@ -158,7 +161,7 @@ mod tests {
     fn it_is_xml_whatever_scenes_are_called() {
         let scene = "a <b> & \"c\" \u{1} 'd'";
         let report = Report::new(adapter(), vec![row(scene, "z-fail", "<&>", 0, 6.25), row(scene, "none", "", 9, 2.0)]);
-        let text = svg(&plot::layout(&report, &plot::Page::PAPER));
+        let text = svg(&plot::layout(&report, &plot::PlotPage::PAPER));
         let document = Document::parse(&text).expect("XML");
         let titles: Vec<&str> =
             document.descendants().filter(|node| node.has_tag_name("title")).filter_map(|node| node.text()).collect();
@@ -172,7 +175,7 @@ mod tests {
 
     #[test]
     fn an_empty_report_is_a_picture_too() {
-        let text = svg(&plot::layout(&Report::new(adapter(), Vec::new()), &plot::Page::PAPER));
+        let text = svg(&plot::layout(&Report::new(adapter(), Vec::new()), &plot::PlotPage::PAPER));
         assert!(Document::parse(&text).is_ok());
         assert!(text.contains("Nothing was measured."));
     }

@@ -1,6 +1,6 @@
 //! The report as text: a table for the terminal, and one in Markdown.
 
-use super::{Moving, Report, Row};
+use super::{MotionCost, Report, ReportRow};
 use crate::numbers::{count, mebibytes, per_hundred};
 
 /// Between columns.
@@ -11,19 +11,19 @@ const MOST_COLUMNS: usize = 140;
 const LONGEST_NAMES: [usize; 4] = [24, 18, 13, 8];
 
 /// One column: its heading, and its text for a row.
-struct Column {
+struct ReportColumn {
     heading: String,
     is_number: bool,
     cells: Vec<String>,
 }
 
-impl Column {
-    fn words(heading: &str, cells: impl Iterator<Item = String>) -> Column {
-        Column { heading: heading.to_owned(), is_number: false, cells: cells.collect() }
+impl ReportColumn {
+    fn words(heading: &str, cells: impl Iterator<Item = String>) -> ReportColumn {
+        ReportColumn { heading: heading.to_owned(), is_number: false, cells: cells.collect() }
     }
 
-    fn numbers(heading: &str, cells: impl Iterator<Item = String>) -> Column {
-        Column { heading: heading.to_owned(), is_number: true, cells: cells.collect() }
+    fn numbers(heading: &str, cells: impl Iterator<Item = String>) -> ReportColumn {
+        ReportColumn { heading: heading.to_owned(), is_number: true, cells: cells.collect() }
     }
 
     fn width(&self) -> usize {
@@ -49,8 +49,8 @@ pub fn text(report: &Report) -> String {
     let adapter = &report.adapter;
     let mut text = format!("{} · {} · {}\n", adapter.name, adapter.driver, adapter.kind);
     let columns = terminal_columns(&report.rows);
-    let widths: Vec<usize> = columns.iter().map(Column::width).collect();
-    let line = |cell: &dyn Fn(&Column) -> String| {
+    let widths: Vec<usize> = columns.iter().map(ReportColumn::width).collect();
+    let line = |cell: &dyn Fn(&ReportColumn) -> String| {
         let cells = columns.iter().zip(&widths).map(|(column, width)| column.padded(&cell(column), *width));
         format!("{}\n", cells.collect::<Vec<_>>().join(GAP).trim_end())
     };
@@ -79,8 +79,8 @@ pub(super) fn sizes(sizes: impl Iterator<Item = [u32; 2]>) -> String {
     names.join(", ")
 }
 
-fn terminal_columns(rows: &[Row]) -> Vec<Column> {
-    let whole = |columns: &Vec<Column>| columns.iter().map(|column| column.width() + width(GAP)).sum::<usize>();
+fn terminal_columns(rows: &[ReportRow]) -> Vec<ReportColumn> {
+    let whole = |columns: &Vec<ReportColumn>| columns.iter().map(|column| column.width() + width(GAP)).sum::<usize>();
     let [first, shorter @ ..] = LONGEST_NAMES;
     let widest = columns_with_names(rows, first);
     shorter.into_iter().fold(widest, |columns, longest| {
@@ -88,9 +88,9 @@ fn terminal_columns(rows: &[Row]) -> Vec<Column> {
     })
 }
 
-fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
-    let words = |heading, cell: &dyn Fn(&Row) -> String| Column::words(heading, rows.iter().map(cell));
-    let numbers = |heading, cell: &dyn Fn(&Row) -> String| Column::numbers(heading, rows.iter().map(cell));
+fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
+    let words = |heading, cell: &dyn Fn(&ReportRow) -> String| ReportColumn::words(heading, rows.iter().map(cell));
+    let numbers = |heading, cell: &dyn Fn(&ReportRow) -> String| ReportColumn::numbers(heading, rows.iter().map(cell));
     let decimals = decimals(rows);
     let times = |ms: f64| milliseconds(ms, decimals);
     let spread = |ms: f64| milliseconds(ms, decimals - 1);
@@ -111,7 +111,7 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
         numbers("MiB", &|row| mebibytes(row.bytes)),
     ];
     if rows.iter().any(|row| row.moving.is_some()) {
-        let of = |part: fn(&Moving) -> f64| move |row: &Row| row.moving.as_ref().map_or(f64::NAN, part);
+        let of = |part: fn(&MotionCost) -> f64| move |row: &ReportRow| row.moving.as_ref().map_or(f64::NAN, part);
         let (setup, total) = (of(|moving| moving.setup_ms), of(|moving| moving.total_ms));
         columns.insert(10, numbers("+ set-up", &|row| times(setup(row))));
         columns.insert(11, numbers("total", &|row| times(total(row))));
@@ -127,7 +127,7 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
 }
 
 /// What a sweep changes, if it is one.
-fn swept_name(rows: &[Row]) -> Option<&str> {
+fn swept_name(rows: &[ReportRow]) -> Option<&str> {
     rows.iter().find_map(|row| Some(&*row.sweep.as_ref()?.name))
 }
 
@@ -136,12 +136,12 @@ fn heading(swept: &str) -> &str {
     if swept == "triangles" { "of casters" } else { swept }
 }
 
-fn swept_text(row: &Row) -> String {
+fn swept_text(row: &ReportRow) -> String {
     row.sweep.as_ref().map_or_else(String::new, |swept| swept.text.clone())
 }
 
 /// Frames a second, in three digits.
-fn fps(row: &Row) -> String {
+fn fps(row: &ReportRow) -> String {
     match row.fps() {
         fps if !fps.is_finite() => "-".to_owned(),
         fps if fps < 100.0 => format!("{fps:.1}"),
@@ -158,22 +158,22 @@ fn shortened(text: &str, longest: usize) -> String {
 }
 
 /// Wrong pixels; a dash where nothing was compared, so that 0 always means "none".
-fn wrong(row: &Row) -> String {
+fn wrong(row: &ReportRow) -> String {
     if row.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
 }
 
 /// Pixels of a wrong colour; a dash where that was not measured.
-fn wrong_color(row: &Row) -> String {
+fn wrong_color(row: &ReportRow) -> String {
     row.wrong_color.map_or_else(|| "-".to_owned(), count)
 }
 
-fn wrong_percent(row: &Row) -> String {
+fn wrong_percent(row: &ReportRow) -> String {
     if row.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
 }
 
 /// Digits after the point that the shortest frame needs, the same for all so that points align; fewer where the longest
 /// takes seconds, whose numbers are wide already.
-fn decimals(rows: &[Row]) -> usize {
+fn decimals(rows: &[ReportRow]) -> usize {
     let times = || rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0);
     let (shortest, longest) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
     if shortest < 0.2 && longest < 1000.0 { 3 } else { 2 }

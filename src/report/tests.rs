@@ -7,8 +7,8 @@ pub(crate) fn adapter() -> AdapterInfo {
 }
 
 /// A row with `wrong` of 1000 pixels wrong, `ms` milliseconds a frame.
-pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64) -> Row {
-    Row {
+pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64) -> ReportRow {
+    ReportRow {
         scene: scene.to_owned(),
         technique: technique.to_owned(),
         settings: BTreeMap::new(),
@@ -32,7 +32,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
     }
 }
 
-fn front_of(rows: Vec<Row>) -> Vec<bool> {
+fn front_of(rows: Vec<ReportRow>) -> Vec<bool> {
     Report::new(adapter(), rows).rows.iter().map(|row| row.pareto).collect()
 }
 
@@ -121,7 +121,7 @@ fn reports_without_wrong_colours_can_be_read_and_merged() {
     let shards = ["1/2", "2/2"].map(|shard| shard.parse().expect("a shard"));
     let part = |(place, shard)| {
         let one = row("tori", "z-fail", "", 0, 6.25);
-        let part = Part::new(shard, vec![place], "one run".to_owned(), ["a".to_owned(), "b".to_owned()]);
+        let part = ShardPart::new(shard, vec![place], "one run".to_owned(), ["a".to_owned(), "b".to_owned()]);
         let mut value: serde_json::Value = serde_json::from_str(
             &Report { part: Some(part), ..Report::new(adapter(), vec![one]) }.to_json().expect("JSON"),
         )

@@ -32,14 +32,14 @@ const FOOTPRINT: [[f64; 2]; 9] =
 
 /// What a walker is made of, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Body {
+pub struct WalkerBody {
     radius: f64,
     eye: f64,
 }
 
 /// How a body stands or falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Standing {
+pub struct Footing {
     /// Where its feet are, world space.
     pub feet: DVec3,
     /// How fast it falls, metres a second.
@@ -50,10 +50,10 @@ pub struct Standing {
     pub is_beyond: bool,
 }
 
-impl Body {
+impl WalkerBody {
     /// Of this radius, metres.
-    pub fn new(radius: f64) -> Body {
-        Body { radius, eye: EYE.max(STEP + radius * 1.5) }
+    pub fn new(radius: f64) -> WalkerBody {
+        WalkerBody { radius, eye: EYE.max(STEP + radius * 1.5) }
     }
 
     /// Where the eye of a body is.
@@ -62,10 +62,10 @@ impl Body {
     }
 
     /// The body whose eye is here: on its feet where the ground is nearer to the eye than they would be, else in the air.
-    pub fn under(&self, eye: DVec3, walls: &Walls) -> Standing {
+    pub fn under(&self, eye: DVec3, walls: &Walls) -> Footing {
         let feet = eye - DVec3::Y * self.eye;
         let ground = self.ground(walls, feet, [feet.y, eye.y]);
-        Standing {
+        Footing {
             feet: ground.map_or(feet, |height| feet.with_y(height)),
             falls_by: 0.0,
             is_on_ground: ground.is_some(),
@@ -75,7 +75,7 @@ impl Body {
 
     /// How a body stands that wishes to go by `by` over the ground, some seconds later; with `collides` off, walls do not
     /// stop it, and only the ground holds it. What is no number moves nobody.
-    pub fn walk(&self, from: Standing, by: DVec3, seconds: f64, (walls, collides): (&Walls, bool)) -> Standing {
+    pub fn walk(&self, from: Footing, by: DVec3, seconds: f64, (walls, collides): (&Walls, bool)) -> Footing {
         let by = by.with_y(0.0);
         if !(by.is_finite() && from.feet.is_finite() && seconds.is_finite() && seconds > 0.0) {
             return from;
@@ -93,7 +93,7 @@ impl Body {
         now
     }
 
-    fn step(&self, from: Standing, by: DVec3, moment: f64, (walls, collides): (&Walls, bool)) -> Standing {
+    fn step(&self, from: Footing, by: DVec3, moment: f64, (walls, collides): (&Walls, bool)) -> Footing {
         let aside = self.gone(walls, from.feet, by, collides);
         let gone = self.settled(walls, (from, aside), moment);
         let head_meets = gone.feet.y > from.feet.y + LEVEL && collides && self.is_blocked(walls, gone.feet);
@@ -102,13 +102,13 @@ impl Body {
     }
 
     /// On its feet over a place, or a moment farther down.
-    fn settled(&self, walls: &Walls, (from, at): (Standing, DVec3), moment: f64) -> Standing {
+    fn settled(&self, walls: &Walls, (from, at): (Footing, DVec3), moment: f64) -> Footing {
         let fallen = at.y - from.falls_by * moment - GRAVITY * moment * moment / 2.0;
         // Who walks goes down steps on their feet.
         let lowest = if from.is_on_ground { at.y - STEP } else { fallen };
         match self.ground(walls, at, [lowest, at.y + STEP]) {
-            Some(height) => Standing { feet: at.with_y(height), falls_by: 0.0, is_on_ground: true, ..from },
-            None => Standing {
+            Some(height) => Footing { feet: at.with_y(height), falls_by: 0.0, is_on_ground: true, ..from },
+            None => Footing {
                 feet: at.with_y(fallen),
                 falls_by: from.falls_by + GRAVITY * moment,
                 is_on_ground: false,
@@ -223,7 +223,7 @@ fn nearest_points([from, to]: [DVec3; 2], wall: Wall) -> (DVec3, DVec3) {
 mod tests {
     use super::*;
 
-    const BODY: Body = Body { radius: 0.25, eye: EYE };
+    const BODY: WalkerBody = WalkerBody { radius: 0.25, eye: EYE };
 
     fn quad(corner: DVec3, u: DVec3, v: DVec3) -> [Wall; 2] {
         [[corner, corner + u, corner + u + v], [corner, corner + u + v, corner + v]]
@@ -249,12 +249,12 @@ mod tests {
         Walls::new(floor.into_iter().chain(things.iter().flatten().copied()))
     }
 
-    fn at(feet: [f64; 3]) -> Standing {
-        Standing { feet: feet.into(), falls_by: 0.0, is_on_ground: false, is_beyond: false }
+    fn at(feet: [f64; 3]) -> Footing {
+        Footing { feet: feet.into(), falls_by: 0.0, is_on_ground: false, is_beyond: false }
     }
 
     /// Walks for some seconds at 2 metres a second, 60 frames a second.
-    fn walked(walls: &Walls, from: Standing, way: DVec3, seconds: f64) -> Standing {
+    fn walked(walls: &Walls, from: Footing, way: DVec3, seconds: f64) -> Footing {
         let frames = (seconds * 60.0).round() as usize;
         (0..frames).fold(from, |now, _| BODY.walk(now, way * (2.0 / 60.0), 1.0 / 60.0, (walls, true)))
     }
@@ -269,14 +269,14 @@ mod tests {
         // √(2 · 10 / g) is 1.428 s.
         assert!(!walked(&walls, start, DVec3::ZERO, 1.4).is_on_ground);
         let landed = walked(&walls, start, DVec3::ZERO, 1.45);
-        assert_eq!(landed, Standing { feet: DVec3::new(0.3, 0.0, 0.2), is_on_ground: true, ..start });
+        assert_eq!(landed, Footing { feet: DVec3::new(0.3, 0.0, 0.2), is_on_ground: true, ..start });
         assert_eq!(walked(&walls, landed, DVec3::ZERO, 5.0), landed, "and stays there");
     }
 
     #[test]
     fn nobody_falls_through_a_floor_at_any_speed_and_equal_steps_end_alike() {
         let walls = world(&[]);
-        let fast = Standing { falls_by: 5_000.0, ..at([0.0, 900.0, 0.0]) };
+        let fast = Footing { falls_by: 5_000.0, ..at([0.0, 900.0, 0.0]) };
         let landed = BODY.walk(fast, DVec3::ZERO, 0.25, (&walls, true));
         assert!(landed.is_on_ground && landed.feet.y == 0.0, "{landed:?}");
         let twice = [0, 1].map(|_| walked(&walls, at([0.1, 3.0, 0.0]), DVec3::X, 2.0));

@@ -1,8 +1,8 @@
 //! A scene in code, piece by piece. What is not said is placed as for a scene file: without a camera all
 //! is in view from the front and a little above, and without lights a lamp stands above and in front.
 
-use super::names::Names;
-use super::placement::Surroundings;
+use super::names::ObjectNames;
+use super::placement::SceneBounds;
 use super::{Camera, Light, Object, Scene};
 use glam::DVec3;
 
@@ -34,7 +34,7 @@ pub struct SceneBuilder {
     camera: Option<Camera>,
     lights: Option<Vec<Light>>,
     objects: Vec<Object>,
-    names: Names,
+    names: ObjectNames,
 }
 
 impl SceneBuilder {
@@ -46,7 +46,7 @@ impl SceneBuilder {
             camera: None,
             lights: None,
             objects: Vec::new(),
-            names: Names::default(),
+            names: ObjectNames::default(),
         }
     }
 
@@ -102,7 +102,7 @@ impl SceneBuilder {
             (Some(_), Some(_)) => Vec::new(),
             _ => objects.iter().flat_map(Object::world_positions).collect(),
         };
-        let surroundings = Surroundings::of(&points).unwrap_or_default();
+        let surroundings = SceneBounds::of(&points).unwrap_or_default();
         Scene {
             name,
             ambient,

@@ -35,7 +35,7 @@ pub enum Projection {
 
 /// A line of sight: `from + along · distance` for distances along the view's axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
+pub struct Ray {
     /// At distance 0, world space, relative to the eye.
     pub from: DVec3,
     /// World space; its part along the view's axis is 1.
@@ -44,7 +44,7 @@ pub struct Sight {
 
 /// All lines of sight of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sights {
+pub struct CameraRays {
     world_from_view: DMat3,
     /// From the picture's middle to its edges, at distance 1 of a pinhole.
     half: DVec2,
@@ -145,9 +145,9 @@ impl Camera {
     }
 
     /// The lines of sight of a picture of this width over height.
-    pub fn sights(&self, aspect: f64) -> Sights {
+    pub fn sights(&self, aspect: f64) -> CameraRays {
         let half = self.half_height();
-        Sights {
+        CameraRays {
             world_from_view: self.world_from_view(),
             half: DVec2::new(half * aspect, half),
             shear: self.projection.shear(),
@@ -206,16 +206,16 @@ impl Camera {
     }
 }
 
-impl Sights {
+impl CameraRays {
     /// The one through a point of the picture, by x and y from −1 to 1, right and up.
     #[inline]
-    pub fn through(&self, at: DVec2) -> Sight {
+    pub fn through(&self, at: DVec2) -> Ray {
         let place = at * self.half;
         if !self.is_parallel {
-            return Sight { from: DVec3::ZERO, along: self.world_from_view * place.extend(-1.0) };
+            return Ray { from: DVec3::ZERO, along: self.world_from_view * place.extend(-1.0) };
         }
         let (from, along) = ((place + self.shear * self.in_place).extend(0.0), (-self.shear).extend(-1.0));
-        Sight { from: self.world_from_view * from, along: self.world_from_view * along }
+        Ray { from: self.world_from_view * from, along: self.world_from_view * along }
     }
 
     /// World direction of the view's axis.
@@ -224,7 +224,7 @@ impl Sights {
     }
 }
 
-impl Sight {
+impl Ray {
     /// The point at a distance along the view's axis, relative to the eye.
     pub fn at(&self, distance: f64) -> DVec3 {
         self.from + self.along * distance
@@ -329,7 +329,7 @@ mod tests {
             let clip_from_relative =
                 camera.clip_from_view(1.5, &curve) * DMat4::from_mat3(camera.world_from_view().transpose());
             for at in [DVec2::ZERO, DVec2::new(-0.8, 0.3), DVec2::new(1.0, -1.0)] {
-                let Sight { from, along } = camera.sights(1.5).through(at);
+                let Ray { from, along } = camera.sights(1.5).through(at);
                 for distance in [0.5, 3.0, 17.0] {
                     let clip = clip_from_relative * (from + along * distance).extend(1.0);
                     let place = clip.truncate() / clip.w;

@@ -28,7 +28,7 @@ pub use store::{StoreError, store};
 
 use super::read_text::{read_text, stem};
 use super::{Scene, SceneError, model};
-use problem::Problem;
+use problem::SceneFileProblem;
 use std::path::{Path, PathBuf};
 
 /// The models and pictures that a scene file names; none where it can't be read, which loading it tells.
@@ -62,8 +62,8 @@ pub fn load(file: &Path) -> Result<Scene, SceneError> {
 }
 
 /// `name` is the scene's unless the text gives one.
-fn parse(text: &str, name: &str, folder: &Path) -> Result<Scene, Problem> {
-    let table = toml::from_str(text).map_err(|error| Problem::of_toml(&error))?;
+fn parse(text: &str, name: &str, folder: &Path) -> Result<Scene, SceneFileProblem> {
+    let table = toml::from_str(text).map_err(|error| SceneFileProblem::of_toml(&error))?;
     build::scene(table, name, folder)
 }
 

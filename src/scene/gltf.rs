@@ -2,7 +2,7 @@
 //!
 //! [`load`] reads the file's JSON and buffers (`document`), places its nodes in double precision (`nodes`) and makes one
 //! object of every node with a mesh: at a pose where the node's place is one, else with its vertices in world space, as
-//! those of skins always are. What the file holds and nothing here shows is a list ([`NotTaken`]), not silence.
+//! those of skins always are. What the file holds and nothing here shows is a list ([`Unsupported`]), not silence.
 //!
 //! A scene file names one mesh of it by a JSON pointer: `model.glb#/meshes/2`, in its own space, or `model.glb#/nodes/5`, in
 //! world space.
@@ -17,19 +17,19 @@ mod nodes;
 
 pub use document::files_of;
 
-use super::names::Names;
-use super::not_taken::{NotTaken, Refusals};
-use super::picture::Pictures;
-use super::placement::Surroundings;
+use super::names::ObjectNames;
+use super::not_taken::{Unsupported, UnsupportedList};
+use super::picture::ImageLoader;
+use super::placement::SceneBounds;
 use super::read_text::{quoted, stem};
 use super::{Camera, Light, Material, Mesh, Motion, Object, SceneError, Shading};
-use document::{Document, Told};
+use document::{GltfDocument, GltfResult};
 use glam::{DMat4, DVec3};
 use gltf::json::{Index, mesh};
-use materials::Materials;
-use meshes::{Form, Meshes};
-use motion::Turns;
-use nodes::Nodes;
+use materials::GltfMaterials;
+use meshes::{GltfMeshes, VertexTransform};
+use motion::NodeRotations;
+use nodes::GltfNodes;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -40,7 +40,7 @@ const MOST_VERTICES: usize = 1 << 23;
 
 /// What a file says.
 #[derive(Debug)]
-pub struct Loaded {
+pub struct LoadedGltf {
     /// In the order of the file's tree.
     pub objects: Vec<Object>,
     /// The part of the file that is each object's mesh: `/meshes/2`.
@@ -50,7 +50,7 @@ pub struct Loaded {
     /// The first of the file's.
     pub camera: Option<Camera>,
     /// What else it holds.
-    pub not_taken: Vec<NotTaken>,
+    pub not_taken: Vec<Unsupported>,
 }
 
 /// A name of the file as people and other files can have it: in one line, and not too long.
@@ -62,16 +62,16 @@ fn named(given: Option<&str>, otherwise: impl FnOnce() -> String) -> String {
 }
 
 /// Reads a file.
-pub fn load(file: &Path) -> Result<Loaded, SceneError> {
-    let document = Document::open(file)?;
+pub fn load(file: &Path) -> Result<LoadedGltf, SceneError> {
+    let document = GltfDocument::open(file)?;
     read(&document, file).map_err(|reason| SceneError::Read { file: file.to_owned(), reason })
 }
 
 /// A file that was opened for one of its meshes, and may be asked for another.
 #[derive(Debug)]
-pub(in crate::scene) struct Opened {
-    document: Document,
-    nodes: Nodes,
+pub(in crate::scene) struct OpenedGltf {
+    document: GltfDocument,
+    nodes: GltfNodes,
 }
 
 /// One mesh of a file among others, which share what room pictures have; the file's only one without a pointer. `last`
@@ -79,23 +79,28 @@ pub(in crate::scene) struct Opened {
 pub(in crate::scene) fn load_mesh(
     file: &Path,
     pointer: Option<&str>,
-    pictures: &mut Pictures,
-    last: &mut Option<Opened>,
+    pictures: &mut ImageLoader,
+    last: &mut Option<OpenedGltf>,
 ) -> Result<Mesh, SceneError> {
     let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
     let opened = match last.take().filter(|opened| opened.document.file == file) {
         Some(opened) => opened,
         None => {
-            let document = Document::open(file)?;
-            let nodes = Nodes::new(&document.root).map_err(told)?;
-            Opened { document, nodes }
+            let document = GltfDocument::open(file)?;
+            let nodes = GltfNodes::new(&document.root).map_err(told)?;
+            OpenedGltf { document, nodes }
         }
     };
-    let Opened { document, nodes } = last.insert(opened);
+    let OpenedGltf { document, nodes } = last.insert(opened);
     mesh_at(document, nodes, pointer, pictures).map_err(told)
 }
 
-fn mesh_at(document: &Document, nodes: &Nodes, pointer: Option<&str>, pictures: &mut Pictures) -> Told<Mesh> {
+fn mesh_at(
+    document: &GltfDocument,
+    nodes: &GltfNodes,
+    pointer: Option<&str>,
+    pictures: &mut ImageLoader,
+) -> GltfResult<Mesh> {
     let root = &document.root;
     let no_such = || {
         let (meshes, nodes) = (root.meshes.len(), root.nodes.len());
@@ -103,12 +108,14 @@ fn mesh_at(document: &Document, nodes: &Nodes, pointer: Option<&str>, pictures: 
         format!("has {meshes} meshes and {nodes} nodes, and {pointer} names none: write #/meshes/0 behind the file")
     };
     let number = |pointer: &str, kind: &str| pointer.strip_prefix(kind)?.parse::<u32>().ok();
-    let mut meshes = Meshes::new(document, Materials::new(document, pictures));
+    let mut meshes = GltfMeshes::new(document, GltfMaterials::new(document, pictures));
     let mesh = match pointer {
-        None if root.meshes.len() == 1 => meshes.mesh(Index::new(0), Form::AsFile)?,
+        None if root.meshes.len() == 1 => meshes.mesh(Index::new(0), VertexTransform::AsFile)?,
         None => return Err(no_such()),
         Some(pointer) => match (number(pointer, "/meshes/"), number(pointer, "/nodes/")) {
-            (Some(mesh), _) if (mesh as usize) < root.meshes.len() => meshes.mesh(Index::new(mesh), Form::AsFile)?,
+            (Some(mesh), _) if (mesh as usize) < root.meshes.len() => {
+                meshes.mesh(Index::new(mesh), VertexTransform::AsFile)?
+            }
             (_, Some(node)) if (node as usize) < root.nodes.len() => {
                 let node = node as usize;
                 let mesh = root.nodes[node].mesh.ok_or_else(|| format!("has no mesh at node {node}: name another"))?;
@@ -122,26 +129,26 @@ fn mesh_at(document: &Document, nodes: &Nodes, pointer: Option<&str>, pictures: 
     };
     match (mesh.triangles().is_empty(), mesh.not_taken().first()) {
         (false, _) => Ok(mesh),
-        (true, Some(NotTaken { what, because })) => Err(format!("has no triangles there ({what}: {because})")),
+        (true, Some(Unsupported { what, because })) => Err(format!("has no triangles there ({what}: {because})")),
         (true, None) => Err("has no triangle with three different corners there: name another mesh".to_owned()),
     }
 }
 
 /// Without a skin, is a node without volume?
-fn is_flat(document: &Document, nodes: &Nodes, node: usize) -> bool {
+fn is_flat(document: &GltfDocument, nodes: &GltfNodes, node: usize) -> bool {
     document.root.nodes[node].skin.is_none() && nodes.world[node].determinant() == 0.0
 }
 
-fn read(document: &Document, file: &Path) -> Told<Loaded> {
+fn read(document: &GltfDocument, file: &Path) -> GltfResult<LoadedGltf> {
     let root = &document.root;
-    let nodes = Nodes::new(root)?;
-    let mut refusals = Refusals::default();
-    let mut pictures = Pictures::default();
-    let mut meshes = Meshes::new(document, Materials::new(document, &mut pictures));
-    let turns = Turns::new(document, &nodes, &mut refusals);
+    let nodes = GltfNodes::new(root)?;
+    let mut refusals = UnsupportedList::default();
+    let mut pictures = ImageLoader::default();
+    let mut meshes = GltfMeshes::new(document, GltfMaterials::new(document, &mut pictures));
+    let turns = NodeRotations::new(document, &nodes, &mut refusals);
     let mut known: BTreeMap<usize, Arc<Mesh>> = BTreeMap::new();
     let mut vertices = 0;
-    let (mut names, mut objects, mut pointers) = (Names::default(), Vec::new(), Vec::new());
+    let (mut names, mut objects, mut pointers) = (ObjectNames::default(), Vec::new(), Vec::new());
     for node in nodes.shown.iter().copied() {
         let given = &root.nodes[node];
         let Some(index) = given.mesh else { continue };
@@ -155,7 +162,7 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
         let (mesh, pointer) = match (pose, known.get(&index.value())) {
             (Some(_), Some(mesh)) => (Arc::clone(mesh), format!("/meshes/{}", index.value())),
             (Some(_), None) => {
-                let mesh = Arc::new(meshes.mesh(index, Form::AsFile)?);
+                let mesh = Arc::new(meshes.mesh(index, VertexTransform::AsFile)?);
                 known.insert(index.value(), Arc::clone(&mesh));
                 (mesh, format!("/meshes/{}", index.value()))
             }
@@ -194,7 +201,7 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
         pointers.push(pointer);
     }
     let points: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
-    let around = Surroundings::of(&points).ok_or("has no triangles to show: export a model with a surface")?;
+    let around = SceneBounds::of(&points).ok_or("has no triangles to show: export a model with a surface")?;
     if !points.iter().all(|point| point.is_finite()) {
         return Err("has corners where numbers end: scale it down".to_owned());
     }
@@ -217,20 +224,20 @@ fn read(document: &Document, file: &Path) -> Told<Loaded> {
         refusals.refuse(quoted(extension), "this extension is not done");
     }
     let lights = lights.into_iter().map(|light| light.it).collect();
-    Ok(Loaded { objects, pointers, lights, camera: camera.map(|eye| eye.it), not_taken: refusals.into_list() })
+    Ok(LoadedGltf { objects, pointers, lights, camera: camera.map(|eye| eye.it), not_taken: refusals.into_list() })
 }
 
 /// The mesh of a node in world space: with its skin, or where the node is.
 fn in_world(
-    document: &Document,
-    nodes: &Nodes,
-    meshes: &mut Meshes,
+    document: &GltfDocument,
+    nodes: &GltfNodes,
+    meshes: &mut GltfMeshes,
     node: usize,
     index: Index<mesh::Mesh>,
-) -> Told<Mesh> {
+) -> GltfResult<Mesh> {
     let root = &document.root;
     let Some(skin) = root.nodes[node].skin.and_then(|skin| root.get(skin)) else {
-        return meshes.mesh(index, Form::Placed(&nodes.world[node]));
+        return meshes.mesh(index, VertexTransform::Placed(&nodes.world[node]));
     };
     let inverse = match skin.inverse_bind_matrices {
         Some(index) => document.numbers::<16>(index)?,
@@ -245,7 +252,7 @@ fn in_world(
         inverse.get(at).map_or(world, |inverse| world * DMat4::from_cols_array(inverse))
     };
     let joints: Vec<DMat4> = skin.joints.iter().enumerate().map(of_joint).collect();
-    meshes.mesh(index, Form::Skinned(&joints))
+    meshes.mesh(index, VertexTransform::Skinned(&joints))
 }
 
 /// The meshes of a file as its scene has them, each with the pointer that names it.

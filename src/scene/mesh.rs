@@ -7,7 +7,7 @@
 //! Normals and places in a picture belong to the corners of triangles, so welding cannot blur a crease, and a seam of a
 //! picture opens no mesh.
 
-use super::{Material, NotTaken, Texture};
+use super::{Material, MaterialTexture, Unsupported};
 use foldhash::{fast::RandomState, quality::FixedState};
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashMap;
@@ -21,8 +21,8 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     corner_normals: Option<Vec<[Vec3; 3]>>,
     corner_uvs: Option<Vec<Option<[Vec2; 3]>>>,
-    groups: Vec<Group>,
-    not_taken: Vec<NotTaken>,
+    groups: Vec<MeshGroup>,
+    not_taken: Vec<Unsupported>,
     dropped: usize,
     hash: u64,
     normals_hash: u64,
@@ -30,7 +30,7 @@ pub struct Mesh {
 
 /// A named run of a mesh's triangles, as a model file groups them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Group {
+pub struct MeshGroup {
     /// The file's name for it; empty where it has none.
     pub name: String,
     /// Which triangles; groups follow each other without gaps and cover the mesh.
@@ -38,7 +38,7 @@ pub struct Group {
     /// From the file's material library; else the object's material holds.
     pub material: Option<Material>,
     /// The picture that this material's colour is multiplied with.
-    pub texture: Option<Texture>,
+    pub texture: Option<MaterialTexture>,
 }
 
 /// Beyond it, neighbouring texels are one number in single precision.
@@ -106,17 +106,17 @@ impl Mesh {
     }
 
     /// What its file asks for and nothing here does.
-    pub fn not_taken(&self) -> &[NotTaken] {
+    pub fn not_taken(&self) -> &[Unsupported] {
         &self.not_taken
     }
 
     /// The same mesh, of whose file this was not taken.
-    pub(super) fn without(self, not_taken: Vec<NotTaken>) -> Mesh {
+    pub(super) fn without(self, not_taken: Vec<Unsupported>) -> Mesh {
         Mesh { not_taken, ..self }
     }
 
     /// At least one, unless the mesh has no triangle.
-    pub fn groups(&self) -> &[Group] {
+    pub fn groups(&self) -> &[MeshGroup] {
         &self.groups
     }
 
@@ -168,7 +168,7 @@ pub struct MeshBuilder {
     /// One entry a triangle, or empty where no triangle lies in a picture.
     pub corner_uvs: Vec<Option<[Vec2; 3]>>,
     /// In order and without gaps; empty for one unnamed group.
-    pub groups: Vec<Group>,
+    pub groups: Vec<MeshGroup>,
 }
 
 impl MeshBuilder {
@@ -238,10 +238,10 @@ impl MeshBuilder {
         Ok(())
     }
 
-    fn groups_after(&self, kept_before: &[usize]) -> Vec<Group> {
-        let all = Group { name: String::new(), triangles: 0..self.triangles.len(), material: None, texture: None };
+    fn groups_after(&self, kept_before: &[usize]) -> Vec<MeshGroup> {
+        let all = MeshGroup { name: String::new(), triangles: 0..self.triangles.len(), material: None, texture: None };
         let given = if self.groups.is_empty() { std::slice::from_ref(&all) } else { &self.groups };
-        let moved = given.iter().map(|group| Group {
+        let moved = given.iter().map(|group| MeshGroup {
             triangles: kept_before[group.triangles.start]..kept_before[group.triangles.end],
             ..group.clone()
         });

@@ -35,21 +35,21 @@ mod suggestion;
 mod vary;
 mod wall_tree;
 
-pub use body::{Body, Standing};
+pub use body::{Footing, WalkerBody};
 pub use builder::SceneBuilder;
-pub use camera::{Camera, Projection, Sight, Sights};
+pub use camera::{Camera, CameraRays, Projection, Ray};
 pub use collision::{WallCache, Walls};
 use error::FileProblem;
 pub use error::SceneError;
 pub use light::{Light, MOST_LIGHTS};
 pub use material::{Material, Shading};
-pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
+pub use mesh::{Mesh, MeshBuilder, MeshError, MeshGroup};
 pub use model_scene::{UpAxis, model_scene};
-pub use not_taken::NotTaken;
+pub use not_taken::Unsupported;
 pub use object::{Motion, Object, Orbit, Pose, Swing};
 pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
-pub use picture::{Level, Picture, PictureError, Texture};
-pub use placement::Surroundings;
+pub use picture::{ImageError, MaterialTexture, MipLevel, TextureImage};
+pub use placement::SceneBounds;
 pub use suggestion::{nearest, suggestion};
 pub use vary::VaryError;
 
@@ -71,7 +71,7 @@ pub struct Scene {
     /// The technique that the scene file asks for, if any.
     pub technique: Option<TechniqueRequest>,
     /// What its file holds beside all this and nothing here shows; what a mesh's file does, the mesh knows.
-    pub not_taken: Vec<NotTaken>,
+    pub not_taken: Vec<Unsupported>,
 }
 
 /// A technique and its settings by name, as written in a scene file or on the command line.

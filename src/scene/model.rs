@@ -3,7 +3,7 @@
 //! glTF and PLY are read in builds with the program alone; others say so.
 
 use super::model_scene::{self, UpAxis};
-use super::picture::Pictures;
+use super::picture::ImageLoader;
 use super::read_text::stem;
 use super::{Mesh, Scene, SceneError, obj};
 #[cfg(feature = "program")]
@@ -13,21 +13,21 @@ use std::sync::Arc;
 
 /// What a model's file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum ModelFormat {
     Obj,
     Ply,
     /// A scene of its own: it says which axis is up, and may have lights and a camera.
     Gltf,
 }
 
-impl Format {
+impl ModelFormat {
     /// By the name's ending; `None` of any other.
-    pub fn of(file: &Path) -> Option<Format> {
+    pub fn of(file: &Path) -> Option<ModelFormat> {
         let ending = file.extension()?.to_ascii_lowercase();
         match ending.to_str()? {
-            "obj" => Some(Format::Obj),
-            "ply" => Some(Format::Ply),
-            "gltf" | "glb" => Some(Format::Gltf),
+            "obj" => Some(ModelFormat::Obj),
+            "ply" => Some(ModelFormat::Ply),
+            "gltf" | "glb" => Some(ModelFormat::Gltf),
             _ => None,
         }
     }
@@ -36,7 +36,7 @@ impl Format {
 /// The file and the pointer of `model.glb#/meshes/2`; no pointer of anything else.
 pub fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
-        Some((file, pointer)) if Format::of(Path::new(file)) == Some(Format::Gltf) => (file, Some(pointer)),
+        Some((file, pointer)) if ModelFormat::of(Path::new(file)) == Some(ModelFormat::Gltf) => (file, Some(pointer)),
         _ => (name, None),
     }
 }
@@ -44,65 +44,65 @@ pub fn split(name: &str) -> (&str, Option<&str>) {
 /// Reads meshes for a scene file: they share what room pictures have, and one glTF file is opened once for all that stand
 /// together.
 #[derive(Debug, Default)]
-pub struct Models {
-    pub pictures: Pictures,
+pub struct ModelReader {
+    pub pictures: ImageLoader,
     #[cfg(feature = "program")]
-    gltf: Option<gltf::Opened>,
+    gltf: Option<gltf::OpenedGltf>,
 }
 
-impl Models {
+impl ModelReader {
     /// The mesh in a file, of a glTF file the one that `pointer` names. A name without a known ending is an OBJ's.
     #[cfg_attr(not(feature = "program"), expect(unused_variables, reason = "only glTF files have pointers"))]
     pub fn mesh(&mut self, file: &Path, pointer: Option<&str>) -> Result<Mesh, SceneError> {
-        match Format::of(file) {
+        match ModelFormat::of(file) {
             #[cfg(feature = "program")]
-            Some(Format::Gltf) => gltf::load_mesh(file, pointer, &mut self.pictures, &mut self.gltf),
+            Some(ModelFormat::Gltf) => gltf::load_mesh(file, pointer, &mut self.pictures, &mut self.gltf),
             _ => of_one_mesh(file, &mut self.pictures),
         }
     }
 }
 
 /// Of a file that is one mesh.
-fn of_one_mesh(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError> {
-    match Format::of(file) {
+fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneError> {
+    match ModelFormat::of(file) {
         #[cfg(feature = "program")]
-        Some(Format::Ply) => ply::load(file),
+        Some(ModelFormat::Ply) => ply::load(file),
         #[cfg(not(feature = "program"))]
-        Some(format @ (Format::Ply | Format::Gltf)) => Err(left_out(file, format)),
+        Some(format @ (ModelFormat::Ply | ModelFormat::Gltf)) => Err(left_out(file, format)),
         _ => obj::load_among(file, pictures),
     }
 }
 
 /// The scene of a model: completed by light, camera and floor where its file has none.
 pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
-    let scene = match Format::of(file) {
+    let scene = match ModelFormat::of(file) {
         #[cfg(feature = "program")]
-        Some(Format::Gltf) => model_scene::gltf_scene(&stem(file), gltf::load(file)?, floor),
-        _ => model_scene::model_scene(&stem(file), of_one_mesh(file, &mut Pictures::default())?, floor, up),
+        Some(ModelFormat::Gltf) => model_scene::gltf_scene(&stem(file), gltf::load(file)?, floor),
+        _ => model_scene::model_scene(&stem(file), of_one_mesh(file, &mut ImageLoader::default())?, floor, up),
     };
     scene.map_err(|error| error.in_file(file))
 }
 
 /// The other files that a model is made of; none of what can't be read, which loading tells.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
-    match Format::of(file) {
-        Some(Format::Obj) => obj::files_of(file),
+    match ModelFormat::of(file) {
+        Some(ModelFormat::Obj) => obj::files_of(file),
         #[cfg(feature = "program")]
-        Some(Format::Gltf) => gltf::files_of(file),
+        Some(ModelFormat::Gltf) => gltf::files_of(file),
         _ => Vec::new(),
     }
 }
 
 /// The meshes of a file as its scene has them, each with the name that a scene file gives it where the file is `called` so.
 pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
-    match Format::of(file) {
+    match ModelFormat::of(file) {
         #[cfg(feature = "program")]
-        Some(Format::Gltf) => {
+        Some(ModelFormat::Gltf) => {
             let named = |(mesh, pointer)| (mesh, format!("{called}#{pointer}"));
             gltf::named_meshes(file).into_iter().map(named).collect()
         }
         Some(_) => {
-            let mesh = of_one_mesh(file, &mut Pictures::default()).ok();
+            let mesh = of_one_mesh(file, &mut ImageLoader::default()).ok();
             mesh.map(|mesh| (Arc::new(mesh), called.to_owned())).into_iter().collect()
         }
         None => Vec::new(),
@@ -110,8 +110,8 @@ pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
 }
 
 #[cfg(not(feature = "program"))]
-fn left_out(file: &Path, format: Format) -> SceneError {
-    let name = if format == Format::Ply { "PLY" } else { "glTF" };
+fn left_out(file: &Path, format: ModelFormat) -> SceneError {
+    let name = if format == ModelFormat::Ply { "PLY" } else { "glTF" };
     let reason = format!("is {name}, which is read with the feature `program`: switch that on, or convert it to OBJ");
     SceneError::Read { file: file.to_owned(), reason }
 }

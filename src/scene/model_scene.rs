@@ -2,8 +2,8 @@
 
 #[cfg(feature = "program")]
 use super::gltf;
-use super::names::Names;
-use super::placement::Surroundings;
+use super::names::ObjectNames;
+use super::placement::SceneBounds;
 use super::{Material, Mesh, MeshBuilder, Object, Scene, SceneError, Shading};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -45,8 +45,8 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
 
 /// The scene of a glTF file. One without lights or a camera gets them, and one that has neither is a bare model.
 #[cfg(feature = "program")]
-pub(super) fn gltf_scene(name: &str, loaded: gltf::Loaded, floor: bool) -> Result<Scene, SceneError> {
-    let gltf::Loaded { objects, lights, camera, not_taken, .. } = loaded;
+pub(super) fn gltf_scene(name: &str, loaded: gltf::LoadedGltf, floor: bool) -> Result<Scene, SceneError> {
+    let gltf::LoadedGltf { objects, lights, camera, not_taken, .. } = loaded;
     let is_bare = lights.is_empty() && camera.is_none();
     let scene = completed(name, objects, floor && is_bare)?;
     Ok(Scene {
@@ -61,7 +61,7 @@ pub(super) fn gltf_scene(name: &str, loaded: gltf::Loaded, floor: bool) -> Resul
 fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene, SceneError> {
     let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
     let positions: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
-    let surroundings = Surroundings::of(&positions)
+    let surroundings = SceneBounds::of(&positions)
         .ok_or_else(|| unusable("has no surface whose size can be told: give a model with triangles"))?;
     if surroundings.extent() > MOST_EXTENT {
         return Err(unusable("is too large: scale it down"));
@@ -70,7 +70,7 @@ fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene,
         return Err(unusable("is too small: scale it up"));
     }
     if floor {
-        let mut names = Names::default();
+        let mut names = ObjectNames::default();
         for object in &objects {
             names.take(&object.name);
         }
@@ -88,7 +88,7 @@ fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene,
 }
 
 /// Around the model's own origin, facing up.
-fn floor_under(model: &Surroundings) -> Result<Object, SceneError> {
+fn floor_under(model: &SceneBounds) -> Result<Object, SceneError> {
     let half = FLOOR_REACH * model.extent();
     let y = model.lowest() - FLOOR_GAP * model.extent();
     let corners = [[-half, y, half], [half, y, half], [half, y, -half], [-half, y, -half]];

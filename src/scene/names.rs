@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 /// The names of a scene's objects, which are unique.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Names {
+pub struct ObjectNames {
     /// By name, the number to try next where it is wanted again.
     taken: HashMap<String, usize>,
 }
 
-impl Names {
+impl ObjectNames {
     /// Takes a name; `false` where it is taken already.
     pub fn take(&mut self, name: &str) -> bool {
         let is_free = !self.taken.contains_key(name);
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn numbers_tell_names_apart_and_pass_over_those_that_are_taken() {
-        let mut names = Names::default();
+        let mut names = ObjectNames::default();
         assert!(names.take("a 2") && !names.take("a 2"));
         let made: Vec<String> = ["a", "a", "a", "a 2"].iter().map(|name| names.take_like(name)).collect();
         assert_eq!(made, ["a", "a 3", "a 4", "a 2 2"]);

@@ -2,20 +2,20 @@
 //!
 //! [`load`] reads and checks every line (`text`), lets `tobj` read the material libraries, and cuts faces into
 //! triangles (`polygon`). The whole file is one mesh, whatever groups it has, so that what is closed stays closed. The
-//! parts between `o`, `g` and `usemtl` stay known as [`Group`]s; where they lie in a picture, their corners know.
+//! parts between `o`, `g` and `usemtl` stay known as [`MeshGroup`]s; where they lie in a picture, their corners know.
 
 mod materials;
 mod text;
 
 use super::mesh::is_usable_uv;
-use super::picture::Pictures;
+use super::picture::ImageLoader;
 use super::polygon;
 use super::read_text::{quoted, read_old_text};
-use super::{FileProblem, Group, Mesh, MeshBuilder, SceneError, Shading};
+use super::{FileProblem, Mesh, MeshBuilder, MeshGroup, SceneError, Shading};
 use glam::{DVec3, Vec2};
-use materials::{Libraries, Map};
+use materials::{MaterialLibraries, ObjTexture};
 use std::path::{Path, PathBuf};
-use text::{Contents, Corner, Statement};
+use text::{ObjContents, ObjCorner, ObjStatement};
 
 /// Loads a model as one mesh. It has corner normals if any face of the file has them; faces
 /// without get their own.
@@ -24,11 +24,11 @@ use text::{Contents, Corner, Statement};
 /// A missing file, a folder, a file that is not text, empty or without faces; a number that is
 /// not finite, an index out of range, a face with fewer than three corners, with its line.
 pub fn load(file: &Path) -> Result<Mesh, SceneError> {
-    load_among(file, &mut Pictures::default())
+    load_among(file, &mut ImageLoader::default())
 }
 
 /// The same of a model among others, which share what room pictures have.
-pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError> {
+pub(in crate::scene) fn load_among(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneError> {
     let raw = read_old_text(file, "OBJ model")?;
     let folder = file.parent().unwrap_or(Path::new(""));
     parse(&raw, folder, pictures).map_err(|problem| problem.of(file))
@@ -47,12 +47,13 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
 }
 
 /// Material libraries are looked for in `folder`.
-fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, FileProblem> {
-    let mut contents = text::read(raw).map_err(|text::LineProblem { line, reason }| FileProblem::Line(line, reason))?;
+fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, FileProblem> {
+    let mut contents =
+        text::read(raw).map_err(|text::ObjLineProblem { line, reason }| FileProblem::Line(line, reason))?;
     if contents.arities.is_empty() {
         return Err(FileProblem::File("has no faces: export the surface as `f` lines".to_owned()));
     }
-    let mut libraries = Libraries::new(pictures);
+    let mut libraries = MaterialLibraries::new(pictures);
     let faces = assemble(&contents, folder, &mut libraries);
     let builder = MeshBuilder { positions: std::mem::take(&mut contents.positions), ..faces };
     drop(contents);
@@ -64,21 +65,21 @@ fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, File
 }
 
 /// All but the positions: adds face after face, and what stands between them.
-fn assemble(contents: &Contents, folder: &Path, libraries: &mut Libraries) -> MeshBuilder {
+fn assemble(contents: &ObjContents, folder: &Path, libraries: &mut MaterialLibraries) -> MeshBuilder {
     let faces = || {
         let mut rest = contents.corners.as_slice();
         contents.arities.iter().filter_map(move |arity| rest.split_off(..*arity as usize))
     };
     let is_smooth = faces().any(|face| face.iter().all(|corner| corner.normal.is_some()));
     let has_uvs = faces().any(|face| face.iter().all(|corner| contents.place_of(corner).is_some()));
-    let mut assembly = Assembly {
+    let mut assembly = ObjAssembly {
         contents,
         folder,
         libraries,
         is_smooth,
         has_uvs,
         builder: MeshBuilder::default(),
-        part: Part::default(),
+        part: ObjGroup::default(),
         corners: Vec::new(),
     };
     let mut statements = contents.statements.iter().peekable();
@@ -93,40 +94,40 @@ fn assemble(contents: &Contents, folder: &Path, libraries: &mut Libraries) -> Me
     assembly.builder
 }
 
-struct Assembly<'a, 'b> {
-    contents: &'a Contents,
+struct ObjAssembly<'a, 'b> {
+    contents: &'a ObjContents,
     folder: &'a Path,
-    libraries: &'a mut Libraries<'b>,
+    libraries: &'a mut MaterialLibraries<'b>,
     /// Has any face normals, and any a place in a picture?
     is_smooth: bool,
     has_uvs: bool,
     builder: MeshBuilder,
-    part: Part,
+    part: ObjGroup,
     /// Room for those of a face.
     corners: Vec<DVec3>,
 }
 
 /// The group that faces are added to.
 #[derive(Default)]
-struct Part {
+struct ObjGroup {
     name: String,
     /// In the libraries.
     material: Option<usize>,
-    map: Option<Map>,
+    map: Option<ObjTexture>,
     /// Its first triangle.
     start: usize,
     /// Does some triangle lie in no picture?
     is_unplaced: bool,
 }
 
-impl Assembly<'_, '_> {
-    fn state(&mut self, statement: &Statement) {
+impl ObjAssembly<'_, '_> {
+    fn state(&mut self, statement: &ObjStatement) {
         match statement {
-            Statement::Name(name) => {
+            ObjStatement::Name(name) => {
                 self.end_part();
                 self.part.name.clone_from(name);
             }
-            Statement::Material(name) => {
+            ObjStatement::Material(name) => {
                 let material = self.libraries.find(name);
                 if material != self.part.material {
                     self.end_part();
@@ -134,13 +135,13 @@ impl Assembly<'_, '_> {
                 self.part.material = material;
                 self.part.map = self.libraries.map(name).filter(|_| material.is_some()).cloned();
             }
-            Statement::Library(name) => self.libraries.load(&self.folder.join(name), name),
+            ObjStatement::Library(name) => self.libraries.load(&self.folder.join(name), name),
         }
     }
 
-    fn add(&mut self, face: &[Corner]) {
+    fn add(&mut self, face: &[ObjCorner]) {
         let contents = self.contents;
-        let position = |corner: &Corner| contents.positions[corner.vertex as usize];
+        let position = |corner: &ObjCorner| contents.positions[corner.vertex as usize];
         let has_normals = face.iter().all(|corner| corner.normal.is_some());
         let is_placed = face.iter().all(|corner| contents.place_of(corner).is_some());
         let map = self.part.map.as_ref();
@@ -150,7 +151,8 @@ impl Assembly<'_, '_> {
             let corners = triangle.map(|corner| &face[corner]);
             self.builder.triangles.push(corners.map(|corner| corner.vertex));
             if self.is_smooth {
-                let given = |corner: &Corner| corner.normal.map(|normal| contents.normals[normal as usize].as_vec3());
+                let given =
+                    |corner: &ObjCorner| corner.normal.map(|normal| contents.normals[normal as usize].as_vec3());
                 let own = || polygon::normal(corners.map(position));
                 let normals = corners.map(|corner| given(corner).filter(|_| has_normals).unwrap_or_else(own));
                 self.builder.corner_normals.push(normals);
@@ -174,7 +176,7 @@ impl Assembly<'_, '_> {
             let map = self.part.map.as_ref();
             let shown = map.filter(|_| !is_unplaced);
             let shading = if self.is_smooth { Shading::Phong } else { Shading::Flat };
-            self.builder.groups.push(Group {
+            self.builder.groups.push(MeshGroup {
                 name: self.part.name.clone(),
                 triangles: triangles.clone(),
                 material: from.map(|from| materials::material(from, shading, shown.is_some())),

@@ -1,6 +1,6 @@
 //! One placed mesh, and how placed things move.
 
-use super::{Group, Material, Mesh, Texture};
+use super::{Material, MaterialTexture, Mesh, MeshGroup};
 use glam::{DMat4, DQuat, DVec3, DVec4, EulerRot};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub struct Object {
     /// Of every group that has no material of its own.
     pub material: Material,
     /// The picture that this material's colour is multiplied with.
-    pub texture: Option<Texture>,
+    pub texture: Option<MaterialTexture>,
     /// Throws shadows.
     pub casts: bool,
     /// Is darkened by shadows; otherwise lit as if nothing stood between.
@@ -78,7 +78,7 @@ impl Object {
     }
 
     /// The picture on a group of its mesh: its own material's, or the object's where it has none.
-    pub fn texture_of<'a>(&'a self, group: &'a Group) -> Option<&'a Texture> {
+    pub fn texture_of<'a>(&'a self, group: &'a MeshGroup) -> Option<&'a MaterialTexture> {
         if group.material.is_some() { group.texture.as_ref() } else { self.texture.as_ref() }
     }
 

@@ -1,7 +1,7 @@
 //! A scene by whatever names it: a built-in name, a scene file or a model.
 
 use super::builtin::{self, Builtin};
-use super::model::{self, Format};
+use super::model::{self, ModelFormat};
 use super::suggestion::nearest;
 use super::{Scene, SceneError, UpAxis, file};
 use std::path::{Path, PathBuf};
@@ -32,7 +32,8 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
         return Vec::new();
     }
     let path = PathBuf::from(&spec.name);
-    let named = if Kind::of(&path) == Some(Kind::SceneFile) { file::models_of(&path) } else { Vec::new() };
+    let named =
+        if SceneFileKind::of(&path) == Some(SceneFileKind::SceneFile) { file::models_of(&path) } else { Vec::new() };
     let files: Vec<PathBuf> = std::iter::once(path).chain(named).collect();
     let of_models: Vec<PathBuf> = files.iter().flat_map(|file| model::files_of(file)).collect();
     files.into_iter().chain(of_models).collect()
@@ -40,27 +41,27 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
 
 /// What kind of file a scene is in, by its name's ending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum SceneFileKind {
     SceneFile,
-    Model(Format),
+    Model(ModelFormat),
 }
 
-impl Kind {
-    fn of(path: &Path) -> Option<Kind> {
+impl SceneFileKind {
+    fn of(path: &Path) -> Option<SceneFileKind> {
         let is_scene_file = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-        if is_scene_file { Some(Kind::SceneFile) } else { Format::of(path).map(Kind::Model) }
+        if is_scene_file { Some(SceneFileKind::SceneFile) } else { ModelFormat::of(path).map(SceneFileKind::Model) }
     }
 }
 
 /// Does this path end as those of files that scenes are read from?
 pub fn is_scene_file(path: &Path) -> bool {
-    Kind::of(path).is_some()
+    SceneFileKind::of(path).is_some()
 }
 
 /// Does this name a bare model, whose up axis is anybody's guess? A glTF file's is y.
 pub fn is_model(name: &str) -> bool {
-    let format = Format::of(Path::new(name)).filter(|_| Builtin::named(name).is_none());
-    matches!(format, Some(Format::Obj | Format::Ply))
+    let format = ModelFormat::of(Path::new(name)).filter(|_| Builtin::named(name).is_none());
+    matches!(format, Some(ModelFormat::Obj | ModelFormat::Ply))
 }
 
 /// Opens a scene. The result is at time 0.
@@ -73,9 +74,9 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
         return builtin.scene();
     }
     let path = Path::new(&spec.name);
-    match Kind::of(path) {
-        Some(Kind::SceneFile) => file::load(path),
-        Some(Kind::Model(_)) => model::scene(path, spec.floor, spec.up),
+    match SceneFileKind::of(path) {
+        Some(SceneFileKind::SceneFile) => file::load(path),
+        Some(SceneFileKind::Model(_)) => model::scene(path, spec.floor, spec.up),
         None => Err(unknown(&spec.name)),
     }
 }

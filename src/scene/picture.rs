@@ -4,7 +4,7 @@
 //! half the texels of level k − 1 along each side: averages of two by two, of linear light. A lookup mixes the four
 //! nearest texels on each of the two levels whose texels are about as large as a pixel is there along its longer side
 //! (Williams 1983): what lies aslant far away blurs, and does not flicker. The GPU does the same with the same levels, and
-//! [`Picture::linear_at`] tells what it finds.
+//! [`TextureImage::linear_at`] tells what it finds.
 
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;
@@ -24,17 +24,17 @@ const MOST_SIDE: u32 = 8192;
 const MOST_TEXELS: u64 = 1 << 27;
 
 /// A picture that surfaces show.
-pub struct Picture {
+pub struct TextureImage {
     name: String,
     size: [u32; 2],
     texels: Vec<[u8; 4]>,
     hash: u64,
-    levels: OnceLock<Vec<Level>>,
+    levels: OnceLock<Vec<MipLevel>>,
 }
 
 /// A level of a picture's pyramid.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Level {
+pub struct MipLevel {
     /// Width and height in texels.
     pub size: [u32; 2],
     /// sRGB and alpha, row by row.
@@ -43,9 +43,9 @@ pub struct Level {
 
 /// A picture on a surface, repeated without end unless it is clamped.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Texture {
+pub struct MaterialTexture {
     /// What is shown.
-    pub picture: Arc<Picture>,
+    pub picture: Arc<TextureImage>,
     /// Metres of world X and Z that the picture covers; `None`: the mesh says where each corner lies in it.
     pub side: Option<f32>,
     /// Beyond the picture its last texels go on.
@@ -54,7 +54,7 @@ pub struct Texture {
 
 /// Why a file is no picture.
 #[derive(Debug, thiserror::Error)]
-pub enum PictureError {
+pub enum ImageError {
     /// It can't be read.
     #[error(transparent)]
     Read(#[from] ReadError),
@@ -76,49 +76,49 @@ pub enum PictureError {
     TooMany,
 }
 
-impl fmt::Debug for Picture {
+impl fmt::Debug for TextureImage {
     /// Without its texels.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Picture { name, size, hash, .. } = self;
+        let TextureImage { name, size, hash, .. } = self;
         f.debug_struct("Picture").field("name", name).field("size", size).field("hash", hash).finish_non_exhaustive()
     }
 }
 
-impl PartialEq for Picture {
-    fn eq(&self, other: &Picture) -> bool {
+impl PartialEq for TextureImage {
+    fn eq(&self, other: &TextureImage) -> bool {
         self.hash == other.hash && self.size == other.size
     }
 }
 
-impl Picture {
+impl TextureImage {
     /// A picture of these sRGB texels; `None` where their number is not that of the size, or none.
-    pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[u8; 4]>) -> Option<Picture> {
+    pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[u8; 4]>) -> Option<TextureImage> {
         let is_sized = size.iter().all(|side| (1..=MOST_SIDE).contains(side))
             && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]);
         let mut hasher = FixedState::default().build_hasher();
         hasher.write(texels.as_flattened());
         let (name, hash) = (name.into(), hasher.finish());
-        is_sized.then(|| Picture { name, size, texels, hash, levels: OnceLock::new() })
+        is_sized.then(|| TextureImage { name, size, texels, hash, levels: OnceLock::new() })
     }
 
     /// Reads a PNG or a JPEG.
-    pub fn load(path: &Path) -> Result<Picture, PictureError> {
-        Picture::load_within(path, MOST_TEXELS)
+    pub fn load(path: &Path) -> Result<TextureImage, ImageError> {
+        TextureImage::load_within(path, MOST_TEXELS)
     }
 
     /// The same of at most so many texels.
-    pub fn load_within(path: &Path, most: u64) -> Result<Picture, PictureError> {
+    pub fn load_within(path: &Path, most: u64) -> Result<TextureImage, ImageError> {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        Picture::decode(name, &read_plain(path, MOST_FILE)?, most)
+        TextureImage::decode(name, &read_plain(path, MOST_FILE)?, most)
     }
 
-    fn decode(name: String, bytes: &[u8], most: u64) -> Result<Picture, PictureError> {
+    fn decode(name: String, bytes: &[u8], most: u64) -> Result<TextureImage, ImageError> {
         let (size, texels) = match bytes {
             [0x89, b'P', b'N', b'G', ..] => png(bytes, most)?,
             [0xff, 0xd8, 0xff, ..] => jpeg(bytes, most)?,
-            _ => return Err(PictureError::Kind),
+            _ => return Err(ImageError::Kind),
         };
-        Picture::new(name, size, texels).ok_or_else(|| PictureError::Broken("texels are missing".to_owned()))
+        TextureImage::new(name, size, texels).ok_or_else(|| ImageError::Broken("texels are missing".to_owned()))
     }
 
     /// Texels that the pictures of one frame may have together.
@@ -126,8 +126,8 @@ impl Picture {
 
     /// The same by another name.
     #[must_use]
-    pub fn named(self, name: impl Into<String>) -> Picture {
-        Picture { name: name.into(), ..self }
+    pub fn named(self, name: impl Into<String>) -> TextureImage {
+        TextureImage { name: name.into(), ..self }
     }
 
     /// Its file's name, for people.
@@ -161,9 +161,9 @@ impl Picture {
     }
 
     /// The levels above it, from half its size down to one texel.
-    pub fn levels(&self) -> &[Level] {
+    pub fn levels(&self) -> &[MipLevel] {
         self.levels.get_or_init(|| {
-            let mut levels: Vec<Level> = Vec::new();
+            let mut levels: Vec<MipLevel> = Vec::new();
             while levels.len() + 1 < self.level_count() as usize {
                 let level = levels
                     .last()
@@ -226,30 +226,30 @@ impl Picture {
 
 /// Reads pictures once each, broken ones too, and no more than fit.
 #[derive(Debug)]
-pub(super) struct Pictures {
-    known: BTreeMap<PathBuf, Arc<Picture>>,
+pub(super) struct ImageLoader {
+    known: BTreeMap<PathBuf, Arc<TextureImage>>,
     /// What is wrong with those that are none.
     broken: BTreeMap<PathBuf, String>,
     left: u64,
 }
 
-impl Default for Pictures {
-    fn default() -> Pictures {
-        Pictures { known: BTreeMap::new(), broken: BTreeMap::new(), left: MOST_TEXELS }
+impl Default for ImageLoader {
+    fn default() -> ImageLoader {
+        ImageLoader { known: BTreeMap::new(), broken: BTreeMap::new(), left: MOST_TEXELS }
     }
 }
 
-impl Pictures {
+impl ImageLoader {
     /// The picture in a file.
-    pub fn load(&mut self, path: &Path) -> Result<Arc<Picture>, PictureError> {
+    pub fn load(&mut self, path: &Path) -> Result<Arc<TextureImage>, ImageError> {
         if let Some(known) = self.known.get(path) {
             return Ok(Arc::clone(known));
         }
         if let Some(why) = self.broken.get(path) {
-            return Err(PictureError::Broken(why.clone()));
+            return Err(ImageError::Broken(why.clone()));
         }
-        let picture = Picture::load_within(path, self.left).inspect_err(|error| {
-            if let PictureError::Broken(why) = error {
+        let picture = TextureImage::load_within(path, self.left).inspect_err(|error| {
+            if let ImageError::Broken(why) = error {
                 self.broken.insert(path.to_owned(), why.clone());
             }
         })?;
@@ -259,29 +259,29 @@ impl Pictures {
     /// The picture in these bytes, which are asked for once; `path` tells it from others, and `told` names it in an error.
     ///
     /// # Errors
-    /// As [`Pictures::load`], or why there are no bytes; in a few words.
+    /// As [`ImageLoader::load`], or why there are no bytes; in a few words.
     #[cfg(feature = "program")]
     pub fn load_bytes(
         &mut self,
         path: &Path,
         [name, told]: [&str; 2],
         bytes: impl FnOnce() -> Result<Vec<u8>, String>,
-    ) -> Result<Arc<Picture>, String> {
+    ) -> Result<Arc<TextureImage>, String> {
         if let Some(known) = self.known.get(path) {
             return Ok(Arc::clone(known));
         }
         if let Some(why) = self.broken.get(path) {
             return Err(why.clone());
         }
-        let told = |error: PictureError| format!("{} {error}", told);
-        let picture = bytes().and_then(|bytes| Picture::decode(name.to_owned(), &bytes, self.left).map_err(told));
+        let told = |error: ImageError| format!("{} {error}", told);
+        let picture = bytes().and_then(|bytes| TextureImage::decode(name.to_owned(), &bytes, self.left).map_err(told));
         let picture = picture.inspect_err(|why| {
             self.broken.insert(path.to_owned(), why.clone());
         })?;
         Ok(self.add(path, picture))
     }
 
-    fn add(&mut self, path: &Path, picture: Picture) -> Arc<Picture> {
+    fn add(&mut self, path: &Path, picture: TextureImage) -> Arc<TextureImage> {
         let picture = Arc::new(picture);
         self.left -= picture.texels.len() as u64;
         self.known.insert(path.to_owned(), Arc::clone(&picture));
@@ -314,7 +314,7 @@ fn encoded(value: f64) -> u8 {
 }
 
 /// Half as many texels along each side, and at least one; of an odd number the last are dropped, as GPUs do.
-fn halved([width, height]: [u32; 2], texels: &[[u8; 4]]) -> Level {
+fn halved([width, height]: [u32; 2], texels: &[[u8; 4]]) -> MipLevel {
     let size = [width, height].map(|side| (side / 2).max(1));
     let at = |x: u32, y: u32| texels[(y.min(height - 1) * width + x.min(width - 1)) as usize];
     let texel = |x: u32, y: u32| {
@@ -324,22 +324,22 @@ fn halved([width, height]: [u32; 2], texels: &[[u8; 4]]) -> Level {
         [mean(0), mean(1), mean(2), ((alpha + 2) / 4) as u8]
     };
     let row = |y: u32| (0..size[0]).map(move |x| texel(x, y));
-    Level { size, texels: (0..size[1]).into_par_iter().flat_map_iter(row).collect() }
+    MipLevel { size, texels: (0..size[1]).into_par_iter().flat_map_iter(row).collect() }
 }
 
-fn checked_size(width: u64, height: u64, most: u64) -> Result<[u32; 2], PictureError> {
+fn checked_size(width: u64, height: u64, most: u64) -> Result<[u32; 2], ImageError> {
     let side = |n: u64| u32::try_from(n).ok().filter(|n| (1..=MOST_SIDE).contains(n));
     match [side(width), side(height)] {
-        [Some(_), Some(_)] if width * height > most => Err(PictureError::TooMany),
+        [Some(_), Some(_)] if width * height > most => Err(ImageError::TooMany),
         [Some(width), Some(height)] => Ok([width, height]),
-        _ => Err(PictureError::Size(width, height)),
+        _ => Err(ImageError::Size(width, height)),
     }
 }
 
-type Decoded = ([u32; 2], Vec<[u8; 4]>);
+type DecodedImage = ([u32; 2], Vec<[u8; 4]>);
 
-fn png(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
-    let broken = |error: png::DecodingError| PictureError::Broken(in_a_line(&error.to_string()));
+fn png(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
+    let broken = |error: png::DecodingError| ImageError::Broken(in_a_line(&error.to_string()));
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     decoder.set_ignore_text_chunk(true);
@@ -347,7 +347,7 @@ fn png(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
     let info = decoder.read_header_info().map_err(broken)?;
     let size = checked_size(info.width.into(), info.height.into(), most)?;
     let mut reader = decoder.read_info().map_err(broken)?;
-    let length = reader.output_buffer_size().ok_or(PictureError::Size(size[0].into(), size[1].into()))?;
+    let length = reader.output_buffer_size().ok_or(ImageError::Size(size[0].into(), size[1].into()))?;
     let mut data = vec![0; length];
     let frame = reader.next_frame(&mut data).map_err(broken)?;
     data.truncate(frame.buffer_size());
@@ -356,9 +356,9 @@ fn png(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
 }
 
 #[cfg(feature = "program")]
-fn jpeg(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
+fn jpeg(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
     use zune_jpeg::zune_core::{colorspace::ColorSpace, options::DecoderOptions};
-    let broken = |error: zune_jpeg::errors::DecodeErrors| PictureError::Broken(in_a_line(&error.to_string()));
+    let broken = |error: zune_jpeg::errors::DecodeErrors| ImageError::Broken(in_a_line(&error.to_string()));
     // Sizes are ours to refuse.
     let options = DecoderOptions::default()
         .set_max_width(usize::from(u16::MAX))
@@ -367,15 +367,15 @@ fn jpeg(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
         .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
     decoder.decode_headers().map_err(broken)?;
-    let info = decoder.info().ok_or_else(|| PictureError::Broken("it has no size".to_owned()))?;
+    let info = decoder.info().ok_or_else(|| ImageError::Broken("it has no size".to_owned()))?;
     let size = checked_size(info.width.into(), info.height.into(), most)?;
     let data = decoder.decode().map_err(broken)?;
     Ok((size, with_alpha(&data, 3)))
 }
 
 #[cfg(not(feature = "program"))]
-fn jpeg(_: &[u8], _: u64) -> Result<Decoded, PictureError> {
-    Err(PictureError::Jpeg)
+fn jpeg(_: &[u8], _: u64) -> Result<DecodedImage, ImageError> {
+    Err(ImageError::Jpeg)
 }
 
 /// Grey, grey and alpha, RGB or RGBA as RGBA.

@@ -24,25 +24,25 @@ const FOV_Y_DEGREES: f64 = 45.0;
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Surroundings {
+pub struct SceneBounds {
     low: DVec3,
     high: DVec3,
 }
 
 /// A unit cube around the origin.
-impl Default for Surroundings {
-    fn default() -> Surroundings {
-        Surroundings { low: DVec3::splat(-0.5), high: DVec3::splat(0.5) }
+impl Default for SceneBounds {
+    fn default() -> SceneBounds {
+        SceneBounds { low: DVec3::splat(-0.5), high: DVec3::splat(0.5) }
     }
 }
 
-impl Surroundings {
+impl SceneBounds {
     /// Of these points; `None` where there are none, or where their extents can't be measured.
-    pub fn of<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<Surroundings> {
+    pub fn of<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<SceneBounds> {
         let mut points = points.into_iter();
         let first = *points.next()?;
         let (low, high) = points.fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)));
-        (high - low).element_sum().is_finite().then_some(Surroundings { low, high })
+        (high - low).element_sum().is_finite().then_some(SceneBounds { low, high })
     }
 
     /// The sum of the bounding box's three extents, the measure of every distance here; 1 where

@@ -1,12 +1,12 @@
 //! PLY models (`.ply`), as text or binary: one mesh of the elements `vertex`, `face` and `tristrips`.
 //!
 //! The header is split off first, since its comments may be in any encoding; `ply_rs_bw` reads it. What is looked for in
-//! each element is decided by it, types and all ([`Wanted`]). Then row after row becomes a vertex or the corners of a face:
+//! each element is decided by it, types and all ([`PlyProperties`]). Then row after row becomes a vertex or the corners of a face:
 //! binary ones are read by `ply_rs_bw`, those of text here, as it takes no `.5` and no `nan`. What else a file holds is named
 //! ([`NotTaken`](super::NotTaken)).
 
 use super::mesh::is_usable_uv;
-use super::not_taken::Refusals;
+use super::not_taken::UnsupportedList;
 use super::read_text::{MOST_TEXT, decoded, quoted};
 use super::{FileProblem, Mesh, MeshBuilder, SceneError, polygon};
 use crate::files::{ReadError, read_plain};
@@ -48,9 +48,9 @@ fn read(file: &Path) -> Result<Mesh, FileProblem> {
     let (head, payload) = split_header(&bytes).map_err(|reason| FileProblem::File(reason.to_owned()))?;
     let head = decoded(head.to_vec());
     let header = header(&head)?;
-    let wanted = Wanted::of(&header)?;
-    let mut rows = Rows { encoding: &header.encoding, rest: payload, line: head.lines().count() };
-    let surface = Surface::read(&header, &wanted, &mut rows)?;
+    let wanted = PlyProperties::of(&header)?;
+    let mut rows = PlyRows { encoding: &header.encoding, rest: payload, line: head.lines().count() };
+    let surface = PlySurface::read(&header, &wanted, &mut rows)?;
     drop(bytes);
     let mesh = surface.build().map_err(FileProblem::File)?;
     if mesh.triangles().is_empty() {
@@ -85,7 +85,7 @@ fn header(text: &str) -> Result<Header, FileProblem> {
     };
     let no_format =
         || FileProblem::File("has no `format` in its header that is known: export the file again".to_owned());
-    let header = Parser::<Row>::new()
+    let header = Parser::<PlyRow>::new()
         .read_header(&mut parser::Reader::new(text.as_bytes()))
         .map_err(|error| error.line().map_or_else(no_format, wrong))?;
     // Of two with one name only one is kept, and the rows would be cut wrongly.
@@ -98,15 +98,15 @@ fn header(text: &str) -> Result<Header, FileProblem> {
 }
 
 /// What is looked for in a file: all of it is there, and of a type that can be used.
-struct Wanted {
+struct PlyProperties {
     has_normals: bool,
     /// Which of [`UVS`].
     uvs: Option<usize>,
     has_corner_uvs: bool,
 }
 
-impl Wanted {
-    fn of(header: &Header) -> Result<Wanted, FileProblem> {
+impl PlyProperties {
+    fn of(header: &Header) -> Result<PlyProperties, FileProblem> {
         let kind = |element: &str, name: &str| {
             header.elements.get(element)?.properties.get(name).map(|property| &property.data_type)
         };
@@ -125,7 +125,7 @@ impl Wanted {
                 return Err(FileProblem::File(reason));
             }
         }
-        Ok(Wanted {
+        Ok(PlyProperties {
             has_normals: are_numbers(&NORMAL),
             uvs: UVS.iter().position(|names| are_numbers(names)),
             has_corner_uvs: matches!(kind("face", CORNER_UVS), Some(PropertyType::List(_, of)) if is_fraction(of)),
@@ -152,8 +152,8 @@ fn is_fraction(of: &ScalarType) -> bool {
 }
 
 /// What the file holds and no mesh does.
-fn not_taken(header: &Header, wanted: &Wanted) -> Refusals {
-    let mut refusals = Refusals::default();
+fn not_taken(header: &Header, wanted: &PlyProperties) -> UnsupportedList {
+    let mut refusals = UnsupportedList::default();
     for element in header.elements.values().filter(|element| element.count > 0) {
         let name = quoted(&element.name);
         if !["vertex", "face", "tristrips"].contains(&element.name.as_str()) {
@@ -180,7 +180,7 @@ fn not_taken(header: &Header, wanted: &Wanted) -> Refusals {
 
 /// What one element says of what may be wanted: a vertex, a face or a strip.
 #[derive(Debug, Default)]
-struct Row {
+struct PlyRow {
     place: [f64; 3],
     normal: [f64; 3],
     /// As [`UVS`] are.
@@ -191,7 +191,7 @@ struct Row {
     corner_uvs: Vec<f64>,
 }
 
-impl Row {
+impl PlyRow {
     /// Where a number of this name goes.
     fn number(&mut self, name: &str) -> Option<&mut f64> {
         let at = |names: &[&str]| names.iter().position(|known| *known == name);
@@ -206,9 +206,9 @@ impl Row {
     }
 }
 
-impl PropertyAccess for Row {
-    fn new() -> Row {
-        Row::default()
+impl PropertyAccess for PlyRow {
+    fn new() -> PlyRow {
+        PlyRow::default()
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
@@ -228,11 +228,11 @@ impl PropertyAccess for Row {
 }
 
 /// An element of which nothing is wanted.
-struct Skipped;
+struct SkippedElement;
 
-impl PropertyAccess for Skipped {
-    fn new() -> Skipped {
-        Skipped
+impl PropertyAccess for SkippedElement {
+    fn new() -> SkippedElement {
+        SkippedElement
     }
 }
 
@@ -268,14 +268,14 @@ fn integers(property: Property) -> Vec<i64> {
 }
 
 /// Reads elements one after the other.
-struct Rows<'a> {
+struct PlyRows<'a> {
     encoding: &'a Encoding,
     rest: &'a [u8],
     /// Lines that were read, where there are lines.
     line: usize,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> PlyRows<'a> {
     /// The next element, the one `at` this place among its kind.
     fn next<E: PropertyAccess>(
         &mut self,
@@ -335,8 +335,8 @@ impl<'a> Rows<'a> {
 }
 
 /// A line of text as an element; `None` where it does not hold what the header says.
-fn row_of_text(line: &str, element: &ElementDef) -> Option<Row> {
-    let mut row = Row::default();
+fn row_of_text(line: &str, element: &ElementDef) -> Option<PlyRow> {
+    let mut row = PlyRow::default();
     let mut words = line.split_ascii_whitespace();
     for (name, property) in &element.properties {
         match &property.data_type {
@@ -363,14 +363,14 @@ fn row_of_text(line: &str, element: &ElementDef) -> Option<Row> {
 }
 
 /// The corners of a face or of a strip.
-struct Run {
+struct PlyCorners {
     count: u32,
     is_strip: bool,
 }
 
 /// Vertices and faces as the file has them.
 #[derive(Default)]
-struct Surface {
+struct PlySurface {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
@@ -378,12 +378,12 @@ struct Surface {
     corners: Vec<u32>,
     /// Parallel to `corners`, or empty; what can't be used is where the vertex is.
     corner_uvs: Vec<Vec2>,
-    runs: Vec<Run>,
+    runs: Vec<PlyCorners>,
 }
 
-impl Surface {
-    fn read(header: &Header, wanted: &Wanted, rows: &mut Rows) -> Result<Surface, FileProblem> {
-        let mut surface = Surface::default();
+impl PlySurface {
+    fn read(header: &Header, wanted: &PlyProperties, rows: &mut PlyRows) -> Result<PlySurface, FileProblem> {
+        let mut surface = PlySurface::default();
         for element in header.elements.values().filter(|element| !element.properties.is_empty()) {
             // Each takes a byte or more: this many are not there.
             if element.count > rows.rest.len() {
@@ -394,7 +394,7 @@ impl Surface {
                 match element.name.as_str() {
                     "vertex" => surface.add_vertex(&rows.next(element, at, row_of_text)?, wanted),
                     "face" => {
-                        let row: Row = rows.next(element, at, row_of_text)?;
+                        let row: PlyRow = rows.next(element, at, row_of_text)?;
                         if row.corners.len() < 3 {
                             let reason = format!("has {} corners: a face needs three or more", row.corners.len());
                             return Err(rows.wrong("face", at, &reason));
@@ -409,7 +409,7 @@ impl Surface {
                         }
                     }
                     "tristrips" => {
-                        let row: Row = rows.next(element, at, row_of_text)?;
+                        let row: PlyRow = rows.next(element, at, row_of_text)?;
                         for strip in row.corners.split(|corner| *corner == -1) {
                             let added = surface.add_run(strip, true);
                             added.map_err(|reason| rows.wrong("strip", at, &reason))?;
@@ -419,7 +419,7 @@ impl Surface {
                         }
                     }
                     _ => {
-                        let Skipped = rows.next(element, at, |_, _| Some(Skipped))?;
+                        let SkippedElement = rows.next(element, at, |_, _| Some(SkippedElement))?;
                     }
                 }
             }
@@ -430,7 +430,7 @@ impl Surface {
         Ok(surface)
     }
 
-    fn add_vertex(&mut self, row: &Row, wanted: &Wanted) {
+    fn add_vertex(&mut self, row: &PlyRow, wanted: &PlyProperties) {
         self.positions.push(DVec3::from_array(row.place));
         if wanted.has_normals {
             let normal = DVec3::from_array(row.normal).as_vec3();
@@ -447,7 +447,7 @@ impl Surface {
             let no_vertex = |_| format!("uses vertex {corner}, which can't be: correct it, or export the file again");
             self.corners.push(u32::try_from(*corner).map_err(no_vertex)?);
         }
-        self.runs.push(Run { count: corners.len() as u32, is_strip });
+        self.runs.push(PlyCorners { count: corners.len() as u32, is_strip });
         Ok(())
     }
 
@@ -458,7 +458,7 @@ impl Surface {
         }
         let mut builder = MeshBuilder::default();
         let (mut first, mut corners) = (0, Vec::new());
-        for Run { count, is_strip } in &self.runs {
+        for PlyCorners { count, is_strip } in &self.runs {
             let run = first..first + *count as usize;
             let mut add = |triangle: [usize; 3]| self.add(triangle.map(|corner| run.start + corner), &mut builder);
             if *is_strip {

@@ -1,6 +1,6 @@
 //! Meshes of more triangles and the same shape.
 
-use super::mesh::{Group, Mesh, MeshBuilder, MeshError};
+use super::mesh::{Mesh, MeshBuilder, MeshError, MeshGroup};
 use glam::{DVec3, Vec2, Vec3};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
@@ -9,7 +9,7 @@ impl Mesh {
     /// The mesh with at least so many triangles: its longest edge is halved, and each triangle beside it, until there are
     /// enough. What is closed stays closed, and no place moves.
     pub fn refined(&self, least: usize) -> Result<Mesh, MeshError> {
-        let mut making = Making::of(self);
+        let mut making = Refinement::of(self);
         while making.triangles.len() < least && making.split_longest() {}
         making.build(self)
     }
@@ -17,45 +17,45 @@ impl Mesh {
 
 /// An edge that waits to be halved, the longest first; of equal ones the oldest.
 #[derive(Debug, Clone, Copy)]
-struct Waiting {
+struct WaitingEdge {
     length_squared: f64,
     edge: [u32; 2],
 }
 
-impl PartialEq for Waiting {
-    fn eq(&self, other: &Waiting) -> bool {
+impl PartialEq for WaitingEdge {
+    fn eq(&self, other: &WaitingEdge) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Waiting {}
+impl Eq for WaitingEdge {}
 
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Waiting) -> Option<Ordering> {
+impl PartialOrd for WaitingEdge {
+    fn partial_cmp(&self, other: &WaitingEdge) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Waiting {
-    fn cmp(&self, other: &Waiting) -> Ordering {
+impl Ord for WaitingEdge {
+    fn cmp(&self, other: &WaitingEdge) -> Ordering {
         self.length_squared.total_cmp(&other.length_squared).then(other.edge.cmp(&self.edge))
     }
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Triangle {
+struct RefinedTriangle {
     corners: [u32; 3],
     normals: Option<[Vec3; 3]>,
     uvs: Option<[Vec2; 3]>,
     group: usize,
 }
 
-struct Making {
+struct Refinement {
     positions: Vec<DVec3>,
-    triangles: Vec<Triangle>,
+    triangles: Vec<RefinedTriangle>,
     /// Which triangles are beside an edge.
     beside: HashMap<[u32; 2], Vec<u32>>,
-    waiting: BinaryHeap<Waiting>,
+    waiting: BinaryHeap<WaitingEdge>,
 }
 
 fn edge(a: u32, b: u32) -> [u32; 2] {
@@ -68,16 +68,16 @@ fn with<T: Copy>(mut corners: [T; 3], at: usize, by: T) -> [T; 3] {
     corners
 }
 
-impl Making {
-    fn of(mesh: &Mesh) -> Making {
+impl Refinement {
+    fn of(mesh: &Mesh) -> Refinement {
         let group = |index: usize| mesh.groups().iter().position(|group| group.triangles.contains(&index)).unwrap_or(0);
-        let triangles = mesh.triangles().iter().enumerate().map(|(index, corners)| Triangle {
+        let triangles = mesh.triangles().iter().enumerate().map(|(index, corners)| RefinedTriangle {
             corners: *corners,
             normals: mesh.corner_normals().map(|normals| normals[index]),
             uvs: mesh.corner_uvs().and_then(|uvs| uvs[index]),
             group: group(index),
         });
-        let mut making = Making {
+        let mut making = Refinement {
             positions: mesh.positions().to_vec(),
             triangles: triangles.collect(),
             beside: HashMap::new(),
@@ -94,14 +94,14 @@ impl Making {
         let beside = self.beside.entry(edge).or_default();
         if beside.is_empty() {
             let [a, b] = edge.map(|end| self.positions[end as usize]);
-            self.waiting.push(Waiting { length_squared: a.distance_squared(b), edge });
+            self.waiting.push(WaitingEdge { length_squared: a.distance_squared(b), edge });
         }
         beside.push(triangle);
     }
 
     /// Halves the longest edge; `false` where none is left.
     fn split_longest(&mut self) -> bool {
-        let Some(Waiting { edge: [u, v], .. }) = self.waiting.pop() else { return false };
+        let Some(WaitingEdge { edge: [u, v], .. }) = self.waiting.pop() else { return false };
         let Some(beside) = self.beside.remove(&[u, v]) else { return true };
         let [a, b] = [u, v].map(|end| self.positions[end as usize]);
         let middle = a.midpoint(b);
@@ -120,7 +120,7 @@ impl Making {
             let k = (at + 2) % 3;
             let normal = whole.normals.map(|normals| (normals[i] + normals[j]) * 0.5);
             let uv = whole.uvs.map(|uvs| (uvs[i] + uvs[j]) * 0.5);
-            let half = |replaced: usize| Triangle {
+            let half = |replaced: usize| RefinedTriangle {
                 corners: with(whole.corners, replaced, m),
                 normals: whole.normals.zip(normal).map(|(normals, normal)| with(normals, replaced, normal)),
                 uvs: whole.uvs.zip(uv).map(|(uvs, uv)| with(uvs, replaced, uv)),
@@ -148,7 +148,7 @@ impl Making {
         let groups = of.groups().iter().enumerate().map(|(index, group)| {
             let end = begin + self.triangles[begin..].partition_point(|triangle| triangle.group <= index);
             let triangles = std::mem::replace(&mut begin, end)..end;
-            Group { triangles, ..group.clone() }
+            MeshGroup { triangles, ..group.clone() }
         });
         MeshBuilder {
             groups: groups.collect(),
@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn groups_stay_with_their_triangles_and_what_is_open_stays_open() {
         let quad = shapes::quad([2.0, 2.0]).expect("a mesh");
-        let groups = [0..1, 1..2].map(|triangles| Group { triangles, ..quad.groups()[0].clone() });
+        let groups = [0..1, 1..2].map(|triangles| MeshGroup { triangles, ..quad.groups()[0].clone() });
         let two = MeshBuilder {
             positions: quad.positions().to_vec(),
             triangles: quad.triangles().to_vec(),

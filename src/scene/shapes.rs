@@ -70,7 +70,8 @@ pub fn cylinder(radius: f64, height: f64, around: u32) -> Result<Mesh, MeshError
 /// the profile.
 pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
-    let rings: Vec<Ring> = profile.iter().map(|point| Ring::new(*point, around, &mut builder.positions)).collect();
+    let rings: Vec<VertexRing> =
+        profile.iter().map(|point| VertexRing::new(*point, around, &mut builder.positions)).collect();
     let next = rings.iter().cycle().skip(1);
     let bands = rings.len() - usize::from(!closed && !rings.is_empty());
     for (low, high) in rings.iter().zip(next).take(bands) {
@@ -215,20 +216,20 @@ fn cuboid_builder(size: [f64; 3]) -> MeshBuilder {
 }
 
 /// The vertices of one profile point on its way around the axis.
-struct Ring {
+struct VertexRing {
     first: u32,
     count: u32,
 }
 
-impl Ring {
-    fn new(point: DVec2, around: u32, positions: &mut Vec<DVec3>) -> Ring {
+impl VertexRing {
+    fn new(point: DVec2, around: u32, positions: &mut Vec<DVec3>) -> VertexRing {
         let count = if point.x == 0.0 { 1 } else { around };
         let first = positions.len() as u32;
         positions.extend((0..count).map(|step| {
             let (sin, cos) = (TAU * f64::from(step) / f64::from(around)).sin_cos();
             DVec3::new(point.x * sin, point.y, point.x * cos)
         }));
-        Ring { first, count }
+        VertexRing { first, count }
     }
 
     fn is_pole(&self) -> bool {

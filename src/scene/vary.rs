@@ -1,6 +1,6 @@
 //! Scenes with more or fewer lights, casters and triangles, for seeing what that costs.
 
-use super::{Mesh, MeshError, Object, Scene, Surroundings};
+use super::{Mesh, MeshError, Object, Scene, SceneBounds};
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -33,9 +33,9 @@ impl Scene {
         self.objects.iter().filter(|object| object.casts)
     }
 
-    fn middle_of_casters(&self) -> Surroundings {
+    fn middle_of_casters(&self) -> SceneBounds {
         let points: Vec<DVec3> = self.casters().flat_map(Object::world_positions).collect();
-        Surroundings::of(&points).unwrap_or_default()
+        SceneBounds::of(&points).unwrap_or_default()
     }
 
     /// With so many lights: the first ones; further ones are these in turn, turned about the casters' vertical axis.

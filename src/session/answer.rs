@@ -1,8 +1,8 @@
 //! Answers to questions about a frame that was run, or about the scene that it is of: one arm a question.
 
-use super::{CaptureRequest, Fault, Session, SessionError, median_ms};
+use super::{CaptureRequest, InjectedFault, Session, SessionError, median_ms};
 use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, TestsOf, WallsOf, without};
-use crate::capture::disk::{Contents, WholeFrame};
+use crate::capture::disk::{FolderContents, WholeFrame};
 use crate::capture::{Capture, Timing};
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -71,9 +71,9 @@ impl RunFrame {
     }
 
     /// What a capture folder of it holds.
-    pub fn contents(&self) -> Contents<'_> {
+    pub fn contents(&self) -> FolderContents<'_> {
         let scene = self.source.as_ref().map(|source| &source.scene);
-        Contents { capture: &self.capture, plan: Some(&self.plan), scene }
+        FolderContents { capture: &self.capture, plan: Some(&self.plan), scene }
     }
 }
 
@@ -130,7 +130,7 @@ impl Session {
                 let frame = of_frame()?;
                 self.make_room(&frame.plan);
                 let (scene, request) = frame.made()?;
-                Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, Fault::None, progress)?))
+                Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, InjectedFault::None, progress)?))
             }
             Ask::FaultsOf(_) => Answer::FaultsOf(Arc::new(self.diagnose_recorded(of_frame()?, progress)?)),
             Ask::TimingOf(_) => {

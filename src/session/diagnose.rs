@@ -1,20 +1,22 @@
 //! Why a frame is wrong: runs it, asks the rules, and has each mend tried (`trials.rs`).
 
-use super::trials::{Judged, Runs, judged, labels_of};
-use super::truth::Traced;
-use super::{CaptureRequest, Fault, Session, SessionError};
+use super::trials::{JudgedFrame, TrialRuns, judged, labels_of};
+use super::truth::TracedScene;
+use super::{CaptureRequest, InjectedFault, Session, SessionError};
 use crate::accuracy::Finding;
 use crate::capture::Capture;
-use crate::diagnosis::facts::{Case, Facts, Sample};
+use crate::diagnosis::facts::{FrameFacts, PixelSample, RegionSamples};
 use crate::diagnosis::mesh_facts::MeshFacts;
-use crate::diagnosis::regions::{self, Key, Region};
+use crate::diagnosis::regions::{self, ConnectedRegion, RegionKey};
 use crate::diagnosis::rules::{self, map, planar, projective};
-use crate::diagnosis::{Cause, CauseFound, Diagnosis, FlagFound, Mend, ObjectChange, RegionFound, RegionKind, Rest};
+use crate::diagnosis::{
+    Cause, CauseFound, Diagnosis, Fix, FlagFound, ObjectChange, RegionFound, RegionKind, RemainingRegions,
+};
 use crate::geometry::{Caster, Casters, light_frame};
-use crate::plan::{FramePlan, Part};
+use crate::plan::{DrawPart, FramePlan};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
-use crate::technique::{self, Choice, Job};
+use crate::technique::{self, Choice, PlanRequest};
 use crate::truth::Tracer;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -26,17 +28,17 @@ const SAMPLES: usize = 3;
 const MOST_FLAGS: usize = 8;
 
 /// A frame that was run.
-struct Run {
+struct DiagnosisRun {
     scene: Scene,
     choice: Choice,
     plan: FramePlan,
     capture: Capture,
-    judged: Judged,
+    judged: JudgedFrame,
 }
 
 impl Session {
     /// Says where a frame is wrong, why, and what mends it, which it proves by running that. `fault` is made in
-    /// the frame and not in its truth, and nothing but that tells of it; [`Fault::None`] for scenes as they are.
+    /// the frame and not in its truth, and nothing but that tells of it; [`InjectedFault::None`] for scenes as they are.
     ///
     /// # Errors
     /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`]. A mend that can't run is no
@@ -45,20 +47,20 @@ impl Session {
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: Fault,
+        fault: InjectedFault,
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
-        let (given, choice, plan) = self.plan_mended(scene, request, fault, &Mend::default())?;
+        let (given, choice, plan) = self.plan_mended(scene, request, fault, &Fix::default())?;
         let capture = self.capture_plan(&given, &plan)?;
         let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture));
-        let run = Run { scene: given, choice, plan, capture, judged };
+        let run = DiagnosisRun { scene: given, choice, plan, capture, judged };
         let meshes = self.mesh_facts(&run.scene, progress)?;
         let casting = self.casting(&run.scene, &run.choice);
         let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
         let darkening = darkening(&run.scene, &lights, progress)?;
         let size = request.size;
-        let facts = Facts {
+        let facts = FrameFacts {
             scene: &run.scene,
             choice: &run.choice,
             plan: &run.plan,
@@ -70,10 +72,13 @@ impl Session {
         let mut found = wrong_regions(&facts, &run);
         let told = found.len().min(Diagnosis::MOST_REGIONS);
         let rest = &found[told..];
-        let rest = Rest { regions: rest.len(), pixels: rest.iter().map(|region| region.pixels.len() as u64).sum() };
+        let rest = RemainingRegions {
+            regions: rest.len(),
+            pixels: rest.iter().map(|region| region.pixels.len() as u64).sum(),
+        };
         found.truncate(told);
         progress.start(found.len() + 1);
-        let mut runs = Runs { scene, request, fault, traced: &traced, progress, done: Vec::new() };
+        let mut runs = TrialRuns { scene, request, fault, traced: &traced, progress, done: Vec::new() };
         let mut told = Vec::new();
         for region in &found {
             if progress.is_cancelled() {
@@ -111,8 +116,8 @@ impl Session {
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: Fault,
-        mend: &Mend,
+        fault: InjectedFault,
+        mend: &Fix,
     ) -> Result<(Capture, FramePlan), SessionError> {
         let (scene, _, plan) = self.plan_mended(scene, request, fault, mend)?;
         Ok((self.capture_plan(&scene, &plan)?, plan))
@@ -123,16 +128,17 @@ impl Session {
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
-        fault: Fault,
-        mend: &Mend,
+        fault: InjectedFault,
+        mend: &Fix,
     ) -> Result<(Scene, Choice, FramePlan), SessionError> {
         let (given, mut choice) = fault.applied(scene, &request.choice);
         let mut given = given.into_owned();
         mend.apply(&mut given, &mut choice)?;
-        let job = Job { scene: &given, size: mend.size(request.size), choice: &choice, cache: &mut self.geometry };
+        let job =
+            PlanRequest { scene: &given, size: mend.size(request.size), choice: &choice, cache: &mut self.geometry };
         let fresh = technique::plan(job)?;
         let mut plan = fresh.clone();
-        if let Fault::Plan(change) = fault {
+        if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
         mend.edit(&mut plan, &fresh);
@@ -162,9 +168,9 @@ impl Session {
     }
 
     /// A close look at some of a region's pixels.
-    fn case<'r>(&mut self, facts: &Facts, region: &'r Region) -> Result<Case<'r>, SessionError> {
+    fn case<'r>(&mut self, facts: &FrameFacts, region: &'r ConnectedRegion) -> Result<RegionSamples<'r>, SessionError> {
         let light = region.light;
-        let has_events = facts.counts_volumes(light) || facts.draws(light, Part::PlanarShadow).next().is_some();
+        let has_events = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
         let mut samples = Vec::new();
         for pixel in region.samples(facts.plan.size, SAMPLES) {
             let history = match has_events {
@@ -173,9 +179,9 @@ impl Session {
             };
             let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));
             let between = seen.map_or_else(Vec::new, |seen| facts.tracer.between(light, &seen));
-            samples.push(Sample { pixel, seen, between, history });
+            samples.push(PixelSample { pixel, seen, between, history });
         }
-        Ok(Case { region, samples })
+        Ok(RegionSamples { region, samples })
     }
 }
 
@@ -200,7 +206,7 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
 }
 
 /// All wrong regions, the largest first; what is merely too dark comes after what is wrong.
-fn wrong_regions(facts: &Facts, run: &Run) -> Vec<Region> {
+fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
     let mut found = Vec::new();
     for (light, findings) in run.judged.findings.iter().enumerate() {
@@ -208,11 +214,11 @@ fn wrong_regions(facts: &Facts, run: &Run) -> Vec<Region> {
             let finding = Finding::from_byte(*byte).filter(|finding| finding.is_wrong())?;
             Some(key_of(facts, light, RegionKind::Wrong(finding), crate::accuracy::place(index, size)))
         };
-        let keys: Vec<Option<Key>> = findings.par_iter().enumerate().map(key).collect();
+        let keys: Vec<Option<RegionKey>> = findings.par_iter().enumerate().map(key).collect();
         found.extend(regions::find(light, keys, size));
         let mut keys = vec![None; findings.len()];
         for index in &run.judged.too_dark[light] {
-            keys[*index] = Some(Key { kind: RegionKind::TooDark, caster: None, receiver: None, hint: None });
+            keys[*index] = Some(RegionKey { kind: RegionKind::TooDark, caster: None, receiver: None, hint: None });
         }
         found.extend(regions::find(light, keys, size));
     }
@@ -223,28 +229,28 @@ fn wrong_regions(facts: &Facts, run: &Run) -> Vec<Region> {
 }
 
 /// What one wrong pixel tells by itself.
-fn key_of(facts: &Facts, light: usize, kind: RegionKind, pixel: [u32; 2]) -> Key {
+fn key_of(facts: &FrameFacts, light: usize, kind: RegionKind, pixel: [u32; 2]) -> RegionKey {
     let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));
     let receiver = seen.map(|seen| seen.place.object);
-    let plain = Key { kind, caster: None, receiver, hint: None };
+    let plain = RegionKey { kind, caster: None, receiver, hint: None };
     let Some(seen) = seen else { return plain };
     if let Some(look) = map::look(facts, light, kind, &seen) {
-        return Key { caster: look.caster, hint: Some(look.cause), ..plain };
+        return RegionKey { caster: look.caster, hint: Some(look.cause), ..plain };
     }
     if let Some((cause, caster, _)) = projective::look(facts, light, kind, &seen) {
-        return Key { caster, hint: Some(cause), ..plain };
+        return RegionKey { caster, hint: Some(cause), ..plain };
     }
     match kind {
         RegionKind::Wrong(Finding::MissingShadow) => {
             let between = facts.tracer.between(light, &seen);
-            Key { caster: between.first().map(|met| met.place.object), ..plain }
+            RegionKey { caster: between.first().map(|met| met.place.object), ..plain }
         }
-        RegionKind::Wrong(Finding::FalseShadow) => Key { hint: planar::hint(facts, light, &seen), ..plain },
+        RegionKind::Wrong(Finding::FalseShadow) => RegionKey { hint: planar::hint(facts, light, &seen), ..plain },
         _ => plain,
     }
 }
 
-fn described(facts: &Facts, case: &Case, causes: Vec<CauseFound>, size: [u32; 2]) -> RegionFound {
+fn described(facts: &FrameFacts, case: &RegionSamples, causes: Vec<CauseFound>, size: [u32; 2]) -> RegionFound {
     let region = case.region;
     let light = region.light;
     let name = |object: usize| facts.tracer.object_name(object).to_owned();
@@ -254,7 +260,7 @@ fn described(facts: &Facts, case: &Case, causes: Vec<CauseFound>, size: [u32; 2]
             casters.extend(sample.miscounted(facts, light).into_iter().map(|(name, ..)| name));
             let flattened = sample.history.iter().flat_map(|history| history.triangles());
             let flattened = flattened.filter(|(event, one)| {
-                event.light == Some(light) && one.part == Part::PlanarShadow && one.fate.passed()
+                event.light == Some(light) && one.part == DrawPart::PlanarShadow && one.fate.passed()
             });
             casters.extend(flattened.filter_map(|(_, one)| one.caster.clone()));
         }
@@ -272,7 +278,7 @@ fn described(facts: &Facts, case: &Case, causes: Vec<CauseFound>, size: [u32; 2]
 }
 
 /// What the truth would be with each flag set.
-fn flags(scene: &Scene, traced: &Traced, progress: &Progress) -> Result<Vec<FlagFound>, SessionError> {
+fn flags(scene: &Scene, traced: &TracedScene, progress: &Progress) -> Result<Vec<FlagFound>, SessionError> {
     let mut found = Vec::new();
     let mut asked = 0;
     for (index, object) in scene.objects.iter().enumerate() {
@@ -311,7 +317,7 @@ fn flags(scene: &Scene, traced: &Traced, progress: &Progress) -> Result<Vec<Flag
                     cause,
                     pixels,
                     at: at.map(|pixel| crate::accuracy::place(*pixel, traced.truth.size)),
-                    mend: Mend::scene(index, &scene.objects[index].name, change),
+                    mend: Fix::scene(index, &scene.objects[index].name, change),
                 });
             }
         }

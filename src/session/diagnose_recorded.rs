@@ -3,9 +3,9 @@
 use super::{RunFrame, Session, SessionError};
 use crate::accuracy::ErrorCounts;
 use crate::capture::{Capture, Image};
-use crate::diagnosis::recorded::{FrameCauseFound, FrameDiagnosis, Suspicion, suspicion, suspicions};
+use crate::diagnosis::recorded::{FrameCauseFound, FrameDiagnosis, FrameSuspicion, suspicion, suspicions};
 use crate::diagnosis::{Cause, Proof};
-use crate::gpu::Memory;
+use crate::gpu::SnapshotMemory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::labels;
@@ -51,7 +51,7 @@ impl Session {
                 _ => Proof::NotIt,
             };
             let mut of_light = Vec::new();
-            for Suspicion { cause, evidence, mended } in suspicions(plan, id, light.position) {
+            for FrameSuspicion { cause, evidence, mended } in suspicions(plan, id, light.position) {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
@@ -97,10 +97,10 @@ impl Session {
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
         let without = |cause, plan: &FramePlan| suspicion(cause, plan, light, position);
-        let Some(Suspicion { mut mended, .. }) = without(first.cause, plan) else { return Ok(None) };
+        let Some(FrameSuspicion { mut mended, .. }) = without(first.cause, plan) else { return Ok(None) };
         let mut joined = first.clone();
         loop {
-            let mut best: Option<(u64, Suspicion)> = None;
+            let mut best: Option<(u64, FrameSuspicion)> = None;
             let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
             for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
                 let Some(found) = without(cause, &mended) else { continue };
@@ -109,7 +109,7 @@ impl Session {
                     best = Some((left, found));
                 }
             }
-            let Some((left, Suspicion { cause, evidence, mended: plan })) = best else { break };
+            let Some((left, FrameSuspicion { cause, evidence, mended: plan })) = best else { break };
             (joined.pixels_left, joined.proof, mended) = (left, proof_of(left), plan);
             joined.together_with.push(cause);
             joined.evidence = format!("{}; {evidence}", joined.evidence);
@@ -120,7 +120,7 @@ impl Session {
     /// What a recorded plan leaves when it is run from its first pass on.
     fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare_once(plan)?;
-        let output = self.executor.capture(prepared, Memory::Shared, false)?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Shared, false)?;
         Ok(Capture { steps: output.steps, ..capture.clone() })
     }
 }

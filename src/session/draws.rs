@@ -9,14 +9,14 @@
 
 use super::{Session, SessionError};
 use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step, StepDraws};
-use crate::gpu::{GpuError, Memory, Output};
+use crate::gpu::{ExecutorOutput, GpuError, SnapshotMemory};
 use crate::plan::FramePlan;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// How often a snapshot is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Every {
+pub enum SnapshotInterval {
     /// After every pass.
     #[default]
     Pass,
@@ -26,7 +26,7 @@ pub enum Every {
 
 impl Session {
     /// Runs a frame with a snapshot after each of its draws.
-    pub(super) fn run_by_draw(&mut self, plan: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
+    pub(super) fn run_by_draw(&mut self, plan: &FramePlan, bracket: bool) -> Result<ExecutorOutput, SessionError> {
         Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
     }
 
@@ -44,10 +44,10 @@ impl Session {
         Ok(StepDraws { step, states: states.collect() })
     }
 
-    fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
+    fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<ExecutorOutput, SessionError> {
         let run = |session: &mut Session| {
             let prepared = session.executor.prepare(split)?;
-            session.executor.capture(prepared, Memory::Shared, bracket)
+            session.executor.capture(prepared, SnapshotMemory::Shared, bracket)
         };
         run(self).map_err(|error| match error {
             GpuError::TooLarge { .. } => SessionError::TooManyDraws(error),
@@ -116,18 +116,18 @@ fn frame_aspects(snapshot: &mut Snapshot) -> [Option<&mut Aspect>; 3] {
 }
 
 /// What is there while the parts of a frame go by.
-struct Now {
+struct RunningState {
     /// Colour, depth and stencil.
     frame: [Arc<Image>; 3],
     own: BTreeMap<OwnTarget, Arc<Image>>,
 }
 
-impl Now {
+impl RunningState {
     /// wgpu clears new textures to zero.
-    fn new(size: [u32; 2]) -> Now {
+    fn new(size: [u32; 2]) -> RunningState {
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, size, &vec![0; format.texel_bytes()]));
         let frame = [PixelFormat::Rgba8Srgb, PixelFormat::Depth32F, PixelFormat::U8].map(zero);
-        Now { frame, own: BTreeMap::new() }
+        RunningState { frame, own: BTreeMap::new() }
     }
 
     /// Goes on by one part, which shares what it leaves as it was.
@@ -167,10 +167,10 @@ impl Now {
 
 /// Joins the parts of the passes that were split. `plan` is the frame before it was split; it may
 /// have more passes than were run.
-fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: Output) -> Output {
-    let mut now = Now::new(plan.size);
+fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: ExecutorOutput) -> ExecutorOutput {
+    let mut now = RunningState::new(plan.size);
     let mut parts = output.steps.into_iter().zip(output.targets).peekable();
-    let mut joined = Output { steps: Vec::new(), targets: Vec::new(), ..output };
+    let mut joined = ExecutorOutput { steps: Vec::new(), targets: Vec::new(), ..output };
     for (index, pass) in plan.passes.iter().enumerate() {
         if parts.peek().is_none() {
             break;
@@ -228,7 +228,7 @@ mod tests {
     fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
         let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
-        let request = CaptureRequest { every: Every::Draw, ..request };
+        let request = CaptureRequest { every: SnapshotInterval::Draw, ..request };
         let capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
         let states = capture.steps[1].draws.iter().map(|draw| draw.after.clone()).collect();
         let draws = StepDraws { step: 1, states };

@@ -1,13 +1,13 @@
 //! Error against run time: several techniques on one scene, timed in turn.
 
-use super::reference::{FrameError, Reference};
+use super::reference::{FrameError, ReferencePictures};
 use super::{CaptureRequest, Session, SessionError, median, milliseconds};
 use crate::accuracy::ErrorCounts;
 use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::technique::{self, Choice, Job};
+use crate::technique::{self, Choice, PlanRequest};
 use glam::DQuat;
 use std::time::{Duration, Instant};
 
@@ -28,7 +28,7 @@ pub struct Measurement {
 
 named_enum! {
     /// What moves from frame to frame.
-    pub enum Moves {
+    pub enum MovingPart {
         /// What the scene's file or maker says.
         Scene = "scene",
         /// Its first light alone, about the vertical axis through what the camera looks at.
@@ -43,16 +43,16 @@ named_enum! {
 /// How far lights and eyes go round in a second, degrees.
 const DEGREES_PER_SECOND: f64 = 10.0;
 
-impl Moves {
+impl MovingPart {
     /// A scene at a moment.
     fn at(self, scene: &Scene, seconds: f64) -> Scene {
-        let mut moved = scene.at(if self == Moves::Scene { seconds } else { 0.0 });
+        let mut moved = scene.at(if self == MovingPart::Scene { seconds } else { 0.0 });
         let turn = DQuat::from_rotation_y((seconds * DEGREES_PER_SECOND).to_radians());
         let target = moved.camera.target;
         match self {
-            Moves::Scene | Moves::Nothing => {}
-            Moves::Eye => moved.camera.eye = target + turn * (moved.camera.eye - target),
-            Moves::Light => {
+            MovingPart::Scene | MovingPart::Nothing => {}
+            MovingPart::Eye => moved.camera.eye = target + turn * (moved.camera.eye - target),
+            MovingPart::Light => {
                 if let Some(light) = moved.lights.first_mut() {
                     let middle = target * light.position.w;
                     light.position = (middle + turn * (light.position.truncate() - middle)).extend(light.position.w);
@@ -65,9 +65,9 @@ impl Moves {
 
 /// Frames of a scene that moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moments {
+pub struct MotionFrames {
     /// What moves.
-    pub moves: Moves,
+    pub moves: MovingPart,
     /// Seconds after the start: the frame before those that count.
     pub from: f64,
     /// Seconds after the start: the last frame.
@@ -76,17 +76,17 @@ pub struct Moments {
     pub frames: usize,
 }
 
-impl Moments {
+impl MotionFrames {
     /// The seconds of each frame that counts.
     fn all(self) -> impl Iterator<Item = f64> {
-        let Moments { from, to, frames, .. } = self;
+        let MotionFrames { from, to, frames, .. } = self;
         (1..=frames).map(move |frame| from + (to - from) * frame as f64 / frames as f64)
     }
 }
 
 /// How one technique did.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MeasuredTechnique {
     /// Technique and settings.
     pub choice: Choice,
     /// Errors of labels, summed over lights.
@@ -119,7 +119,7 @@ impl Session {
         scene: &Scene,
         what: &Measurement,
         progress: &Progress,
-    ) -> Result<Vec<Measured>, SessionError> {
+    ) -> Result<Vec<MeasuredTechnique>, SessionError> {
         self.measure_between(scene, what, progress, &mut |_| ())
     }
 
@@ -131,14 +131,14 @@ impl Session {
         what: &Measurement,
         progress: &Progress,
         between: &mut dyn FnMut(&mut Session),
-    ) -> Result<Vec<Measured>, SessionError> {
+    ) -> Result<Vec<MeasuredTechnique>, SessionError> {
         let traced = self.traced_between(scene, what.size, progress, between)?;
         let mut go_on = |session: &mut Session| {
             between(session);
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };
         progress.start(what.choices.len() * (what.runs + 1));
-        let mut reference = Reference::new(scene, &traced);
+        let mut reference = ReferencePictures::new(scene, &traced);
         let mut measured = Vec::with_capacity(what.choices.len());
         // By row: which of the choices it is.
         let mut items = Vec::with_capacity(what.choices.len());
@@ -190,18 +190,18 @@ impl Session {
         &mut self,
         scene: &Scene,
         what: &Measurement,
-        moments: Moments,
+        moments: MotionFrames,
         progress: &Progress,
-    ) -> Result<Vec<Measured>, SessionError> {
+    ) -> Result<Vec<MeasuredTechnique>, SessionError> {
         progress.start(what.choices.len() * (moments.frames + 1));
         let first = moments.moves.at(scene, moments.from);
         let traced = self.traced(&first, what.size, &Progress::default())?;
-        let mut reference = Reference::new(&first, &traced);
+        let mut reference = ReferencePictures::new(&first, &traced);
         let mut moving = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             if let Some(measured) = self.first_frame(&first, what, choice, &mut reference)? {
-                let measured = Measured { error: ErrorCounts::default(), wrong_color: 0, ..measured };
+                let measured = MeasuredTechnique { error: ErrorCounts::default(), wrong_color: 0, ..measured };
                 moving.push((item, measured, GeometryCache::default()));
             }
             progress.advance();
@@ -209,7 +209,8 @@ impl Session {
         // What lasts is there before the first frame that counts.
         let mut plans = Vec::with_capacity(moving.len());
         for (_, measured, cache) in &mut moving {
-            let plan = technique::plan(Job { scene: &first, size: what.size, choice: &measured.choice, cache })?;
+            let plan =
+                technique::plan(PlanRequest { scene: &first, size: what.size, choice: &measured.choice, cache })?;
             let plan = self.without_unseen(plan, &measured.choice)?;
             let ready = self.executor.prepare(&plan)?;
             self.executor.time(&ready, false)?;
@@ -218,7 +219,7 @@ impl Session {
         for (turn, seconds) in moments.all().enumerate() {
             let scene = moments.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
-            let mut reference = Reference::new(&scene, &traced);
+            let mut reference = ReferencePictures::new(&scene, &traced);
             // What comes just before slows a frame, or not: each moment begins with another choice, every other one backwards.
             let mut order: Vec<usize> = (0..moving.len()).collect();
             order.rotate_left(turn % moving.len().max(1));
@@ -235,14 +236,18 @@ impl Session {
                 let before = self.executor.prepare(kept)?;
                 self.executor.time(&before, false)?;
                 let mut made = None;
-                let ready = if moments.moves == Moves::Nothing {
+                let ready = if moments.moves == MovingPart::Nothing {
                     measured.setups.push(Duration::ZERO);
                     before
                 } else {
                     drop(before);
                     let start = Instant::now();
-                    let plan =
-                        technique::plan(Job { scene: &scene, size: what.size, choice: &measured.choice, cache })?;
+                    let plan = technique::plan(PlanRequest {
+                        scene: &scene,
+                        size: what.size,
+                        choice: &measured.choice,
+                        cache,
+                    })?;
                     let plan = made.insert(self.without_unseen(plan, &measured.choice)?);
                     let ready = self.executor.prepare(plan)?;
                     measured.setups.push(start.elapsed());
@@ -269,12 +274,12 @@ impl Session {
         scene: &Scene,
         what: &Measurement,
         choice: &Choice,
-        reference: &mut Reference,
-    ) -> Result<Option<Measured>, SessionError> {
+        reference: &mut ReferencePictures,
+    ) -> Result<Option<MeasuredTechnique>, SessionError> {
         self.executor.forget();
         let cache = &mut GeometryCache::default();
         let start = Instant::now();
-        let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
+        let plan = technique::plan(PlanRequest { scene, size: what.size, choice, cache })?;
         if self.room.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }
@@ -283,7 +288,7 @@ impl Session {
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         let FrameError { labels, wrong_color } = reference.judge(&mut self.executor, choice, ready)?;
-        Ok(Some(Measured {
+        Ok(Some(MeasuredTechnique {
             choice: choice.clone(),
             error: labels,
             wrong_color,
@@ -302,7 +307,7 @@ impl Session {
         &mut self,
         scene: &Scene,
         size: [u32; 2],
-        measured: &[Measured],
+        measured: &[MeasuredTechnique],
     ) -> Result<Vec<Option<FramePlan>>, SessionError> {
         let mut kept: Vec<Option<FramePlan>> = measured.iter().map(|_| None).collect();
         let mut smallest_first: Vec<usize> = (0..measured.len()).collect();

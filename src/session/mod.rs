@@ -27,22 +27,22 @@ pub use crate::gpu::GpuError;
 #[cfg(feature = "inspector")]
 pub(crate) use crate::gpu::MEMORY_HINTS;
 pub use answer::{FrameSource, RunFrame};
-pub use draws::Every;
+pub use draws::SnapshotInterval;
 pub use history::HistoryCost;
-pub use measure::{Measured, Measurement, Moments, Moves};
+pub use measure::{MeasuredTechnique, Measurement, MotionFrames, MovingPart};
 pub use report::report_rows;
-pub use stress::Fault;
+pub use stress::InjectedFault;
 pub use stress_steps::StressSteps;
-pub use sweep::{Block, Sweep};
+pub use sweep::{Sweep, SweepBlock};
 pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
-use crate::gpu::{Context, Executor, Memory, Output, Prepared};
+use crate::gpu::{Executor, ExecutorOutput, GpuContext, Prepared, SnapshotMemory};
 use crate::plan::{FramePlan, LeftOut};
 use crate::scene::{Mesh, Object, Scene, WallCache};
-use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
+use crate::technique::{self, Choice, ChoiceError, PlanError, PlanRequest};
 use crate::truth::TruthError;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -58,7 +58,7 @@ pub struct CaptureRequest {
     /// 0: not at all, and the timing is left unknown.
     pub timing_runs: usize,
     /// How often to take a snapshot.
-    pub every: Every,
+    pub every: SnapshotInterval,
     /// Brackets the frame for an attached graphics debugger.
     pub external_capture: bool,
 }
@@ -66,7 +66,7 @@ pub struct CaptureRequest {
 impl CaptureRequest {
     /// An untimed capture with a snapshot after every pass.
     pub fn new(choice: Choice, size: [u32; 2]) -> CaptureRequest {
-        CaptureRequest { choice, size, timing_runs: 0, every: Every::Pass, external_capture: false }
+        CaptureRequest { choice, size, timing_runs: 0, every: SnapshotInterval::Pass, external_capture: false }
     }
 }
 
@@ -135,7 +135,7 @@ pub enum SessionError {
     },
     /// A mend can't be made.
     #[error(transparent)]
-    Mend(#[from] crate::diagnosis::MendError),
+    Mend(#[from] crate::diagnosis::FixError),
     /// A scene made by code is broken.
     #[error(transparent)]
     Scene(#[from] crate::scene::SceneError),
@@ -156,9 +156,9 @@ impl SessionError {
 pub struct Session {
     executor: Executor,
     geometry: GeometryCache,
-    traced: Option<Arc<truth::Traced>>,
+    traced: Option<Arc<truth::TracedScene>>,
     /// Of the scene to which a stress case converges.
-    limit: Option<Arc<truth::Traced>>,
+    limit: Option<Arc<truth::TracedScene>>,
     room: Option<u64>,
     walls: WallCache,
 }
@@ -177,7 +177,7 @@ pub struct CaptureCost {
 impl Session {
     /// Opens the GPU whose name contains `adapter` (in any case), or the fastest kind there is.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
-        let context = Context::new(adapter)?;
+        let context = GpuContext::new(adapter)?;
         Ok(Session {
             executor: Executor::new(context),
             geometry: GeometryCache::default(),
@@ -220,7 +220,7 @@ impl Session {
 
     /// The frame as data, without running it; with `occlusion=queries` it runs once to see what shows.
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
-        let job = Job { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
+        let job = PlanRequest { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
         let plan = technique::plan(job)?;
         self.without_unseen(plan, &request.choice)
     }
@@ -277,8 +277,10 @@ impl Session {
             timing.captured_ms = median_ms(&cost.captured);
         }
         let output = match request.every {
-            Every::Pass => self.executor.capture(prepared, Memory::Mapped, request.external_capture)?,
-            Every::Draw => {
+            SnapshotInterval::Pass => {
+                self.executor.capture(prepared, SnapshotMemory::Mapped, request.external_capture)?
+            }
+            SnapshotInterval::Draw => {
                 drop(prepared);
                 self.run_by_draw(&plan, request.external_capture)?
             }
@@ -290,7 +292,7 @@ impl Session {
     /// left. `scene` gives the camera and lights that the capture tells of.
     pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare(plan)?;
-        let output = self.executor.capture(prepared, Memory::Mapped, false)?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
         Ok(self.assemble(scene, plan, output, Timing::default()))
     }
 
@@ -320,7 +322,7 @@ impl Session {
         Ok(cost)
     }
 
-    fn assemble(&self, scene: &Scene, plan: &FramePlan, output: Output, timing: Timing) -> Capture {
+    fn assemble(&self, scene: &Scene, plan: &FramePlan, output: ExecutorOutput, timing: Timing) -> Capture {
         let kept = plan.passes.iter().zip(&output.kept).filter(|(_, is_kept)| **is_kept);
         let left_out = plan.left_out.iter().cloned().chain(kept.map(|(pass, _)| LeftOut::kept(pass))).collect();
         let lights =

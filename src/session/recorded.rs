@@ -1,8 +1,8 @@
 //! Another program's frame held against itself: each draw is computed anew from what was stored before it.
 
 use super::{Session, SessionError};
-use crate::capture::{Capture, Differs, DrawState, FrameSnapshot, Image, Snapshot};
-use crate::gpu::Memory;
+use crate::capture::{Capture, DrawState, FrameSnapshot, Image, RecomputeDifference, Snapshot};
+use crate::gpu::SnapshotMemory;
 use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
 
@@ -37,9 +37,13 @@ impl Session {
     }
 
     /// Where a frame of one draw leaves something else than `after`.
-    fn differs(&mut self, alone: &FramePlan, after: &FrameSnapshot) -> Result<Option<Differs>, SessionError> {
+    fn differs(
+        &mut self,
+        alone: &FramePlan,
+        after: &FrameSnapshot,
+    ) -> Result<Option<RecomputeDifference>, SessionError> {
         let prepared = self.executor.prepare_once(alone)?;
-        let output = self.executor.capture(prepared, Memory::Mapped, false)?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
         let Some(Snapshot::Frame(made)) = output.steps.first().map(|step| &step.snapshot) else { return Ok(None) };
         let stencil = match (&made.stencil, &after.stencil) {
             (Some(made), Some(after)) => {
@@ -48,7 +52,7 @@ impl Session {
             }
             _ => 0,
         };
-        let mut differs = Differs { stencil: stencil as u64, ..Differs::default() };
+        let mut differs = RecomputeDifference { stencil: stencil as u64, ..RecomputeDifference::default() };
         for (made, after) in unequal_rows(&made.depth.image, &after.depth.image) {
             for (made, after) in depths(made).zip(depths(after)) {
                 let is_near = (made - after).abs() <= alone.attachments[0].depth_rounding();

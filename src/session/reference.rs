@@ -1,19 +1,19 @@
 //! Frames held against the truth: their labels, and their pictures against the one that the truth lights.
 
 use super::SessionError;
-use super::truth::Traced;
+use super::truth::TracedScene;
 use crate::accuracy::{self, ErrorCounts};
 use crate::capture::Image;
 use crate::geometry::GeometryCache;
 use crate::gpu::{Executor, Prepared};
 use crate::scene::Scene;
-use crate::technique::{self, Choice, Job};
+use crate::technique::{self, Choice, PlanRequest};
 use std::sync::Arc;
 
 /// Right pictures of one scene: one for each way to shade it.
-pub(super) struct Reference<'a> {
+pub(super) struct ReferencePictures<'a> {
     scene: &'a Scene,
-    traced: &'a Traced,
+    traced: &'a TracedScene,
     pictures: Vec<(Choice, Arc<Image>)>,
 }
 
@@ -25,10 +25,10 @@ pub(super) struct FrameError {
     pub wrong_color: u64,
 }
 
-impl<'a> Reference<'a> {
+impl<'a> ReferencePictures<'a> {
     /// Of a scene and its truth; pictures are made when they are first asked for.
-    pub fn new(scene: &'a Scene, traced: &'a Traced) -> Reference<'a> {
-        Reference { scene, traced, pictures: Vec::new() }
+    pub fn new(scene: &'a Scene, traced: &'a TracedScene) -> ReferencePictures<'a> {
+        ReferencePictures { scene, traced, pictures: Vec::new() }
     }
 
     /// Runs a choice's frame, untimed, and judges it.
@@ -44,7 +44,7 @@ impl<'a> Reference<'a> {
         let judged = labels.filter_map(|(light, labels)| Some(self.traced.compare(light, labels.as_ref()?)));
         let (counts, findings): (Vec<_>, Vec<_>) = judged.map(|one| (one.counts, one.findings)).unzip();
         let [picture, right] = [&answer.picture, &right].map(|image| image.rows().collect::<Vec<&[u8]>>());
-        let Traced { tracer, truth, .. } = self.traced;
+        let TracedScene { tracer, truth, .. } = self.traced;
         let wrong_color = accuracy::wrong_colors(tracer, truth, &findings, &picture, &right);
         Ok(FrameError { labels: counts.into_iter().sum(), wrong_color })
     }
@@ -55,8 +55,9 @@ impl<'a> Reference<'a> {
         if let Some((_, picture)) = self.pictures.iter().find(|(known, _)| *known == choice) {
             return Ok(picture.clone());
         }
-        let Traced { truth, .. } = self.traced;
-        let job = Job { scene: self.scene, size: truth.size, choice: &choice, cache: &mut GeometryCache::default() };
+        let TracedScene { truth, .. } = self.traced;
+        let job =
+            PlanRequest { scene: self.scene, size: truth.size, choice: &choice, cache: &mut GeometryCache::default() };
         let plan = technique::plan_of_labels(job, &truth.labels)?;
         let ready = executor.prepare_apart(&plan)?;
         let picture = executor.answer(ready)?.picture;

@@ -1,17 +1,22 @@
 //! Measurements as rows of a report.
 
-use super::{Measured, Measurement, median_ms, milliseconds};
-use crate::report::{FrameTimes, Moving, Row};
+use super::{MeasuredTechnique, Measurement, median_ms, milliseconds};
+use crate::report::{FrameTimes, MotionCost, ReportRow};
 use crate::technique::Choice;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
 /// Rows of one scene, in the order measured, labelled by what sets them apart `among` all choices of the run;
 /// [`Report::new`](crate::report::Report::new) fills in what depends on the other rows.
-pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among: &[Choice]) -> Vec<Row> {
-    let row = |one: &Measured| {
+pub fn report_rows(
+    scene: &str,
+    what: &Measurement,
+    measured: &[MeasuredTechnique],
+    among: &[Choice],
+) -> Vec<ReportRow> {
+    let row = |one: &MeasuredTechnique| {
         let frames: Vec<f64> = one.frames.iter().copied().map(milliseconds).collect();
-        Row {
+        ReportRow {
             scene: scene.to_owned(),
             technique: one.choice.technique().name().to_owned(),
             settings: one.choice.settings().clone(),
@@ -43,12 +48,12 @@ pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among
 }
 
 /// What a frame of a scene that moves took, with its set-up.
-fn moving(one: &Measured) -> Option<Moving> {
+fn moving(one: &MeasuredTechnique) -> Option<MotionCost> {
     let ms = |all: &[Duration]| median_ms(all);
     let totals: Vec<Duration> = one.setups.iter().zip(&one.frames).map(|(setup, frame)| *setup + *frame).collect();
     let (setup_ms, total_ms) = (ms(&one.setups)?, ms(&totals)?);
     let all = |times: &[Duration]| times.iter().sum::<Duration>().as_secs_f64();
-    Some(Moving { setup_ms, total_ms, setup_share: all(&one.setups) / all(&totals) })
+    Some(MotionCost { setup_ms, total_ms, setup_share: all(&one.setups) / all(&totals) })
 }
 
 /// What sets a choice apart from others of its technique: its size, and other settings that differ

@@ -9,9 +9,9 @@
 
 use super::{Session, SessionError};
 use crate::capture::{Image, PixelFormat, Snapshot, StencilVerdict, StepTests};
-use crate::gpu::Memory;
+use crate::gpu::SnapshotMemory;
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, RasterState, StencilFace};
-use crate::stencil_machine::{Fragment, Stored, test};
+use crate::stencil_machine::{DepthStencil, IncomingFragment, test};
 use std::sync::Arc;
 use wgpu::{CompareFunction, Face, StencilOperation};
 
@@ -25,7 +25,7 @@ impl Session {
     ) -> Result<StepTests, SessionError> {
         let (counting, draws) = counting_plan(plan, step, draw).ok_or(SessionError::NoTests { step })?;
         let prepared = self.executor.prepare(&counting)?;
-        let output = self.executor.capture(prepared, Memory::Mapped, false)?;
+        let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
         let stencils: Vec<Arc<Image>> = output
             .steps
             .iter()
@@ -126,10 +126,10 @@ fn verdicts(draws: &[Draw], before: &Image, fragments: &Image) -> Image {
     let verdict = |(stored, fragments): (&u8, &u8)| {
         let rule = rules[usize::from(*stored)];
         let verdict = match rule {
-            Rule { verdict, lasts: true } => verdict,
+            StencilRule { verdict, lasts: true } => verdict,
             // The first fragment sees what was there before.
-            Rule { verdict, lasts: false } if *fragments <= 1 => verdict,
-            Rule { .. } => StencilVerdict::Unknown,
+            StencilRule { verdict, lasts: false } if *fragments <= 1 => verdict,
+            StencilRule { .. } => StencilVerdict::Unknown,
         };
         verdict as u8
     };
@@ -140,26 +140,26 @@ fn verdicts(draws: &[Draw], before: &Image, fragments: &Image) -> Image {
 
 /// What the tests say where the stencil held a value.
 #[derive(Debug, Clone, Copy)]
-struct Rule {
+struct StencilRule {
     verdict: StencilVerdict,
     /// The fragments leave what is tested as it was.
     lasts: bool,
 }
 
 /// A rule a stored value. Faces that are culled have no say.
-fn rules(draws: &[Draw]) -> [Rule; 256] {
+fn rules(draws: &[Draw]) -> [StencilRule; 256] {
     std::array::from_fn(|stored| {
-        let mut rule: Option<Rule> = None;
+        let mut rule: Option<StencilRule> = None;
         for (raster, front_facing) in draws.iter().flat_map(|draw| seen_faces(&draw.raster)) {
             let one = rule_of(raster, front_facing, stored as u8);
             rule = Some(match rule {
                 None => one,
-                Some(all) if all.verdict == one.verdict => Rule { lasts: all.lasts && one.lasts, ..all },
+                Some(all) if all.verdict == one.verdict => StencilRule { lasts: all.lasts && one.lasts, ..all },
                 // Faces or draws that the test treats differently: which comes here is not told.
-                Some(_) => Rule { verdict: StencilVerdict::Unknown, lasts: true },
+                Some(_) => StencilRule { verdict: StencilVerdict::Unknown, lasts: true },
             });
         }
-        rule.unwrap_or(Rule { verdict: StencilVerdict::Passes, lasts: true })
+        rule.unwrap_or(StencilRule { verdict: StencilVerdict::Passes, lasts: true })
     })
 }
 
@@ -168,19 +168,19 @@ fn seen_faces(raster: &RasterState) -> impl Iterator<Item = (&RasterState, bool)
     faces.into_iter().filter(|(face, _)| raster.cull != Some(*face)).map(move |(_, is_front)| (raster, is_front))
 }
 
-fn rule_of(raster: &RasterState, front_facing: bool, stencil: u8) -> Rule {
+fn rule_of(raster: &RasterState, front_facing: bool, stencil: u8) -> StencilRule {
     if !raster.stencil.is_enabled() {
-        return Rule { verdict: StencilVerdict::Passes, lasts: true };
+        return StencilRule { verdict: StencilVerdict::Passes, lasts: true };
     }
-    let stored = Stored { depth: 0.0, stencil };
-    let passes = test(raster, Fragment { depth: 0.0, front_facing }, stored).stencil_passed;
+    let stored = DepthStencil { depth: 0.0, stencil };
+    let passes = test(raster, IncomingFragment { depth: 0.0, front_facing }, stored).stencil_passed;
     let (face, masks) = raster.face(front_facing);
     let operations = if passes { vec![face.depth_fail_op, face.pass_op] } else { vec![face.fail_op] };
     let keeps = operations.iter().all(|operation| *operation == StencilOperation::Keep);
     let is_apart = masks.write & masks.read == 0;
     let is_always = face.compare == CompareFunction::Always;
     let verdict = if passes { StencilVerdict::Passes } else { StencilVerdict::Fails };
-    Rule { verdict, lasts: keeps || is_apart || is_always }
+    StencilRule { verdict, lasts: keeps || is_apart || is_always }
 }
 
 #[cfg(test)]

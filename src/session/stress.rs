@@ -1,14 +1,14 @@
 //! Runs stress cases: every technique at every value, against the truth.
 
-use super::truth::Traced;
+use super::truth::TracedScene;
 use super::{Session, SessionError, StressSteps, median_ms, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
-use crate::stress::{Case, Drives, Entrant, Row, Seen, Trend};
-use crate::technique::{self, Choice, Job, Technique};
+use crate::stress::{CaseNumber, Entrant, ExpectedTrend, StressCase, StressRow, TruthCounts};
+use crate::technique::{self, Choice, PlanRequest, Technique};
 use crate::truth::{LIT, SHADOW};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// What a light's pixels said at the value before, in a motion.
 #[derive(Debug)]
-pub(super) struct Before {
+pub(super) struct LabelsBefore {
     entrant: Entrant,
     light: usize,
     labels: Vec<u8>,
@@ -30,7 +30,7 @@ pub(super) struct Before {
 
 /// Something made wrong in what a technique does, while truth and expectation stay: it must be found.
 #[derive(Clone, Copy)]
-pub enum Fault<'a> {
+pub enum InjectedFault<'a> {
     /// Nothing is wrong.
     None,
     /// In the scene, before any geometry is made from it.
@@ -43,15 +43,15 @@ pub enum Fault<'a> {
 
 /// What a row is of.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step<'a> {
-    pub case: &'a Case,
+pub(super) struct StressStep<'a> {
+    pub case: &'a StressCase,
     pub entrant: Entrant,
     pub value: f64,
     pub size: [u32; 2],
 }
 
 /// The scene of a case at a value.
-pub(super) fn scene_of(case: &Case, value: f64) -> Result<Scene, SessionError> {
+pub(super) fn scene_of(case: &StressCase, value: f64) -> Result<Scene, SessionError> {
     let named = |source| SceneError::Mesh { name: format!("{} {value}", case.name), source };
     Ok(case.scene(value).map_err(named)?)
 }
@@ -64,16 +64,16 @@ impl Session {
     /// [`SessionError::Cancelled`].
     pub fn stress(
         &mut self,
-        cases: &[&'static Case],
+        cases: &[&'static StressCase],
         only: &[Technique],
         size: [u32; 2],
         progress: &Progress,
-    ) -> Result<Vec<Row>, SessionError> {
+    ) -> Result<Vec<StressRow>, SessionError> {
         self.stress_rows(StressSteps::new(cases, only, size), progress)
     }
 
     /// Makes all rows that are left.
-    pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<Row>, SessionError> {
+    pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());
         while !progress.is_cancelled() {
@@ -87,13 +87,13 @@ impl Session {
     /// Runs values of a case with `fault` in them, judged like any others: shows what would be found.
     pub fn stress_faulty(
         &mut self,
-        case: &Case,
+        case: &StressCase,
         entrants: &[Entrant],
         values: &[f64],
         size: [u32; 2],
-        fault: Fault,
+        fault: InjectedFault,
         progress: &Progress,
-    ) -> Result<Vec<Row>, SessionError> {
+    ) -> Result<Vec<StressRow>, SessionError> {
         let (mut rows, mut before) = (Vec::new(), Vec::new());
         for value in values {
             let scene = scene_of(case, *value)?;
@@ -102,7 +102,7 @@ impl Session {
                     return Err(SessionError::Cancelled);
                 }
                 if case.runs(entrant, *value) {
-                    let step = Step { case, entrant: *entrant, value: *value, size };
+                    let step = StressStep { case, entrant: *entrant, value: *value, size };
                     rows.push(self.stress_row(&step, &scene, &mut before, fault)?);
                 }
                 progress.advance();
@@ -112,8 +112,8 @@ impl Session {
     }
 
     /// The truth of the scene to which the case converges.
-    fn limit_of(&mut self, case: &Case, size: [u32; 2]) -> Result<Option<Arc<Traced>>, SessionError> {
-        let Some(Trend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
+    fn limit_of(&mut self, case: &StressCase, size: [u32; 2]) -> Result<Option<Arc<TracedScene>>, SessionError> {
+        let Some(ExpectedTrend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
         let named = |source| SceneError::Mesh { name: format!("the limit of {}", case.name), source };
         let scene = limit().map_err(named)?;
         // Beside the row's own truth, so that neither is traced again for each row.
@@ -125,12 +125,12 @@ impl Session {
 
     pub(super) fn stress_row(
         &mut self,
-        step: &Step,
+        step: &StressStep,
         scene: &Scene,
-        before: &mut Vec<Before>,
-        fault: Fault,
-    ) -> Result<Row, SessionError> {
-        let Step { case, entrant, value, size } = *step;
+        before: &mut Vec<LabelsBefore>,
+        fault: InjectedFault,
+    ) -> Result<StressRow, SessionError> {
+        let StressStep { case, entrant, value, size } = *step;
         // Its own progress: the steps of the whole are rows.
         let traced = self.traced(scene, size, &Progress::default())?;
         let limit = self.limit_of(case, size)?;
@@ -142,8 +142,8 @@ impl Session {
         let start = Instant::now();
         // Geometry that another technique has found out would be had for nothing.
         let cache = &mut GeometryCache::default();
-        let mut plan = technique::plan(Job { scene: &scene, size, choice: &used, cache })?;
-        if let Fault::Plan(change) = fault {
+        let mut plan = technique::plan(PlanRequest { scene: &scene, size, choice: &used, cache })?;
+        if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
         let ready = self.executor.prepare(&plan)?;
@@ -153,7 +153,7 @@ impl Session {
         let frame_ms = median_ms(&frames.collect::<Result<Vec<_>, _>>()?).unwrap_or(f64::NAN);
         let labels = self.executor.labels(ready)?;
         let mut error = ErrorCounts::default();
-        let (mut flips, mut off_limit, mut seen) = (None, None, Seen::default());
+        let (mut flips, mut off_limit, mut seen) = (None, None, TruthCounts::default());
         for (light, labels) in labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?))) {
             let accuracy = traced.compare(light, labels);
             error = [error, accuracy.counts].into_iter().sum();
@@ -164,8 +164,8 @@ impl Session {
             if let Some(limit) = &limit {
                 off_limit = Some(off_limit.unwrap_or(0) + limit.compare(light, labels).counts.wrong());
             }
-            if let Drives::Motion(_) = case.drives {
-                let mut now = Before {
+            if let CaseNumber::Motion(_) = case.drives {
+                let mut now = LabelsBefore {
                     entrant,
                     light,
                     labels: labels.rows().flatten().copied().collect(),
@@ -183,7 +183,7 @@ impl Session {
                 }
             }
         }
-        Ok(Row {
+        Ok(StressRow {
             case: case.name,
             parameter: (case.parameter, value),
             entrant,
@@ -199,14 +199,14 @@ impl Session {
     }
 }
 
-impl Fault<'_> {
+impl InjectedFault<'_> {
     /// What the technique is given in place of these.
     pub(super) fn applied<'a>(self, scene: &'a Scene, choice: &Choice) -> (Cow<'a, Scene>, Choice) {
         let (mut scene, mut choice) = (Cow::Borrowed(scene), choice.clone());
         match self {
-            Fault::Scene(change) => change(scene.to_mut()),
-            Fault::Choice(change) => change(&mut choice),
-            Fault::None | Fault::Plan(_) => {}
+            InjectedFault::Scene(change) => change(scene.to_mut()),
+            InjectedFault::Choice(change) => change(&mut choice),
+            InjectedFault::None | InjectedFault::Plan(_) => {}
         }
         (scene, choice)
     }
@@ -218,7 +218,7 @@ impl Fault<'_> {
 /// that time. Two ahead is a flicker. A change does not count where the truth changes beside the pixel:
 /// an edge touches it then. Excused pixels along edges count too, since a flicker can hide there, but
 /// only alone: an edge that lies along a row of pixels moves all of them at once.
-fn flips_between(last: &Before, now: &mut Before, width: usize) -> u64 {
+fn flips_between(last: &LabelsBefore, now: &mut LabelsBefore, width: usize) -> u64 {
     let (count, height) = (now.labels.len(), now.labels.len() / width.max(1));
     let moves = |at: usize| last.truth[at] != now.truth[at];
     let around = |at: usize| {
@@ -248,8 +248,8 @@ mod tests {
     use super::*;
 
     /// Three by three pixels that stand still.
-    fn nine_pixels() -> Before {
-        Before {
+    fn nine_pixels() -> LabelsBefore {
+        LabelsBefore {
             entrant: Entrant::of(Technique::ZFail),
             light: 0,
             labels: vec![0; 9],

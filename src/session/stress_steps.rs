@@ -1,10 +1,10 @@
 //! Stress cases row by row, so that other work may come in between.
 
-use super::stress::{Before, Fault, Step, scene_of};
+use super::stress::{InjectedFault, LabelsBefore, StressStep, scene_of};
 use super::{Session, SessionError};
 use crate::scene::Scene;
-use crate::shards::{Part, Shard};
-use crate::stress::{Case, Entrant, Row};
+use crate::shards::{Shard, ShardPart};
+use crate::stress::{Entrant, StressCase, StressRow};
 use crate::technique::Technique;
 use std::collections::VecDeque;
 
@@ -13,23 +13,23 @@ use std::collections::VecDeque;
 #[derive(Debug)]
 pub struct StressSteps {
     /// Each with the index of its case and of its value.
-    left: VecDeque<([usize; 2], Step<'static>)>,
+    left: VecDeque<([usize; 2], StressStep<'static>)>,
     /// Case and value of the scene.
     place: Option<[usize; 2]>,
     scene: Option<Scene>,
-    before: Vec<Before>,
+    before: Vec<LabelsBefore>,
 }
 
 impl StressSteps {
     /// All values of `cases`, with pictures of `size` pixels but for those that have a size of their
     /// own; with `only`, no other techniques.
-    pub fn new(cases: &[&'static Case], only: &[Technique], size: [u32; 2]) -> StressSteps {
+    pub fn new(cases: &[&'static StressCase], only: &[Technique], size: [u32; 2]) -> StressSteps {
         let mut left = VecDeque::new();
         for (case_index, case) in cases.iter().enumerate() {
             let is_asked = |technique: Technique| only.is_empty() || only.contains(&technique);
             let entrants: Vec<_> = case.entrants().into_iter().filter(|entrant| is_asked(entrant.technique)).collect();
             for (value_index, value) in case.values.iter().enumerate() {
-                let step = |entrant| Step { case, entrant, value: *value, size: case.size.unwrap_or(size) };
+                let step = |entrant| StressStep { case, entrant, value: *value, size: case.size.unwrap_or(size) };
                 let running = entrants.iter().filter(|entrant| case.runs(entrant, *value));
                 left.extend(running.map(|entrant| ([case_index, value_index], step(*entrant))));
             }
@@ -45,8 +45,8 @@ impl StressSteps {
     }
 
     /// Those of one part of the run: each technique of each case, with all of its values, is made by one.
-    pub fn of(mut self, shard: Shard) -> (StressSteps, Part) {
-        let name = |Step { case, entrant, value, size: [width, height] }: &Step| {
+    pub fn of(mut self, shard: Shard) -> (StressSteps, ShardPart) {
+        let name = |StressStep { case, entrant, value, size: [width, height] }: &StressStep| {
             format!("{} · {entrant} · {value} · {width}×{height}", case.name)
         };
         let names: Vec<String> = self.left.iter().map(|(_, step)| name(step)).collect();
@@ -66,7 +66,7 @@ impl StressSteps {
             is_ours
         });
         let how = format!("stencilscope {} stress", env!("CARGO_PKG_VERSION"));
-        (self, Part::new(shard, places, how, names))
+        (self, ShardPart::new(shard, places, how, names))
     }
 
     /// How many rows are still to be made.
@@ -83,7 +83,7 @@ impl StressSteps {
 impl Session {
     /// Makes the next row; `None` at the end. What the session does between two rows changes none of
     /// them.
-    pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<Row>, SessionError> {
+    pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
         if steps.place.is_none_or(|[case, _]| case != place[0]) {
             steps.before.clear();
@@ -93,7 +93,7 @@ impl Session {
             None => scene_of(step.case, step.value)?,
         };
         steps.place = Some(place);
-        let row = self.stress_row(&step, &scene, &mut steps.before, Fault::None)?;
+        let row = self.stress_row(&step, &scene, &mut steps.before, InjectedFault::None)?;
         steps.scene = Some(scene);
         Ok(Some(row))
     }
@@ -110,14 +110,14 @@ mod tests {
 
     #[test]
     fn heavy_rows_can_be_left_out() {
-        let case = Case::named("triangle-count").expect("a case");
+        let case = StressCase::named("triangle-count").expect("a case");
         let most = case.heavy_above.expect("a limit");
         let values = |steps: StressSteps| -> Vec<f64> { steps.left.iter().map(|(_, step)| step.value).collect() };
         let all = values(StressSteps::new(&[case], &[], SIZE));
         let light = values(StressSteps::new(&[case], &[], SIZE).without_heavy());
         assert!(all.iter().any(|value| *value > most));
         assert_eq!(light, all.into_iter().filter(|value| *value <= most).collect::<Vec<_>>());
-        let other = Case::named("map-size").expect("a case");
+        let other = StressCase::named("map-size").expect("a case");
         assert_eq!(
             StressSteps::new(&[other], &[], SIZE).without_heavy().left(),
             StressSteps::new(&[other], &[], SIZE).left()
@@ -127,14 +127,14 @@ mod tests {
     #[test]
     fn what_comes_between_two_rows_changes_none_of_them() {
         let mut session = Session::new(None).expect("the reference adapter");
-        let cases = ["near-plane", "eye-in-volume", "map-size"].map(|name| Case::named(name).expect("a case"));
+        let cases = ["near-plane", "eye-in-volume", "map-size"].map(|name| StressCase::named(name).expect("a case"));
         let only = [Technique::ZFail, Technique::ZPass, Technique::ShadowMap];
         let progress = Progress::default();
         let whole = session.stress(&cases, &only, SIZE, &progress).expect("rows");
         let mut steps = StressSteps::new(&cases, &only, SIZE);
         assert_eq!((steps.left(), steps.next_case()), (whole.len(), Some((0, "near-plane"))));
         assert_eq!(progress.steps(), (whole.len(), whole.len()));
-        let between = Case::named("nested").expect("a case").scene(2.0).expect("a scene");
+        let between = StressCase::named("nested").expect("a case").scene(2.0).expect("a scene");
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), SIZE);
         for expected in &whole {
             let row = session.stress_step(&mut steps).expect("a row").expect("one is left");

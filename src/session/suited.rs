@@ -1,9 +1,9 @@
 //! Which techniques are right for a scene: each is run on it.
 
-use super::truth::Traced;
+use super::truth::TracedScene;
 use super::{CaptureRequest, Session, SessionError, median_ms};
 use crate::accuracy::ErrorCounts;
-use crate::diagnosis::Suited;
+use crate::diagnosis::TechniqueFit;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::technique::Choice;
@@ -17,9 +17,14 @@ const LONG: Duration = Duration::from_millis(500);
 impl Session {
     /// Runs every candidate on a scene: the right ones first, of these the fastest. What can't draw the scene
     /// is left out.
-    pub fn suited(&mut self, scene: &Scene, size: [u32; 2], progress: &Progress) -> Result<Vec<Suited>, SessionError> {
+    pub fn suited(
+        &mut self,
+        scene: &Scene,
+        size: [u32; 2],
+        progress: &Progress,
+    ) -> Result<Vec<TechniqueFit>, SessionError> {
         let traced = self.traced(scene, size, progress)?;
-        let choices = Suited::candidates();
+        let choices = TechniqueFit::candidates();
         progress.start(choices.len());
         let mut suited = Vec::with_capacity(choices.len());
         for choice in choices {
@@ -37,7 +42,7 @@ impl Session {
         Ok(suited)
     }
 
-    fn tried_on(&mut self, scene: &Scene, traced: &Traced, choice: Choice) -> Result<Suited, SessionError> {
+    fn tried_on(&mut self, scene: &Scene, traced: &TracedScene, choice: Choice) -> Result<TechniqueFit, SessionError> {
         let plan = self.plan(scene, &CaptureRequest::new(choice.clone(), traced.truth.size))?;
         self.check_room(&plan)?;
         let ready = self.executor.prepare_apart(&plan)?;
@@ -47,6 +52,6 @@ impl Session {
         let error: ErrorCounts =
             labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
         let frame_ms = median_ms(&frames).unwrap_or(f64::INFINITY);
-        Ok(Suited { wrong: error.wrong(), frame_ms, choice })
+        Ok(TechniqueFit { wrong: error.wrong(), frame_ms, choice })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Measurement;
 use crate::numbers;
-use crate::report::Swept;
+use crate::report::SweepValue;
 use crate::scene::{Scene, VaryError};
 use crate::technique::Choice;
 use std::str::FromStr;
@@ -112,13 +112,13 @@ fn values_of(text: &str, read: impl Fn(&str) -> Option<Vec<f64>>) -> Option<Vec<
 
 /// What is measured together: rows of one scene at one value.
 #[derive(Debug, Clone)]
-pub struct Block {
+pub struct SweepBlock {
     /// The scene, as it is at that value.
     pub scene: Scene,
     /// What of it.
     pub what: Measurement,
     /// The value; `None` without a sweep.
-    pub swept: Option<Swept>,
+    pub swept: Option<SweepValue>,
 }
 
 impl Sweep {
@@ -134,12 +134,12 @@ impl Sweep {
     }
 
     /// A scene at each value. Over map sizes, techniques without maps are left out: nothing changes for them.
-    pub fn blocks(&self, scene: &Scene, what: &Measurement) -> Result<Vec<Block>, VaryError> {
-        let swept = |value: f64, text: String| Some(Swept { name: self.name().to_owned(), value, text });
+    pub fn blocks(&self, scene: &Scene, what: &Measurement) -> Result<Vec<SweepBlock>, VaryError> {
+        let swept = |value: f64, text: String| Some(SweepValue { name: self.name().to_owned(), value, text });
         let counted = |value: &usize| swept(*value as f64, numbers::count(*value as u64));
         let varied = |values: &[usize], scene_at: &dyn Fn(usize) -> Result<Scene, VaryError>| {
             let block =
-                |value: &usize| Ok(Block { scene: scene_at(*value)?, what: what.clone(), swept: counted(value) });
+                |value: &usize| Ok(SweepBlock { scene: scene_at(*value)?, what: what.clone(), swept: counted(value) });
             values.iter().map(block).collect()
         };
         match self {
@@ -147,7 +147,7 @@ impl Sweep {
                 let block = |size: &[u32; 2]| {
                     let pixels = f64::from(size[0]) * f64::from(size[1]);
                     let swept = swept(pixels, format!("{}×{}", size[0], size[1]));
-                    Block { scene: scene.clone(), what: Measurement { size: *size, ..what.clone() }, swept }
+                    SweepBlock { scene: scene.clone(), what: Measurement { size: *size, ..what.clone() }, swept }
                 };
                 Ok(sizes.iter().map(block).collect())
             }
@@ -155,12 +155,12 @@ impl Sweep {
             Sweep::Casters(values) => varied(values, &|value| scene.with_casters(value)),
             Sweep::Triangles(values) => varied(values, &|value| scene.with_triangles(value)),
             Sweep::MapSize(values) => {
-                let block = |value: &usize| Block {
+                let block = |value: &usize| SweepBlock {
                     scene: scene.clone(),
                     what: Measurement { choices: with_map_size(&what.choices, *value), ..what.clone() },
                     swept: counted(value),
                 };
-                let blocks: Vec<Block> = values.iter().map(block).collect();
+                let blocks: Vec<SweepBlock> = values.iter().map(block).collect();
                 let is_empty = blocks.iter().any(|block| block.what.choices.is_empty());
                 if is_empty { Err(VaryError::None("technique whose maps have such a size")) } else { Ok(blocks) }
             }

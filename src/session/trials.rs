@@ -1,14 +1,14 @@
 //! Mends that are tried: what each leaves wrong, which prove something alone or together, and what that advises.
 
-use super::truth::Traced;
-use super::{CaptureRequest, Fault, Session, SessionError};
+use super::truth::TracedScene;
+use super::{CaptureRequest, InjectedFault, Session, SessionError};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::capture::{Capture, Image};
-use crate::diagnosis::facts::Suspicion;
-use crate::diagnosis::proof::{Tried, Wrong, judge, ranked};
-use crate::diagnosis::regions::Region;
+use crate::diagnosis::facts::SuspectedCause;
+use crate::diagnosis::proof::{TriedCause, WrongPixels, judge, ranked};
+use crate::diagnosis::regions::ConnectedRegion;
 use crate::diagnosis::rules::planar;
-use crate::diagnosis::{Advice, Cause, CauseFound, Mend, Proof, RegionFound, Staying};
+use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, Proof, RegionFound};
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -20,34 +20,34 @@ use std::sync::Arc;
 const MOST_TOGETHER: usize = 3;
 
 /// What is wrong in a frame.
-pub(super) struct Judged {
+pub(super) struct JudgedFrame {
     /// By light: a [`Finding`] a pixel.
     pub findings: Vec<Vec<u8>>,
     /// By light: pixels that were darkened twice.
     pub too_dark: Vec<Vec<usize>>,
     pub error: ErrorCounts,
-    pub wrong: Wrong,
+    pub wrong: WrongPixels,
 }
 
 /// The runs of mends so far; what can't run is kept with the reason.
-pub(super) struct Runs<'a> {
+pub(super) struct TrialRuns<'a> {
     pub scene: &'a Scene,
     pub request: &'a CaptureRequest,
-    pub fault: Fault<'a>,
-    pub traced: &'a Traced,
+    pub fault: InjectedFault<'a>,
+    pub traced: &'a TracedScene,
     pub progress: &'a Progress,
-    pub done: Vec<(Mend, Result<Wrong, String>)>,
+    pub done: Vec<(Fix, Result<WrongPixels, String>)>,
 }
 
 impl Session {
     /// What a mend leaves wrong. Only its labels are kept, but of techniques that darken in the picture.
-    fn run_mended(&mut self, runs: &Runs, mend: &Mend) -> Result<Wrong, SessionError> {
+    fn run_mended(&mut self, runs: &TrialRuns, mend: &Fix) -> Result<WrongPixels, SessionError> {
         let (scene, _, plan) = self.plan_mended(runs.scene, runs.request, runs.fault, mend)?;
         self.check_room(&plan)?;
         if planar::darkens_in_the_picture(&plan) {
             // What is too dark is not told from a larger picture.
             if mend.larger.is_some() {
-                return self.run_mended(runs, &Mend { larger: None, ..mend.clone() });
+                return self.run_mended(runs, &Fix { larger: None, ..mend.clone() });
             }
             let capture = self.capture_plan(&scene, &plan)?;
             return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
@@ -72,16 +72,16 @@ impl Session {
     /// Each suspicion with what its mends have shown, the most likely first.
     pub(super) fn proven(
         &mut self,
-        runs: &mut Runs,
-        region: &Region,
-        before: &Wrong,
-        suspicions: Vec<Suspicion>,
+        runs: &mut TrialRuns,
+        region: &ConnectedRegion,
+        before: &WrongPixels,
+        suspicions: Vec<SuspectedCause>,
     ) -> Result<Vec<CauseFound>, SessionError> {
         let size = runs.request.size;
         let mut tried = Vec::new();
         for mut suspicion in suspicions {
-            let mut best: Option<(Mend, Proof, u64)> = None;
-            let mut small: Option<(Mend, u64)> = None;
+            let mut best: Option<(Fix, Proof, u64)> = None;
+            let mut small: Option<(Fix, u64)> = None;
             for mend in std::mem::take(&mut suspicion.mends) {
                 let (proof, left) = match self.run_once(runs, &mend)? {
                     Ok(after) => judge(region, before, &after, size),
@@ -103,15 +103,16 @@ impl Session {
             }
             // What another technique mends wholly, this one may mend nearly.
             let is_other = best.as_ref().is_some_and(|(best, ..)| best.technique.is_some());
-            let staying = small.filter(|_| is_other).map(|(mend, pixels_left)| Staying { mend, pixels_left });
-            if let Some(Staying { mend, pixels_left }) = &staying {
+            let staying =
+                small.filter(|_| is_other).map(|(mend, pixels_left)| FixWithinTechnique { mend, pixels_left });
+            if let Some(FixWithinTechnique { mend, pixels_left }) = &staying {
                 suspicion.evidence.push_str(&format!("; to {mend} leaves {pixels_left} of {}", region.pixels.len()));
             }
             let (mend, proof, left) = match best {
                 Some((mend, proof, left)) => (Some(mend), proof, Some(left)),
                 None => (None, Proof::NotRun, None),
             };
-            tried.push(Tried { suspicion, mend, proof, left, staying, together_with: Vec::new() });
+            tried.push(TriedCause { suspicion, mend, proof, left, staying, together_with: Vec::new() });
         }
         if !tried.iter().any(|one| one.proof == Proof::Proven) {
             self.try_together(runs, region, before, &mut tried)?;
@@ -122,12 +123,12 @@ impl Session {
     /// Several causes may be at work at once: then their mends prove something only together.
     fn try_together(
         &mut self,
-        runs: &mut Runs,
-        region: &Region,
-        before: &Wrong,
-        tried: &mut [Tried],
+        runs: &mut TrialRuns,
+        region: &ConnectedRegion,
+        before: &WrongPixels,
+        tried: &mut [TriedCause],
     ) -> Result<(), SessionError> {
-        let helps = |one: &&Tried| one.proof == Proof::Part;
+        let helps = |one: &&TriedCause| one.proof == Proof::Part;
         let least = if tried.iter().filter(helps).count() > 1 { Proof::Part } else { Proof::NotIt };
         let mut members: Vec<usize> =
             (0..tried.len()).filter(|index| tried[*index].mend.is_some() && tried[*index].proof <= least).collect();
@@ -144,11 +145,11 @@ impl Session {
             pairs.push(members.clone());
         }
         for group in pairs {
-            let mends: BTreeSet<Mend> = group.iter().map(mend_of).collect();
+            let mends: BTreeSet<Fix> = group.iter().map(mend_of).collect();
             if mends.len() < group.len() {
                 continue;
             }
-            let all = mends.iter().fold(Mend::default(), |all, mend| all.and(mend));
+            let all = mends.iter().fold(Fix::default(), |all, mend| all.and(mend));
             // What can't be run proves nothing; why, each has said of its own mend.
             let Ok(after) = self.run_once(runs, &all)? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
@@ -170,7 +171,7 @@ impl Session {
     }
 
     /// What a mend leaves wrong, or why it can't be run. Each is run once for all regions.
-    fn run_once(&mut self, runs: &mut Runs, mend: &Mend) -> Result<Result<Wrong, String>, SessionError> {
+    fn run_once(&mut self, runs: &mut TrialRuns, mend: &Fix) -> Result<Result<WrongPixels, String>, SessionError> {
         if runs.progress.is_cancelled() {
             return Err(SessionError::Cancelled);
         }
@@ -189,9 +190,9 @@ impl Session {
     /// What leaves the least wrong in the whole frame.
     pub(super) fn advice(
         &mut self,
-        runs: &mut Runs,
+        runs: &mut TrialRuns,
         regions: &[RegionFound],
-        before: &Wrong,
+        before: &WrongPixels,
         technique: Technique,
     ) -> Result<Option<Advice>, SessionError> {
         // Whatever can't be run is no candidate: only what was run is asked below.
@@ -200,19 +201,19 @@ impl Session {
             let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
             let count = 1 + region.causes.first().map_or(0, |cause| cause.together_with.len());
             let mends = first.take(count).filter_map(|cause| cause.mend.clone());
-            mends.fold(Mend::default(), |all, mend| all.and(&mend))
+            mends.fold(Fix::default(), |all, mend| all.and(&mend))
         };
-        let all = regions.iter().map(proven).fold(Mend::default(), |all, mend| all.and(&mend));
+        let all = regions.iter().map(proven).fold(Fix::default(), |all, mend| all.and(&mend));
         if !all.is_empty() {
             self.run_once(runs, &all)?.ok();
         }
         let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
         if !regions.iter().all(is_proven) {
             // Of what no rule explains, much is right there.
-            self.run_once(runs, &Mend::technique(Technique::Auto))?.ok();
+            self.run_once(runs, &Fix::technique(Technique::Auto))?.ok();
         }
         // For who wants to keep the technique: all that its settings can do.
-        self.run_once(runs, &Mend { technique: None, ..all })?.ok();
+        self.run_once(runs, &Fix { technique: None, ..all })?.ok();
         let left = runs.done.iter().filter_map(|(mend, done)| Some((done.as_ref().ok()?.count(), mend.weight(), mend)));
         let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
         let least = |keeps: bool| {
@@ -221,7 +222,7 @@ impl Session {
         };
         let staying = least(true).map(|(left, _, mend)| (*mend, *left));
         let advice =
-            |(left, _, mend): &(u64, usize, &Mend)| Advice::new(mend, *left, before).or_staying(technique, staying);
+            |(left, _, mend): &(u64, usize, &Fix)| Advice::new(mend, *left, before).or_staying(technique, staying);
         Ok(least(false).map(advice))
     }
 }
@@ -233,10 +234,10 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
 /// Compares labels with the truth; with the capture, also what was darkened in the picture.
 pub(super) fn judged(
     plan: &FramePlan,
-    traced: &Traced,
+    traced: &TracedScene,
     labels: &[Option<Arc<Image>>],
     capture: Option<&Capture>,
-) -> Judged {
+) -> JudgedFrame {
     let pixels = traced.truth.size.iter().map(|side| *side as usize).product();
     let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     let mut error = ErrorCounts::default();
@@ -258,5 +259,5 @@ pub(super) fn judged(
         too_dark.push(dark);
         wrong.push(is_wrong);
     }
-    Judged { findings, too_dark, error, wrong: Wrong { lights: wrong } }
+    JudgedFrame { findings, too_dark, error, wrong: WrongPixels { lights: wrong } }
 }

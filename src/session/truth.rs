@@ -16,15 +16,15 @@ const BETWEEN: Duration = Duration::from_millis(5);
 
 /// A traced scene.
 #[derive(Debug)]
-pub(super) struct Traced {
-    key: Key,
+pub(super) struct TracedScene {
+    key: TruthKey,
     pub tracer: Tracer,
     pub truth: Truth,
 }
 
 /// All that a truth depends on.
 #[derive(Debug, Clone, PartialEq)]
-struct Key {
+struct TruthKey {
     size: [u32; 2],
     camera: Camera,
     /// Where rays of sight end.
@@ -42,8 +42,8 @@ struct ObjectKey {
     visible: bool,
 }
 
-impl Key {
-    fn new(scene: &Scene, size: [u32; 2], far: Option<f64>) -> Key {
+impl TruthKey {
+    fn new(scene: &Scene, size: [u32; 2], far: Option<f64>) -> TruthKey {
         let objects = scene.objects.iter().map(|object| ObjectKey {
             mesh: object.mesh.content_hash(),
             pose: object.pose,
@@ -52,7 +52,7 @@ impl Key {
             visible: object.visible,
         });
         let lights = scene.lights.iter().map(|light| light.position);
-        Key { size, camera: scene.camera, far, lights: lights.collect(), objects: objects.collect() }
+        TruthKey { size, camera: scene.camera, far, lights: lights.collect(), objects: objects.collect() }
     }
 }
 
@@ -88,7 +88,7 @@ impl Session {
         scene: &Scene,
         size: [u32; 2],
         progress: &Progress,
-    ) -> Result<Arc<Traced>, SessionError> {
+    ) -> Result<Arc<TracedScene>, SessionError> {
         self.traced_to(scene, size, None, progress)
     }
 
@@ -98,7 +98,7 @@ impl Session {
         scene: &Scene,
         capture: &Capture,
         progress: &Progress,
-    ) -> Result<Arc<Traced>, SessionError> {
+    ) -> Result<Arc<TracedScene>, SessionError> {
         let far = capture.depth.far.filter(|_| capture.origin.is_some());
         self.traced_to(scene, capture.size, far, progress)
     }
@@ -109,8 +109,8 @@ impl Session {
         size: [u32; 2],
         far: Option<f64>,
         progress: &Progress,
-    ) -> Result<Arc<Traced>, SessionError> {
-        let key = Key::new(scene, size, far);
+    ) -> Result<Arc<TracedScene>, SessionError> {
+        let key = TruthKey::new(scene, size, far);
         if let Some(traced) = self.known_truth(&key) {
             return Ok(traced);
         }
@@ -126,8 +126,8 @@ impl Session {
         size: [u32; 2],
         progress: &Progress,
         between: &mut dyn FnMut(&mut Session),
-    ) -> Result<Arc<Traced>, SessionError> {
-        let key = Key::new(scene, size, None);
+    ) -> Result<Arc<TracedScene>, SessionError> {
+        let key = TruthKey::new(scene, size, None);
         if let Some(traced) = self.known_truth(&key) {
             return Ok(traced);
         }
@@ -147,12 +147,12 @@ impl Session {
         Ok(self.keep_truth(key, tracer, truth))
     }
 
-    fn known_truth(&self, key: &Key) -> Option<Arc<Traced>> {
+    fn known_truth(&self, key: &TruthKey) -> Option<Arc<TracedScene>> {
         self.traced.as_ref().filter(|traced| traced.key == *key).cloned()
     }
 
-    fn keep_truth(&mut self, key: Key, tracer: Tracer, truth: Truth) -> Arc<Traced> {
-        self.traced.insert(Arc::new(Traced { key, tracer, truth })).clone()
+    fn keep_truth(&mut self, key: TruthKey, tracer: Tracer, truth: Truth) -> Arc<TracedScene> {
+        self.traced.insert(Arc::new(TracedScene { key, tracer, truth })).clone()
     }
 }
 
@@ -184,7 +184,7 @@ pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCos
     Ok(cost)
 }
 
-impl Traced {
+impl TracedScene {
     /// Holds labels of a light against the truth.
     pub fn compare(&self, light: usize, labels: &Image) -> Accuracy {
         let rows: Vec<&[u8]> = labels.rows().collect();

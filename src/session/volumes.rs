@@ -1,7 +1,7 @@
 //! What shadow-volume geometry costs on the CPU.
 
 use crate::geometry::{
-    Casters, EdgeList, Extruder, Extrusion, Facings, Fan, FarEnd, Planes, silhouette, write_indices,
+    CapFan, CasterPlanes, Casters, EdgeList, Extruder, Extrusion, Facings, FarEnd, silhouette, write_indices,
 };
 use crate::plan::Blob;
 use crate::scene::Mesh;
@@ -46,14 +46,14 @@ pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
     let mut cost = VolumeCost { triangles: triangles.len(), ..VolumeCost::default() };
     let reach = world.iter().map(|position| position.length()).fold(0.0, f64::max);
     let (mut facings, mut edges_found, mut indices) = (Facings::default(), Vec::new(), Vec::new());
-    let (mut edges, mut planes) = (EdgeList::new(&[], 0), Planes::default());
+    let (mut edges, mut planes) = (EdgeList::new(&[], 0), CasterPlanes::default());
     for run in 0..=runs {
         let is_timed = run > 0;
         // A mesh is built once; the light changes, so it gets more runs.
         if run <= runs.div_ceil(8) {
             let [edge_list, of_planes] = [&mut cost.edge_list, &mut cost.planes];
             edges = timed(edge_list, is_timed, || EdgeList::new(black_box(triangles), world.len()));
-            planes = timed(of_planes, is_timed, || Planes::new(black_box(world), triangles));
+            planes = timed(of_planes, is_timed, || CasterPlanes::new(black_box(world), triangles));
         }
         let light = light(run, reach);
         let extruder = Extruder::new(world, light, Extrusion::Infinite);
@@ -63,7 +63,7 @@ pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
         timed(&mut cost.multiplicities, is_timed, || silhouette(&edges, black_box(&facings), &mut edges_found));
         let parts = timed(&mut cost.indices, is_timed, || {
             let from = extruder.infinite_from();
-            let fan = from.and_then(|light| Fan::new(world, triangles, &facings, &edges_found, light));
+            let fan = from.and_then(|light| CapFan::new(world, triangles, &facings, &edges_found, light));
             let far_end = fan.map_or(FarEnd::Caps, FarEnd::Fan);
             write_indices(triangles, world.len(), &facings, (black_box(&edges_found), 0), far_end, &mut indices)
         });

@@ -1,15 +1,15 @@
 //! What is expected of a technique at one value.
 //!
-//! A known [`Failure`] says at which values it shows, what its wrong pixels are, and of how many it
+//! A known [`KnownFailure`] says at which values it shows, what its wrong pixels are, and of how many it
 //! is the reason. Beyond these the technique must be right, so a known failure excuses nothing else.
 
 use super::Entrant;
-use crate::technique::{Standing, Technique};
+use crate::technique::{ComparisonRole, Technique};
 use std::fmt;
 
 /// A failure that is known.
 #[derive(Debug, Clone, Copy)]
-pub struct Failure {
+pub struct KnownFailure {
     /// Whose.
     pub of: Entrant,
     /// Why it shows.
@@ -17,25 +17,25 @@ pub struct Failure {
     /// At which values.
     pub at: fn(f64) -> bool,
     /// How.
-    pub symptom: Symptom,
+    pub symptom: FailureSymptom,
     /// Must it show there? Else it may.
     pub must_show: bool,
 }
 
 /// How a failure shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Symptom {
+pub struct FailureSymptom {
     /// Its name, such as `near-plane`.
     pub name: &'static str,
     /// What its wrong pixels are.
-    pub kind: Kind,
+    pub kind: WrongPixelKind,
     /// It makes at most this share of the compared pixels wrong.
     pub most: f64,
 }
 
 /// What wrong pixels are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum WrongPixelKind {
     /// Dark, and lit in truth.
     False,
     /// Lit, and dark in truth.
@@ -50,18 +50,18 @@ pub enum Kind {
 
 /// What is expected of a technique at one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Expected {
+pub enum ExpectedResult {
     /// No wrong pixel.
     Right,
     /// This failure shows.
-    Fails(Symptom),
+    Fails(FailureSymptom),
     /// Not promised to be right: this may show.
-    MayFail(Symptom),
+    MayFail(FailureSymptom),
 }
 
 named_enum! {
     /// What came of it.
-    pub enum Verdict {
+    pub enum StressVerdict {
         /// Nothing is wrong.
         Holds = "holds",
         /// What is wrong was known to be.
@@ -73,7 +73,7 @@ named_enum! {
 
 /// Why a row is not what was expected.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Surprise {
+pub enum UnexpectedResult {
     /// The truth has too few lit or dark pixels for the row to mean anything.
     LittleToSee,
     /// Wrong pixels, where none is known.
@@ -90,96 +90,96 @@ pub enum Surprise {
     Flickers,
 }
 
-impl Failure {
+impl KnownFailure {
     /// A failure that shows at every value, anyhow.
-    pub const fn new(of: Entrant, name: &'static str, because: &'static str) -> Failure {
-        let symptom = Symptom { name, kind: Kind::Either, most: 1.0 };
-        Failure { of, because, at: |_| true, symptom, must_show: true }
+    pub const fn new(of: Entrant, name: &'static str, because: &'static str) -> KnownFailure {
+        let symptom = FailureSymptom { name, kind: WrongPixelKind::Either, most: 1.0 };
+        KnownFailure { of, because, at: |_| true, symptom, must_show: true }
     }
 
     /// Another's.
     #[must_use]
-    pub const fn of(self, of: Entrant) -> Failure {
-        Failure { of, ..self }
+    pub const fn of(self, of: Entrant) -> KnownFailure {
+        KnownFailure { of, ..self }
     }
 
     /// It shows at these values only.
-    pub const fn at(self, at: fn(f64) -> bool) -> Failure {
-        Failure { at, ..self }
+    pub const fn at(self, at: fn(f64) -> bool) -> KnownFailure {
+        KnownFailure { at, ..self }
     }
 
     /// Its wrong pixels are false shadow.
     #[must_use]
-    pub const fn is_false(self) -> Failure {
-        Failure { symptom: Symptom { kind: Kind::False, ..self.symptom }, ..self }
+    pub const fn is_false(self) -> KnownFailure {
+        KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::False, ..self.symptom }, ..self }
     }
 
     /// Its wrong pixels are missing shadow.
     #[must_use]
-    pub const fn is_missing(self) -> Failure {
-        Failure { symptom: Symptom { kind: Kind::Missing, ..self.symptom }, ..self }
+    pub const fn is_missing(self) -> KnownFailure {
+        KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Missing, ..self.symptom }, ..self }
     }
 
     /// Its wrong pixels are false shadow and missing shadow, some of each.
     #[must_use]
-    pub const fn is_mixed(self) -> Failure {
-        Failure { symptom: Symptom { kind: Kind::Mixed, ..self.symptom }, ..self }
+    pub const fn is_mixed(self) -> KnownFailure {
+        KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Mixed, ..self.symptom }, ..self }
     }
 
     /// Its wrong pixels may be those of another surface.
     #[must_use]
-    pub const fn is_any(self) -> Failure {
-        Failure { symptom: Symptom { kind: Kind::Any, ..self.symptom }, ..self }
+    pub const fn is_any(self) -> KnownFailure {
+        KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Any, ..self.symptom }, ..self }
     }
 
     /// It makes at most this share of the compared pixels wrong.
     #[must_use]
-    pub const fn at_most(self, most: f64) -> Failure {
-        Failure { symptom: Symptom { most, ..self.symptom }, ..self }
+    pub const fn at_most(self, most: f64) -> KnownFailure {
+        KnownFailure { symptom: FailureSymptom { most, ..self.symptom }, ..self }
     }
 
     /// It need not show.
     #[must_use]
-    pub const fn perhaps(self) -> Failure {
-        Failure { must_show: false, ..self }
+    pub const fn perhaps(self) -> KnownFailure {
+        KnownFailure { must_show: false, ..self }
     }
 
-    pub(super) fn expected(&self) -> Expected {
-        if self.must_show { Expected::Fails(self.symptom) } else { Expected::MayFail(self.symptom) }
+    pub(super) fn expected(&self) -> ExpectedResult {
+        if self.must_show { ExpectedResult::Fails(self.symptom) } else { ExpectedResult::MayFail(self.symptom) }
     }
 }
 
 /// What texels do along a shadow's edge, for techniques that are never promised to be right.
-pub fn texels(technique: Technique) -> Option<(Symptom, &'static str)> {
-    let Standing::Rival { texels, .. } = technique.description().standing else { return None };
+pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
+    let ComparisonRole::Rival { texels, .. } = technique.description().standing else { return None };
     let (most, because) = texels?;
-    Some((Symptom { name: "aliasing", kind: Kind::Either, most }, because))
+    Some((FailureSymptom { name: "aliasing", kind: WrongPixelKind::Either, most }, because))
 }
 
-impl Expected {
+impl ExpectedResult {
     /// In JSON and tables.
     pub fn name(self) -> &'static str {
         self.symptom().map_or("right", |symptom| symptom.name)
     }
 
-    pub(super) fn symptom(self) -> Option<Symptom> {
+    pub(super) fn symptom(self) -> Option<FailureSymptom> {
         match self {
-            Expected::Right => None,
-            Expected::Fails(symptom) | Expected::MayFail(symptom) => Some(symptom),
+            ExpectedResult::Right => None,
+            ExpectedResult::Fails(symptom) | ExpectedResult::MayFail(symptom) => Some(symptom),
         }
     }
 }
 
-impl fmt::Display for Surprise {
+impl fmt::Display for UnexpectedResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Surprise::LittleToSee => "too few lit or dark pixels to compare",
-            Surprise::Wrong => "wrong where it must be right",
-            Surprise::NotShown => "right where it is known to fail",
-            Surprise::OtherKind => "wrong in another way than known",
-            Surprise::TooMany => "more wrong than known",
-            Surprise::TooManyExcused => "too many pixels excused along edges",
-            Surprise::Flickers => "pixels flicker",
+            UnexpectedResult::LittleToSee => "too few lit or dark pixels to compare",
+            UnexpectedResult::Wrong => "wrong where it must be right",
+            UnexpectedResult::NotShown => "right where it is known to fail",
+            UnexpectedResult::OtherKind => "wrong in another way than known",
+            UnexpectedResult::TooMany => "more wrong than known",
+            UnexpectedResult::TooManyExcused => "too many pixels excused along edges",
+            UnexpectedResult::Flickers => "pixels flicker",
         })
     }
 }

@@ -18,17 +18,17 @@
 //! `lit` and `shadow` are so in truth. Expectations are those of pictures of `measured_at` pixels: at
 //! another `size` a failure may not show, or show more.
 
-use super::{Case, Course, MEASURED_AT, Row, Seen, Stress, Summary};
+use super::{MEASURED_AT, StressCase, StressResults, StressRow, StressSummary, TechniqueCourse, TruthCounts};
 use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
-use crate::shards::Part;
+use crate::shards::ShardPart;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the form.
 const SCHEMA: u32 = 1;
 
-impl Stress {
+impl StressResults {
     /// Machine-readable; `assets/help/json.md` says what each field means.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let rows = self.rows.iter().map(RowEntry::new).collect();
@@ -53,7 +53,7 @@ struct Document<'a> {
     size: [u32; 2],
     measured_at: [u32; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
-    shard: Option<&'a Part>,
+    shard: Option<&'a ShardPart>,
     rows: Vec<RowEntry<'a>>,
     summary: Vec<SummaryEntry>,
 }
@@ -93,8 +93,8 @@ struct RowEntry<'a> {
 }
 
 impl<'a> RowEntry<'a> {
-    fn new(row: &'a Row) -> RowEntry<'a> {
-        let case = Case::named(row.case);
+    fn new(row: &'a StressRow) -> RowEntry<'a> {
+        let case = StressCase::named(row.case);
         RowEntry {
             case: row.case,
             parameter: Parameter { name: row.parameter.0, value: row.parameter.1 },
@@ -115,7 +115,7 @@ impl<'a> RowEntry<'a> {
             verdict: row.verdict().name(),
             surprise: row.surprise().map(|surprise| surprise.to_string()),
             frame_ms: row.frame_ms,
-            timed_frames: case.map_or(1, Case::timed_frames),
+            timed_frames: case.map_or(1, StressCase::timed_frames),
             setup_ms: row.setup_ms,
             setup_from_nothing: case.is_some_and(|case| case.timed),
         }
@@ -128,7 +128,7 @@ struct ReadDocument {
     schema: u32,
     adapter: AdapterInfo,
     size: [u32; 2],
-    shard: Option<Part>,
+    shard: Option<ShardPart>,
     rows: Vec<ReadRow>,
 }
 
@@ -141,7 +141,7 @@ struct ReadRow {
     #[serde(flatten)]
     error: ErrorCounts,
     #[serde(flatten)]
-    seen: Seen,
+    seen: TruthCounts,
     flips: Option<u64>,
     off_limit: Option<u64>,
     frame_ms: f64,
@@ -175,28 +175,28 @@ pub enum StressReadError {
     },
 }
 
-impl Stress {
-    /// Reads what [`Stress::to_json`] writes.
-    pub fn from_json(text: &str) -> Result<Stress, StressReadError> {
+impl StressResults {
+    /// Reads what [`StressResults::to_json`] writes.
+    pub fn from_json(text: &str) -> Result<StressResults, StressReadError> {
         let ReadDocument { schema, adapter, size, shard: part, rows } = serde_json::from_str(text)?;
         if schema != SCHEMA {
             return Err(StressReadError::Schema { found: schema });
         }
         let rows = rows.into_iter().map(ReadRow::row).collect::<Result<_, _>>()?;
-        Ok(Stress { adapter, size, rows, part })
+        Ok(StressResults { adapter, size, rows, part })
     }
 }
 
 impl ReadRow {
-    fn row(self) -> Result<Row, StressReadError> {
+    fn row(self) -> Result<StressRow, StressReadError> {
         let ReadRow { case, entrant, settings, error, seen, flips, off_limit, frame_ms, setup_ms, .. } = self;
         let value = self.parameter.value;
-        let known = Case::named(&case).and_then(|known| {
+        let known = StressCase::named(&case).and_then(|known| {
             let entrant = known.entrants().into_iter().find(|one| one.to_string() == entrant)?;
             Some((known, entrant))
         });
         let (case, entrant) = known.ok_or(StressReadError::Unknown { case, entrant })?;
-        Ok(Row {
+        Ok(StressRow {
             case: case.name,
             parameter: (case.parameter, value),
             entrant,
@@ -240,7 +240,7 @@ struct CourseEntry {
 }
 
 impl SummaryEntry {
-    fn new(summary: &Summary) -> SummaryEntry {
+    fn new(summary: &StressSummary) -> SummaryEntry {
         SummaryEntry {
             case: summary.case,
             technique: summary.entrant.technique.name(),
@@ -252,11 +252,11 @@ impl SummaryEntry {
             compared: summary.worst.1,
             flips: summary.flips,
             expected: summary.expected.name(),
-            because: Case::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
+            because: StressCase::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
             verdict: summary.verdict.name(),
             surprise: summary.surprise.map(|(_, surprise)| surprise.to_string()),
             surprise_at: summary.surprise.map(|(at, _)| at),
-            course: summary.course.clone().map(|Course { text, holds }| CourseEntry { text, holds }),
+            course: summary.course.clone().map(|TechniqueCourse { text, holds }| CourseEntry { text, holds }),
         }
     }
 }
@@ -268,14 +268,14 @@ mod tests {
 
     #[test]
     fn every_row_has_one_summary_by_case_and_entrant() {
-        let cases = ["nested", "triangle-count"].map(|name| Case::named(name).expect("a case"));
-        let row = |case: &'static Case, entrant: crate::stress::Entrant, value: f64| Row {
+        let cases = ["nested", "triangle-count"].map(|name| StressCase::named(name).expect("a case"));
+        let row = |case: &'static StressCase, entrant: crate::stress::Entrant, value: f64| StressRow {
             case: case.name,
             parameter: (case.parameter, value),
             entrant,
             settings: case.choice(&entrant, value).expect("a choice").settings().clone(),
             error: ErrorCounts::default(),
-            seen: Seen::default(),
+            seen: TruthCounts::default(),
             flips: None,
             off_limit: None,
             expected: case.expected_at(&entrant, value),
@@ -283,12 +283,12 @@ mod tests {
             setup_ms: 1.0,
         };
         let entrants = cases.iter().flat_map(|case| case.entrants().into_iter().map(move |entrant| (*case, entrant)));
-        let of_case = |(case, entrant): (&'static Case, _)| case.values.iter().map(move |v| (case, entrant, *v));
+        let of_case = |(case, entrant): (&'static StressCase, _)| case.values.iter().map(move |v| (case, entrant, *v));
         let rows = entrants.flat_map(of_case).map(|(case, entrant, value)| row(case, entrant, value)).collect();
         let adapter = AdapterInfo { name: "none".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() };
-        let stress = Stress { adapter, size: [1, 1], rows, part: None };
+        let stress = StressResults { adapter, size: [1, 1], rows, part: None };
         let json = stress.to_json().expect("JSON");
-        assert!(Stress::from_json(&json).expect("what was written") == stress, "not what was written");
+        assert!(StressResults::from_json(&json).expect("what was written") == stress, "not what was written");
         let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
         let [rows, summary] = ["rows", "summary"].map(|key| json[key].as_array().expect("a list"));
         for row in rows {

@@ -7,7 +7,7 @@
 //!
 //! A case is data ([`cases`]): a scene for each value of one number, and for each technique and value
 //! what is expected: to be right, or a failure by name. What is not said is expected to be right, but
-//! for techniques whose texels may show ([`Expected::MayFail`]). A failure that nobody expected is a
+//! for techniques whose texels may show ([`ExpectedResult::MayFail`]). A failure that nobody expected is a
 //! bug; so is a known one that does not show, since then the lesson or our knowledge is wrong.
 
 pub mod cases;
@@ -20,14 +20,14 @@ mod row;
 mod table;
 mod trend;
 
-pub use expect::{Expected, Failure, Kind, Surprise, Symptom, Verdict};
+pub use expect::{ExpectedResult, FailureSymptom, KnownFailure, StressVerdict, UnexpectedResult, WrongPixelKind};
 pub use json::StressReadError;
-pub use judge::{Stress, StressRows, Summary, summary};
-pub use row::{Least, Row, Seen, value_text};
-pub use trend::{Course, Trend};
+pub use judge::{StressResults, StressRows, StressSummary, summary};
+pub use row::{LeastShares, StressRow, TruthCounts, value_text};
+pub use trend::{ExpectedTrend, TechniqueCourse};
 
 use crate::scene::{MeshError, Scene};
-use crate::technique::{Choice, ChoiceError, Standing, Technique};
+use crate::technique::{Choice, ChoiceError, ComparisonRole, Technique};
 use std::fmt;
 
 /// Width and height of the pictures at which expectations were measured: at another size a failure of
@@ -39,7 +39,7 @@ const TIMED_FRAMES: usize = 3;
 
 /// A scene that one number makes harder and harder.
 #[derive(Debug, Clone, Copy)]
-pub struct Case {
+pub struct StressCase {
     /// On the command line.
     pub name: &'static str,
     /// What it shows, in one line.
@@ -49,7 +49,7 @@ pub struct Case {
     /// From easy to extreme; a single extreme has one.
     pub values: &'static [f64],
     /// What the number changes.
-    pub drives: Drives,
+    pub drives: CaseNumber,
     /// Width and height of the picture, where these are the point.
     pub size: Option<[u32; 2]>,
     /// Its times are the point: every row is set up from nothing, and several frames are timed.
@@ -65,16 +65,16 @@ pub struct Case {
     pub heavy_above: Option<f64>,
     /// Who fails, where, how, and why; of several at one value the first counts. Everyone else is
     /// expected to be right.
-    pub failures: &'static [Failure],
+    pub failures: &'static [KnownFailure],
     /// What there must be to compare.
-    pub least: fn(f64) -> Least,
+    pub least: fn(f64) -> LeastShares,
     /// What must become of the rows from value to value.
-    pub trend: Option<Trend>,
+    pub trend: Option<ExpectedTrend>,
 }
 
 /// What a case's number changes.
 #[derive(Debug, Clone, Copy)]
-pub enum Drives {
+pub enum CaseNumber {
     /// The scene.
     Scene(fn(f64) -> Result<Scene, MeshError>),
     /// A setting, of the techniques that have it, in one scene.
@@ -122,14 +122,14 @@ impl fmt::Display for Entrant {
 /// Why a technique is expected to be right where no failure of it is known.
 pub fn right_because(technique: Technique) -> &'static str {
     match technique.description().standing {
-        Standing::Rival { right_because, .. } => right_because,
-        Standing::Apart { because } => because,
+        ComparisonRole::Rival { right_because, .. } => right_because,
+        ComparisonRole::Apart { because } => because,
     }
 }
 
-impl Case {
+impl StressCase {
     /// The case of that name.
-    pub fn named(name: &str) -> Option<&'static Case> {
+    pub fn named(name: &str) -> Option<&'static StressCase> {
         cases::all().find(|case| case.name == name)
     }
 
@@ -153,15 +153,15 @@ impl Case {
     /// The scene of a value.
     pub fn scene(&self, value: f64) -> Result<Scene, MeshError> {
         match self.drives {
-            Drives::Scene(scene) | Drives::Motion(scene) => scene(value),
-            Drives::Setting(_, scene) => scene(),
+            CaseNumber::Scene(scene) | CaseNumber::Motion(scene) => scene(value),
+            CaseNumber::Setting(_, scene) => scene(),
         }
     }
 
     /// A technique as this case runs it at a value.
     pub fn choice(&self, entrant: &Entrant, value: f64) -> Result<Choice, ChoiceError> {
         let mut choice = entrant.choice()?;
-        if let Drives::Setting(key, _) = self.drives
+        if let CaseNumber::Setting(key, _) = self.drives
             && choice.settings().contains_key(key)
         {
             choice.set(key, &value.to_string())?;
@@ -187,20 +187,20 @@ impl Case {
     }
 
     /// What is expected of a technique at a value.
-    pub fn expected_at(&self, entrant: &Entrant, value: f64) -> Expected {
+    pub fn expected_at(&self, entrant: &Entrant, value: f64) -> ExpectedResult {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant && (failure.at)(value));
         match (failure, expect::texels(entrant.technique)) {
             (Some(failure), _) => failure.expected(),
-            (None, Some((symptom, _))) => Expected::MayFail(symptom),
-            (None, None) => Expected::Right,
+            (None, Some((symptom, _))) => ExpectedResult::MayFail(symptom),
+            (None, None) => ExpectedResult::Right,
         }
     }
 
     /// What is expected of a technique at some value: the failure that must show, else the one that
     /// may, else to be right.
-    pub fn expected(&self, entrant: &Entrant) -> Expected {
+    pub fn expected(&self, entrant: &Entrant) -> ExpectedResult {
         let at = || self.values.iter().map(|value| self.expected_at(entrant, *value));
-        let must = at().find(|expected| matches!(expected, Expected::Fails(_)));
-        must.or_else(|| at().find(|expected| *expected != Expected::Right)).unwrap_or(Expected::Right)
+        let must = at().find(|expected| matches!(expected, ExpectedResult::Fails(_)));
+        must.or_else(|| at().find(|expected| *expected != ExpectedResult::Right)).unwrap_or(ExpectedResult::Right)
     }
 }

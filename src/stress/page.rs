@@ -1,7 +1,7 @@
 //! The results as a page in Markdown that stands alone: the command that makes it, the plot, the table, how to read
 //! it, and what each case is.
 
-use super::{Case, Stress, Verdict};
+use super::{StressCase, StressResults, StressVerdict};
 use crate::numbers;
 use crate::report::PageOrigin;
 
@@ -11,7 +11,7 @@ that has a name; a failure that nobody expected is unexpected, and so is a known
 value each technique first has a wrong pixel, and what that failure is called. A dot: it has none. Empty: it was not run, for a \
 reason that the case tells. *Other forms* are techniques with other settings.";
 
-impl Stress {
+impl StressResults {
     /// The page.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let opening = origin.opening("Driven to the extreme", "Share of wrong pixels against the number of each sweep");
@@ -23,7 +23,7 @@ impl Stress {
         names.dedup();
         let lessons = names
             .iter()
-            .filter_map(|name| Case::named(name))
+            .filter_map(|name| StressCase::named(name))
             .map(|case| format!("- `{}`: {}\n", case.name, case.lesson));
         format!(
             "{opening}on {}, {} ({}); pictures of {width}×{height}. Of {} cases by techniques {} hold, {} fail as known, and {} \
@@ -32,9 +32,9 @@ impl Stress {
             self.adapter.driver,
             self.adapter.kind,
             numbers::count(summaries.len() as u64),
-            count(Verdict::Holds),
-            count(Verdict::FailsAsKnown),
-            count(Verdict::Unexpected),
+            count(StressVerdict::Holds),
+            count(StressVerdict::FailsAsKnown),
+            count(StressVerdict::Unexpected),
             self.to_markdown(),
             lessons.collect::<String>(),
         )

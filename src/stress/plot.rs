@@ -5,12 +5,13 @@
 //! lane for each who runs, so that lines without an error do not cover each other. The first wrong
 //! value, where the line leaves the band, has a filled mark.
 
-use super::{Case, Drives, Entrant, Row, Stress, value_text};
+use super::{CaseNumber, Entrant, StressCase, StressResults, StressRow, value_text};
 use crate::numbers;
-use crate::report::plot::labels::{self, Obstacles, Wish};
-use crate::report::plot::scale::{self, Log};
+use crate::report::plot::labels::{self, LabelObstacles, LabelRequest};
+use crate::report::plot::scale::{self, LogScale};
 use crate::report::plot::{
-    Anchor, Chart, Ink, Key, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width,
+    LegendKey, Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SMALL_SIZE, SceneChart, TEXT_SIZE, TITLE_SIZE,
+    TextAnchor, style_of, text_width,
 };
 
 /// Width of the page and of its two charts, and height of a chart, points.
@@ -32,27 +33,28 @@ const MOST_MARKS: usize = 16;
 /// More values that are no motion are a heap of scenes.
 const MOST_VALUES: usize = 100;
 
-impl Stress {
+impl StressResults {
     /// All sweeps that were run, in charts.
     pub fn to_plot(&self) -> Plot {
-        let mut cases: Vec<&'static Case> = self.rows.iter().filter_map(|row| Case::named(row.case)).collect();
+        let mut cases: Vec<&'static StressCase> =
+            self.rows.iter().filter_map(|row| StressCase::named(row.case)).collect();
         cases.dedup_by_key(|case| case.name);
-        let is_motion = |case: &Case| matches!(case.drives, Drives::Motion(_));
+        let is_motion = |case: &StressCase| matches!(case.drives, CaseNumber::Motion(_));
         cases.retain(|case| is_motion(case) || (LEAST_VALUES..=MOST_VALUES).contains(&case.values.len()));
         let mut plot = Plot::empty(PAGE);
         plot.title = "Wrong pixels where a scene is driven to its extreme".to_owned();
         plot.summary = format!("{} sweeps: the share of wrong pixels against one number each.", cases.len());
-        let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
+        let title = PlotText::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong();
         let [width, height] = self.size;
         let facts = format!("{} · {width} × {height}; filled: the first value with a wrong pixel", self.adapter.name);
-        plot.texts = vec![title, Text::new([8.0, 38.0], facts, TEXT_SIZE, Ink::Dim)];
+        plot.texts = vec![title, PlotText::new([8.0, 38.0], facts, TEXT_SIZE, PlotInk::Dim)];
         self.legend(&mut plot, 58.0);
         for (index, case) in cases.iter().enumerate() {
             let corner = [(index % 2) as f64 * (PAGE - CHART[0]), 74.0 + (index / 2) as f64 * (CHART[1] + 14.0)];
             plot.charts.push(self.chart(case).moved(corner));
         }
         if cases.is_empty() {
-            plot.texts.push(Text::new([8.0, 84.0], "No sweep was run.", TEXT_SIZE, Ink::Dim));
+            plot.texts.push(PlotText::new([8.0, 84.0], "No sweep was run.", TEXT_SIZE, PlotInk::Dim));
         }
         plot.size = [PAGE, 90.0 + cases.len().div_ceil(2) as f64 * (CHART[1] + 14.0)];
         plot
@@ -70,13 +72,13 @@ impl Stress {
         let mut x = 14.0;
         for name in names {
             let style = style_of(name);
-            plot.keys.push(Key { at: [x, y], style, filled: false });
-            plot.texts.push(Text::new([x + 10.0, y], name, SMALL_SIZE, Ink::Technique(style)));
+            plot.keys.push(LegendKey { at: [x, y], style, filled: false });
+            plot.texts.push(PlotText::new([x + 10.0, y], name, SMALL_SIZE, PlotInk::Technique(style)));
             x += 26.0 + text_width(name, SMALL_SIZE);
         }
     }
 
-    fn chart(&self, case: &Case) -> Chart {
+    fn chart(&self, case: &StressCase) -> SceneChart {
         let rows = || self.rows.iter().filter(|row| row.case == case.name);
         let mut entrants: Vec<Entrant> = Vec::new();
         for row in rows() {
@@ -89,12 +91,12 @@ impl Stress {
         let (mut spots, mut wishes, mut segments) = (Vec::new(), Vec::new(), Vec::new());
         for (lane, entrant) in entrants.iter().enumerate() {
             let style = style_of(entrant.technique.name());
-            let of_entrant: Vec<&Row> = rows().filter(|row| row.entrant == *entrant).collect();
+            let of_entrant: Vec<&StressRow> = rows().filter(|row| row.entrant == *entrant).collect();
             let points: Vec<[f64; 2]> = of_entrant.iter().map(|row| axes.place(row, lane)).collect();
             segments.extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
             if points.len() > 1 {
-                let ink = Ink::Technique(style);
-                lines.push(Line { points: points.clone(), width: 1.3, ink, faint: false });
+                let ink = PlotInk::Technique(style);
+                lines.push(PlotLine { points: points.clone(), width: 1.3, ink, faint: false });
             }
             let breaks = of_entrant.iter().position(|row| row.error.wrong() > 0);
             for (index, (row, at)) in of_entrant.iter().zip(&points).enumerate() {
@@ -104,25 +106,25 @@ impl Stress {
                 }
             }
             let labelled = breaks.or((!entrant.settings.is_empty()).then_some(0));
-            wishes.extend(labelled.and_then(|index| points.get(index)).map(|at| Wish {
+            wishes.extend(labelled.and_then(|index| points.get(index)).map(|at| LabelRequest {
                 at: *at,
                 whiskers: [0.0; 2],
                 text: caption(entrant),
-                ink: Ink::Technique(style),
+                ink: PlotInk::Technique(style),
                 area: if breaks.is_some() { axes.area } else { axes.band },
                 must: breaks.is_some(),
             }));
         }
         // Those that must be shown and need most room first.
-        wishes.sort_by_key(|wish: &Wish| std::cmp::Reverse((wish.must, wish.text.len())));
-        let obstacles = Obstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
+        wishes.sort_by_key(|wish: &LabelRequest| std::cmp::Reverse((wish.must, wish.text.len())));
+        let obstacles = LabelObstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
         let placed = labels::place(&wishes, &obstacles);
         lines.extend(placed.iter().flatten().filter_map(|placed| {
             let points = placed.leader?.to_vec();
-            Some(Line { points, width: 0.8, ink: placed.text.ink, faint: true })
+            Some(PlotLine { points, width: 0.8, ink: placed.text.ink, faint: true })
         }));
         spots.sort_by_key(|spot| spot.filled);
-        Chart {
+        SceneChart {
             title: case.name.to_owned(),
             area: axes.area,
             band: axes.band,
@@ -140,16 +142,16 @@ fn caption(entrant: &Entrant) -> String {
     if settings.is_empty() { entrant.technique.name().to_owned() } else { settings.join(" ") }
 }
 
-fn share(row: &Row) -> f64 {
+fn share(row: &StressRow) -> f64 {
     if row.error.compared == 0 { 0.0 } else { row.error.wrong() as f64 / row.error.compared as f64 * 100.0 }
 }
 
-fn spot(row: &Row, at: [f64; 2], filled: bool) -> Spot {
+fn spot(row: &StressRow, at: [f64; 2], filled: bool) -> PlotPoint {
     let value = value_text(row.parameter.1);
     let name = format!("{} at {value}: {} wrong", row.entrant, numbers::count(row.error.wrong()));
     let details = format!("{name}\nof {} compared", numbers::count(row.error.compared));
     let style = style_of(row.entrant.technique.name());
-    Spot { row: 0, at, whisker: [at[0]; 2], style, filled, name, details }
+    PlotPoint { row: 0, at, whisker: [at[0]; 2], style, filled, name, details }
 }
 
 /// From a case's number to points across.
@@ -157,7 +159,7 @@ enum Across {
     /// The number spans decades.
     Log {
         /// Of them.
-        scale: Log,
+        scale: LogScale,
         /// The lowest value but zero, where there is a zero: that is a decade below it.
         above_zero: Option<f64>,
     },
@@ -182,7 +184,7 @@ impl Across {
         let above_zero = (positive().count() < values.len()).then_some(low);
         let low = if above_zero.is_some() { low / 10.0 } else { low };
         let points = if ends[0] > ends[1] { [points[1], points[0]] } else { points };
-        Across::Log { scale: Log::new([low, high], points), above_zero }
+        Across::Log { scale: LogScale::new([low, high], points), above_zero }
     }
 
     fn position(&self, value: f64) -> f64 {
@@ -211,25 +213,25 @@ impl Across {
 
 /// A chart's scales, relative to its corner.
 struct Axes {
-    area: Rect,
-    band: Rect,
+    area: PlotRect,
+    band: PlotRect,
     across: Across,
     /// Per cent.
-    up: Log,
+    up: LogScale,
 }
 
 impl Axes {
-    fn new(case: &Case, lanes: usize, shares: impl Iterator<Item = f64>) -> Axes {
+    fn new(case: &StressCase, lanes: usize, shares: impl Iterator<Item = f64>) -> Axes {
         let [x0, x1] = [LEFT, CHART[0] - RIGHT];
         let bottom = CHART[1] - BOTTOM;
-        let band = Rect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
-        let area = Rect { min: [x0, TOP], max: [x1, band.min[1] - 7.0] };
+        let band = PlotRect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
+        let area = PlotRect { min: [x0, TOP], max: [x1, band.min[1] - 7.0] };
         let range = scale::range(shares, [0.01, 10.0]);
-        let up = Log::new(range, [area.max[1], area.min[1]]);
+        let up = LogScale::new(range, [area.max[1], area.min[1]]);
         Axes { area, band, across: Across::new(case.values, [x0 + 10.0, x1 - 10.0]), up }
     }
 
-    fn place(&self, row: &Row, lane: usize) -> [f64; 2] {
+    fn place(&self, row: &StressRow, lane: usize) -> [f64; 2] {
         let share = share(row);
         let in_band = self.band.min[1] + 3.0 + (lane as f64 + 0.5) * LANE;
         [self.across.position(row.parameter.1), if share > 0.0 { self.up.position(share) } else { in_band }]
@@ -239,8 +241,9 @@ impl Axes {
         self.up.ticks(22.0).into_iter().filter(|percent| *percent <= 100.0)
     }
 
-    fn grid(&self) -> Vec<Line> {
-        let line = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
+    fn grid(&self) -> Vec<PlotLine> {
+        let line =
+            |points: [[f64; 2]; 2]| PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false };
         let [left, right] = [self.area.min[0], self.area.max[0]];
         let level = self.levels().map(|tick| self.up.position(tick)).map(|y| line([[left, y], [right, y]]));
         let upright = self.across.ticks().into_iter().flat_map(|tick| {
@@ -250,20 +253,20 @@ impl Axes {
         level.chain(upright).collect()
     }
 
-    fn texts(&self, case: &Case) -> Vec<Text> {
-        let small = |at, text: String| Text::new(at, text, SMALL_SIZE, Ink::Dim);
+    fn texts(&self, case: &StressCase) -> Vec<PlotText> {
+        let small = |at, text: String| PlotText::new(at, text, SMALL_SIZE, PlotInk::Dim);
         let mut texts = vec![
-            Text::new([8.0, 10.0], case.name, TITLE_SIZE, Ink::Text).strong(),
+            PlotText::new([8.0, 10.0], case.name, TITLE_SIZE, PlotInk::Text).strong(),
             small([8.0, 27.0], "wrong pixels, of those compared".to_owned()),
-            small([self.area.max[0], self.band.max[1] + 28.0], case.parameter.to_owned()).anchored(Anchor::End),
+            small([self.area.max[0], self.band.max[1] + 28.0], case.parameter.to_owned()).anchored(TextAnchor::End),
         ];
         let beside = self.area.min[0] - 6.0;
         let levels = self.levels().map(|percent| (self.up.position(percent), format!("{percent}\u{a0}%")));
         let none = ((self.band.min[1] + self.band.max[1]) / 2.0, "none wrong".to_owned());
-        texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text).anchored(Anchor::End)));
+        texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text).anchored(TextAnchor::End)));
         texts.extend(self.across.ticks().into_iter().map(|tick| {
             let at = [self.across.position(tick), self.band.max[1] + 11.0];
-            small(at, value_text(tick)).anchored(Anchor::Middle)
+            small(at, value_text(tick)).anchored(TextAnchor::Middle)
         }));
         texts
     }

@@ -1,7 +1,7 @@
 //! One technique at one value of one case: what was seen, and whether that is what was expected.
 
-use super::expect::{Expected, Kind, Surprise, Symptom, Verdict, texels};
-use super::{Case, Entrant};
+use super::expect::{ExpectedResult, FailureSymptom, StressVerdict, UnexpectedResult, WrongPixelKind, texels};
+use super::{Entrant, StressCase};
 use crate::accuracy::ErrorCounts;
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ const MOST_EXCUSED: f64 = 0.02;
 
 /// One technique at one value of one case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct StressRow {
     /// Name of the case.
     pub case: &'static str,
     /// Name and value of its number.
@@ -22,14 +22,14 @@ pub struct Row {
     /// Against the truth, summed over lights.
     pub error: ErrorCounts,
     /// What there is to compare.
-    pub seen: Seen,
+    pub seen: TruthCounts,
     /// Pixels that have now changed there and back although the truth did not; `None` where the case is
     /// no motion, and at its first value.
     pub flips: Option<u64>,
     /// Wrong pixels if the truth is that of the scene to which the case converges, where it does.
     pub off_limit: Option<u64>,
     /// What is expected of the technique at this value.
-    pub expected: Expected,
+    pub expected: ExpectedResult,
     /// Wall time of a frame, ms.
     pub frame_ms: f64,
     /// Planning, geometry, pipelines and uploads, ms.
@@ -38,7 +38,7 @@ pub struct Row {
 
 /// What the truth shows, summed over lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
-pub struct Seen {
+pub struct TruthCounts {
     /// All pixels.
     pub pixels: u64,
     /// Lit ones.
@@ -49,7 +49,7 @@ pub struct Seen {
 
 /// Shares of all pixels that must be lit and in shadow, or a row says nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Least {
+pub struct LeastShares {
     /// Lit ones.
     pub lit: f64,
     /// Those in shadow.
@@ -58,85 +58,85 @@ pub struct Least {
     pub because: &'static str,
 }
 
-impl Least {
+impl LeastShares {
     /// Enough for an edge between light and shadow of some length.
-    pub const USUAL: Least = Least { lit: 0.01, shadow: 0.002, because: "" };
+    pub const USUAL: LeastShares = LeastShares { lit: 0.01, shadow: 0.002, because: "" };
 
     /// Nothing need be lit.
-    pub const fn all_dark(because: &'static str) -> Least {
-        Least { lit: 0.0, because, ..Least::USUAL }
+    pub const fn all_dark(because: &'static str) -> LeastShares {
+        LeastShares { lit: 0.0, because, ..LeastShares::USUAL }
     }
 
     /// Nothing need be in shadow.
-    pub const fn all_lit(because: &'static str) -> Least {
-        Least { shadow: 0.0, because, ..Least::USUAL }
+    pub const fn all_lit(because: &'static str) -> LeastShares {
+        LeastShares { shadow: 0.0, because, ..LeastShares::USUAL }
     }
 
     /// There may be nothing to compare.
-    pub const fn nothing(because: &'static str) -> Least {
-        Least { lit: 0.0, shadow: 0.0, because }
+    pub const fn nothing(because: &'static str) -> LeastShares {
+        LeastShares { lit: 0.0, shadow: 0.0, because }
     }
 }
 
-impl Row {
+impl StressRow {
     /// Do so many pixels differ along edges that excusing them hides an error?
     pub fn is_blurred(&self) -> bool {
         self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
     }
 
     /// Why this is not what was expected.
-    pub fn surprise(&self) -> Option<Surprise> {
+    pub fn surprise(&self) -> Option<UnexpectedResult> {
         if self.is_little_to_see() {
-            return Some(Surprise::LittleToSee);
+            return Some(UnexpectedResult::LittleToSee);
         }
         let error = &self.error;
         let is_blurred = self.is_blurred();
         let shows = error.wrong() > 0 || is_blurred;
-        let Some(Symptom { kind, most, .. }) = self.expected.symptom() else {
+        let Some(FailureSymptom { kind, most, .. }) = self.expected.symptom() else {
             return match (error.wrong(), self.flips) {
-                (1.., _) => Some(Surprise::Wrong),
-                _ if is_blurred => Some(Surprise::TooManyExcused),
-                (_, Some(1..)) => Some(Surprise::Flickers),
+                (1.., _) => Some(UnexpectedResult::Wrong),
+                _ if is_blurred => Some(UnexpectedResult::TooManyExcused),
+                (_, Some(1..)) => Some(UnexpectedResult::Flickers),
                 _ => None,
             };
         };
         let others = match kind {
-            Kind::False => error.missing_shadow,
-            Kind::Missing => error.false_shadow,
-            Kind::Either | Kind::Mixed | Kind::Any => 0,
+            WrongPixelKind::False => error.missing_shadow,
+            WrongPixelKind::Missing => error.false_shadow,
+            WrongPixelKind::Either | WrongPixelKind::Mixed | WrongPixelKind::Any => 0,
         };
         let is_one_sided = error.false_shadow == 0 || error.missing_shadow == 0;
         // Beside what is known of them, texels show in these techniques.
         let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
-        if !shows && matches!(self.expected, Expected::Fails(_)) {
-            Some(Surprise::NotShown)
-        } else if (error.wrong_surface > 0 && kind != Kind::Any)
+        if !shows && matches!(self.expected, ExpectedResult::Fails(_)) {
+            Some(UnexpectedResult::NotShown)
+        } else if (error.wrong_surface > 0 && kind != WrongPixelKind::Any)
             || others as f64 > blur * error.compared as f64
-            || kind == Kind::Mixed && is_one_sided && shows
+            || kind == WrongPixelKind::Mixed && is_one_sided && shows
         {
-            Some(Surprise::OtherKind)
+            Some(UnexpectedResult::OtherKind)
         } else if error.wrong() as f64 > most * error.compared as f64 {
-            Some(Surprise::TooMany)
+            Some(UnexpectedResult::TooMany)
         } else {
             None
         }
     }
 
     /// What came of it.
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> StressVerdict {
         match (self.surprise(), self.expected, self.error.wrong()) {
-            (Some(_), ..) => Verdict::Unexpected,
-            (None, Expected::Fails(_), _) | (None, _, 1..) => Verdict::FailsAsKnown,
-            _ => Verdict::Holds,
+            (Some(_), ..) => StressVerdict::Unexpected,
+            (None, ExpectedResult::Fails(_), _) | (None, _, 1..) => StressVerdict::FailsAsKnown,
+            _ => StressVerdict::Holds,
         }
     }
 
     /// Has the truth too few lit or dark pixels? Then a row can't be wrong, and must not hold.
     fn is_little_to_see(&self) -> bool {
-        let Some(case) = Case::named(self.case) else { return false };
+        let Some(case) = StressCase::named(self.case) else { return false };
         let least = (case.least)(self.parameter.1);
         let pixels = self.seen.pixels as f64;
-        let is_asked = least != Least::nothing(least.because);
+        let is_asked = least != LeastShares::nothing(least.because);
         let is_less = |count: u64, share: f64| (count as f64) < share * pixels;
         is_asked
             && (self.seen.pixels == 0 || is_less(self.seen.lit, least.lit) || is_less(self.seen.shadow, least.shadow))

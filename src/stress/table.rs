@@ -1,11 +1,11 @@
 //! The table for people, a line a case and technique; and one in Markdown, a row a case.
 
-use super::{Case, Course, MEASURED_AT, Stress, Summary, Verdict, value_text};
+use super::{MEASURED_AT, StressCase, StressResults, StressSummary, StressVerdict, TechniqueCourse, value_text};
 use crate::numbers;
 use crate::technique::Technique;
 use std::fmt;
 
-impl Stress {
+impl StressResults {
     /// Case by case: who holds, who breaks where, and whether that was known.
     pub fn to_table(&self) -> String {
         let summaries = self.summary();
@@ -15,7 +15,7 @@ impl Stress {
         for summary in &summaries {
             if summary.case != case {
                 case = summary.case;
-                let lesson = Case::named(case).map_or("", |case| case.lesson);
+                let lesson = StressCase::named(case).map_or("", |case| case.lesson);
                 text.push_str(&format!("\n{case}: {lesson}\n"));
             }
             text.push_str(&line(summary, width));
@@ -23,9 +23,9 @@ impl Stress {
         let count = |verdict| summaries.iter().filter(|summary| summary.verdict == verdict).count();
         text.push_str(&format!(
             "\n{} hold, {} fail as known, {} unexpected\n",
-            count(Verdict::Holds),
-            count(Verdict::FailsAsKnown),
-            count(Verdict::Unexpected)
+            count(StressVerdict::Holds),
+            count(StressVerdict::FailsAsKnown),
+            count(StressVerdict::Unexpected)
         ));
         if let Some(note) = self.size_note() {
             text.push_str(&format!("{note}\n"));
@@ -75,14 +75,14 @@ impl Stress {
 
 /// The parameter and its ends.
 fn range(case: &str) -> String {
-    let Some(case) = Case::named(case) else { return String::new() };
+    let Some(case) = StressCase::named(case) else { return String::new() };
     match case.values {
         [] | [_] => String::new(),
         [first, .., last] => format!("{} {} → {}", case.parameter, value_text(*first), value_text(*last)),
     }
 }
 
-impl Summary {
+impl StressSummary {
     /// Where it breaks.
     pub fn found_text(&self) -> String {
         let breaks = self.breaks_at.map(|at| format!("breaks at {}", value_text(at)));
@@ -107,16 +107,16 @@ impl Summary {
     }
 }
 
-impl fmt::Display for Course {
+impl fmt::Display for TechniqueCourse {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let word = if self.holds { "" } else { "not as it must be: " };
         write!(f, "{word}{}", self.text)
     }
 }
 
-fn cell(summary: &Summary) -> String {
-    let mark = if summary.verdict == Verdict::Unexpected { " (!)" } else { "" };
-    let is_sweep = Case::named(summary.case).is_some_and(|case| case.values.len() > 1);
+fn cell(summary: &StressSummary) -> String {
+    let mark = if summary.verdict == StressVerdict::Unexpected { " (!)" } else { "" };
+    let is_sweep = StressCase::named(summary.case).is_some_and(|case| case.values.len() > 1);
     let part = |(at, name): (f64, &str)| {
         let blur = if summary.blurred_at == Some(at) { " (too many excused)" } else { "" };
         if is_sweep { format!("{} {name}{blur}", value_text(at)) } else { format!("{name}{blur}") }
@@ -126,8 +126,8 @@ fn cell(summary: &Summary) -> String {
     if parts.is_empty() { format!("·{mark}") } else { format!("{}{mark}", parts.join(", ")) }
 }
 
-fn line(summary: &Summary, width: usize) -> String {
-    let mark = if summary.verdict == Verdict::Unexpected { "!!" } else { "  " };
+fn line(summary: &StressSummary, width: usize) -> String {
+    let mark = if summary.verdict == StressVerdict::Unexpected { "!!" } else { "  " };
     let found = match summary.breaks_at {
         None => summary.found_text(),
         Some(_) => {

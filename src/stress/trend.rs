@@ -1,12 +1,12 @@
 //! How a case's rows change from value to value, where that is the lesson.
 
-use super::{Expected, Row, value_text};
+use super::{ExpectedResult, StressRow, value_text};
 use crate::numbers;
 use crate::scene::{MeshError, Scene};
 
 /// What must become of the rows of a case.
 #[derive(Debug, Clone, Copy)]
-pub enum Trend {
+pub enum ExpectedTrend {
     /// They come to be those of another scene.
     ConvergesTo(fn() -> Result<Scene, MeshError>),
     /// The error falls as the number grows.
@@ -17,7 +17,7 @@ pub enum Trend {
 
 /// What became of one technique's rows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct TechniqueCourse {
     /// In words and numbers.
     pub text: String,
     /// Is it as it must be?
@@ -29,31 +29,31 @@ const NOISE: u64 = 3;
 /// Below it times are those of a frame, not of its triangles.
 const LEAST_TIMED: f64 = 1e4;
 
-impl Trend {
+impl ExpectedTrend {
     /// Of one technique's rows, in the order of their values; `None` where they are too few to tell.
-    pub fn course(&self, rows: &[&Row]) -> Option<Course> {
+    pub fn course(&self, rows: &[&StressRow]) -> Option<TechniqueCourse> {
         match self {
-            Trend::ConvergesTo(_) => converges(rows),
-            Trend::Falls => falls(rows),
-            Trend::Grows(most) => grows(rows, *most),
+            ExpectedTrend::ConvergesTo(_) => converges(rows),
+            ExpectedTrend::Falls => falls(rows),
+            ExpectedTrend::Grows(most) => grows(rows, *most),
         }
     }
 }
 
 /// What differs from the other scene's truth must fall to nothing, but for techniques that are not
 /// right in the end.
-fn converges(rows: &[&Row]) -> Option<Course> {
+fn converges(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     let off: Vec<u64> = rows.iter().filter_map(|row| row.off_limit).collect();
     let [first, .., last] = off[..] else { return None };
-    let is_promised = rows.last().is_some_and(|row| row.expected == Expected::Right);
+    let is_promised = rows.last().is_some_and(|row| row.expected == ExpectedResult::Right);
     let is_falling = off.windows(2).all(|pair| pair[1] <= pair[0]);
     let counts: Vec<String> = off.iter().map(|count| numbers::count(*count)).collect();
     let text = format!("{} pixels differ from the limit", counts.join(", "));
-    Some(Course { text, holds: !is_promised || (is_falling && first > 0 && last == 0) })
+    Some(TechniqueCourse { text, holds: !is_promised || (is_falling && first > 0 && last == 0) })
 }
 
 /// Pixels that differ from the truth, excused or not: of maps finer than pixels all are excused.
-fn falls(rows: &[&Row]) -> Option<Course> {
+fn falls(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     let errors: Vec<(f64, u64)> =
         rows.iter().map(|row| (row.parameter.1, row.error.wrong() + row.error.edge_band)).collect();
     let [(_, first), .., (_, last)] = errors[..] else { return None };
@@ -63,27 +63,28 @@ fn falls(rows: &[&Row]) -> Option<Course> {
         format!("{} × {error} = {product}", value_text(*value))
     };
     let products: Vec<String> = errors.iter().map(product).collect();
-    Some(Course { text: format!("size × error: {}", products.join(", ")), holds })
+    Some(TechniqueCourse { text: format!("size × error: {}", products.join(", ")), holds })
 }
 
-fn grows(rows: &[&Row], most: f64) -> Option<Course> {
+fn grows(rows: &[&StressRow], most: f64) -> Option<TechniqueCourse> {
     let [_, _, ..] = rows else { return None };
-    let times =
-        |of: fn(&Row) -> f64| -> Vec<f64> { rows.windows(2).map(|pair| growth([pair[0], pair[1]], of)).collect() };
+    let times = |of: fn(&StressRow) -> f64| -> Vec<f64> {
+        rows.windows(2).map(|pair| growth([pair[0], pair[1]], of)).collect()
+    };
     let [setup, frame] = [times(|row| row.setup_ms), times(|row| row.frame_ms)];
     let list = |factors: &[f64]| factors.iter().map(|factor| format!("{factor:.1}")).collect::<Vec<_>>().join(", ");
     let text = format!("per ten times as many: setup × {}; frame × {}", list(&setup), list(&frame));
-    let timed: Vec<&Row> = rows.iter().copied().filter(|row| row.parameter.1 >= LEAST_TIMED).collect();
+    let timed: Vec<&StressRow> = rows.iter().copied().filter(|row| row.parameter.1 >= LEAST_TIMED).collect();
     let holds = match timed[..] {
-        [first, .., last] => {
-            [|row: &Row| row.setup_ms, |row: &Row| row.frame_ms].into_iter().all(|of| growth([first, last], of) <= most)
-        }
+        [first, .., last] => [|row: &StressRow| row.setup_ms, |row: &StressRow| row.frame_ms]
+            .into_iter()
+            .all(|of| growth([first, last], of) <= most),
         _ => true,
     };
-    Some(Course { text, holds })
+    Some(TechniqueCourse { text, holds })
 }
 
 /// The factor for ten times the number.
-fn growth([from, to]: [&Row; 2], of: fn(&Row) -> f64) -> f64 {
+fn growth([from, to]: [&StressRow; 2], of: fn(&StressRow) -> f64) -> f64 {
     (of(to) / of(from)).powf(1.0 / (to.parameter.1 / from.parameter.1).log10())
 }

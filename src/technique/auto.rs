@@ -20,14 +20,14 @@
 //! triangles or other far corners draw that edge.
 
 use super::casters;
-use super::description::{Description, Standing};
-use super::frame::{Frame, Job, Placed, StencilUse};
+use super::description::{ComparisonRole, TechniqueDescription};
+use super::frame::{FrameBuilder, FrameObject, PlanRequest, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::outside::{self, VIEW_PLANES, beyond};
 use super::settings::VolumeSettings;
-use super::volume::{Counting, Decided, Decides, Form};
+use super::volume::{CountingMode, VolumeDecision, VolumePolicy, VolumeSpec};
 use super::{PlanError, shown, volume};
-use crate::geometry::umbra::{self, Occluder};
+use crate::geometry::umbra::{self, ConvexOccluder};
 use crate::geometry::{ClampedEnd, Extruder, Extrusion, NearClipVolume, ViewVolume, layers, touching};
 use crate::math::AxisBox;
 use crate::numbers;
@@ -35,7 +35,7 @@ use crate::plan::{Decision, FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
     lesson: Lesson {
         text: "The default. Each volume is counted by z-pass or by z-fail, whichever is cheaper while right, and \
@@ -52,7 +52,7 @@ pub(super) const DESCRIPTION: Description = Description {
     // With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
     // left out.
     report_rows: &[&[], &[("occlusion", "queries")], &[("leave-out", "none")]],
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 0,
         right_because: "it counts like z-fail, leaves out what nothing needs, and beyond eight bits counts in a float",
         texels: None,
@@ -63,23 +63,23 @@ pub(super) const DESCRIPTION: Description = Description {
 const MOST_IN_STENCIL: usize = 255;
 
 /// Plans a frame of volumes that each have the form they need.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = VolumeSettings::of_auto(&job.choice.common());
-    let mut frame = Frame::new(job, StencilUse::Always)?;
+    let mut frame = FrameBuilder::new(job, StencilUse::Always)?;
     shown::leave_out_hidden(&mut frame);
-    let begin = |frame: &mut Frame, light| {
+    let begin = |frame: &mut FrameBuilder, light| {
         let lit = shown::lit_by(frame, light);
         if lit.is_empty() && frame.common.allows(Decision::Light) {
             return Err("every surface in view faces away from it or lies beyond its range");
         }
         frame.lit = Some(lit);
-        Ok(Questions::new(frame, light))
+        Ok(AutoPolicy::new(frame, light))
     };
     Ok(volume::finish(frame, &settings, begin))
 }
 
 /// What a light's volumes are asked about.
-struct Questions {
+struct AutoPolicy {
     light: LightId,
     position: DVec4,
     view: ViewVolume,
@@ -90,20 +90,20 @@ struct Questions {
     outlines: Vec<Vec<DVec3>>,
     boxes: Vec<AxisBox>,
     /// By object: what may hold others in its umbra.
-    occluders: Vec<Option<Occluder>>,
+    occluders: Vec<Option<ConvexOccluder>>,
 }
 
 /// Points whose hull holds a volume; homogeneous, relative to the eye.
-struct Hull {
+struct VolumeHull {
     /// The caster's, then the same carried away from the light.
     points: Vec<DVec4>,
 }
 
-impl Hull {
-    fn of(outline: &[DVec3], extruder: &Extruder, eye: DVec3) -> Hull {
+impl VolumeHull {
+    fn of(outline: &[DVec3], extruder: &Extruder, eye: DVec3) -> VolumeHull {
         let near = outline.iter().map(|point| relative(point.extend(1.0), eye));
         let far = outline.iter().map(|point| relative(extruder.carry(*point), eye));
-        Hull { points: near.chain(far).collect() }
+        VolumeHull { points: near.chain(far).collect() }
     }
 
     fn near(&self) -> &[DVec4] {
@@ -115,13 +115,13 @@ impl Hull {
     }
 }
 
-impl Questions {
-    fn new(frame: &mut Frame, light: LightId) -> Questions {
+impl AutoPolicy {
+    fn new(frame: &mut FrameBuilder, light: LightId) -> AutoPolicy {
         let position = frame.light_position(light);
         let [width, height] = frame.job.size.map(f64::from);
         let view = ViewVolume::new(&frame.job.scene.camera, width / height);
         let near_clip = view.near_clip(relative(position, frame.eye()));
-        let outline = |placed: &Placed| outside::outline(&placed.world).into_owned();
+        let outline = |placed: &FrameObject| outside::outline(&placed.world).into_owned();
         let outlines: Vec<Vec<DVec3>> = frame.placed.iter().map(outline).collect();
         let boxes: Vec<AxisBox> = outlines.iter().map(|points| AxisBox::around(points.iter().copied())).collect();
         let looked_at = looked_at(frame, light, &view, &boxes);
@@ -130,42 +130,42 @@ impl Questions {
         let mut occluder = |index: usize| {
             let placed = &placed[index];
             let mesh = &placed.object.mesh;
-            let may = asks && placed.object.casts && mesh.triangles().len() <= Occluder::MOST_TRIANGLES;
-            may.then(|| Occluder::new(&placed.world, mesh.triangles(), &cache.edges(mesh))).flatten()
+            let may = asks && placed.object.casts && mesh.triangles().len() <= ConvexOccluder::MOST_TRIANGLES;
+            may.then(|| ConvexOccluder::new(&placed.world, mesh.triangles(), &cache.edges(mesh))).flatten()
         };
         let occluders = (0..placed.len()).map(&mut occluder).collect();
-        Questions { light, position, view, near_clip, looked_at, outlines, boxes, occluders }
+        AutoPolicy { light, position, view, near_clip, looked_at, outlines, boxes, occluders }
     }
 
     /// A caster whose umbra holds all of another.
     fn holder(&self, index: usize) -> Option<usize> {
         let corners = self.boxes[index].corners();
-        let holds = |occluder: &Option<Occluder>| {
+        let holds = |occluder: &Option<ConvexOccluder>| {
             occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
         };
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
 
     /// Points around a volume of this extrusion.
-    fn hull(&self, frame: &Frame, index: usize, extrusion: Extrusion) -> Hull {
+    fn hull(&self, frame: &FrameBuilder, index: usize, extrusion: Extrusion) -> VolumeHull {
         let outline = &self.outlines[index];
-        Hull::of(outline, &Extruder::new(outline, self.position, extrusion), frame.eye())
+        VolumeHull::of(outline, &Extruder::new(outline, self.position, extrusion), frame.eye())
     }
 
     /// Where a volume lies outside of the view.
-    fn beside_view(&self, hull: &Hull) -> Option<String> {
+    fn beside_view(&self, hull: &VolumeHull) -> Option<String> {
         self.view.outside(&hull.points).map(|outside| beyond(outside, VIEW_PLANES[outside.plane]))
     }
 
     /// How a caster's volume is counted that goes on to infinity.
-    fn without_end(&self, frame: &Frame, index: usize) -> Decided {
+    fn without_end(&self, frame: &FrameBuilder, index: usize) -> VolumeDecision {
         let object = frame.placed[index].object;
         let allowed = |decision: Decision| frame.common.allows(decision);
         let left_out = |why: Decision, because: String| LeftOut::new(why, &object.name, because);
-        let no_volume = |why: Decision, because: String| Decided::nothing(left_out(why, because));
+        let no_volume = |why: Decision, because: String| VolumeDecision::nothing(left_out(why, because));
         let light = self.light.name();
         if let Some(left_out) = casters::darkens_nothing(frame, index, self.light) {
-            return Decided::nothing(left_out);
+            return VolumeDecision::nothing(left_out);
         }
         if allowed(Decision::Caster)
             && let Some(distance) = frame.beyond_range(self.light, index)
@@ -188,10 +188,11 @@ impl Questions {
             let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
             let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
             // What is not drawn has no surface where its volume begins.
-            let form = Form { counting: Counting::InFront, extrusion, light_cap: !object.visible, dark_cap: false };
-            return Decided { form: Some(form), left_out: vec![left_out(Decision::Caps, because)] };
+            let form =
+                VolumeSpec { counting: CountingMode::InFront, extrusion, light_cap: !object.visible, dark_cap: false };
+            return VolumeDecision { form: Some(form), left_out: vec![left_out(Decision::Caps, because)] };
         }
-        let mut form = Form { counting: Counting::Behind, extrusion, light_cap: true, dark_cap: true };
+        let mut form = VolumeSpec { counting: CountingMode::Behind, extrusion, light_cap: true, dark_cap: true };
         let mut not_needed = Vec::new();
         if let Some(outside) = self.view.outside(hull.near()).filter(|_| allowed(Decision::LightCap)) {
             let because = format!("the caster lies {}", beyond(outside, VIEW_PLANES[outside.plane]));
@@ -205,17 +206,17 @@ impl Questions {
             not_needed.push(left_out(Decision::DarkCap, because));
             form.dark_cap = false;
         }
-        Decided { form: Some(form), left_out: not_needed }
+        VolumeDecision { form: Some(form), left_out: not_needed }
     }
 
     /// Ends volumes beyond all that is looked at: those of casters that touch on one plane, and only where all of them
     /// are counted in front.
-    fn end_volumes(&self, frame: &Frame, casters: &[usize], decided: &mut [Decided]) {
+    fn end_volumes(&self, frame: &FrameBuilder, casters: &[usize], decided: &mut [VolumeDecision]) {
         let with_volume: Vec<usize> = (0..casters.len()).filter(|place| decided[*place].form.is_some()).collect();
         let caster = |place: &usize| (self.boxes[casters[*place]], &*frame.placed[casters[*place]].world);
         for group in touching(&with_volume.iter().map(caster).collect::<Vec<_>>(), frame.eye()) {
             let places: Vec<usize> = group.into_iter().map(|member| with_volume[member]).collect();
-            let is_in_front = |form: Form| form.counting == Counting::InFront;
+            let is_in_front = |form: VolumeSpec| form.counting == CountingMode::InFront;
             if !places.iter().all(|place| decided[*place].form.is_some_and(is_in_front)) {
                 continue;
             }
@@ -227,7 +228,7 @@ impl Questions {
     }
 
     /// Ends the volume of a caster there.
-    fn end_at(&self, end: ClampedEnd, frame: &Frame, index: usize, decided: &mut Decided) {
+    fn end_at(&self, end: ClampedEnd, frame: &FrameBuilder, index: usize, decided: &mut VolumeDecision) {
         let name = &frame.placed[index].object.name;
         let (axis, at) = end.place();
         let (axis, at) = (["x", "y", "z"][axis], numbers::metres(at));
@@ -242,7 +243,7 @@ impl Questions {
         let allowed = |decision: Decision| frame.common.allows(decision);
         if allowed(Decision::Caster) && end.is_passed_by(self.boxes[index]) {
             let because = format!("it lies beyond {axis} = {at}: {looked_at}");
-            *decided = Decided::nothing(LeftOut::new(Decision::Caster, name, because));
+            *decided = VolumeDecision::nothing(LeftOut::new(Decision::Caster, name, because));
             return;
         }
         let extrusion = Extrusion::Clamped(end);
@@ -250,7 +251,7 @@ impl Questions {
             && let Some(beside) = self.beside_view(&self.hull(frame, index, extrusion))
         {
             let because = format!("it needs to reach to {axis} = {at}, as {looked_at}, and so far it lies {beside}");
-            *decided = Decided::nothing(LeftOut::new(Decision::View, name, because));
+            *decided = VolumeDecision::nothing(LeftOut::new(Decision::View, name, because));
             return;
         }
         let because = format!("it ends at {axis} = {at}: {looked_at}, so nothing beyond is counted");
@@ -263,7 +264,7 @@ impl Questions {
 
 /// The box around the eye, the near rectangle, and all that shows, receives and is within a light's range; of the boxes
 /// around each object.
-fn looked_at(frame: &Frame, light: LightId, view: &ViewVolume, boxes: &[AxisBox]) -> AxisBox {
+fn looked_at(frame: &FrameBuilder, light: LightId, view: &ViewVolume, boxes: &[AxisBox]) -> AxisBox {
     let eye = frame.eye();
     let from = [eye].into_iter().chain(view.near_rectangle().map(|corner| eye + corner));
     let shown = frame.pieces.iter().map(|piece| piece.object);
@@ -273,24 +274,24 @@ fn looked_at(frame: &Frame, light: LightId, view: &ViewVolume, boxes: &[AxisBox]
     AxisBox::around(from).joined(reached)
 }
 
-impl Decides for Questions {
-    fn usual(&self) -> Counting {
-        Counting::Behind
+impl VolumePolicy for AutoPolicy {
+    fn usual(&self) -> CountingMode {
+        CountingMode::Behind
     }
 
     fn keeps_empty_pass(&self) -> bool {
         false
     }
 
-    fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided> {
-        let mut decided: Vec<Decided> = casters.iter().map(|index| self.without_end(frame, *index)).collect();
+    fn forms(&self, frame: &FrameBuilder, casters: &[usize]) -> Vec<VolumeDecision> {
+        let mut decided: Vec<VolumeDecision> = casters.iter().map(|index| self.without_end(frame, *index)).collect();
         if frame.common.allows(Decision::BeyondReceivers) {
             self.end_volumes(frame, casters, &mut decided);
         }
         decided
     }
 
-    fn held_by_parts(&self, frame: &mut Frame, index: usize) -> (Vec<bool>, Option<LeftOut>) {
+    fn held_by_parts(&self, frame: &mut FrameBuilder, index: usize) -> (Vec<bool>, Option<LeftOut>) {
         if !frame.common.allows(Decision::Umbra) {
             return (Vec::new(), None);
         }

@@ -1,13 +1,13 @@
 //! Which objects can darken anything.
 
-use super::frame::{Frame, Placed};
+use super::frame::{FrameBuilder, FrameObject};
 use crate::geometry::light_frame;
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
 /// What an object may darken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Darkened {
+pub enum DarkenedObjects {
     /// Anything, itself included.
     All,
     /// Other objects only.
@@ -16,10 +16,10 @@ pub enum Darkened {
 
 /// Can an object darken any of these that is drawn? No, where all that receives lies on the light's
 /// side of its triangles.
-pub fn can_darken(frame: &Frame, index: usize, light: LightId, what: Darkened) -> bool {
+pub fn can_darken(frame: &FrameBuilder, index: usize, light: LightId, what: DarkenedObjects) -> bool {
     let receivers = || {
-        let receives = |(other, placed): &(usize, &Placed)| {
-            let is_asked = what == Darkened::All || *other != index;
+        let receives = |(other, placed): &(usize, &FrameObject)| {
+            let is_asked = what == DarkenedObjects::All || *other != index;
             is_asked && placed.object.receives && placed.surface.is_some()
         };
         let receiving = frame.placed.iter().enumerate().filter(receives);
@@ -32,9 +32,9 @@ pub fn can_darken(frame: &Frame, index: usize, light: LightId, what: Darkened) -
 
 /// Why a caster needs no volume: nothing that receives is behind it. `None` where something may be: under wrapped light the
 /// back of the caster itself, which else is dark as it faces away.
-pub fn darkens_nothing(frame: &Frame, index: usize, light: LightId) -> Option<LeftOut> {
+pub fn darkens_nothing(frame: &FrameBuilder, index: usize, light: LightId) -> Option<LeftOut> {
     let is_asked = frame.common.allows(Decision::Caster) && !frame.plan.wraps_diffuse;
-    if !is_asked || can_darken(frame, index, light, Darkened::All) {
+    if !is_asked || can_darken(frame, index, light, DarkenedObjects::All) {
         return None;
     }
     let because = format!("all that receives lies on the side of {}, or in its plane", light.name());
@@ -42,7 +42,7 @@ pub fn darkens_nothing(frame: &Frame, index: usize, light: LightId) -> Option<Le
 }
 
 /// The triangles of an object in world space.
-pub fn world_triangles(frame: &Frame, index: usize) -> Vec<[DVec3; 3]> {
+pub fn world_triangles(frame: &FrameBuilder, index: usize) -> Vec<[DVec3; 3]> {
     let placed = &frame.placed[index];
     placed.object.mesh.triangles().iter().map(|corners| corners.map(|v| placed.world[v as usize])).collect()
 }

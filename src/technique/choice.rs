@@ -1,7 +1,7 @@
 //! A technique with its settings, checked.
 
 use super::named::Technique;
-use super::settings::{self, CommonSettings, PlanarSettings, Values, VolumeSettings};
+use super::settings::{self, CommonSettings, PlanarSettings, SettingMap, VolumeSettings};
 use crate::scene::{TechniqueRequest, suggestion};
 
 /// Why a request for a technique can't be met.
@@ -43,7 +43,7 @@ pub enum ChoiceError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     technique: Technique,
-    settings: Values,
+    settings: SettingMap,
 }
 
 impl Choice {
@@ -99,7 +99,7 @@ impl Choice {
     }
 
     /// Key and value of every setting.
-    pub fn settings(&self) -> &Values {
+    pub fn settings(&self) -> &SettingMap {
         &self.settings
     }
 
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Casters, Extrusion};
     use crate::plan::Decision;
-    use crate::technique::{MapSettings, WhoCasts};
+    use crate::technique::{CasterRule, MapSettings};
 
     fn with(technique: Technique, changes: &[(&str, &str)]) -> Choice {
         let mut choice = Choice::new(technique);
@@ -177,9 +177,9 @@ mod tests {
     #[test]
     fn words_become_what_they_stand_for() {
         let volumes = |changes: &[(&str, &str)]| with(Technique::ZFail, changes).volumes().expect("volumes");
-        assert_eq!(volumes(&[]), VolumeSettings::read(&Values::new()));
+        assert_eq!(volumes(&[]), VolumeSettings::read(&SettingMap::new()));
         let changed = volumes(&[("casters", "light-facing"), ("extrusion", "finite:2.5"), ("counter", "float")]);
-        assert_eq!(changed.casters, WhoCasts::Always(Casters::LightFacing));
+        assert_eq!(changed.casters, CasterRule::Always(Casters::LightFacing));
         assert_eq!((changed.extrusion, changed.counts_in_float), (Extrusion::Finite(2.5), true));
         let some = with(Technique::Auto, &[("leave-out", "caps, umbra")]).common();
         let allowed = [Decision::Caps, Decision::Umbra, Decision::View, Decision::Light].map(|one| some.allows(one));
@@ -191,7 +191,7 @@ mod tests {
     fn what_a_folder_tells_is_read_as_far_as_it_is_offered() {
         let told = [("filter", "pcf:9999"), ("bias-normal", "NaN"), ("bias-slope", "3"), ("cull", "sideways")];
         let told = told.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
-        let expected = MapSettings { bias_slope: 3.0, ..MapSettings::read(&Values::new()) };
+        let expected = MapSettings { bias_slope: 3.0, ..MapSettings::read(&SettingMap::new()) };
         assert_eq!(MapSettings::read(&told), expected);
     }
 

@@ -1,7 +1,7 @@
 //! What is said of a technique beside its plan: one constant each, in the technique's own file.
 
 use super::PlanError;
-use super::frame::Job;
+use super::frame::PlanRequest;
 use super::lesson::Lesson;
 use crate::plan::FramePlan;
 
@@ -13,22 +13,22 @@ pub(super) const ONE_ROW: ReportRows = &[&[]];
 
 /// A technique, as commands, tables and the inspector know it.
 #[derive(Debug, Clone, Copy)]
-pub struct Description {
+pub struct TechniqueDescription {
     /// What it does, in one sentence.
     pub summary: &'static str,
     /// What there is to know of it.
     pub lesson: Lesson,
     /// Makes a frame's plan.
-    pub(super) plan: fn(Job) -> Result<FramePlan, PlanError>,
+    pub(super) plan: fn(PlanRequest) -> Result<FramePlan, PlanError>,
     /// The settings that a report compares by default.
     pub report_rows: ReportRows,
     /// How it stands to the others where they are compared.
-    pub standing: Standing,
+    pub standing: ComparisonRole,
 }
 
 /// How a technique stands to the others where they are compared.
 #[derive(Debug, Clone, Copy)]
-pub enum Standing {
+pub enum ComparisonRole {
     /// It makes shadows on the GPU, and runs in every stress case that does not say otherwise.
     Rival {
         /// Its place in tables of stress cases, from 0.

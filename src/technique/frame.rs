@@ -1,6 +1,6 @@
 //! What all techniques share: a frame in the making.
 //!
-//! A technique starts a [`Frame`], which is placed then (`places.rs`), adds its own passes between `ambient_pass`
+//! A technique starts a [`FrameBuilder`], which is placed then (`places.rs`), adds its own passes between `ambient_pass`
 //! and, for each light, `mask_pass` and `light_pass` (`passes.rs`, of what `drawn.rs` says), and finishes it into a
 //! plan.
 
@@ -15,17 +15,17 @@ use crate::geometry::{self, GeometryCache};
 use crate::math::AxisBox;
 use crate::math::depth::DepthMapping;
 use crate::plan::{
-    Attachment, AttachmentId, Decision, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, PlanTexture, TextureId,
-    ViewId,
+    Attachment, AttachmentId, Decision, DrawMesh, DrawPart, FramePlan, LeftOut, LightId, MeshId, PlanTexture,
+    TextureId, ViewId,
 };
-use crate::scene::{Material, Object, Scene, Texture};
-pub use drawn::Drawn;
+use crate::scene::{Material, MaterialTexture, Object, Scene};
+pub use drawn::SurfaceDrawing;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
 /// What a technique is asked for.
 #[derive(Debug)]
-pub struct Job<'a> {
+pub struct PlanRequest<'a> {
     /// At one moment.
     pub scene: &'a Scene,
     /// Width and height in pixels.
@@ -38,7 +38,7 @@ pub struct Job<'a> {
 
 /// An object with its vertices in world space and its drawn surface.
 #[derive(Debug)]
-pub struct Placed<'a> {
+pub struct FrameObject<'a> {
     /// As the scene has it.
     pub object: &'a Object,
     /// Welded, world space.
@@ -49,10 +49,10 @@ pub struct Placed<'a> {
 
 /// A part of a visible surface that is drawn by itself: one group of an object, or less.
 #[derive(Debug, Clone)]
-pub struct Piece {
+pub struct SurfacePiece {
     /// For people: the object, and which of its groups.
     pub name: String,
-    /// Index into [`Frame::placed`].
+    /// Index into [`FrameBuilder::placed`].
     pub object: usize,
     /// Of its surface.
     pub material: Material,
@@ -68,17 +68,17 @@ pub struct Piece {
 
 /// A plan in the making: objects and lights are placed, and passes are added in the order in which they run.
 #[derive(Debug)]
-pub struct Frame<'a> {
+pub struct FrameBuilder<'a> {
     /// What is asked for.
-    pub job: Job<'a>,
+    pub job: PlanRequest<'a>,
     /// The job's settings that every technique has.
     pub common: CommonSettings,
     /// Parallel to the scene's objects.
-    pub placed: Vec<Placed<'a>>,
+    pub placed: Vec<FrameObject<'a>>,
     /// All visible surfaces, in the order in which they are drawn.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<SurfacePiece>,
     /// Those that the next light's pass draws, where they are not all.
-    pub lit: Option<Vec<Piece>>,
+    pub lit: Option<Vec<SurfacePiece>>,
     /// What there is of the plan; passes of other kinds than the methods make are pushed here.
     pub plan: FramePlan,
     /// Clamped depth clips volumes at the near plane all the same: what counts in front of surfaces
@@ -87,7 +87,7 @@ pub struct Frame<'a> {
     color: AttachmentId,
     depth_stencil: AttachmentId,
     has_stencil: bool,
-    /// What [`Frame::surfaces_coincide`] has found out.
+    /// What [`FrameBuilder::surfaces_coincide`] has found out.
     coincide: Option<bool>,
     /// The light whose passes have last written the stencil.
     stencil_of: Option<LightId>,
@@ -105,9 +105,9 @@ pub enum StencilUse {
     ToLightOnce,
 }
 
-impl<'a> Frame<'a> {
+impl<'a> FrameBuilder<'a> {
     /// Places objects and lights, and makes the attachments.
-    pub fn new(job: Job<'a>, stencil: StencilUse) -> Result<Frame<'a>, PlanError> {
+    pub fn new(job: PlanRequest<'a>, stencil: StencilUse) -> Result<FrameBuilder<'a>, PlanError> {
         let scene = job.scene;
         job.cache.next_plan();
         scene.camera.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
@@ -132,7 +132,7 @@ impl<'a> Frame<'a> {
             left_out: Vec::new(),
         };
         let no_target = AttachmentId(0);
-        let mut frame = Frame {
+        let mut frame = FrameBuilder {
             placed: Vec::new(),
             pieces: Vec::new(),
             lit: None,
@@ -195,7 +195,7 @@ impl<'a> Frame<'a> {
     }
 
     /// The picture of a surface as one of the plan, which has each once.
-    pub(super) fn add_texture(&mut self, texture: &Texture) -> TextureId {
+    pub(super) fn add_texture(&mut self, texture: &MaterialTexture) -> TextureId {
         let wanted = PlanTexture { picture: texture.picture.clone(), clamps: texture.clamps };
         let textures = &mut self.plan.textures;
         let known = textures.iter().position(|texture| *texture == wanted);
@@ -243,8 +243,8 @@ impl<'a> Frame<'a> {
                 let is_in_front = self.clips_volumes || is_of_these;
                 let is_unclipped = match self.plan.depth.keeps_volumes() {
                     // Light caps are clipped as the surfaces that they coincide with.
-                    true => draw.raster.unclipped_depth && !draw.part.includes(Part::LightCap),
-                    false => mapping.clamps() && !(is_in_front && draw.part != Part::Surface),
+                    true => draw.raster.unclipped_depth && !draw.part.includes(DrawPart::LightCap),
+                    false => mapping.clamps() && !(is_in_front && draw.part != DrawPart::Surface),
                 };
                 draw.raster.unclipped_depth = is_of_camera && is_unclipped;
                 if !mapping.is_reversed() {

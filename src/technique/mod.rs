@@ -1,13 +1,13 @@
 //! The techniques: each a pure function from a scene to a [`FramePlan`](crate::plan::FramePlan).
 //!
-//! A technique is one file with a function `(Job) → FramePlan`, its settings as constants, and a [`Description`] with
+//! A technique is one file with a function `(PlanRequest) → FramePlan`, its settings as constants, and a [`TechniqueDescription`] with
 //! all else that is said of it; and a variant of [`Technique`] with its name. The compiler names the few places that
-//! ask for more, such as its mark in plots. What techniques share is [`Frame`]: the camera, surfaces, and the
+//! ask for more, such as its mark in plots. What techniques share is [`FrameBuilder`]: the camera, surfaces, and the
 //! ambient, light and mask passes.
 //!
 //! # A technique of your own
 //!
-//! needs nothing but [`Frame`]: any function to a plan will do, in any crate. This one flattens every
+//! needs nothing but [`FrameBuilder`]: any function to a plan will do, in any crate. This one flattens every
 //! caster onto the ground and marks it in the stencil, and light is added where nothing is marked.
 //!
 //! ```
@@ -101,15 +101,15 @@ mod surfaces;
 mod volume;
 
 pub use choice::{Choice, ChoiceError};
-pub use description::{Description, ReportRows, Standing};
+pub use description::{ComparisonRole, ReportRows, TechniqueDescription};
 pub use error::{MOST_LIGHTS, PlanError};
-pub use frame::{Drawn, Frame, Job, Piece, Placed, StencilUse};
-pub use lesson::{Lesson, Source};
+pub use frame::{FrameBuilder, FrameObject, PlanRequest, StencilUse, SurfaceDrawing, SurfacePiece};
+pub use lesson::{Citation, Lesson};
 pub use named::Technique;
 pub use plan::plan;
 pub(crate) use ray_traced::plan_of_labels;
 pub use settings::{
-    CommonSettings, CountsBy, MapSettings, PlanarSettings, SettingSpec, SettingValues, TextureSettings, Values,
-    VolumeSettings, WhoCasts,
+    CasterRule, CommonSettings, CountOperations, MapSettings, PlanarSettings, SettingMap, SettingSpec, SettingValues,
+    TextureSettings, VolumeSettings,
 };
 pub use volume::casting;

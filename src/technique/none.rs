@@ -1,13 +1,13 @@
 //! No shadows: every light reaches every surface that faces it.
 
 use super::PlanError;
-use super::description::{Description, ONE_ROW, Standing};
-use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::description::{ComparisonRole, ONE_ROW, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::Lesson;
 use crate::plan::FramePlan;
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Every light reaches every surface that faces it: the picture to compare others with.",
     lesson: Lesson {
         text: "The picture to compare others with: everything that should be dark is wrong.",
@@ -16,15 +16,15 @@ pub(super) const DESCRIPTION: Description = Description {
     },
     plan,
     report_rows: ONE_ROW,
-    standing: Standing::Apart { because: "there is nothing to darken" },
+    standing: ComparisonRole::Apart { because: "there is nothing to darken" },
 };
 
 /// Plans a frame without shadows.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
+    let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     frame.ambient_pass();
     for light in frame.light_ids() {
-        frame.mask_pass(light, &[Drawn::lit()]);
+        frame.mask_pass(light, &[SurfaceDrawing::lit()]);
         let purpose = "Adds the light everywhere: nothing asks whether something stands between.";
         frame.light_pass(light, purpose, &frame.light_everywhere());
     }

@@ -1,6 +1,6 @@
 //! What lies outside of the view, and how far, in words.
 
-use crate::geometry::Outside;
+use crate::geometry::OutsidePlane;
 use crate::math::AxisBox;
 use crate::numbers;
 use glam::DVec3;
@@ -19,7 +19,7 @@ pub const VIEW_PLANES: [&str; 5] = [
 ];
 
 /// `0.8 m outside the view's left side`.
-pub fn beyond(outside: Outside, plane: &str) -> String {
+pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     match outside.distance.is_finite() {
         true => format!("{} outside {plane}", numbers::metres(outside.distance)),
         false => format!("outside {plane}"),

@@ -1,21 +1,21 @@
 //! Which technique plans a frame, and what is said of each.
 
 use super::choice::{Choice, ChoiceError};
-use super::description::{Description, Standing};
+use super::description::{ComparisonRole, TechniqueDescription};
 use super::error::PlanError;
-use super::frame::Job;
+use super::frame::PlanRequest;
 use super::named::Technique;
 use super::{auto, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
 use crate::plan::FramePlan;
 
 /// Plans one frame.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     (job.choice.technique().description().plan)(job)
 }
 
 impl Technique {
     /// All that is said of it.
-    pub const fn description(self) -> &'static Description {
+    pub const fn description(self) -> &'static TechniqueDescription {
         match self {
             Technique::None => &none::DESCRIPTION,
             Technique::Planar => &planar::DESCRIPTION,
@@ -38,8 +38,8 @@ impl Technique {
     /// Those that make shadows on the GPU, in the order of stress tables.
     pub fn rivals() -> Vec<Technique> {
         let place = |technique: Technique| match technique.description().standing {
-            Standing::Rival { place, .. } => Some((place, technique)),
-            Standing::Apart { .. } => None,
+            ComparisonRole::Rival { place, .. } => Some((place, technique)),
+            ComparisonRole::Apart { .. } => None,
         };
         let mut rivals: Vec<_> = Technique::ALL.into_iter().filter_map(place).collect();
         rivals.sort_unstable();

@@ -9,16 +9,16 @@
 //! first, and the flattened casters darken it.
 
 use super::PlanError;
-use super::description::{Description, Standing};
-use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::description::{ComparisonRole, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::{Lesson, cited};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::PlanarSettings;
-use crate::geometry::planar::{Flattened, Flattener};
+use crate::geometry::planar::{FlattenedCaster, Flattener};
 use crate::geometry::relative;
 use crate::plan::{
-    Blob, ColorWrite, DecidedBy, Decision, Draw, DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, Part, Program,
-    RasterState, StencilFace,
+    Blob, ColorWrite, DecidedBy, Decision, Draw, DrawConstants, DrawMesh, DrawPart, FramePlan, LeftOut, LightId,
+    Program, RasterState, StencilFace,
 };
 use std::sync::Arc;
 use wgpu::{CompareFunction, StencilOperation};
@@ -27,7 +27,7 @@ use wgpu::{CompareFunction, StencilOperation};
 const BLENDED: f32 = 0.4;
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
     lesson: Lesson {
         text: "Every flat piece of a mesh that receives is a receiver; other surfaces get no shadow. A pass marks \
@@ -41,7 +41,7 @@ pub(super) const DESCRIPTION: Description = Description {
     plan,
     // The defaults, and shadows that fight with their plane.
     report_rows: &[&[], &[("z-fighting", "none")]],
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 5,
         right_because: "all that is darkened is flat, and casters are clipped to what lies between",
         texels: None,
@@ -49,16 +49,16 @@ pub(super) const DESCRIPTION: Description = Description {
 };
 
 /// A receiver that can show shadows, and its mark.
-struct Marked {
+struct MarkedReceiver {
     receiver: FlatReceiver,
     mark: u8,
 }
 
 /// Plans planar shadows.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let options = PlanarSettings::read(job.choice.settings());
     let stencil = if options.marks { StencilUse::Always } else { StencilUse::ToLightOnce };
-    let mut frame = Frame::new(job, stencil)?;
+    let mut frame = FrameBuilder::new(job, stencil)?;
     frame.ambient_pass();
     let receivers = receivers::all(&mut frame);
     for light in frame.light_ids() {
@@ -80,7 +80,7 @@ fn raster_of(options: &PlanarSettings, color: ColorWrite) -> RasterState {
 }
 
 /// Shadows counted in the stencil: an odd number is in shadow.
-fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: PlanarSettings) {
+fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     mark_pass(frame, marked, light);
     let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
                    receiver's mark it goes up by one: overlapping triangles can't darken a pixel twice.";
@@ -94,15 +94,15 @@ fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
     if !draws.is_empty() {
         frame.stencil_pass(light, "shadows", purpose, draws);
     }
-    let odd = Drawn::shadow().where_stencil(1, 1);
-    frame.mask_pass(light, &[Drawn::lit(), odd]);
+    let odd = SurfaceDrawing::shadow().where_stencil(1, 1);
+    frame.mask_pass(light, &[SurfaceDrawing::lit(), odd]);
     let purpose = "Adds the light where the stencil is even: odd numbers are shadows. It makes lit numbers odd, so \
                    that no pixel is lit twice.";
-    frame.light_pass(light, purpose, &Drawn::light_once_where_zero(1));
+    frame.light_pass(light, purpose, &SurfaceDrawing::light_once_where_zero(1));
 }
 
 /// Shadows blended over the lit picture, on their receivers only where those are marked.
-fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: PlanarSettings) {
+fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     let purpose = "Adds the light everywhere: shadows are blended over it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
     if options.marks {
@@ -125,11 +125,16 @@ fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
                        every triangle that covers a pixel, and what other lights gave as well.";
         frame.blend_pass(light, "shadows", purpose, draws);
     }
-    frame.mask_pass_with(light, &[Drawn::lit()], labels);
+    frame.mask_pass_with(light, &[SurfaceDrawing::lit()], labels);
 }
 
 /// The largest receivers whose lit side the eye sees: any other shows no shadow of this light.
-fn shown_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId, options: PlanarSettings) -> Vec<Marked> {
+fn shown_receivers(
+    frame: &mut FrameBuilder,
+    all: &[FlatReceiver],
+    light: LightId,
+    options: PlanarSettings,
+) -> Vec<MarkedReceiver> {
     let mut shown: Vec<_> = all.iter().filter(|receiver| receiver.shows_lit_side(frame, light)).collect();
     let name = light.name();
     if shown.is_empty() {
@@ -146,10 +151,10 @@ fn shown_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId, opti
     // Marks are even and shadows one more: a byte would hold 127.
     let mark = |index: usize| (index as u8 + 1) * 2;
     let marked = shown.into_iter().take(MOST_RECEIVERS).enumerate();
-    marked.map(|(index, receiver)| Marked { receiver: receiver.clone(), mark: mark(index) }).collect()
+    marked.map(|(index, receiver)| MarkedReceiver { receiver: receiver.clone(), mark: mark(index) }).collect()
 }
 
-fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
+fn mark_pass(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId) {
     let mut draws = Vec::new();
     for one in marked {
         let FlatReceiver { object, receiver, name } = &one.receiver;
@@ -164,7 +169,7 @@ fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
         draws.push(Draw {
             name: name.clone(),
             caster,
-            part: Part::Receiver,
+            part: DrawPart::Receiver,
             program: Program::Position,
             raster: RasterState::visible_surface(ColorWrite::None).with_stencil(replace, one.mark),
             mesh,
@@ -183,8 +188,8 @@ fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
 
 /// Every caster flattened onto every receiver, drawn as `look` says for the receiver's mark.
 fn shadow_draws(
-    frame: &mut Frame,
-    marked: &[Marked],
+    frame: &mut FrameBuilder,
+    marked: &[MarkedReceiver],
     light: LightId,
     options: PlanarSettings,
     look: &dyn Fn(u8) -> (Program, RasterState),
@@ -211,8 +216,8 @@ fn shadow_draws(
 
 /// A caster flattened onto one receiver; `None` where no part of it is between plane and light.
 fn shadow_draw(
-    frame: &mut Frame,
-    one: &Marked,
+    frame: &mut FrameBuilder,
+    one: &MarkedReceiver,
     caster: usize,
     light: LightId,
     options: PlanarSettings,
@@ -221,7 +226,7 @@ fn shadow_draw(
     let (placed, receiver) = (&frame.placed[caster], &one.receiver.receiver);
     let mesh = &placed.object.mesh;
     let is_own = caster == one.receiver.object;
-    let flattened = Flattened {
+    let flattened = FlattenedCaster {
         mesh: mesh.content_hash(),
         pose: placed.object.pose,
         plane: receiver.plane,
@@ -253,7 +258,7 @@ fn shadow_draw(
     Some(Draw {
         name,
         caster,
-        part: Part::PlanarShadow,
+        part: DrawPart::PlanarShadow,
         program: Program::Position,
         raster: raster_of(&options, ColorWrite::None),
         mesh,

@@ -7,21 +7,21 @@
 //! shadow, and edges are as coarse as the texture.
 
 use super::PlanError;
-use super::description::{Description, Standing};
-use super::frame::{Drawn, Frame, Job, Piece, StencilUse};
+use super::description::{ComparisonRole, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing, SurfacePiece};
 use super::lesson::{Lesson, cited};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
 use super::surfaces;
-use crate::geometry::Parallelogram;
+use crate::geometry::ReceiverParallelogram;
 use crate::math::Plane;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
 use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
     lesson: Lesson {
         text: "Each flat receiver has a texture of the light that arrives on it: the pyramid from the light to the \
@@ -39,7 +39,7 @@ pub(super) const DESCRIPTION: Description = Description {
         &[("size", "256"), ("redraw", "changed")],
         &[("size", "1024")],
     ],
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 6,
         right_because: "all that is darkened is flat, and no edge of a shadow is blurred by texels",
         texels: Some((0.005, "a receiver of several metres has 256 texels a side: each is larger than a pixel")),
@@ -47,8 +47,8 @@ pub(super) const DESCRIPTION: Description = Description {
 };
 
 /// Plans receiver textures.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
+    let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     let mut receivers = receivers::all(&mut frame);
     receivers::leave_out_small(&mut frame, receivers.len(), "the frame");
     receivers.truncate(MOST_RECEIVERS);
@@ -60,8 +60,8 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     for light in frame.light_ids() {
         let has_textures = frame.plan.lights[light.0].map.is_some();
         let (label, drawn) = match has_textures {
-            true => (Drawn::lit_by(Visibility::ReceiverTexture), frame.light_by(Visibility::ReceiverTexture)),
-            false => (Drawn::lit(), frame.light_everywhere()),
+            true => (SurfaceDrawing::lit_by(Visibility::ReceiverTexture), frame.light_by(Visibility::ReceiverTexture)),
+            false => (SurfaceDrawing::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
         let purpose = match has_textures {
@@ -77,7 +77,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
 }
 
 /// The frame's pieces with each receiver a piece of its own, so that it can read its own layer.
-fn split_at(frame: &mut Frame, receivers: &[FlatReceiver]) -> Vec<Piece> {
+fn split_at(frame: &mut FrameBuilder, receivers: &[FlatReceiver]) -> Vec<SurfacePiece> {
     let mut split = Vec::new();
     for piece in std::mem::take(&mut frame.pieces) {
         let count = frame.placed[piece.object].object.mesh.triangles().len();
@@ -93,13 +93,13 @@ fn split_at(frame: &mut Frame, receivers: &[FlatReceiver]) -> Vec<Piece> {
             let name = layer.map_or_else(|| piece.name.clone(), |layer| receivers[layer as usize].name.clone());
             let mesh = surfaces::subset(&frame.plan.meshes[piece.mesh.0], &name, &own);
             let mesh = frame.add_mesh(mesh);
-            split.push(Piece { name, mesh, triangles: 0..own.len() as u32, layer, ..piece.clone() });
+            split.push(SurfacePiece { name, mesh, triangles: 0..own.len() as u32, layer, ..piece.clone() });
         }
     }
     split
 }
 
-fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
+fn add_textures(frame: &mut FrameBuilder, receivers: &[FlatReceiver], light: LightId) {
     let light_position = frame.light_position(light);
     let shapes: Vec<Option<DMat4>> =
         receivers.iter().map(|receiver| clip_from_world(frame, receiver, light_position)).collect();
@@ -142,14 +142,15 @@ fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
     frame.plan.lights[light.0].decided_by = DecidedBy::ReceiverTextures;
 }
 
-fn clip_from_world(frame: &Frame, receiver: &FlatReceiver, light: DVec4) -> Option<DMat4> {
+fn clip_from_world(frame: &FrameBuilder, receiver: &FlatReceiver, light: DVec4) -> Option<DMat4> {
     let placed = &frame.placed[receiver.object];
-    Parallelogram::around(&receiver.receiver, &placed.world, placed.object.mesh.triangles()).clip_from_world(light)
+    ReceiverParallelogram::around(&receiver.receiver, &placed.world, placed.object.mesh.triangles())
+        .clip_from_world(light)
 }
 
 /// The triangles of a caster that are drawn into a receiver's texture: those that reach above its
 /// plane, on the light's side.
-fn caster_triangles(frame: &Frame, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
+fn caster_triangles(frame: &FrameBuilder, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
     let placed = &frame.placed[caster];
     let triangles = placed.object.mesh.triangles();
     let own = if caster == receiver.object { &receiver.receiver.triangles[..] } else { &[] };

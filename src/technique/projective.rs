@@ -6,9 +6,9 @@
 //! Casters may be translucent.
 
 use super::PlanError;
-use super::casters::{self, Darkened};
-use super::description::{Description, Standing};
-use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::casters::{self, DarkenedObjects};
+use super::description::{ComparisonRole, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::{Lesson, cited};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
@@ -18,7 +18,7 @@ use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Vis
 use glam::DMat4;
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
     lesson: Lesson {
         text: "A picture of each caster's silhouette is thrown over the scene like a slide, and translucent casters \
@@ -31,7 +31,7 @@ pub(super) const DESCRIPTION: Description = Description {
     plan,
     // Sizes of pictures.
     report_rows: &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]],
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 7,
         right_because: "nothing darkens itself here, or stands between light and caster",
         texels: Some((0.002, "512 texels hold the whole silhouette: where the light spreads it, each shows")),
@@ -39,9 +39,9 @@ pub(super) const DESCRIPTION: Description = Description {
 };
 
 /// Plans projective shadow textures.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = TextureSettings::of_silhouettes(job.choice.settings());
-    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     let layers = casting_objects(&mut frame);
     for piece in &mut frame.pieces {
         piece.layer = layers.iter().position(|object| *object == piece.object).map(|layer| layer as u32);
@@ -57,7 +57,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         };
         let how = if drawn_layers.is_empty() { Visibility::Everywhere } else { Visibility::Projected };
         if settings.is_single_pass || drawn_layers.is_empty() {
-            frame.mask_pass(light, &[Drawn::lit_by(how)]);
+            frame.mask_pass(light, &[SurfaceDrawing::lit_by(how)]);
             let purpose = match how {
                 Visibility::Everywhere => "Adds the light everywhere: no silhouette is on its way.",
                 _ => "Adds the light, as far as the silhouettes on its way let it through.",
@@ -71,7 +71,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
 }
 
 /// Lit first, then darkened by one silhouette after another.
-fn multi_pass(frame: &mut Frame, light: LightId, layers: &[usize], drawn_layers: &[usize]) {
+fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_layers: &[usize]) {
     let purpose = "Adds the light everywhere: silhouettes darken it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
     for layer in drawn_layers {
@@ -83,14 +83,14 @@ fn multi_pass(frame: &mut Frame, light: LightId, layers: &[usize], drawn_layers:
             frame.blend_pass(light, &name, purpose, draws);
         }
     }
-    frame.mask_pass(light, &[Drawn::lit_by(Visibility::Projected)]);
+    frame.mask_pass(light, &[SurfaceDrawing::lit_by(Visibility::Projected)]);
 }
 
 /// The objects that cast and can darken anything under any light: as many as fit.
-fn casting_objects(frame: &mut Frame) -> Vec<usize> {
+fn casting_objects(frame: &mut FrameBuilder) -> Vec<usize> {
     let casts = |index: &usize| {
         let object = frame.placed[*index].object;
-        let darkens = |light| casters::can_darken(frame, *index, light, Darkened::Others);
+        let darkens = |light| casters::can_darken(frame, *index, light, DarkenedObjects::Others);
         object.casts && !object.mesh.triangles().is_empty() && frame.light_ids().any(darkens)
     };
     let mut objects: Vec<usize> = (0..frame.placed.len()).filter(casts).collect();
@@ -108,16 +108,16 @@ fn casting_objects(frame: &mut Frame) -> Vec<usize> {
 const TANGENT_OF_45_DEGREES: f64 = 1.0;
 
 /// The diagonal of the box around all objects.
-fn size_of_scene(frame: &Frame) -> f64 {
+fn size_of_scene(frame: &FrameBuilder) -> f64 {
     AxisBox::around(frame.placed.iter().flat_map(|placed| placed.world.iter().copied())).diagonal()
 }
 
-fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize], settings: &TextureSettings) {
+fn add_silhouettes(frame: &mut FrameBuilder, light: LightId, layers: &[usize], settings: &TextureSettings) {
     let mut matrices = vec![DMat4::IDENTITY; layers.len()];
     let mut passes = Vec::new();
     for (layer, object) in layers.iter().enumerate() {
         let name = frame.placed[*object].object.name.clone();
-        if !casters::can_darken(frame, *object, light, Darkened::Others) {
+        if !casters::can_darken(frame, *object, light, DarkenedObjects::Others) {
             let because = "every other object that receives lies on the light's side of its triangles";
             frame.plan.left_out.push(LeftOut::named(Decision::Silhouette, &name, light.name(), because));
             continue;

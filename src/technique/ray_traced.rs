@@ -5,8 +5,8 @@
 //! the rays is set-up, as edge lists are; following them is part of the frame.
 
 use super::PlanError;
-use super::description::{Description, ONE_ROW, Standing};
-use super::frame::{Frame, Job, StencilUse};
+use super::description::{ComparisonRole, ONE_ROW, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::{Lesson, cited};
 use crate::plan::{ColorTarget, CpuImage, DecidedBy, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
 use crate::progress::Progress;
@@ -17,12 +17,12 @@ use std::sync::Arc;
 
 /// The labels of one light.
 #[derive(Debug)]
-struct LightRays {
+struct LightLabels {
     tracer: Arc<Tracer>,
     light: LightId,
 }
 
-impl MakeImage for LightRays {
+impl MakeImage for LightLabels {
     fn make(&self) -> Vec<u8> {
         let traced = self.tracer.trace_lights(&[self.light.0], &Progress::default());
         traced.and_then(|truth| truth.labels.into_iter().next()).unwrap_or_default()
@@ -40,7 +40,7 @@ impl MakeImage for KnownLabels {
 }
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
     lesson: Lesson {
         text: "Rays are followed in double precision, every hit is decided by exact signs, and so no ray slips \
@@ -53,7 +53,7 @@ pub(super) const DESCRIPTION: Description = Description {
     },
     plan,
     report_rows: ONE_ROW,
-    standing: Standing::Apart { because: "it is the truth" },
+    standing: ComparisonRole::Apart { because: "it is the truth" },
 };
 
 /// Others are measured against its colours. So no surface that receives shadows may be lit twice, not even where two
@@ -61,23 +61,23 @@ pub(super) const DESCRIPTION: Description = Description {
 const LIT_ONCE: StencilUse = StencilUse::Always;
 
 /// Plans a frame with traced shadows.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let (scene, size) = (job.scene, job.size);
-    let frame = Frame::new(job, LIT_ONCE)?;
+    let frame = FrameBuilder::new(job, LIT_ONCE)?;
     let tracer = Tracer::new(scene, size).map_err(|error| PlanError::Unusable { problem: error.to_string() })?;
     let tracer = Arc::new(tracer);
-    Ok(lit_by(frame, |light| Arc::new(LightRays { tracer: tracer.clone(), light })))
+    Ok(lit_by(frame, |light| Arc::new(LightLabels { tracer: tracer.clone(), light })))
 }
 
 /// The same frame of labels that are known, one list a light, a byte a pixel: no ray is followed again.
-pub fn plan_of_labels(job: Job, labels: &[Vec<u8>]) -> Result<FramePlan, PlanError> {
-    let frame = Frame::new(job, LIT_ONCE)?;
+pub fn plan_of_labels(job: PlanRequest, labels: &[Vec<u8>]) -> Result<FramePlan, PlanError> {
+    let frame = FrameBuilder::new(job, LIT_ONCE)?;
     let known = |light: LightId| labels.get(light.0).cloned().unwrap_or_default();
     Ok(lit_by(frame, |light| Arc::new(KnownLabels(known(light)))))
 }
 
 /// Surfaces, to which each light is added where its labels say so.
-fn lit_by(mut frame: Frame, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> FramePlan {
+fn lit_by(mut frame: FrameBuilder, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> FramePlan {
     frame.ambient_pass();
     for light in frame.light_ids() {
         frame.plan.lights[light.0].decided_by = DecidedBy::Labels;
@@ -89,7 +89,7 @@ fn lit_by(mut frame: Frame, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> F
     frame.finish()
 }
 
-fn ray_pass(frame: &mut Frame, light: LightId, source: Arc<dyn MakeImage>) {
+fn ray_pass(frame: &mut FrameBuilder, light: LightId, source: Arc<dyn MakeImage>) {
     let attachment = frame.plan.lights[light.0].labels;
     let content = content_hash(frame.job.scene, light);
     frame.plan.passes.push(Pass {

@@ -1,6 +1,6 @@
 //! The flat receivers of a scene, for techniques that give each its own shadow.
 
-use super::frame::Frame;
+use super::frame::FrameBuilder;
 use crate::geometry::planar;
 use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::plan::{Decision, LeftOut, LightId};
@@ -12,7 +12,7 @@ pub const MOST_RECEIVERS: usize = 64;
 /// A flat piece of an object that is drawn and receives.
 #[derive(Debug, Clone)]
 pub struct FlatReceiver {
-    /// Index of its object in [`Frame::placed`].
+    /// Index of its object in [`FrameBuilder::placed`].
     pub object: usize,
     pub receiver: planar::Receiver,
     /// For people: its object, and which of all pieces it is, from 1.
@@ -20,7 +20,7 @@ pub struct FlatReceiver {
 }
 
 /// Every flat receiver, the largest first.
-pub fn all(frame: &mut Frame) -> Vec<FlatReceiver> {
+pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
     let mut all = Vec::new();
     for (index, placed) in frame.placed.iter().enumerate() {
         if !placed.object.receives || placed.surface.is_none() {
@@ -39,7 +39,7 @@ pub fn all(frame: &mut Frame) -> Vec<FlatReceiver> {
 
 impl FlatReceiver {
     /// Does the eye see it from the side that a light is on? Any other shows no shadow of that light.
-    pub fn shows_lit_side(&self, frame: &Frame, light: LightId) -> bool {
+    pub fn shows_lit_side(&self, frame: &FrameBuilder, light: LightId) -> bool {
         let (eye, light) = (frame.eye_position(), frame.light_position(light));
         let placed = &frame.placed[self.object];
         self.receiver.triangles.iter().any(|triangle| {
@@ -55,7 +55,7 @@ const FACET: f64 = 1.0 / 20.0;
 
 /// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
 /// insides of closed ones. Without marks each would throw shadows over all that is in its plane.
-pub fn leave_out_unmarked(frame: &mut Frame, shown: &mut Vec<&FlatReceiver>, of: &str) {
+pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceiver>, of: &str) {
     let (eye, place) = (frame.eye_position(), frame.eye());
     let all = shown.len();
     shown.retain(|one| {
@@ -85,7 +85,7 @@ fn area(world: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
 }
 
 /// Says how many receivers a light has more than fit.
-pub fn leave_out_small(frame: &mut Frame, count: usize, of: &str) {
+pub fn leave_out_small(frame: &mut FrameBuilder, count: usize, of: &str) {
     if count > MOST_RECEIVERS {
         let because = "the 64 largest are kept: every one costs a draw for each caster";
         let left_out = LeftOut::counted(Decision::SmallReceivers, (count - MOST_RECEIVERS) as u64, of, because);

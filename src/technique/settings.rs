@@ -12,11 +12,11 @@ mod volume;
 
 pub use common::CommonSettings;
 pub(super) use common::SHADING_KEYS;
-pub use face::{SettingSpec, SettingValues, Values};
+pub use face::{SettingMap, SettingSpec, SettingValues};
 pub(super) use maps::SIZE;
 pub use maps::{MapSettings, TextureSettings};
 pub use planar::PlanarSettings;
-pub use volume::{CountsBy, VolumeSettings, WhoCasts};
+pub use volume::{CasterRule, CountOperations, VolumeSettings};
 
 use super::named::Technique;
 

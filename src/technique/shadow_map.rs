@@ -6,16 +6,16 @@
 //! could be darkened are left out: a floor under everything would only widen the map.
 
 use super::PlanError;
-use super::casters::{self, Darkened};
-use super::description::{Description, Standing};
-use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::casters::{self, DarkenedObjects};
+use super::description::{ComparisonRole, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::{Lesson, cited};
 use super::settings::MapSettings;
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
-    DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState,
+    DrawMesh, DrawPart, FramePlan, LeftOut, LightId, MapLookup, MeshId, Pass, PlanMap, PlanView, Program, RasterState,
     ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
@@ -36,7 +36,7 @@ struct MapTarget {
 }
 
 /// What is said of it.
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Stores the depth of what the light sees, and darkens what lies behind it.",
     lesson: Lesson {
         text: "One face, or the six of a cube around a lamp. Any surface casts and receives; the price is \
@@ -66,7 +66,7 @@ pub(super) const DESCRIPTION: Description = Description {
         &[("filter", "pcf:3")],
         &[("redraw", "changed")],
     ],
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 4,
         right_because: "its texels are finer than pixels, and its bias is enough",
         texels: Some((0.002, "1024 texels hold all that casts: where the light spreads them, each shows")),
@@ -74,9 +74,9 @@ pub(super) const DESCRIPTION: Description = Description {
 };
 
 /// Plans a frame with shadow maps.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = MapSettings::read(job.choice.settings());
-    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     for light in frame.light_ids() {
         add_map(&mut frame, light, &settings);
     }
@@ -84,8 +84,8 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     for light in frame.light_ids() {
         let has_map = frame.plan.lights[light.0].map.is_some();
         let (label, drawn) = match has_map {
-            true => (Drawn::lit_by(Visibility::Map), frame.light_by(Visibility::Map)),
-            false => (Drawn::lit(), frame.light_everywhere()),
+            true => (SurfaceDrawing::lit_by(Visibility::Map), frame.light_by(Visibility::Map)),
+            false => (SurfaceDrawing::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
         let purpose = match has_map {
@@ -100,7 +100,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-fn add_map(frame: &mut Frame, light: LightId, settings: &MapSettings) {
+fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     let size = settings.size;
     let indices = darkening_casters(frame, light);
     let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
@@ -152,14 +152,14 @@ fn add_map(frame: &mut Frame, light: LightId, settings: &MapSettings) {
 }
 
 /// Casters but those behind which, seen from the light, there is nothing that receives.
-fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
+fn darkening_casters(frame: &mut FrameBuilder, light: LightId) -> Vec<usize> {
     let mut darkening = Vec::new();
     for index in 0..frame.placed.len() {
         let object = frame.placed[index].object;
         if !object.casts || object.mesh.triangles().is_empty() {
             continue;
         }
-        if casters::can_darken(frame, index, light, Darkened::All) {
+        if casters::can_darken(frame, index, light, DarkenedObjects::All) {
             darkening.push(index);
         } else {
             let because = "everything that receives lies on the light's side of its triangles";
@@ -170,7 +170,7 @@ fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
     darkening
 }
 
-fn add_caster_mesh(frame: &mut Frame, index: usize, origin: DVec3) -> MeshId {
+fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> MeshId {
     let placed = &frame.placed[index];
     let vertices = placed.world.iter().map(|position| relative::point(*position, origin)).collect();
     let name = format!("{} from the light", placed.object.name);
@@ -180,7 +180,7 @@ fn add_caster_mesh(frame: &mut Frame, index: usize, origin: DVec3) -> MeshId {
 
 /// The pass of one face; `None` and no pass where it sees no caster.
 fn add_face(
-    frame: &mut Frame,
+    frame: &mut FrameBuilder,
     light: LightId,
     light_frame: &LightFrame,
     face: usize,
@@ -243,7 +243,7 @@ fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {
     Draw {
         name: caster.name.clone(),
         caster: Some(caster.name.clone()),
-        part: Part::Map,
+        part: DrawPart::Map,
         program: Program::Position,
         raster: raster.clone(),
         mesh: caster.mesh,

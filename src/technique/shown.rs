@@ -4,7 +4,7 @@
 //! face away from the eye are hidden by others; and a triangle that faces away from a light gets nothing
 //! from it, so the light pass needs only the rest.
 
-use super::frame::{Frame, Piece};
+use super::frame::{FrameBuilder, SurfacePiece};
 use super::{outside, surfaces};
 use crate::geometry::{Caster, ViewVolume};
 use crate::plan::{Decision, DrawMesh, LeftOut, LightId};
@@ -14,7 +14,7 @@ use glam::{DVec3, DVec4};
 const EDGE_ON: f64 = 1e-4;
 
 /// Leaves out of the frame's surfaces what can't show.
-pub fn leave_out_hidden(frame: &mut Frame) {
+pub fn leave_out_hidden(frame: &mut FrameBuilder) {
     let [width, height] = frame.job.size.map(f64::from);
     let view = ViewVolume::new(&frame.job.scene.camera, width / height);
     let mut kept = Vec::new();
@@ -25,8 +25,10 @@ pub fn leave_out_hidden(frame: &mut Frame) {
             reduced[index] = Some(shown(frame, &view, index));
         }
         match &reduced[index] {
-            Some(Shown::Triangles(shows)) => kept.extend(subset(frame, piece, |triangle| shows[triangle as usize])),
-            Some(Shown::Nothing) => (),
+            Some(ShownTriangles::Triangles(shows)) => {
+                kept.extend(subset(frame, piece, |triangle| shows[triangle as usize]))
+            }
+            Some(ShownTriangles::Nothing) => (),
             _ => kept.push(piece),
         }
     }
@@ -34,14 +36,14 @@ pub fn leave_out_hidden(frame: &mut Frame) {
 }
 
 #[derive(Clone)]
-enum Shown {
+enum ShownTriangles {
     All,
     /// By triangle.
     Triangles(Vec<bool>),
     Nothing,
 }
 
-fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
+fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> ShownTriangles {
     let (eye, sees_from) = (frame.eye(), frame.eye_position());
     let placed = &frame.placed[index];
     let (object, world) = (placed.object, &placed.world);
@@ -51,14 +53,14 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
     {
         let because = outside::beyond(far, outside::VIEW_PLANES[far.plane]);
         frame.leave_out(Decision::Surfaces, &object.name, format!("it lies {because}"));
-        return Shown::Nothing;
+        return ShownTriangles::Nothing;
     }
     if !frame.common.allows(Decision::HiddenTriangles) || !view.is_beyond_near(&relative) {
-        return Shown::All;
+        return ShownTriangles::All;
     }
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world };
     if frame.job.cache.light_facing_suffices(caster, sees_from).is_err() {
-        return Shown::All;
+        return ShownTriangles::All;
     }
     let faces_eye = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
@@ -73,15 +75,15 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
     let shows: Vec<bool> = object.mesh.triangles().iter().map(touches).collect();
     let hidden = shows.iter().filter(|shows| !**shows).count();
     if hidden == 0 {
-        return Shown::All;
+        return ShownTriangles::All;
     }
     let because = "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it";
     frame.plan.left_out.push(LeftOut::counted(Decision::HiddenTriangles, hidden as u64, &object.name, because));
-    Shown::Triangles(shows)
+    ShownTriangles::Triangles(shows)
 }
 
 /// A piece's triangles for which `shows` holds, of the mesh it has; `None` where there are none.
-fn subset(frame: &mut Frame, piece: Piece, shows: impl Fn(u32) -> bool) -> Option<Piece> {
+fn subset(frame: &mut FrameBuilder, piece: SurfacePiece, shows: impl Fn(u32) -> bool) -> Option<SurfacePiece> {
     let triangles: Vec<u32> = piece.triangles.clone().filter(|triangle| shows(*triangle)).collect();
     if triangles.len() == piece.triangles.len() {
         return Some(piece);
@@ -91,17 +93,17 @@ fn subset(frame: &mut Frame, piece: Piece, shows: impl Fn(u32) -> bool) -> Optio
     }
     let mesh: DrawMesh = surfaces::subset(&frame.plan.meshes[piece.mesh.0], &piece.name, &triangles);
     let mesh = frame.add_mesh(mesh);
-    Some(Piece { mesh, triangles: 0..triangles.len() as u32, ..piece })
+    Some(SurfacePiece { mesh, triangles: 0..triangles.len() as u32, ..piece })
 }
 
 /// The pieces that a light adds anything to: all of them where wrapped light reaches round edges, or
 /// where of surfaces that coincide only the first may be lit.
-pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
+pub fn lit_by(frame: &mut FrameBuilder, light: LightId) -> Vec<SurfacePiece> {
     let pieces = frame.pieces.clone();
     if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || frame.surfaces_coincide() {
         return pieces;
     }
-    let total = |pieces: &[Piece]| pieces.iter().map(|piece| piece.triangles.len() as u64).sum::<u64>();
+    let total = |pieces: &[SurfacePiece]| pieces.iter().map(|piece| piece.triangles.len() as u64).sum::<u64>();
     let all = total(&pieces);
     let mut lit = Vec::new();
     for piece in pieces {

@@ -1,10 +1,10 @@
 //! Pictures of what casters let through, one layer a receiver or a caster of a light.
 
-use super::frame::Frame;
+use super::frame::FrameBuilder;
 use super::settings::TextureSettings;
 use crate::geometry::relative;
 use crate::plan::{
-    Attachment, AttachmentRole, Blob, ColorTarget, ColorWrite, Draw, DrawConstants, DrawMesh, LightId, Part, Pass,
+    Attachment, AttachmentRole, Blob, ColorTarget, ColorWrite, Draw, DrawConstants, DrawMesh, DrawPart, LightId, Pass,
     PlanMap, PlanView, Program, RasterState, ViewId,
 };
 use crate::scene::Material;
@@ -24,7 +24,7 @@ pub struct LayerPass {
 /// Gives a light a map of so many layers as there are names and matrices, each clip space from world space,
 /// and a pass for each layer that is drawn. In the others all of the light arrives.
 pub fn add_map(
-    frame: &mut Frame,
+    frame: &mut FrameBuilder,
     light: LightId,
     settings: &TextureSettings,
     (layer_names, clip_from_world): (Vec<String>, Vec<DMat4>),
@@ -80,7 +80,7 @@ pub fn add_map(
 }
 
 /// Draws of some triangles of a caster, one a material.
-pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
+pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
     let placed = &frame.placed[caster];
     let (object, triangles) = (placed.object, placed.object.mesh.triangles());
     let eye = frame.eye();
@@ -101,7 +101,7 @@ pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
         draws.push(Draw {
             name: object.name.clone(),
             caster: Some(object.name.clone()),
-            part: Part::Map,
+            part: DrawPart::Map,
             program: Program::Flat,
             raster: RasterState {
                 depth_compare: CompareFunction::Always,

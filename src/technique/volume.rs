@@ -23,26 +23,26 @@ mod eye_count;
 mod far_count;
 mod near_count;
 
-use super::casters::{self, Darkened};
-use super::description::{Description, ONE_ROW, Standing};
-use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::casters::{self, DarkenedObjects};
+use super::description::{ComparisonRole, ONE_ROW, TechniqueDescription};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::{Lesson, cited};
-use super::settings::{CountsBy, VolumeSettings, WhoCasts};
+use super::settings::{CasterRule, CountOperations, VolumeSettings};
 use super::{Choice, PlanError, Technique, shown};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
 use crate::plan::{
-    CountBits, CountOf, DecidedBy, Decision, Draw, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Side,
-    Visibility,
+    CountBits, CountOf, CountedSide, DecidedBy, Decision, Draw, DrawMesh, DrawPart, FramePlan, LeftOut, LightId,
+    MeshId, Visibility,
 };
 use crate::scene::Scene;
-pub use counting::{Counting, Form};
-use counting::{NeededPart, Step};
-use counting_purpose::{Counts, Start};
-use drawn::{CasterVolume, Made, Volume};
+use counting::{CountedPart, FaceSelection};
+pub use counting::{CountingMode, VolumeSpec};
+use counting_purpose::{CountStart, CountingPurpose};
+use drawn::{CasterVolume, VolumeMesh, VolumePlan};
 use glam::{DVec3, DVec4};
 
 /// What is said of z-pass.
-pub(super) const Z_PASS: Description = Description {
+pub(super) const Z_PASS: TechniqueDescription = TechniqueDescription {
     summary: "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on.",
     lesson: Lesson {
         text: "Volume faces in front of the surface are counted, up when the view ray enters and down when it \
@@ -53,14 +53,14 @@ pub(super) const Z_PASS: Description = Description {
     },
     plan,
     report_rows: ONE_ROW,
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 2,
         right_because: "the near plane cuts no volume, and the eye is in none",
         texels: None,
     },
 };
 /// What is said of z-fail.
-pub(super) const Z_FAIL: Description = Description {
+pub(super) const Z_FAIL: TechniqueDescription = TechniqueDescription {
     summary: "Counts the same volumes from infinity back to the surface, so the eye may be inside one.",
     lesson: Lesson {
         text: "Faces behind the surface are counted, from infinity back, so volumes must be closed by caps at both \
@@ -86,7 +86,7 @@ pub(super) const Z_FAIL: Description = Description {
         &[("depth", "standard-infinite")],
         &[("depth", "standard-finite")],
     ],
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 1,
         right_because: "volumes are closed and counted from infinity, so neither eye nor near plane matters",
         texels: None,
@@ -94,7 +94,7 @@ pub(super) const Z_FAIL: Description = Description {
     ..Z_PASS
 };
 /// What is said of z-pass-plus.
-pub(super) const Z_PASS_PLUS: Description = Description {
+pub(super) const Z_PASS_PLUS: TechniqueDescription = TechniqueDescription {
     summary: "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one.",
     lesson: Lesson {
         text: "The near plane's own count is drawn first, seen from the light through the near plane; then it \
@@ -104,7 +104,7 @@ pub(super) const Z_PASS_PLUS: Description = Description {
              that pass the depth test",
         sources: &[cited::HORNUS],
     },
-    standing: Standing::Rival {
+    standing: ComparisonRole::Rival {
         place: 3,
         right_because: "what the near plane begins with is counted too, so the eye may be in a volume",
         texels: None,
@@ -113,21 +113,21 @@ pub(super) const Z_PASS_PLUS: Description = Description {
 };
 
 /// Who decides about the volumes of one light.
-pub trait Decides {
+pub trait VolumePolicy {
     /// How volumes are counted, where there are none that tell.
-    fn usual(&self) -> Counting;
+    fn usual(&self) -> CountingMode;
 
     /// Is there a pass where no volume is needed?
     fn keeps_empty_pass(&self) -> bool {
         true
     }
 
-    /// How the volumes of these casters must be counted, indices into [`Frame::placed`]; as many.
-    fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided>;
+    /// How the volumes of these casters must be counted, indices into [`FrameBuilder::placed`]; as many.
+    fn forms(&self, frame: &FrameBuilder, casters: &[usize]) -> Vec<VolumeDecision>;
 
     /// Of each triangle of a caster: another part of the caster holds its part in the umbra, and so it needs no volume.
     /// Empty: none. With what is said of it.
-    fn held_by_parts(&self, _frame: &mut Frame, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
+    fn held_by_parts(&self, _frame: &mut FrameBuilder, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
         (Vec::new(), None)
     }
 
@@ -139,74 +139,74 @@ pub trait Decides {
 
 /// What is decided about a caster's volume.
 #[derive(Debug, Clone)]
-pub struct Decided {
+pub struct VolumeDecision {
     /// `None` where it needs none.
-    pub form: Option<Form>,
+    pub form: Option<VolumeSpec>,
     /// What is not needed of it, or why all of it is not.
     pub left_out: Vec<LeftOut>,
 }
 
-impl Decided {
+impl VolumeDecision {
     /// It needs none, because of this.
-    pub fn nothing(left_out: LeftOut) -> Decided {
-        Decided { form: None, left_out: vec![left_out] }
+    pub fn nothing(left_out: LeftOut) -> VolumeDecision {
+        VolumeDecision { form: None, left_out: vec![left_out] }
     }
 }
 
 /// Every caster's volume alike.
-struct Alike {
+struct UniformPolicy {
     light: LightId,
-    counting: Counting,
+    counting: CountingMode,
     extrusion: Extrusion,
     /// A caster behind which nothing receives needs no volume: all that receives reads 0 of it either way.
     only_what_darkens: bool,
 }
 
-impl Decides for Alike {
-    fn usual(&self) -> Counting {
+impl VolumePolicy for UniformPolicy {
+    fn usual(&self) -> CountingMode {
         self.counting
     }
 
-    fn forms(&self, frame: &Frame, casters: &[usize]) -> Vec<Decided> {
-        let Alike { light, counting, extrusion, only_what_darkens } = *self;
+    fn forms(&self, frame: &FrameBuilder, casters: &[usize]) -> Vec<VolumeDecision> {
+        let UniformPolicy { light, counting, extrusion, only_what_darkens } = *self;
         let form = |caster: &usize| {
             let idle = only_what_darkens.then(|| casters::darkens_nothing(frame, *caster, light)).flatten();
             if let Some(left_out) = idle {
-                return Decided::nothing(left_out);
+                return VolumeDecision::nothing(left_out);
             }
             let caster = frame.placed[*caster].object;
             // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
-            let light_cap = counting == Counting::Behind || !caster.visible;
+            let light_cap = counting == CountingMode::Behind || !caster.visible;
             let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
             let left_out = (!light_cap).then(|| LeftOut::new(Decision::Caps, &caster.name, because));
             // A finite volume ends in front of whatever lies beyond it.
-            let dark_cap = counting == Counting::Behind || extrusion != Extrusion::Infinite;
-            let form = Form { counting, extrusion, light_cap, dark_cap };
-            Decided { form: Some(form), left_out: left_out.into_iter().collect() }
+            let dark_cap = counting == CountingMode::Behind || extrusion != Extrusion::Infinite;
+            let form = VolumeSpec { counting, extrusion, light_cap, dark_cap };
+            VolumeDecision { form: Some(form), left_out: left_out.into_iter().collect() }
         };
         casters.iter().map(form).collect()
     }
 }
 
 /// Plans z-pass, z-fail or z-pass-plus.
-pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let counting = Counting::of(job.choice.technique());
+pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
+    let counting = CountingMode::of(job.choice.technique());
     let settings = VolumeSettings::read(job.choice.settings());
     check(&settings, job.scene)?;
     let stencil = if settings.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
-    let mut frame = Frame::new(job, stencil)?;
-    frame.clips_volumes = counting != Counting::Behind;
+    let mut frame = FrameBuilder::new(job, stencil)?;
+    frame.clips_volumes = counting != CountingMode::Behind;
     // What is proven closed to say who casts hides its far side, too.
-    let looks = settings.casters == WhoCasts::ByTopology;
+    let looks = settings.casters == CasterRule::ByTopology;
     if looks {
         shown::leave_out_hidden(&mut frame);
     }
     let extrusion = settings.extrusion;
     // Z-pass is wrong where the eye is in a volume, if only in a floor's.
-    let only_what_darkens = looks && counting == Counting::Behind && settings.volumes_count_right();
-    let begin = |frame: &mut Frame, light| {
+    let only_what_darkens = looks && counting == CountingMode::Behind && settings.volumes_count_right();
+    let begin = |frame: &mut FrameBuilder, light| {
         frame.lit = looks.then(|| shown::lit_by(frame, light));
-        Ok(Alike { light, counting, extrusion, only_what_darkens })
+        Ok(UniformPolicy { light, counting, extrusion, only_what_darkens })
     };
     Ok(finish(frame, &settings, begin))
 }
@@ -229,10 +229,10 @@ fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
 }
 
 /// Adds all passes to a frame. `begin` says who decides about a light's volumes, or why it needs no passes at all.
-pub fn finish<D: Decides>(
-    mut frame: Frame,
+pub fn finish<D: VolumePolicy>(
+    mut frame: FrameBuilder,
     settings: &VolumeSettings,
-    begin: impl Fn(&mut Frame, LightId) -> Result<D, &'static str>,
+    begin: impl Fn(&mut FrameBuilder, LightId) -> Result<D, &'static str>,
 ) -> FramePlan {
     frame.ambient_pass();
     let misses = frame.cut_to_ranges();
@@ -245,7 +245,7 @@ pub fn finish<D: Decides>(
             Ok(decides) => add_light(&mut frame, light, settings, &decides),
             Err(because) => {
                 frame.leave_out(Decision::Light, light.name(), because);
-                frame.mask_pass(light, &[Drawn::lit()]);
+                frame.mask_pass(light, &[SurfaceDrawing::lit()]);
             }
         }
     }
@@ -253,7 +253,7 @@ pub fn finish<D: Decides>(
 }
 
 /// The volumes of a light, then the passes that count them.
-fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decides: &impl Decides) {
+fn add_light(frame: &mut FrameBuilder, light: LightId, settings: &VolumeSettings, decides: &impl VolumePolicy) {
     let LightVolumes { volumes, meshes, left_out } = volumes_of(frame, light, settings, decides);
     frame.plan.meshes.extend(meshes);
     frame.plan.left_out.extend(left_out);
@@ -262,14 +262,19 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
 
 /// What a light's volumes add to a plan.
 struct LightVolumes {
-    volumes: Vec<Volume>,
+    volumes: Vec<VolumePlan>,
     /// One for each volume; they follow the meshes that the plan has.
     meshes: Vec<DrawMesh>,
     left_out: Vec<LeftOut>,
 }
 
 /// Every volume that a light needs. It asks the frame's cache of geometry, and adds nothing to the plan.
-fn volumes_of(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decides: &impl Decides) -> LightVolumes {
+fn volumes_of(
+    frame: &mut FrameBuilder,
+    light: LightId,
+    settings: &VolumeSettings,
+    decides: &impl VolumePolicy,
+) -> LightVolumes {
     let (by_vertex_shader, cannot) = extruded::serves(frame, light, settings);
     let mut all = LightVolumes { volumes: Vec::new(), meshes: Vec::new(), left_out: cannot.into_iter().collect() };
     let placed = frame.placed.iter().enumerate();
@@ -277,7 +282,7 @@ fn volumes_of(frame: &mut Frame, light: LightId, settings: &VolumeSettings, deci
     let casters: Vec<usize> = casting.map(|(index, _)| index).collect();
     let decisions = decides.forms(frame, &casters);
     debug_assert_eq!(decisions.len(), casters.len());
-    for (index, Decided { form, left_out }) in casters.into_iter().zip(decisions) {
+    for (index, VolumeDecision { form, left_out }) in casters.into_iter().zip(decisions) {
         all.left_out.extend(left_out);
         let Some(form) = form else { continue };
         let (casters, because) = who_casts(frame, light, index, settings, by_vertex_shader);
@@ -288,7 +293,7 @@ fn volumes_of(frame: &mut Frame, light: LightId, settings: &VolumeSettings, deci
             true => Ok(extruded::make(frame, &of)),
             false => drawn::make(frame, &of, settings),
         };
-        let Made { mesh, casting, needed, begins_with, left_out } = match made {
+        let VolumeMesh { mesh, casting, needed, begins_with, left_out } = match made {
             Ok(made) => made,
             Err(left_out) => {
                 all.left_out.push(left_out);
@@ -296,22 +301,23 @@ fn volumes_of(frame: &mut Frame, light: LightId, settings: &VolumeSettings, deci
             }
         };
         all.left_out.extend(left_out);
-        let is_drawn = |part: &NeededPart| match part.part {
-            Part::LightCap => settings.caps[0],
-            Part::DarkCap => settings.caps[1],
-            Part::Caps => settings.caps != [false; 2],
+        let is_drawn = |part: &CountedPart| match part.part {
+            DrawPart::LightCap => settings.caps[0],
+            DrawPart::DarkCap => settings.caps[1],
+            DrawPart::Caps => settings.caps != [false; 2],
             _ => true,
         };
         let (needed, lacking): (Vec<_>, Vec<_>) =
             needed.into_iter().filter(|part| !part.triangles.is_empty()).partition(is_drawn);
-        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
-        let is_body = settings.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
-        all.volumes.push(Volume {
+        let lacks_caps =
+            [DrawPart::LightCap, DrawPart::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
+        let is_body = settings.casters == CasterRule::ByTopology && casters == Casters::LightFacing;
+        all.volumes.push(VolumePlan {
             object: index,
             caster: frame.placed[index].object.name.clone(),
             counting: form.counting,
             is_body,
-            darkens_nothing: !is_body && !casters::can_darken(frame, index, light, Darkened::All),
+            darkens_nothing: !is_body && !casters::can_darken(frame, index, light, DarkenedObjects::All),
             mesh: MeshId(frame.plan.meshes.len() + all.meshes.len()),
             casting,
             needed,
@@ -325,11 +331,11 @@ fn volumes_of(frame: &mut Frame, light: LightId, settings: &VolumeSettings, deci
 
 /// The passes that count a light's volumes, and those that read the count.
 fn write_passes(
-    frame: &mut Frame,
+    frame: &mut FrameBuilder,
     light: LightId,
     settings: &VolumeSettings,
-    decides: &impl Decides,
-    volumes: &[Volume],
+    decides: &impl VolumePolicy,
+    volumes: &[VolumePlan],
 ) {
     let position = frame.light_position(light);
     let may_overflow =
@@ -341,23 +347,23 @@ fn write_passes(
     let in_float = settings.counts_in_float || may_overflow;
     let usual = decides.usual();
     let by = counted_by(volumes, usual);
-    let side = by.map_or(Side::AsNeeded, Counting::side);
+    let side = by.map_or(CountedSide::AsNeeded, CountingMode::side);
     let of_light = &mut frame.plan.lights[light.0];
     of_light.decided_by = if in_float { DecidedBy::FloatCount { side } } else { DecidedBy::StencilCount { side } };
     of_light.count_of = what_counts(volumes);
     if in_float {
         frame.add_count(light);
-        if settings.two_pass || settings.operations != CountsBy::Wrapping {
+        if settings.two_pass || settings.operations != CountOperations::Wrapping {
             let because = "a float target adds and takes away in one draw, and has no limits to stop at";
             frame.leave_out(Decision::TwoPasses, light.name(), because);
         }
     }
-    if usual == Counting::InFrontPlus {
+    if usual == CountingMode::InFrontPlus {
         near_count::pass(frame, light, settings, volumes);
     }
     let (begins_at, start) = begin(frame, light, settings, volumes);
     let camera = &frame.job.scene.camera;
-    let counts = Counts {
+    let counts = CountingPurpose {
         by,
         light,
         options: settings,
@@ -375,9 +381,15 @@ fn write_passes(
 }
 
 /// Counts in eight bits of stencil, and lets the light pass test them.
-fn count_in_stencil(frame: &mut Frame, counts: &Counts, begins_at: u32, volumes: &[Volume], keeps_empty_pass: bool) {
+fn count_in_stencil(
+    frame: &mut FrameBuilder,
+    counts: &CountingPurpose,
+    begins_at: u32,
+    volumes: &[VolumePlan],
+    keeps_empty_pass: bool,
+) {
     let (light, settings) = (counts.light, counts.options);
-    for (index, step) in Step::all(settings).iter().enumerate() {
+    for (index, step) in FaceSelection::all(settings).iter().enumerate() {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
         if draws.is_empty() && begins_at == 0 && !keeps_empty_pass {
             frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
@@ -387,7 +399,7 @@ fn count_in_stencil(frame: &mut Frame, counts: &Counts, begins_at: u32, volumes:
         frame.stencil_pass_from(start, light, step.name(), &counts.purpose(*step), draws);
     }
     let mask = settings.mask().into();
-    frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(mask, 0)]);
+    frame.mask_pass(light, &[SurfaceDrawing::shadow(), SurfaceDrawing::lit().where_stencil(mask, 0)]);
     let kept = match CountBits::of_mask(mask) {
         CountBits::EIGHT => String::new(),
         bits => format!(" in {bits}"),
@@ -396,33 +408,38 @@ fn count_in_stencil(frame: &mut Frame, counts: &Counts, begins_at: u32, volumes:
         "Adds the light where the count is zero{kept}, and raises the count there, so that no pixel is lit twice. \
          Everywhere else the surface is inside a shadow volume and stays dark."
     );
-    frame.light_pass(light, &purpose, &Drawn::light_once_where_zero(mask));
+    frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
 }
 
 /// Counts in a float target: signed, and right beyond eight bits. It adds and takes away in one draw, and stops nowhere.
-fn count_in_float(frame: &mut Frame, counts: &Counts, begins_at: u32, volumes: &[Volume]) {
-    let (light, step) = (counts.light, Step::BothFaces);
+fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at: u32, volumes: &[VolumePlan]) {
+    let (light, step) = (counts.light, FaceSelection::BothFaces);
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(counts.options)).collect();
     frame.count_pass(begins_at, light, step.name(), &counts.purpose(step), draws);
-    frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
+    frame.mask_pass(light, &[SurfaceDrawing::lit_by(Visibility::Count)]);
     let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
                    stays dark.";
     frame.light_pass(light, purpose, &frame.light_by(Visibility::Count));
 }
 
 /// What a light's count begins at, and why where that is said.
-fn begin(frame: &Frame, light: LightId, settings: &VolumeSettings, volumes: &[Volume]) -> (u32, Option<Start>) {
+fn begin(
+    frame: &FrameBuilder,
+    light: LightId,
+    settings: &VolumeSettings,
+    volumes: &[VolumePlan],
+) -> (u32, Option<CountStart>) {
     let kept = |start: u32| if settings.counts_in_float { start } else { start & u32::from(settings.mask()) };
     if settings.starts_at_eye {
         let start = eye_count::at(frame, light, volumes);
-        return (start, Some(Start::Eye(kept(start))));
+        return (start, Some(CountStart::Eye(kept(start))));
     }
     let start = volumes.iter().map(|volume| volume.begins_with).sum();
-    (start, Some(kept(start)).filter(|kept| *kept != 0).map(Start::FarEnd))
+    (start, Some(kept(start)).filter(|kept| *kept != 0).map(CountStart::FarEnd))
 }
 
 /// What a count of these counts at a surface; `None` if there are none.
-fn what_counts(volumes: &[Volume]) -> Option<CountOf> {
+fn what_counts(volumes: &[VolumePlan]) -> Option<CountOf> {
     let bodies = volumes.iter().filter(|volume| volume.is_body).count();
     let others = volumes.iter().filter(|volume| !volume.is_body && !volume.darkens_nothing).count();
     // Where nothing is darkened at all, what casts is told.
@@ -436,30 +453,30 @@ fn what_counts(volumes: &[Volume]) -> Option<CountOf> {
 }
 
 /// How all of these are counted, `usual` if there are none; `None` where each has its own way.
-fn counted_by(volumes: &[Volume], usual: Counting) -> Option<Counting> {
+fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMode> {
     let first = volumes.first().map_or(usual, |volume| volume.counting);
     volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
 /// Which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no volumes.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
-    let who = choice.volumes().map_or(WhoCasts::Always(Casters::All), |settings| settings.casters);
+    let who = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
     match who {
-        WhoCasts::Always(casters) => casters,
-        WhoCasts::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
-        WhoCasts::ByTopology => Casters::All,
+        CasterRule::Always(casters) => casters,
+        CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
+        CasterRule::ByTopology => Casters::All,
     }
 }
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.
 fn who_casts(
-    frame: &mut Frame,
+    frame: &mut FrameBuilder,
     light: LightId,
     index: usize,
     options: &VolumeSettings,
     by_vertex_shader: bool,
 ) -> (Casters, Option<LeftOut>) {
-    if let WhoCasts::Always(casters) = options.casters {
+    if let CasterRule::Always(casters) = options.casters {
         return (casters, None);
     }
     let (position, placed) = (frame.light_position(light), &frame.placed[index]);

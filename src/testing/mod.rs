@@ -35,7 +35,7 @@ mod places;
 
 pub use crate::truth::PixelLabel;
 pub use pixel::Pixel;
-pub use places::MapTexel;
+pub use places::ShadowMapTexel;
 
 use crate::capture::Capture;
 use crate::plan::FramePlan;
@@ -43,7 +43,7 @@ use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session, SessionError};
 use crate::technique::Choice;
 use glam::{DVec2, DVec3};
-use places::View;
+use places::CameraProjection;
 
 /// A rendered scene, to be asked about its pixels.
 #[derive(Debug)]
@@ -129,7 +129,7 @@ impl Rendered {
     /// The pixel that shows a point of the world, or what hides it: column and row from the top left; `None` where the
     /// point is outside of the picture, or nearer than the near plane.
     pub fn pixel_of(&self, point: impl Into<DVec3>) -> Option<[u32; 2]> {
-        let (view, camera) = (View::of(&self.capture), &self.capture.camera);
+        let (view, camera) = (CameraProjection::of(&self.capture), &self.capture.camera);
         let (at, distance) = view.pixel_and_distance(point.into());
         let is_inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(view.size).all();
         let is_in_reach = distance >= camera.near && camera.far.is_none_or(|far| distance <= far);
@@ -189,7 +189,7 @@ impl Rendered {
     /// assert!((texel.gap.expect("metres") - 1.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn map_texel_of(&self, light: usize, point: impl Into<DVec3>) -> Option<MapTexel> {
+    pub fn map_texel_of(&self, light: usize, point: impl Into<DVec3>) -> Option<ShadowMapTexel> {
         places::texel_of(&self.capture, light, point.into())
     }
 

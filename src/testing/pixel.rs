@@ -1,9 +1,9 @@
 //! Assertions on a pixel.
 
 use super::PixelLabel;
-use super::places::{MapTexel, View, texel_of};
+use super::places::{CameraProjection, ShadowMapTexel, texel_of};
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
-use crate::history::{Event, PixelHistory};
+use crate::history::{PixelEvent, PixelHistory};
 use crate::numbers;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
@@ -174,7 +174,7 @@ impl Pixel<'_> {
     /// below.map_depth(0, texel.stored);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn map_texel(&self, light: usize) -> Option<MapTexel> {
+    pub fn map_texel(&self, light: usize) -> Option<ShadowMapTexel> {
         texel_of(self.capture, light, self.surface()?)
     }
 
@@ -188,7 +188,7 @@ impl Pixel<'_> {
         let name = numbers::light(light);
         match self.map_texel(light) {
             Some(found) if found.stored.to_bits() == expected.to_bits() => self,
-            Some(MapTexel { face, texel: [x, y], stored, .. }) => {
+            Some(ShadowMapTexel { face, texel: [x, y], stored, .. }) => {
                 self.fail(&format!("the map of {name} holds {stored:?} at {x},{y} of face {face}, not {expected:?}"))
             }
             None => self.fail(&format!("no shadow map of {name} shows the surface")),
@@ -196,7 +196,7 @@ impl Pixel<'_> {
     }
 
     /// Asserts on how much nearer to a light what its shadow map holds is than the visible surface, in metres along the
-    /// map's axis: 0 where that is the surface itself, more where something is before it. See [`MapTexel::gap`]. A map
+    /// map's axis: 0 where that is the surface itself, more where something is before it. See [`ShadowMapTexel::gap`]. A map
     /// is no larger than its casters: beside them it holds nothing, and shows no surface.
     ///
     /// ```
@@ -223,12 +223,12 @@ impl Pixel<'_> {
     pub fn map_gap(&self, light: usize, expected: f64, tolerance: f64) -> &Self {
         let name = numbers::light(light);
         match self.map_texel(light) {
-            Some(MapTexel { gap: Some(gap), .. }) if (gap - expected).abs() <= tolerance => self,
-            Some(MapTexel { gap: Some(gap), face, texel: [x, y], .. }) => self.fail(&format!(
+            Some(ShadowMapTexel { gap: Some(gap), .. }) if (gap - expected).abs() <= tolerance => self,
+            Some(ShadowMapTexel { gap: Some(gap), face, texel: [x, y], .. }) => self.fail(&format!(
                 "at {x},{y} of face {face} the map of {name} holds what is {gap} m nearer to the light than the surface, \
                  not {expected} m (give or take {tolerance})"
             )),
-            Some(MapTexel { face, texel: [x, y], .. }) => {
+            Some(ShadowMapTexel { face, texel: [x, y], .. }) => {
                 self.fail(&format!("the map of {name} holds nothing at {x},{y} of face {face}"))
             }
             None => self.fail(&format!("no shadow map of {name} shows the surface")),
@@ -329,7 +329,7 @@ impl Pixel<'_> {
     }
 
     #[track_caller]
-    fn compare_events(&self, expected: &[&str], is_asked: impl Fn(&Event) -> bool) -> &Self {
+    fn compare_events(&self, expected: &[&str], is_asked: impl Fn(&PixelEvent) -> bool) -> &Self {
         let events = self.history.events.iter().filter(|event| is_asked(event));
         let found: Vec<String> = events.map(|event| self.history.brief(event)).collect();
         if found != expected {
@@ -363,7 +363,7 @@ impl Pixel<'_> {
     /// Asserts that nothing hides a point that falls into the pixel.
     #[track_caller]
     pub(super) fn reveals(&self, point: DVec3) {
-        let view = View::of(self.capture);
+        let view = CameraProjection::of(self.capture);
         let (_, distance) = view.pixel_and_distance(point);
         let [x, y] = self.history.pixel;
         let Some(found) = self.surface_distance([x, y]) else { return };
@@ -391,7 +391,7 @@ impl Pixel<'_> {
     fn surface(&self) -> Option<DVec3> {
         let distance = self.surface_distance(self.history.pixel)?;
         let [x, y] = self.history.pixel.map(|at| f64::from(at) + 0.5);
-        Some(View::of(self.capture).point(DVec2::new(x, y), distance))
+        Some(CameraProjection::of(self.capture).point(DVec2::new(x, y), distance))
     }
 
     /// Index of the first pass of the picture that has this name, and is of this light where one is given.

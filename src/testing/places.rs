@@ -2,12 +2,12 @@
 
 use crate::capture::Capture;
 use crate::reading::depth::DepthMeasure;
-use crate::scene::{Camera, Sights};
+use crate::scene::{Camera, CameraRays};
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
 /// The texel of a light's shadow map that a pixel's surface falls in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MapTexel {
+pub struct ShadowMapTexel {
     /// Which face of the map.
     pub face: usize,
     /// Column and row from the top left.
@@ -22,7 +22,7 @@ pub struct MapTexel {
 }
 
 /// Where a light's shadow map shows a point of the world.
-pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<MapTexel> {
+pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<ShadowMapTexel> {
     let map = capture.lights.get(light)?.map.as_ref().filter(|map| !map.holds_colors())?;
     let in_light = map.light_from_world * point.extend(1.0);
     let on_face = |(face, clip_from_light): (usize, &glam::DMat4)| {
@@ -37,26 +37,26 @@ pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<MapTexe
         let measure = DepthMeasure::of_map(capture, light, face);
         let metres = |depth: f32| measure.and_then(|measure| measure.value(depth));
         let gap = metres(surface as f32).zip(metres(stored)).map(|(surface, stored)| surface - stored);
-        Some(MapTexel { face, texel, stored, surface, gap })
+        Some(ShadowMapTexel { face, texel, stored, surface, gap })
     };
     map.clip_from_light.iter().enumerate().find_map(on_face)
 }
 
 /// How the camera sees the world.
-pub struct View {
+pub struct CameraProjection {
     /// Of the picture, in pixels.
     pub size: DVec2,
     camera: Camera,
-    sights: Sights,
+    sights: CameraRays,
     view_from_world: DMat3,
 }
 
-impl View {
+impl CameraProjection {
     /// Of the camera of a frame.
-    pub fn of(capture: &Capture) -> View {
+    pub fn of(capture: &Capture) -> CameraProjection {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
-        View {
+        CameraProjection {
             size: DVec2::new(width, height),
             camera: *camera,
             sights: camera.sights(width / height),

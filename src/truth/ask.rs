@@ -3,11 +3,11 @@
 //! Which triangles a ray meets is decided as for the truth itself. Where along it, is not exact: that
 //! is for people, and for telling causes apart.
 
-use super::chart::Line;
-use super::packet::Bundle;
-use super::pencil::Settled;
-use super::shadow::Occluder;
-use super::{Place, Surface, Tracer};
+use super::chart::OriginRay;
+use super::packet::RayPacket;
+use super::pencil::SearchLimit;
+use super::shadow::OccludingTriangle;
+use super::{TracedSurface, Tracer, TriangleSource};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
@@ -15,19 +15,19 @@ use glam::{DVec3, DVec4};
 #[derive(Debug, Clone, Copy)]
 pub struct SeenSurface {
     /// Which triangle.
-    pub place: Place,
+    pub place: TriangleSource,
     /// Where it is met, world space.
     pub point: DVec3,
     /// The triangle's corners, world space.
     pub corners: [DVec3; 3],
-    surface: Surface,
+    surface: TracedSurface,
 }
 
 /// A casting triangle that a ray of light meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Met {
+pub struct OccluderHit {
     /// Which triangle.
-    pub place: Place,
+    pub place: TriangleSource,
     /// Its corners, world space.
     pub corners: [DVec3; 3],
     /// How far from the ray's point towards the light, metres; negative on the other side of the point.
@@ -59,7 +59,7 @@ impl Tracer {
     }
 
     /// The name of a triangle's object.
-    pub fn name(&self, place: Place) -> &str {
+    pub fn name(&self, place: TriangleSource) -> &str {
         self.world.object_name(place.object)
     }
 
@@ -76,17 +76,17 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<Met> {
+    pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<OccluderHit> {
         let of = &self.lights[light];
         let mut found = Vec::new();
-        let mut bundle = Bundle::new(Line::To);
+        let mut bundle = RayPacket::new(OriginRay::To);
         bundle.push(seen.point);
         of.pencil.for_each_meeting(&bundle, |met, corners, _| {
-            let mut occluder = Occluder::new(of.pencil.origin, met, corners);
+            let mut occluder = OccludingTriangle::new(of.pencil.origin, met, corners);
             if self.lies_between(of, &mut occluder, &seen.surface) {
                 found.push(met.index as usize);
             }
-            Settled::NOTHING
+            SearchLimit::NOTHING
         });
         self.met(light, seen.point, found)
     }
@@ -95,7 +95,7 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    pub fn between_points(&self, light: usize, point: DVec3) -> Vec<Met> {
+    pub fn between_points(&self, light: usize, point: DVec3) -> Vec<OccluderHit> {
         let farthest = self.light_distance(light, point);
         let mut all = self.along(light, point);
         all.retain(|met| met.towards_light > 0.0 && met.towards_light < farthest);
@@ -107,7 +107,7 @@ impl Tracer {
     ///
     /// # Panics
     /// If there is no such light.
-    pub fn along(&self, light: usize, point: DVec3) -> Vec<Met> {
+    pub fn along(&self, light: usize, point: DVec3) -> Vec<OccluderHit> {
         let of = &self.lights[light];
         let away = -self.towards(light, point);
         let distance = self.light_distance(light, point);
@@ -118,11 +118,11 @@ impl Tracer {
         }
         let mut found = Vec::new();
         for end in ends {
-            let mut bundle = Bundle::new(Line::To);
+            let mut bundle = RayPacket::new(OriginRay::To);
             bundle.push(end);
             of.pencil.for_each_meeting(&bundle, |met, _, _| {
                 found.push(met.index as usize);
-                Settled::NOTHING
+                SearchLimit::NOTHING
             });
         }
         self.met(light, point, found)
@@ -154,7 +154,7 @@ impl Tracer {
         self.lights[light].position
     }
 
-    fn met(&self, light: usize, point: DVec3, mut triangles: Vec<usize>) -> Vec<Met> {
+    fn met(&self, light: usize, point: DVec3, mut triangles: Vec<usize>) -> Vec<OccluderHit> {
         let towards = self.towards(light, point);
         triangles.sort_unstable();
         triangles.dedup();
@@ -162,14 +162,15 @@ impl Tracer {
             let corners = self.world.triangles[triangle];
             let [a, b, c] = corners;
             let normal = (b - a).cross(c - a);
-            Met {
+            OccluderHit {
                 place: self.world.place(triangle),
                 corners,
                 towards_light: normal.dot(a - point) / normal.dot(towards),
                 faces_light: side_of_triangle(corners, self.lights[light].position) == Sign::Positive,
             }
         };
-        let mut all: Vec<Met> = triangles.into_iter().map(met).filter(|met| met.towards_light.is_finite()).collect();
+        let mut all: Vec<OccluderHit> =
+            triangles.into_iter().map(met).filter(|met| met.towards_light.is_finite()).collect();
         all.sort_by(|a, b| a.towards_light.total_cmp(&b.towards_light));
         all
     }

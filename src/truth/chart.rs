@@ -9,7 +9,7 @@
 //!
 //! Boxes are `f32`, rounded outwards: a box may be too large, never too small.
 
-use super::tree::Area;
+use super::tree::ProjectedRect;
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3A, Vec3Swizzles};
 
 /// From farther than this many times its radius, a scene is seen through a window …
@@ -35,17 +35,17 @@ const OVERLAP: f64 = 1e-5;
 
 /// A box on the chart, with its depth.
 #[derive(Debug, Clone, Copy)]
-struct Span {
+struct ProjectedBox {
     low: DVec3,
     high: DVec3,
 }
 
 /// Where a triangle or a bundle of lines is seen: a box for each face that it is on.
-pub type Boxes = [Option<Area>; 6];
+pub type FaceRects = [Option<ProjectedRect>; 6];
 
 /// A chart of the lines through a centre.
 #[derive(Debug, Clone, Copy)]
-pub enum Chart {
+pub enum DirectionProjection {
     /// Around a point. `middle`: the distance that becomes depth ½.
     Cube { center: DVec3, middle: f64 },
     /// From a point far off: two unit vectors across the axis, and the unit axis towards the
@@ -59,7 +59,7 @@ pub enum Chart {
 
 /// A line through the centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Line {
+pub enum OriginRay {
     /// To a point, and no farther.
     To(DVec3),
     /// Through a point, of a centre at infinity: without end.
@@ -68,42 +68,42 @@ pub enum Line {
     Along(DVec3),
 }
 
-impl Chart {
+impl DirectionProjection {
     /// For the lines of sight of an eye that sees what lies within `reach` of `middle`.
-    pub fn of_eye(center: DVec4, middle: DVec3, reach: f64) -> Chart {
+    pub fn of_eye(center: DVec4, middle: DVec3, reach: f64) -> DirectionProjection {
         match center.w == 0.0 {
-            true => Chart::of_light(center, middle, reach),
-            false => Chart::of_point(center.truncate(), middle, reach),
+            true => DirectionProjection::of_light(center, middle, reach),
+            false => DirectionProjection::of_point(center.truncate(), middle, reach),
         }
     }
 
-    fn of_point(center: DVec3, middle: DVec3, reach: f64) -> Chart {
+    fn of_point(center: DVec3, middle: DVec3, reach: f64) -> DirectionProjection {
         let distance = (middle - center).length();
         if distance > FAR * reach {
             let axis = (middle - center) / distance;
             let u = axis.any_orthonormal_vector();
-            return Chart::Window { center, across: [u, axis.cross(u)], axis, distance, reach };
+            return DirectionProjection::Window { center, across: [u, axis.cross(u)], axis, distance, reach };
         }
-        Chart::Cube { center, middle: distance.max(reach) }
+        DirectionProjection::Cube { center, middle: distance.max(reach) }
     }
 
     /// For the lines of a light.
-    pub fn of_light(center: DVec4, middle: DVec3, reach: f64) -> Chart {
+    pub fn of_light(center: DVec4, middle: DVec3, reach: f64) -> DirectionProjection {
         let place = center.truncate();
         let distance = if center.w == 0.0 { f64::INFINITY } else { (place - middle).length() };
         if distance <= VERY_FAR * reach {
-            return Chart::of_point(place, middle, reach);
+            return DirectionProjection::of_point(place, middle, reach);
         }
         let towards = if center.w == 0.0 { place } else { place - middle };
         let towards = towards.normalize();
         let u = towards.any_orthonormal_vector();
-        Chart::Plane { center, middle, across: [u, towards.cross(u)], towards, reach, distance }
+        DirectionProjection::Plane { center, middle, across: [u, towards.cross(u)], towards, reach, distance }
     }
 
     /// Calls `add` with each area where a triangle is seen; `is_near`: its plane all but contains the centre.
-    pub fn for_each_area(&self, corners: [DVec3; 3], is_near: bool, mut add: impl FnMut(Area)) {
-        let Chart::Cube { center, .. } = self else {
-            add(self.on_sheet(corners.into_iter().map(Line::To)).of_triangle());
+    pub fn for_each_area(&self, corners: [DVec3; 3], is_near: bool, mut add: impl FnMut(ProjectedRect)) {
+        let DirectionProjection::Cube { center, .. } = self else {
+            add(self.on_sheet(corners.into_iter().map(OriginRay::To)).of_triangle());
             return;
         };
         let corners = corners.map(|corner| corner - *center);
@@ -118,21 +118,21 @@ impl Chart {
     }
 
     /// Where a bundle of lines is seen.
-    pub fn bundle(&self, lines: impl Iterator<Item = Line> + Clone) -> Boxes {
-        let is_endless = lines.clone().any(|line| !matches!(line, Line::To(_)));
-        let open = |span: Span| span.of_lines(is_endless);
-        let mut boxes = Boxes::default();
+    pub fn bundle(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> FaceRects {
+        let is_endless = lines.clone().any(|line| !matches!(line, OriginRay::To(_)));
+        let open = |span: ProjectedBox| span.of_lines(is_endless);
+        let mut boxes = FaceRects::default();
         match self {
-            Chart::Plane { .. } => boxes[0] = Some(open(self.on_sheet(lines))),
-            Chart::Window { center, axis, .. } => {
-                let may_meet = |line: &Line| {
+            DirectionProjection::Plane { .. } => boxes[0] = Some(open(self.on_sheet(lines))),
+            DirectionProjection::Window { center, axis, .. } => {
+                let may_meet = |line: &OriginRay| {
                     let along = line.from(*center);
                     along.dot(*axis) > WINDOW_COSINE * along.length()
                 };
                 let is_any = lines.clone().any(|line| may_meet(&line));
                 boxes[0] = is_any.then(|| open(self.on_sheet(lines.filter(may_meet))));
             }
-            Chart::Cube { center, .. } => {
+            DirectionProjection::Cube { center, .. } => {
                 let mut spans = [(DVec3::INFINITY, DVec3::NEG_INFINITY); 6];
                 for line in lines {
                     let point = line.from(*center);
@@ -151,8 +151,8 @@ impl Chart {
     /// The same for lines that all cross one face of the cube, from single precision: the box of the points where they cross
     /// the cube of half side 1 around the centre, and the largest coordinate of their ends. `None` where they don't,
     /// or not clearly.
-    pub fn on_one_face(&self, low: Vec3A, high: Vec3A, end: f32) -> Option<Area> {
-        let Chart::Cube { middle, .. } = self else { return None };
+    pub fn on_one_face(&self, low: Vec3A, high: Vec3A, end: f32) -> Option<ProjectedRect> {
+        let DirectionProjection::Cube { middle, .. } = self else { return None };
         let is_sure = |axis: &usize| low[*axis] > FACE_SURE || high[*axis] < -FACE_SURE;
         let axis = (0..3).find(is_sure)?;
         let face = axis * 2 + usize::from(high[axis] < 0.0);
@@ -165,38 +165,38 @@ impl Chart {
     /// How deep points are whose largest coordinates, relative to the centre, are up to `end`; or more.
     pub fn depth(&self, end: f64) -> f32 {
         match self {
-            Chart::Cube { middle, .. } => above(end / (end + middle) + COARSE_PADDING),
-            Chart::Window { .. } | Chart::Plane { .. } => f32::INFINITY,
+            DirectionProjection::Cube { middle, .. } => above(end / (end + middle) + COARSE_PADDING),
+            DirectionProjection::Window { .. } | DirectionProjection::Plane { .. } => f32::INFINITY,
         }
     }
 
     /// What the lines' places are best computed relative to: the centre, or near the scene.
     pub fn origin(&self) -> DVec3 {
         match self {
-            Chart::Cube { center, .. } | Chart::Window { center, .. } => *center,
-            Chart::Plane { middle, .. } => *middle,
+            DirectionProjection::Cube { center, .. } | DirectionProjection::Window { center, .. } => *center,
+            DirectionProjection::Plane { middle, .. } => *middle,
         }
     }
 
     /// From the lines' centre to a corner; where the centre is at infinity, a lever that is the same for all.
     pub fn lever(&self, corner: DVec3) -> DVec3 {
         match self {
-            Chart::Cube { center, .. } | Chart::Window { center, .. } => corner - center,
-            Chart::Plane { center, .. } if center.w == 0.0 => -center.truncate(),
-            Chart::Plane { center, .. } => corner - center.truncate(),
+            DirectionProjection::Cube { center, .. } | DirectionProjection::Window { center, .. } => corner - center,
+            DirectionProjection::Plane { center, .. } if center.w == 0.0 => -center.truncate(),
+            DirectionProjection::Plane { center, .. } => corner - center.truncate(),
         }
     }
 
-    /// Is [`Chart::origin`] the lines' centre?
+    /// Is [`DirectionProjection::origin`] the lines' centre?
     pub fn is_centered(&self) -> bool {
-        !matches!(self, Chart::Plane { .. })
+        !matches!(self, DirectionProjection::Plane { .. })
     }
 
     /// The box of points or lines on a chart that is one sheet.
-    fn on_sheet(&self, lines: impl Iterator<Item = Line> + Clone) -> Span {
+    fn on_sheet(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> ProjectedBox {
         match self {
-            Chart::Cube { .. } => whole_face(0),
-            Chart::Plane { middle, across: [u, v], towards, reach, distance, .. } => {
+            DirectionProjection::Cube { .. } => whole_face(0),
+            DirectionProjection::Plane { middle, across: [u, v], towards, reach, distance, .. } => {
                 let places = lines.map(|line| line.from(*middle));
                 // Lines lean towards their centre: the more, the farther off they are.
                 let farthest = places.clone().map(|place| place.length()).fold(*reach, f64::max);
@@ -204,8 +204,8 @@ impl Chart {
                 let place = |place: DVec3| DVec3::new(place.dot(*u), place.dot(*v), -place.dot(*towards)) / *reach;
                 bounds(places.map(place), 0, PADDING * farthest / reach + leaning)
             }
-            Chart::Window { center, across: [u, v], axis, distance, reach } => {
-                let place = |line: Line| {
+            DirectionProjection::Window { center, across: [u, v], axis, distance, reach } => {
+                let place = |line: OriginRay| {
                     let point = line.from(*center);
                     let along = point.dot(*axis);
                     let [x, y] = [u, v].map(|side| point.dot(*side) / along * (distance / reach));
@@ -223,7 +223,7 @@ impl Chart {
     }
 
     /// Where a triangle is seen that is on one face alone.
-    fn on_face_alone(&self, face: usize, corners: [DVec3; 3]) -> Span {
+    fn on_face_alone(&self, face: usize, corners: [DVec3; 3]) -> ProjectedBox {
         let corners = corners.map(|corner| along_face(face, corner));
         let [a, b, c] = corners.map(|corner| corner.truncate() * corner.z.recip());
         let nearest = corners[0].z.min(corners[1].z).min(corners[2].z);
@@ -233,13 +233,13 @@ impl Chart {
 
     /// From a face's own coordinates, the third along its axis.
     fn projected(&self, point: DVec3) -> DVec3 {
-        let Chart::Cube { middle, .. } = self else { return point };
+        let DirectionProjection::Cube { middle, .. } = self else { return point };
         let place: DVec2 = point.truncate() / point.z;
         place.extend(point.z / (point.z + middle))
     }
 
     /// The part of a triangle within a face's pyramid (Sutherland and Hodgman 1974).
-    fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<Span> {
+    fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<ProjectedBox> {
         let mut polygon: Vec<DVec3> = corners.iter().map(|corner| along_face(face, *corner)).collect();
         for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
             let inwards = side + DVec3::Z * (1.0 + OVERLAP);
@@ -262,38 +262,42 @@ impl Chart {
 }
 
 /// The box around charted points, at the place of their face.
-fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Span {
+fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> ProjectedBox {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = charted.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
     padded(low, high, face, padding)
 }
 
-fn padded(low: DVec3, high: DVec3, face: usize, padding: f64) -> Span {
+fn padded(low: DVec3, high: DVec3, face: usize, padding: f64) -> ProjectedBox {
     let shift = DVec3::new(face as f64 * FACE_SPACING, 0.0, 0.0);
-    Span { low: low + shift - padding, high: high + shift + padding }
+    ProjectedBox { low: low + shift - padding, high: high + shift + padding }
 }
 
-impl Span {
-    fn area(&self, depth: f32) -> Area {
+impl ProjectedBox {
+    fn area(&self, depth: f32) -> ProjectedRect {
         let (low, high) = (self.low, self.high);
-        Area { low: Vec2::new(below(low.x), below(low.y)), high: Vec2::new(above(high.x), above(high.y)), depth }
+        ProjectedRect {
+            low: Vec2::new(below(low.x), below(low.y)),
+            high: Vec2::new(above(high.x), above(high.y)),
+            depth,
+        }
     }
 
-    fn of_triangle(self) -> Area {
+    fn of_triangle(self) -> ProjectedRect {
         self.area(below(self.low.z))
     }
 
-    fn of_lines(self, are_endless: bool) -> Area {
+    fn of_lines(self, are_endless: bool) -> ProjectedRect {
         self.area(if are_endless { f32::INFINITY } else { above(self.high.z) })
     }
 }
 
-impl Line {
+impl OriginRay {
     /// A point of the line, or its direction, as seen from another point.
     pub fn from(self, center: DVec3) -> DVec3 {
         match self {
-            Line::To(point) | Line::Through(point) => point - center,
-            Line::Along(direction) => direction,
+            OriginRay::To(point) | OriginRay::Through(point) => point - center,
+            OriginRay::Along(direction) => direction,
         }
     }
 }
@@ -327,9 +331,9 @@ fn along_face(face: usize, point: DVec3) -> DVec3 {
     if face % 2 == 1 { turned.with_z(-turned.z) } else { turned }
 }
 
-fn whole_face(face: usize) -> Span {
+fn whole_face(face: usize) -> ProjectedBox {
     let center = DVec3::new(face as f64 * FACE_SPACING, 0.0, 0.0);
-    Span { low: center - DVec3::new(1.5, 1.5, 0.0), high: center + DVec3::new(1.5, 1.5, 1.0) }
+    ProjectedBox { low: center - DVec3::new(1.5, 1.5, 0.0), high: center + DVec3::new(1.5, 1.5, 1.0) }
 }
 
 /// An `f32` not above a number, and next to it.

@@ -1,8 +1,8 @@
 //! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
 
-use super::chart::Chart;
-use super::packet::Bundle;
-use super::tree::Area;
+use super::chart::DirectionProjection;
+use super::packet::RayPacket;
+use super::tree::ProjectedRect;
 use glam::{DVec3, Vec3A, Vec4};
 
 /// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
@@ -15,7 +15,7 @@ const SMALLEST: f32 = 1e-30;
 
 /// The edges of four triangles.
 #[derive(Debug, Clone, Copy)]
-pub struct Four {
+pub struct TriangleEdges4 {
     /// By edge and axis.
     normals: [[Vec4; 3]; 3],
     offsets: [Vec4; 3],
@@ -26,44 +26,48 @@ pub struct Four {
 }
 
 /// A bundle's places relative to a pencil's origin.
-pub struct Core {
+pub struct PacketOrigin {
     /// By axis; where the origin is the centre they are scaled, which moves no line.
-    places: [[Vec4; Bundle::MOST / 4]; 3],
+    places: [[Vec4; RayPacket::MOST / 4]; 3],
     /// The largest sum of a place's absolute coordinates.
     span: f32,
     /// The largest coordinate of a place before it was scaled.
     pub largest: f64,
     /// Where the lines are seen, if that is clearly on one face of the chart.
-    pub area: Option<Area>,
+    pub area: Option<ProjectedRect>,
 }
 
-impl Core {
-    pub fn new(chart: &Chart, bundle: &Bundle) -> Core {
+impl PacketOrigin {
+    pub fn new(chart: &DirectionProjection, bundle: &RayPacket) -> PacketOrigin {
         let points = bundle.points();
         let base = bundle.base(chart.origin());
         // What is left over is as the first line.
-        let mut places = [[0.0_f32; Bundle::MOST]; 3];
-        for index in 0..Bundle::MOST {
+        let mut places = [[0.0_f32; RayPacket::MOST]; 3];
+        for index in 0..RayPacket::MOST {
             let place = points[if index < points.len() { index } else { 0 }] - base;
             (places[0][index], places[1][index], places[2][index]) = (place.x as f32, place.y as f32, place.z as f32);
         }
         let places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
         if chart.is_centered() {
-            return Core::centered(chart, places, bundle.is_endless());
+            return PacketOrigin::centered(chart, places, bundle.is_endless());
         }
         let mut span = Vec4::ZERO;
-        for four in 0..Bundle::MOST / 4 {
+        for four in 0..RayPacket::MOST / 4 {
             let [x, y, z] = places.map(|axis: [Vec4; 4]| axis[four].abs());
             span = span.max(x + y + z);
         }
-        Core { places, span: span.max_element(), largest: f64::INFINITY, area: None }
+        PacketOrigin { places, span: span.max_element(), largest: f64::INFINITY, area: None }
     }
 
     /// Scales places so that they lie on a cube around the centre.
-    fn centered(chart: &Chart, mut places: [[Vec4; Bundle::MOST / 4]; 3], is_endless: bool) -> Core {
+    fn centered(
+        chart: &DirectionProjection,
+        mut places: [[Vec4; RayPacket::MOST / 4]; 3],
+        is_endless: bool,
+    ) -> PacketOrigin {
         let (mut low, mut high) = ([Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]);
         let (mut span, mut end) = (Vec4::ONE, Vec4::ZERO);
-        for four in 0..Bundle::MOST / 4 {
+        for four in 0..RayPacket::MOST / 4 {
             let [x, y, z] = places.map(|axis| axis[four].abs());
             let largest = x.max(y).max(z);
             end = end.max(largest);
@@ -81,18 +85,18 @@ impl Core {
         let area = chart.on_one_face(low, high, if is_endless { f32::INFINITY } else { largest });
         // It is rounded by far less than that.
         let largest = f64::from(largest) * (1.0 + f64::from(ROUNDING));
-        Core { places, span: span.max_element(), largest, area }
+        PacketOrigin { places, span: span.max_element(), largest, area }
     }
 
     /// Which lines do not clearly pass two edges of a triangle on different sides, and which clearly pass all on one
     /// side: a bit each.
-    pub fn near(&self, four: &Four, lane: usize) -> (u32, u32) {
+    pub fn near(&self, four: &TriangleEdges4, lane: usize) -> (u32, u32) {
         let rounding = Vec4::splat(four.rounding[lane] * self.span + four.least_rounding[lane]);
         let normals = four.normals.map(|axes| axes.map(|axis| Vec4::splat(axis[lane])));
         let offsets = four.offsets.map(|offset| Vec4::splat(offset[lane]));
         let (mut misses, mut sure) = (0, 0);
         let [xs, ys, zs] = &self.places;
-        for four in 0..Bundle::MOST / 4 {
+        for four in 0..RayPacket::MOST / 4 {
             let value = |edge: usize| {
                 let [x, y, z] = normals[edge];
                 x * xs[four] + y * ys[four] + z * zs[four] + offsets[edge]
@@ -106,9 +110,9 @@ impl Core {
     }
 }
 
-impl Four {
+impl TriangleEdges4 {
     /// Of up to four triangles, in single precision from the differences of their corners on.
-    pub fn new(chart: &Chart, triangles: &[[DVec3; 3]]) -> Four {
+    pub fn new(chart: &DirectionProjection, triangles: &[[DVec3; 3]]) -> TriangleEdges4 {
         let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
         for (lane, &[a, b, c]) in triangles.iter().enumerate() {
             for (edge, (p, q)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
@@ -127,7 +131,7 @@ impl Four {
         let is_small = lever.min(side).cmplt(Vec4::splat(SMALLEST));
         let rounding = Vec4::select(is_small, Vec4::INFINITY, (lever * side * ROUNDING).max(Vec4::splat(LEAST)));
         let least_rounding = if chart.is_centered() { Vec4::ZERO } else { rounding * largest(places) };
-        Four { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding }
+        TriangleEdges4 { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding }
     }
 }
 

@@ -27,21 +27,21 @@ mod tree;
 mod view;
 mod world;
 
-pub use ask::{Met, SeenSurface};
-pub use world::Place;
+pub use ask::{OccluderHit, SeenSurface};
+pub use world::TriangleSource;
 
 use crate::math::Sign;
 use crate::progress::Progress;
-use crate::scene::{Scene, Sight};
-use chart::Line;
+use crate::scene::{Ray, Scene};
+use chart::OriginRay;
 use glam::DVec3;
-use packet::Bundle;
-use pencil::{Pencil, Plane, Settled, Whose, point_rounding};
+use packet::RayPacket;
+use pencil::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use rayon::prelude::*;
-use shadow::LightPencil;
+use shadow::LightRays;
 use tree::set_bits;
-use view::View;
-use world::World;
+use view::PictureRays;
+use world::TracedTriangles;
 
 named_enum! {
     /// What becomes of a light at a pixel; masks store its number as a byte.
@@ -111,18 +111,18 @@ impl Truth {
 /// A scene made ready for rays.
 #[derive(Debug)]
 pub struct Tracer {
-    world: World,
-    view: View,
+    world: TracedTriangles,
+    view: PictureRays,
     size: [u32; 2],
-    eye: Pencil,
-    lights: Vec<LightPencil>,
+    eye: RayOriginHierarchy,
+    lights: Vec<LightRays>,
     /// What does not depend on a surface of how far its point may be off, or more.
     most_rounding: f64,
 }
 
 /// What a ray of sight meets first.
 #[derive(Debug, Clone, Copy)]
-struct Surface {
+struct TracedSurface {
     triangle: usize,
     /// On which side of it the eye is.
     eye_side: Sign,
@@ -136,44 +136,44 @@ struct Surface {
 
 /// What a ray of sight has met so far.
 #[derive(Debug, Clone, Copy)]
-struct Nearest {
+struct NearestHit {
     /// Along the view's axis.
     distance: f64,
     triangle: u32,
     eye_side: Sign,
 }
 
-impl Nearest {
-    const NOTHING: Nearest = Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero };
+impl NearestHit {
+    const NOTHING: NearestHit = NearestHit { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero };
 }
 
 impl Tracer {
     /// How many rays are followed together.
-    pub const MOST_POINTS: usize = Bundle::MOST;
+    pub const MOST_POINTS: usize = RayPacket::MOST;
 
     /// Places a scene's triangles and sorts them as the eye and each light see them.
     pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Tracer, TruthError> {
         let problem = |problem: &str| TruthError { problem: problem.to_owned() };
         scene.camera.check().map_err(problem)?;
         scene.lights.iter().try_for_each(|light| light.check()).map_err(problem)?;
-        let world = World::new(scene)?;
+        let world = TracedTriangles::new(scene)?;
         let is_seen = |index: usize| world.object(index).visible;
         let casts = |index: usize| world.object(index).casts;
         let triangles = &world.triangles;
-        let pencil_of = |(position, range)| LightPencil {
+        let pencil_of = |(position, range)| LightRays {
             position,
             range,
-            pencil: Pencil::new(Whose::Light, position, triangles, casts),
+            pencil: RayOriginHierarchy::new(RayKind::Light, position, triangles, casts),
         };
         let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
         let lights: Vec<_> = scene.lights.iter().map(|light| (light.homogeneous(), range(light))).collect();
         let (eye, lights) = rayon::join(
-            || Pencil::new(Whose::Eye, scene.camera.eye_position(), triangles, is_seen),
+            || RayOriginHierarchy::new(RayKind::Eye, scene.camera.eye_position(), triangles, is_seen),
             || lights.into_par_iter().map(pencil_of).collect(),
         );
         let most_rounding = 3.0 * POINT_ROUNDING * scene.camera.eye.abs().max_element()
             + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
-        Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights, most_rounding })
+        Ok(Tracer { view: PictureRays::new(&scene.camera, size), world, size, eye, lights, most_rounding })
     }
 
     /// The same, with rays of sight that end at a far plane: what lies beyond is not looked for. A far plane is a part of
@@ -238,11 +238,11 @@ impl Tracer {
     ///
     /// # Panics
     /// If there are more points.
-    pub fn visible_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<Place>; N] {
+    pub fn visible_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<TriangleSource>; N] {
         self.surfaces_at(points).map(|surface| surface.map(|surface| self.world.place(surface.triangle)))
     }
 
-    fn surfaces_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<Surface>; N] {
+    fn surfaces_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<TracedSurface>; N] {
         let mut surfaces = [None; N];
         self.meet_surfaces(&points.map(|point| self.view.ray(point)), &mut surfaces);
         surfaces
@@ -255,7 +255,7 @@ impl Tracer {
         let mut labels = vec![vec![BACKGROUND; (bottom - top) * width]; lights.len()];
         let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
         let down: Vec<f64> = (top..bottom).map(|y| self.view.down(y as f64 + 0.5)).collect();
-        let mut rays = [Sight { from: DVec3::ZERO, along: DVec3::ZERO }; TILE * TILE];
+        let mut rays = [Ray { from: DVec3::ZERO, along: DVec3::ZERO }; TILE * TILE];
         let mut places = [0; TILE * TILE];
         for left in (0..width).step_by(TILE) {
             for first in (0..bottom - top).step_by(TILE) {
@@ -281,15 +281,15 @@ impl Tracer {
     }
 
     /// What rays of sight meet first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
-    fn meet_surfaces(&self, rays: &[Sight], surfaces: &mut [Option<Surface>]) {
-        let mut bundle = Bundle::new(if self.view.is_parallel { Line::Through } else { Line::Along });
+    fn meet_surfaces(&self, rays: &[Ray], surfaces: &mut [Option<TracedSurface>]) {
+        let mut bundle = RayPacket::new(if self.view.is_parallel { OriginRay::Through } else { OriginRay::Along });
         for ray in rays {
             bundle.push(if self.view.is_parallel { self.view.eye + ray.from } else { ray.along });
         }
-        let mut nearest = [Nearest::NOTHING; Bundle::MOST];
+        let mut nearest = [NearestHit::NOTHING; RayPacket::MOST];
         let mut open = (1_u32 << rays.len()) - 1;
         self.eye.for_each_meeting(&bundle, |met, corners, lines| {
-            let plane = Plane::new(self.eye.origin, corners);
+            let plane = ScaledPlane::new(self.eye.origin, corners);
             let depths = self.depths(corners);
             let mut is_changed = false;
             for line in set_bits(lines) {
@@ -297,16 +297,16 @@ impl Tracer {
                 let best = nearest[line];
                 let is_nearer = distance < best.distance || (distance == best.distance && met.index < best.triangle);
                 if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
-                    nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side };
+                    nearest[line] = NearestHit { distance, triangle: met.index, eye_side: met.center_side };
                     open &= !(1 << line);
                     is_changed = true;
                 }
             }
             if open != 0 || !is_changed || self.view.is_parallel {
-                return Settled::NOTHING;
+                return SearchLimit::NOTHING;
             }
             let distances = nearest[..rays.len()].iter().map(|nearest| nearest.distance);
-            Settled {
+            SearchLimit {
                 lines: 0,
                 distance: distances.fold(0.0, |most, distance| if distance > most { distance } else { most }),
             }
@@ -316,7 +316,7 @@ impl Tracer {
                 continue;
             }
             let offset = ray.at(nearest.distance);
-            *surface = Some(Surface {
+            *surface = Some(TracedSurface {
                 triangle: nearest.triangle as usize,
                 eye_side: nearest.eye_side,
                 point: self.view.eye + offset,
@@ -335,7 +335,7 @@ impl Tracer {
 
     /// Along the view's axis, within the triangle's own distances: a sliver's plane may be so
     /// steep that rounding puts the meeting anywhere.
-    fn distance(&self, plane: &Plane, [least, most]: [f64; 2], ray: &Sight) -> f64 {
+    fn distance(&self, plane: &ScaledPlane, [least, most]: [f64; 2], ray: &Ray) -> f64 {
         let from = match self.view.is_parallel {
             // Relative to what the pencil's places are relative to.
             true => plane.normal.dot(self.view.eye - self.eye.origin + ray.from),

@@ -1,23 +1,23 @@
 //! Rays of one origin that are near each other, followed together.
 
-use super::chart::Line;
+use super::chart::OriginRay;
 use glam::DVec3;
 
-/// Up to [`Bundle::MOST`] lines of a kind that are near each other.
+/// Up to [`RayPacket::MOST`] lines of a kind that are near each other.
 #[derive(Debug)]
-pub struct Bundle {
-    kind: fn(DVec3) -> Line,
-    points: [DVec3; Bundle::MOST],
+pub struct RayPacket {
+    kind: fn(DVec3) -> OriginRay,
+    points: [DVec3; RayPacket::MOST],
     len: usize,
 }
 
-impl Bundle {
+impl RayPacket {
     /// Larger ones meet more triangles that most of their lines miss.
     pub const MOST: usize = 16;
 
     /// Of lines that `kind` makes of points.
-    pub fn new(kind: fn(DVec3) -> Line) -> Bundle {
-        Bundle { kind, points: [DVec3::ZERO; Bundle::MOST], len: 0 }
+    pub fn new(kind: fn(DVec3) -> OriginRay) -> RayPacket {
+        RayPacket { kind, points: [DVec3::ZERO; RayPacket::MOST], len: 0 }
     }
 
     pub fn push(&mut self, point: DVec3) {
@@ -33,22 +33,22 @@ impl Bundle {
         &self.points[..self.len]
     }
 
-    /// The line of a number below [`Bundle::len`].
-    pub fn line(&self, index: usize) -> Line {
+    /// The line of a number below [`RayPacket::len`].
+    pub fn line(&self, index: usize) -> OriginRay {
         (self.kind)(self.points[index])
     }
 
-    pub fn lines(&self) -> impl Iterator<Item = Line> + Clone {
+    pub fn lines(&self) -> impl Iterator<Item = OriginRay> + Clone {
         self.points().iter().map(|point| (self.kind)(*point))
     }
 
     /// What its points are relative to where a pencil's places are relative to `origin`.
     pub fn base(&self, origin: DVec3) -> DVec3 {
-        if matches!((self.kind)(DVec3::ZERO), Line::Along(_)) { DVec3::ZERO } else { origin }
+        if matches!((self.kind)(DVec3::ZERO), OriginRay::Along(_)) { DVec3::ZERO } else { origin }
     }
 
     /// Do its lines go on without end?
     pub fn is_endless(&self) -> bool {
-        !matches!((self.kind)(DVec3::ZERO), Line::To(_))
+        !matches!((self.kind)(DVec3::ZERO), OriginRay::To(_))
     }
 }

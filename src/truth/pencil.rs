@@ -8,10 +8,10 @@
 //! along z (simulation of simplicity, Edelsbrunner and Mücke 1990). So the two triangles at an edge
 //! always see a line on opposite sides of it: it slips between none, and meets no two.
 
-use super::chart::{Chart, Line, NEAREST};
-use super::coarse::{Core, Four};
-use super::packet::Bundle;
-use super::tree::{Area, Tree, set_bits};
+use super::chart::{DirectionProjection, NEAREST, OriginRay};
+use super::coarse::{PacketOrigin, TriangleEdges4};
+use super::packet::RayPacket;
+use super::tree::{ProjectedRect, RectTree, set_bits};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A triangle that lines meet.
 #[derive(Debug, Clone, Copy)]
-pub struct Met {
+pub struct Hit {
     /// Which of all.
     pub index: u32,
     /// On which side of it the centre is; exact.
@@ -31,7 +31,7 @@ pub struct Met {
 
 /// A triangle's plane, scaled by twice its area.
 #[derive(Debug, Clone, Copy)]
-pub struct Plane {
+pub struct ScaledPlane {
     pub normal: DVec3,
     /// What `normal · p` is for its points, relative to the pencil's origin.
     pub offset: f64,
@@ -39,20 +39,20 @@ pub struct Plane {
 
 /// What need not be looked for any more.
 #[derive(Debug, Clone, Copy)]
-pub struct Settled {
+pub struct SearchLimit {
     /// For these lines nothing: a bit each.
     pub lines: u32,
     /// For all lines of sight nothing beyond this many times their directions.
     pub distance: f64,
 }
 
-impl Settled {
-    pub const NOTHING: Settled = Settled { lines: 0, distance: f64::INFINITY };
+impl SearchLimit {
+    pub const NOTHING: SearchLimit = SearchLimit { lines: 0, distance: f64::INFINITY };
 }
 
 /// Planes through the centre and a triangle's edges.
 #[derive(Debug, Clone, Copy)]
-struct Edges {
+struct EdgePlanes {
     /// Of the edges opposite to each corner: normal …
     normals: [DVec3; 3],
     /// … and offset, which is zero where the centre is the origin.
@@ -68,85 +68,85 @@ const PART: usize = 4096;
 
 /// Whose lines they are: an eye's go on without end, a light's end at a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whose {
+pub enum RayKind {
     Eye,
     Light,
 }
 
 /// All lines through a centre.
-pub struct Pencil {
+pub struct RayOriginHierarchy {
     center: DVec4,
     /// What points and corners are relative to: the centre, or near the scene.
     pub origin: DVec3,
-    chart: Chart,
-    tree: Tree,
+    chart: DirectionProjection,
+    tree: RectTree,
     /// In the order of the tree.
-    fours: Vec<Four>,
-    met: Vec<Met>,
+    fours: Vec<TriangleEdges4>,
+    met: Vec<Hit>,
     corners: Vec<[DVec3; 3]>,
 }
 
-impl std::fmt::Debug for Pencil {
+impl std::fmt::Debug for RayOriginHierarchy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Pencil").field("center", &self.center).field("fours", &self.fours.len()).finish_non_exhaustive()
     }
 }
 
-impl Pencil {
+impl RayOriginHierarchy {
     /// The lines through a homogeneous centre and what they meet of `triangles`: those that
     /// `takes_part` says so of. A triangle edge-on to the centre is met by none.
     pub fn new(
-        whose: Whose,
+        whose: RayKind,
         center: DVec4,
         triangles: &[[DVec3; 3]],
         takes_part: impl Fn(usize) -> bool + Sync,
-    ) -> Pencil {
+    ) -> RayOriginHierarchy {
         let (low, high) = bounds(triangles, &takes_part);
         let middle = low + (high - low) / 2.0;
         let reach = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
         let chart = match whose {
-            Whose::Eye => Chart::of_eye(center, middle, reach),
-            Whose::Light => Chart::of_light(center, middle, reach),
+            RayKind::Eye => DirectionProjection::of_eye(center, middle, reach),
+            RayKind::Light => DirectionProjection::of_light(center, middle, reach),
         };
         // A list for each part, not for each triangle.
-        let parts: Vec<Vec<(Area, Met)>> = (0..triangles.len().div_ceil(PART))
+        let parts: Vec<Vec<(ProjectedRect, Hit)>> = (0..triangles.len().div_ceil(PART))
             .into_par_iter()
             .map(|part| {
                 let mut charted = Vec::with_capacity(PART);
                 for index in (part * PART..triangles.len()).take(PART).filter(|index| takes_part(*index)) {
                     let corners = triangles[index];
                     let Some((center_side, is_near)) = side_of(center, &corners) else { continue };
-                    let met = Met { index: index as u32, center_side };
+                    let met = Hit { index: index as u32, center_side };
                     chart.for_each_area(corners, is_near, |area| charted.push((area, met)));
                 }
                 charted
             })
             .collect();
-        let areas: Vec<Area> = parts.iter().flatten().map(|(area, _)| *area).collect();
-        let met: Vec<Met> = parts.iter().flatten().map(|(_, met)| *met).collect();
-        let (tree, order) = Tree::new(&areas);
-        let nothing = (Met { index: 0, center_side: Sign::Zero }, [DVec3::ZERO; 3]);
+        let areas: Vec<ProjectedRect> = parts.iter().flatten().map(|(area, _)| *area).collect();
+        let met: Vec<Hit> = parts.iter().flatten().map(|(_, met)| *met).collect();
+        let (tree, order) = RectTree::new(&areas);
+        let nothing = (Hit { index: 0, center_side: Sign::Zero }, [DVec3::ZERO; 3]);
         let in_order = |place: &Option<u32>| {
             place.map_or(nothing, |place| (met[place as usize], triangles[met[place as usize].index as usize]))
         };
-        let (met, corners): (Vec<Met>, Vec<[DVec3; 3]>) = order.par_iter().with_min_len(PART).map(in_order).unzip();
-        let four = |corners: &[[DVec3; 3]]| Four::new(&chart, corners);
-        let fours = corners.par_chunks(Tree::WIDTH).with_min_len(256).map(four).collect();
-        Pencil { center, origin: chart.origin(), chart, tree, fours, met, corners }
+        let (met, corners): (Vec<Hit>, Vec<[DVec3; 3]>) = order.par_iter().with_min_len(PART).map(in_order).unzip();
+        let four = |corners: &[[DVec3; 3]]| TriangleEdges4::new(&chart, corners);
+        let fours = corners.par_chunks(RectTree::WIDTH).with_min_len(256).map(four).collect();
+        RayOriginHierarchy { center, origin: chart.origin(), chart, tree, fours, met, corners }
     }
 
     /// Calls `meets` with each triangle that lines of the bundle meet and with these lines, a bit each, in no
     /// particular order, some perhaps more than once; some lie on a line's other side of the centre or beyond
     /// its end. `meets` says what need not be looked for any more.
-    pub fn for_each_meeting(&self, bundle: &Bundle, mut meets: impl FnMut(&Met, &[DVec3; 3], u32) -> Settled) {
-        let core = Core::new(&self.chart, bundle);
+    pub fn for_each_meeting(&self, bundle: &RayPacket, mut meets: impl FnMut(&Hit, &[DVec3; 3], u32) -> SearchLimit) {
+        let core = PacketOrigin::new(&self.chart, bundle);
         let mut left = (1_u32 << bundle.len()) - 1;
-        let mut follow = |area: &Area| {
+        let mut follow = |area: &ProjectedRect| {
             self.tree.for_each_meeting(*area, |index, found, depth| {
                 let four = &self.fours[index];
                 for lane in set_bits(found) {
                     let (near, sure) = core.near(four, lane);
-                    let place = index * Tree::WIDTH + lane;
+                    let place = index * RectTree::WIDTH + lane;
                     let open = near & !sure & left;
                     let mut lines = sure & left;
                     if open != 0 {
@@ -171,8 +171,8 @@ impl Pencil {
 
     /// Which of some lines, a bit each, meet a triangle: in double precision, or exactly where that leaves it open.
     #[cold]
-    fn met_of(&self, corners: &[DVec3; 3], bundle: &Bundle, lines: u32) -> u32 {
-        let edges = Edges::new(&self.chart, corners);
+    fn met_of(&self, corners: &[DVec3; 3], bundle: &RayPacket, lines: u32) -> u32 {
+        let edges = EdgePlanes::new(&self.chart, corners);
         let is_met = |line: &usize| {
             let line = bundle.line(*line);
             edges.is_met(line.from(self.origin)).unwrap_or_else(|| self.is_met(corners, line))
@@ -181,7 +181,7 @@ impl Pencil {
     }
 
     /// Does a line pass all three edges on the same side? Exact.
-    fn is_met(&self, corners: &[DVec3; 3], line: Line) -> bool {
+    fn is_met(&self, corners: &[DVec3; 3], line: OriginRay) -> bool {
         let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
         first != Sign::Zero && side(1, 2) == first && side(2, 0) == first
@@ -189,15 +189,15 @@ impl Pencil {
 
     /// The exact side on which a line passes the edge from `a` to `b`; zero only where the edge
     /// itself points at the centre.
-    fn exact_side(&self, a: DVec3, b: DVec3, line: Line) -> Sign {
+    fn exact_side(&self, a: DVec3, b: DVec3, line: OriginRay) -> Sign {
         let center = self.center.truncate();
         let along = |axis: DVec3| side_of_triangle([center, a, b], axis.extend(0.0));
         let through = match line {
-            Line::To(point) | Line::Through(point) if self.center.w == 0.0 => {
+            OriginRay::To(point) | OriginRay::Through(point) if self.center.w == 0.0 => {
                 return side_of_triangle([point, a, b], self.center).or_else(|| first_sign_of_cross(a, b, center));
             }
-            Line::To(point) | Line::Through(point) => side_of_triangle([center, a, b], point.extend(1.0)),
-            Line::Along(direction) => along(direction),
+            OriginRay::To(point) | OriginRay::Through(point) => side_of_triangle([center, a, b], point.extend(1.0)),
+            OriginRay::Along(direction) => along(direction),
         };
         through.or_else(|| along(DVec3::X)).or_else(|| along(DVec3::Y)).or_else(|| along(DVec3::Z))
     }
@@ -210,8 +210,8 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
     component(1, 2).or_else(|| component(2, 0)).or_else(|| component(0, 1))
 }
 
-impl Edges {
-    fn new(chart: &Chart, &[a, b, c]: &[DVec3; 3]) -> Edges {
+impl EdgePlanes {
+    fn new(chart: &DirectionProjection, &[a, b, c]: &[DVec3; 3]) -> EdgePlanes {
         let (lever, origin) = (|corner| chart.lever(corner), chart.origin());
         // Planes through the centre and an edge: differences of near corners keep what products of
         // far ones would lose.
@@ -219,11 +219,11 @@ impl Edges {
         let normals = edges.map(|(p, q)| lever(p).cross(q - p));
         let products = largest_span([b - a, c - b, a - c]) * largest_span([lever(a), lever(b), lever(c)]);
         if chart.is_centered() {
-            return Edges { normals, offsets: [0.0; 3], products, size: 0.0 };
+            return EdgePlanes { normals, offsets: [0.0; 3], products, size: 0.0 };
         }
         let offset = |i: usize| -normals[i].dot(edges[i].0 - origin);
         let size = largest_span([a - origin, b - origin, c - origin]);
-        Edges { normals, offsets: [offset(0), offset(1), offset(2)], products, size }
+        EdgePlanes { normals, offsets: [offset(0), offset(1), offset(2)], products, size }
     }
 
     /// Does a line pass all edges on the same side? `None` where rounding leaves it open.
@@ -239,11 +239,11 @@ impl Edges {
     }
 }
 
-impl Plane {
+impl ScaledPlane {
     /// Relative to a pencil's origin.
-    pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> Plane {
+    pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> ScaledPlane {
         let normal = (b - a).cross(c - a);
-        Plane { normal, offset: normal.dot(a - origin) }
+        ScaledPlane { normal, offset: normal.dot(a - origin) }
     }
 
     /// How far above the plane a place is, times twice the triangle's area.

@@ -1,23 +1,23 @@
 //! Whether anything lies between a light and surfaces.
 
-use super::chart::Line;
-use super::packet::Bundle;
-use super::pencil::{Met, Pencil, Plane, PlaneRounding, Settled, point_rounding};
+use super::chart::OriginRay;
+use super::packet::RayPacket;
+use super::pencil::{Hit, PlaneRounding, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use super::tree::set_bits;
-use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, Surface, Tracer};
+use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, TracedSurface, Tracer};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
 /// The rays of one light.
 #[derive(Debug)]
-pub struct LightPencil {
+pub struct LightRays {
     pub position: DVec4,
     /// Of a lamp that fades: nothing at this distance, metres, is lit.
     pub range: Option<f64>,
-    pub pencil: Pencil,
+    pub pencil: RayOriginHierarchy,
 }
 
-impl LightPencil {
+impl LightRays {
     /// The light has faded to nothing there.
     fn is_out_of_range(&self, point: DVec3) -> bool {
         self.range.is_some_and(|range| self.position.truncate().distance_squared(point) >= range * range)
@@ -26,10 +26,10 @@ impl LightPencil {
 
 /// A triangle that may lie between a light and surfaces.
 #[derive(Debug)]
-pub struct Occluder {
+pub struct OccludingTriangle {
     triangle: usize,
     light_side: Sign,
-    plane: Plane,
+    plane: ScaledPlane,
     rounding: PlaneRounding,
     /// The sum of the normal's absolute coordinates.
     normal_span: f64,
@@ -37,11 +37,11 @@ pub struct Occluder {
     compared: (usize, bool),
 }
 
-impl Occluder {
+impl OccludingTriangle {
     /// Relative to a pencil's origin.
-    pub fn new(origin: DVec3, met: &Met, corners: &[DVec3; 3]) -> Occluder {
-        let plane = Plane::new(origin, corners);
-        Occluder {
+    pub fn new(origin: DVec3, met: &Hit, corners: &[DVec3; 3]) -> OccludingTriangle {
+        let plane = ScaledPlane::new(origin, corners);
+        OccludingTriangle {
             triangle: met.index as usize,
             light_side: met.center_side,
             plane,
@@ -54,9 +54,9 @@ impl Occluder {
 
 impl Tracer {
     /// Labels surfaces near each other.
-    pub(super) fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
-        let mut bundle = Bundle::new(Line::To);
-        let mut lines = [0; Bundle::MOST];
+    pub(super) fn label_surfaces(&self, light: &LightRays, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
+        let mut bundle = RayPacket::new(OriginRay::To);
+        let mut lines = [0; RayPacket::MOST];
         let mut last = (usize::MAX, Sign::Zero, false);
         for (index, surface) in surfaces.iter().enumerate() {
             let Some(surface) = surface else {
@@ -88,20 +88,26 @@ impl Tracer {
                 else {
                     continue;
                 };
-                let occluder = occluder.get_or_insert_with(|| Occluder::new(light.pencil.origin, met, corners));
+                let occluder =
+                    occluder.get_or_insert_with(|| OccludingTriangle::new(light.pencil.origin, met, corners));
                 if self.lies_between(light, occluder, surface) {
                     labels[lines[line]] = SHADOW;
                     dark |= 1 << line;
                 }
             }
-            Settled { lines: dark, ..Settled::NOTHING }
+            SearchLimit { lines: dark, ..SearchLimit::NOTHING }
         });
     }
 
     /// Are the light and a surface point on different sides of a triangle that their line meets?
     /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
     /// has the surface's own plane.
-    pub(super) fn lies_between(&self, light: &LightPencil, occluder: &mut Occluder, surface: &Surface) -> bool {
+    pub(super) fn lies_between(
+        &self,
+        light: &LightRays,
+        occluder: &mut OccludingTriangle,
+        surface: &TracedSurface,
+    ) -> bool {
         let other = occluder.triangle;
         if other == surface.triangle {
             return false;
@@ -124,7 +130,7 @@ impl Tracer {
 
     /// How far above a triangle's plane a point is that is so near that it takes care, times twice
     /// the triangle's area; 0 where rounding can't tell it from the plane.
-    fn height_near(&self, triangle: usize, surface: &Surface) -> f64 {
+    fn height_near(&self, triangle: usize, surface: &TracedSurface) -> f64 {
         let [a, b, c] = self.world.triangles[triangle];
         let (ab, ac, offset) = (b - a, c - a, surface.point - a);
         let normal = ab.cross(ac);
@@ -135,12 +141,12 @@ impl Tracer {
     }
 
     /// More than [`Tracer::rounding`], in less time.
-    fn most_rounding(&self, surface: &Surface) -> f64 {
+    fn most_rounding(&self, surface: &TracedSurface) -> f64 {
         self.most_rounding + 3.0 * POINT_ROUNDING * (surface.from + surface.offset.abs().element_sum())
     }
 
     /// How far a surface's point may be off along any axis.
-    fn rounding(&self, surface: &Surface) -> f64 {
+    fn rounding(&self, surface: &TracedSurface) -> f64 {
         // The sum is rounded at the size of its larger part.
         let parts = surface.from + surface.offset.abs().max_element();
         let size = self.view.eye.abs().max_element() + parts + surface.point.abs().max_element();

@@ -1,28 +1,28 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
-use super::chart::Line;
-use super::packet::Bundle;
-use super::pencil::{Pencil, Settled, Whose, side_of};
+use super::chart::OriginRay;
+use super::packet::RayPacket;
+use super::pencil::{RayKind, RayOriginHierarchy, SearchLimit, side_of};
 use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};
 
 /// Which triangles each of up to 16 lines meets.
-fn met<const N: usize>(pencil: &Pencil, lines: [Line; N]) -> [Vec<u32>; N] {
-    let mut bundle = Bundle::new(match lines[0] {
-        Line::To(_) => Line::To,
-        Line::Through(_) => Line::Through,
-        Line::Along(_) => Line::Along,
+fn met<const N: usize>(pencil: &RayOriginHierarchy, lines: [OriginRay; N]) -> [Vec<u32>; N] {
+    let mut bundle = RayPacket::new(match lines[0] {
+        OriginRay::To(_) => OriginRay::To,
+        OriginRay::Through(_) => OriginRay::Through,
+        OriginRay::Along(_) => OriginRay::Along,
     });
     for line in lines {
         match line {
-            Line::To(point) | Line::Through(point) | Line::Along(point) => bundle.push(point),
+            OriginRay::To(point) | OriginRay::Through(point) | OriginRay::Along(point) => bundle.push(point),
         }
     }
     let mut met = lines.map(|_| Vec::new());
     pencil.for_each_meeting(&bundle, |triangle, _, lines| {
         set_bits(lines).for_each(|line| met[line].push(triangle.index));
-        Settled::NOTHING
+        SearchLimit::NOTHING
     });
     for met in &mut met {
         met.sort_unstable();
@@ -32,8 +32,8 @@ fn met<const N: usize>(pencil: &Pencil, lines: [Line; N]) -> [Vec<u32>; N] {
 }
 
 /// The line of sight from a centre through a point.
-fn through(center: DVec4, point: DVec3) -> Line {
-    if center.w == 0.0 { Line::To(point) } else { Line::Along(point - center.truncate()) }
+fn through(center: DVec4, point: DVec3) -> OriginRay {
+    if center.w == 0.0 { OriginRay::To(point) } else { OriginRay::Along(point - center.truncate()) }
 }
 
 /// A square sheet in the plane z = 0 from −n to n, in triangles of side 1 that share corners.
@@ -59,8 +59,8 @@ fn a_line_through_an_edge_or_a_vertex_meets_exactly_one_triangle_of_a_sheet() {
     ];
     for center in centers {
         // A light's line to a point in the sheet would end there; an eye's goes on.
-        let whose = if center.w == 0.0 { Whose::Light } else { Whose::Eye };
-        let pencil = Pencil::new(whose, center, &triangles, |_| true);
+        let whose = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
+        let pencil = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
         // Halves: vertices, middles of edges and of diagonals.
         for y in -5..=5 {
             for x in -5..=5 {
@@ -85,8 +85,8 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
     }
     let mut crossed = 0;
     for center in [DVec4::new(0.0, 0.0, 5.0, 1.0), DVec4::new(3.0, 3.0, 3.0, 1.0), DVec4::new(1.0, 1.0, 0.0, 0.0)] {
-        let whose = if center.w == 0.0 { Whose::Light } else { Whose::Eye };
-        let pencil = Pencil::new(whose, center, &triangles, |_| true);
+        let whose = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
+        let pencil = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
         for i in -4..=4 {
             for j in -4..=4 {
                 for point in [
@@ -95,7 +95,7 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
                 ] {
                     // A sun's line is followed from its far side on.
                     let line = if center.w == 0.0 {
-                        Line::To(point - center.truncate() * 9.0)
+                        OriginRay::To(point - center.truncate() * 9.0)
                     } else {
                         through(center, point)
                     };
@@ -115,23 +115,23 @@ fn side(corners: &[DVec3; 3], center: DVec4) -> i32 {
 }
 
 /// Does the line from a centre pass all edges of a triangle on one side? Exact.
-fn is_on_line(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
+fn is_on_line(corners: [DVec3; 3], center: DVec4, line: OriginRay) -> bool {
     let [a, b, c] = corners;
     let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| match line {
-        Line::To(point) | Line::Through(point) if center.w == 0.0 => side(&[point, p, q], center),
-        Line::To(point) | Line::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)),
-        Line::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)),
+        OriginRay::To(point) | OriginRay::Through(point) if center.w == 0.0 => side(&[point, p, q], center),
+        OriginRay::To(point) | OriginRay::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)),
+        OriginRay::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)),
     });
     sides == [1; 3] || sides == [-1; 3]
 }
 
 /// Must a triangle on the line be found? Between the centre and the line's end, or before the eye; anywhere on a
 /// parallel line of sight.
-fn is_on_the_way(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
+fn is_on_the_way(corners: [DVec3; 3], center: DVec4, line: OriginRay) -> bool {
     match line {
-        Line::To(point) => side(&corners, center) == -side(&corners, point.extend(1.0)),
-        Line::Through(_) => true,
-        Line::Along(direction) => side(&corners, center) == -side(&corners, direction.extend(0.0)),
+        OriginRay::To(point) => side(&corners, center) == -side(&corners, point.extend(1.0)),
+        OriginRay::Through(_) => true,
+        OriginRay::Along(direction) => side(&corners, center) == -side(&corners, direction.extend(0.0)),
     }
 }
 
@@ -169,13 +169,13 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
             }
             _ => (point(reach) + offset).extend(1.0),
         };
-        for whose in [Whose::Eye, Whose::Light] {
-            let pencil = Pencil::new(whose, center, &triangles, |_| true);
+        for whose in [RayKind::Eye, RayKind::Light] {
+            let pencil = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
             for bundle in 0..8 {
                 let middle = triangles[bundle * 3][1];
                 let spread = [reach, reach * 1e-3][bundle % 2];
                 // Some lines run exactly through edges and corners.
-                let lines: [Line; 16] = std::array::from_fn(|line| {
+                let lines: [OriginRay; 16] = std::array::from_fn(|line| {
                     let [a, b, _] = triangles[bundle * 3];
                     let target = match line {
                         0 => a,
@@ -186,9 +186,9 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
                         _ => middle + point(spread),
                     };
                     match (whose, center.w == 0.0) {
-                        (Whose::Light, _) => Line::To(target),
-                        (Whose::Eye, true) => Line::Through(target),
-                        (Whose::Eye, false) => Line::Along(target - center.truncate()),
+                        (RayKind::Light, _) => OriginRay::To(target),
+                        (RayKind::Eye, true) => OriginRay::Through(target),
+                        (RayKind::Eye, false) => OriginRay::Along(target - center.truncate()),
                     }
                 });
                 for (line, met) in lines.into_iter().zip(met(&pencil, lines)) {
@@ -209,12 +209,12 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
 }
 
 /// Is a line exactly on the plane of one of a triangle's edges?
-fn is_on_an_edge(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
+fn is_on_an_edge(corners: [DVec3; 3], center: DVec4, line: OriginRay) -> bool {
     let [a, b, c] = corners;
     [(a, b), (b, c), (c, a)].into_iter().any(|(p, q)| match line {
-        Line::To(point) | Line::Through(point) if center.w == 0.0 => side(&[point, p, q], center) == 0,
-        Line::To(point) | Line::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)) == 0,
-        Line::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)) == 0,
+        OriginRay::To(point) | OriginRay::Through(point) if center.w == 0.0 => side(&[point, p, q], center) == 0,
+        OriginRay::To(point) | OriginRay::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)) == 0,
+        OriginRay::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)) == 0,
     })
 }
 

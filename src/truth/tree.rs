@@ -19,7 +19,7 @@ const MOST_LEVELS: usize = 17;
 
 /// A rectangle of a chart.
 #[derive(Debug, Clone, Copy)]
-pub struct Area {
+pub struct ProjectedRect {
     pub low: Vec2,
     pub high: Vec2,
     /// Of triangles: how near they come; of lines: how far they go.
@@ -28,7 +28,7 @@ pub struct Area {
 
 /// Four areas.
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct RectNode {
     low: [Vec4; 2],
     high: [Vec4; 2],
     depth: Vec4,
@@ -38,35 +38,35 @@ struct Node {
 
 /// Many areas.
 #[derive(Debug, Default)]
-pub struct Tree {
+pub struct RectTree {
     /// Those without nodes below come first.
-    nodes: Vec<Node>,
+    nodes: Vec<RectNode>,
     /// How many these are.
     leaves: usize,
     /// The topmost node of each size.
     tops: Vec<u32>,
 }
 
-impl Tree {
+impl RectTree {
     /// How many areas make a node.
     pub const WIDTH: usize = 4;
 
     /// Sorts areas into a tree; also says in which order they are in it. `None` fills a node up.
-    pub fn new(areas: &[Area]) -> (Tree, Vec<Option<u32>>) {
+    pub fn new(areas: &[ProjectedRect]) -> (RectTree, Vec<Option<u32>>) {
         let keys = keys(areas);
         let classes = keys.chunk_by(|(one, _), (other, _)| class(*one) == class(*other));
-        let mut order = Vec::with_capacity(keys.len() + Tree::WIDTH * MOST_CLASSES as usize);
+        let mut order = Vec::with_capacity(keys.len() + RectTree::WIDTH * MOST_CLASSES as usize);
         let mut counts = Vec::new();
         for class in classes {
-            let leaves = class.len().div_ceil(Tree::WIDTH);
-            let end = order.len() + leaves * Tree::WIDTH;
+            let leaves = class.len().div_ceil(RectTree::WIDTH);
+            let end = order.len() + leaves * RectTree::WIDTH;
             order.extend(class.iter().map(|(_, index)| Some(*index)));
             order.resize(end, None);
             counts.push(leaves);
         }
-        let leaf = |four: &[Option<u32>]| Node::new(four.iter().flatten().map(|index| areas[*index as usize]), 0);
-        let nodes: Vec<Node> = order.par_chunks(Tree::WIDTH).with_min_len(1024).map(leaf).collect();
-        let mut tree = Tree { leaves: nodes.len(), nodes, tops: Vec::new() };
+        let leaf = |four: &[Option<u32>]| RectNode::new(four.iter().flatten().map(|index| areas[*index as usize]), 0);
+        let nodes: Vec<RectNode> = order.par_chunks(RectTree::WIDTH).with_min_len(1024).map(leaf).collect();
+        let mut tree = RectTree { leaves: nodes.len(), nodes, tops: Vec::new() };
         let mut first = 0;
         for count in counts {
             tree.stack_up(first, count);
@@ -79,9 +79,9 @@ impl Tree {
     fn stack_up(&mut self, mut first: usize, mut count: usize) {
         while count > 1 {
             let next = self.nodes.len();
-            for below in (first..first + count).step_by(Tree::WIDTH) {
-                let four = &self.nodes[below..(below + Tree::WIDTH).min(first + count)];
-                let node = Node::new(four.iter().map(Node::area), below as u32);
+            for below in (first..first + count).step_by(RectTree::WIDTH) {
+                let four = &self.nodes[below..(below + RectTree::WIDTH).min(first + count)];
+                let node = RectNode::new(four.iter().map(RectNode::area), below as u32);
                 self.nodes.push(node);
             }
             (first, count) = (next, self.nodes.len() - next);
@@ -91,8 +91,8 @@ impl Tree {
 
     /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each; and
     /// with the depth of `area`, which it may lessen. Ends where that is false. Near ones come first, more or less.
-    pub fn for_each_meeting(&self, mut area: Area, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
-        let mut stack = [0; MOST_LEVELS * (Tree::WIDTH - 1) + 1];
+    pub fn for_each_meeting(&self, mut area: ProjectedRect, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
+        let mut stack = [0; MOST_LEVELS * (RectTree::WIDTH - 1) + 1];
         for top in &self.tops {
             stack[0] = *top;
             let mut count = 1;
@@ -117,10 +117,11 @@ impl Tree {
     }
 }
 
-impl Node {
+impl RectNode {
     /// Up to four areas; what is left of the node is met by nothing.
-    fn new(areas: impl Iterator<Item = Area>, first: u32) -> Node {
-        let mut node = Node { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY, first };
+    fn new(areas: impl Iterator<Item = ProjectedRect>, first: u32) -> RectNode {
+        let mut node =
+            RectNode { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY, first };
         for (lane, area) in areas.enumerate() {
             for axis in 0..2 {
                 // What has overflown is still met, and an empty lane never is.
@@ -133,14 +134,14 @@ impl Node {
     }
 
     /// A box around all four.
-    fn area(&self) -> Area {
+    fn area(&self) -> ProjectedRect {
         let least = |axis: [Vec4; 2]| Vec2::new(axis[0].min_element(), axis[1].min_element());
         let most = |axis: [Vec4; 2]| Vec2::new(axis[0].max_element(), axis[1].max_element());
-        Area { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
+        ProjectedRect { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
     }
 
     /// Which of the four meet the area of lines: a bit each.
-    fn met(&self, area: &Area) -> u32 {
+    fn met(&self, area: &ProjectedRect) -> u32 {
         let along_x = self.low[0].cmple(Vec4::splat(area.high.x)) & self.high[0].cmpge(Vec4::splat(area.low.x));
         let along_y = self.low[1].cmple(Vec4::splat(area.high.y)) & self.high[1].cmpge(Vec4::splat(area.low.y));
         (along_x & along_y & self.depth.cmple(Vec4::splat(area.depth))).bitmask()
@@ -148,15 +149,15 @@ impl Node {
 }
 
 /// What areas are sorted by: class and place along the curve; and their indices, sorted.
-fn keys(areas: &[Area]) -> Vec<(u64, u32)> {
-    let place = |area: &Area| ((area.low + area.high) / 2.0).extend(area.depth);
+fn keys(areas: &[ProjectedRect]) -> Vec<(u64, u32)> {
+    let place = |area: &ProjectedRect| ((area.low + area.high) / 2.0).extend(area.depth);
     let (low, high) = areas
         .iter()
         .map(place)
         .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
     let size = (high - low).max_element().max(f32::MIN_POSITIVE);
     let scale = ((1 << CURVE_BITS) - 1) as f32 / size;
-    let key = |(index, area): (usize, &Area)| {
+    let key = |(index, area): (usize, &ProjectedRect)| {
         let at = (place(area) - low) * scale;
         let curve = spread(at.x as u64) | spread(at.y as u64) << 1 | spread(at.z as u64) << 2;
         let part = ((area.high - area.low).max_element() / size).clamp(f32::MIN_POSITIVE, 1.0);

@@ -1,25 +1,25 @@
 //! The camera's rays.
 
-use crate::scene::{Camera, Sight, Sights};
+use crate::scene::{Camera, CameraRays, Ray};
 use glam::{DVec2, DVec3};
 
 /// The rays through a picture's points.
 #[derive(Debug, Clone, Copy)]
-pub struct View {
+pub struct PictureRays {
     pub near: f64,
     /// Where rays end: infinite, but where a far plane is part of what is asked.
     pub far: f64,
     /// What rays are relative to, world space.
     pub eye: DVec3,
     pub is_parallel: bool,
-    sights: Sights,
+    sights: CameraRays,
     size: [f64; 2],
 }
 
-impl View {
-    pub fn new(camera: &Camera, size: [u32; 2]) -> View {
+impl PictureRays {
+    pub fn new(camera: &Camera, size: [u32; 2]) -> PictureRays {
         let size = size.map(f64::from);
-        View {
+        PictureRays {
             near: camera.near,
             far: f64::INFINITY,
             eye: camera.eye,
@@ -30,7 +30,7 @@ impl View {
     }
 
     /// The ray through a point of the picture. The first pixel has its centre at (0.5, 0.5).
-    pub fn ray(&self, [x, y]: [f64; 2]) -> Sight {
+    pub fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         self.ray_through([self.across(x), self.down(y)])
     }
 
@@ -44,8 +44,8 @@ impl View {
         1.0 - y / self.size[1] * 2.0
     }
 
-    /// The ray through a point by [`View::across`] and [`View::down`].
-    pub fn ray_through(&self, [x, y]: [f64; 2]) -> Sight {
+    /// The ray through a point by [`PictureRays::across`] and [`PictureRays::down`].
+    pub fn ray_through(&self, [x, y]: [f64; 2]) -> Ray {
         self.sights.through(DVec2::new(x, y))
     }
 

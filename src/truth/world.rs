@@ -10,7 +10,7 @@ const FARTHEST: f64 = 1e30;
 
 /// Where a triangle comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct TriangleSource {
     /// Index of its object in the scene.
     pub object: usize,
     /// Its index in the object's mesh.
@@ -19,7 +19,7 @@ pub struct Place {
 
 /// A scene's triangles.
 #[derive(Debug)]
-pub struct World {
+pub struct TracedTriangles {
     /// World space.
     pub triangles: Vec<[DVec3; 3]>,
     /// The object of each triangle.
@@ -31,10 +31,10 @@ pub struct World {
     bounds: [DVec3; 2],
 }
 
-impl World {
-    pub fn new(scene: &Scene) -> Result<World, TruthError> {
+impl TracedTriangles {
+    pub fn new(scene: &Scene) -> Result<TracedTriangles, TruthError> {
         let bounds = [scene.camera.eye; 2];
-        let mut world = World {
+        let mut world = TracedTriangles {
             triangles: Vec::new(),
             owners: Vec::new(),
             firsts: Vec::new(),
@@ -62,9 +62,9 @@ impl World {
         Ok(world)
     }
 
-    pub fn place(&self, index: usize) -> Place {
+    pub fn place(&self, index: usize) -> TriangleSource {
         let object = self.owners[index] as usize;
-        Place { object, triangle: index - self.firsts[object] }
+        TriangleSource { object, triangle: index - self.firsts[object] }
     }
 
     pub fn object_name(&self, object: usize) -> &str {

@@ -1,7 +1,7 @@
 use super::device::Device;
 use super::queue::Queue;
-use super::shared::{MakeRecorder, Shared};
-use super::{Real, ray_tracing};
+use super::shared::{MakeRecorder, SharedDevice};
+use super::{WrappedObject, ray_tracing};
 use std::future::ready;
 use std::pin::Pin;
 use std::sync::Arc;
@@ -44,7 +44,7 @@ impl AdapterInterface for Adapter {
             wanted.required_features = wgpu::Features::all();
         }
         let made = pollster::block_on(self.inner.request_device(&wanted)).map(|(device, queue)| {
-            let shared = Arc::new(Shared::new(&device, &queue, &self.inner, self.recorder));
+            let shared = Arc::new(SharedDevice::new(&device, &queue, &self.inner, self.recorder));
             let (features, limits) = (asked.required_features, asked.required_limits.clone());
             let device = Device { inner: device, features, limits, shared: shared.clone() };
             (DispatchDevice::custom(device), DispatchQueue::custom(Queue { inner: queue, shared }))

@@ -1,6 +1,6 @@
 //! Bind groups and the layouts they are for.
 
-use super::Real;
+use super::WrappedObject;
 use std::sync::Arc;
 use wgpu::BindingResource as Resource;
 use wgpu::custom::{BindGroupInterface, BindGroupLayoutInterface, PipelineLayoutInterface};
@@ -26,7 +26,7 @@ impl PipelineLayoutInterface for PipelineLayout {}
 impl PipelineLayout {
     pub fn new(device: &wgpu::Device, descriptor: &wgpu::PipelineLayoutDescriptor<'_>) -> PipelineLayout {
         let groups: Vec<Option<&wgpu::BindGroupLayout>> =
-            descriptor.bind_group_layouts.iter().map(|layout| layout.map(Real::real)).collect();
+            descriptor.bind_group_layouts.iter().map(|layout| layout.map(WrappedObject::real)).collect();
         let inner = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             bind_group_layouts: &groups,
             ..descriptor.clone()
@@ -40,7 +40,7 @@ impl PipelineLayout {
 pub struct BindGroup {
     pub inner: wgpu::BindGroup,
     /// What it binds, so that the same can be bound for a pipeline whose layout is its own.
-    pub entries: Arc<[(u32, Bound)]>,
+    pub entries: Arc<[(u32, BoundResource)]>,
 }
 
 impl BindGroupInterface for BindGroup {}
@@ -65,36 +65,36 @@ impl BufferPart {
 
 /// A real resource that is bound.
 #[derive(Debug, Clone)]
-pub enum Bound {
-    Buffers(Vec<BufferPart>, IsArray),
-    Samplers(Vec<wgpu::Sampler>, IsArray),
-    Views(Vec<wgpu::TextureView>, IsArray),
-    Structures(Vec<wgpu::Tlas>, IsArray),
+pub enum BoundResource {
+    Buffers(Vec<BufferPart>, ArrayCheck),
+    Samplers(Vec<wgpu::Sampler>, ArrayCheck),
+    Views(Vec<wgpu::TextureView>, ArrayCheck),
+    Structures(Vec<wgpu::Tlas>, ArrayCheck),
     External(wgpu::ExternalTexture),
 }
 
 /// Is it an array, were it of one?
-type IsArray = bool;
+type ArrayCheck = bool;
 
-impl Bound {
+impl BoundResource {
     /// Of what the program binds; `None` of a kind that wgpu has gained since.
-    fn of(resource: &Resource<'_>) -> Option<Bound> {
-        fn real<T: Real>(all: &[&T]) -> Vec<T::Object>
+    fn of(resource: &Resource<'_>) -> Option<BoundResource> {
+        fn real<T: WrappedObject>(all: &[&T]) -> Vec<T::Object>
         where
             T::Object: Clone,
         {
             all.iter().map(|one| one.real().clone()).collect()
         }
         Some(match resource {
-            Resource::Buffer(part) => Bound::Buffers(vec![BufferPart::of(part)], false),
-            Resource::BufferArray(parts) => Bound::Buffers(parts.iter().map(BufferPart::of).collect(), true),
-            Resource::Sampler(sampler) => Bound::Samplers(real(&[*sampler]), false),
-            Resource::SamplerArray(samplers) => Bound::Samplers(real(samplers), true),
-            Resource::TextureView(view) => Bound::Views(real(&[*view]), false),
-            Resource::TextureViewArray(views) => Bound::Views(real(views), true),
-            Resource::AccelerationStructure(structure) => Bound::Structures(real(&[*structure]), false),
-            Resource::AccelerationStructureArray(structures) => Bound::Structures(real(structures), true),
-            Resource::ExternalTexture(texture) => Bound::External(texture.real().clone()),
+            Resource::Buffer(part) => BoundResource::Buffers(vec![BufferPart::of(part)], false),
+            Resource::BufferArray(parts) => BoundResource::Buffers(parts.iter().map(BufferPart::of).collect(), true),
+            Resource::Sampler(sampler) => BoundResource::Samplers(real(&[*sampler]), false),
+            Resource::SamplerArray(samplers) => BoundResource::Samplers(real(samplers), true),
+            Resource::TextureView(view) => BoundResource::Views(real(&[*view]), false),
+            Resource::TextureViewArray(views) => BoundResource::Views(real(views), true),
+            Resource::AccelerationStructure(structure) => BoundResource::Structures(real(&[*structure]), false),
+            Resource::AccelerationStructureArray(structures) => BoundResource::Structures(real(structures), true),
+            Resource::ExternalTexture(texture) => BoundResource::External(texture.real().clone()),
             _ => return None,
         })
     }
@@ -110,21 +110,21 @@ enum Borrowed<'a> {
 }
 
 impl<'a> Borrowed<'a> {
-    fn of(bound: &'a Bound) -> Borrowed<'a> {
+    fn of(bound: &'a BoundResource) -> Borrowed<'a> {
         match bound {
-            Bound::Buffers(parts, _) => Borrowed::Buffers(parts.iter().map(BufferPart::binding).collect()),
-            Bound::Samplers(samplers, _) => Borrowed::Samplers(samplers.iter().collect()),
-            Bound::Views(views, _) => Borrowed::Views(views.iter().collect()),
-            Bound::Structures(structures, _) => Borrowed::Structures(structures.iter().collect()),
-            Bound::External(texture) => Borrowed::External(texture),
+            BoundResource::Buffers(parts, _) => Borrowed::Buffers(parts.iter().map(BufferPart::binding).collect()),
+            BoundResource::Samplers(samplers, _) => Borrowed::Samplers(samplers.iter().collect()),
+            BoundResource::Views(views, _) => Borrowed::Views(views.iter().collect()),
+            BoundResource::Structures(structures, _) => Borrowed::Structures(structures.iter().collect()),
+            BoundResource::External(texture) => Borrowed::External(texture),
         }
     }
 
-    fn resource<'b>(&'b self, bound: &Bound) -> Resource<'b> {
+    fn resource<'b>(&'b self, bound: &BoundResource) -> Resource<'b> {
         let is_array = match bound {
-            Bound::Buffers(_, array) | Bound::Samplers(_, array) => *array,
-            Bound::Views(_, array) | Bound::Structures(_, array) => *array,
-            Bound::External(_) => false,
+            BoundResource::Buffers(_, array) | BoundResource::Samplers(_, array) => *array,
+            BoundResource::Views(_, array) | BoundResource::Structures(_, array) => *array,
+            BoundResource::External(_) => false,
         };
         match (self, is_array) {
             (Borrowed::Buffers(parts), true) => Resource::BufferArray(parts),
@@ -145,7 +145,7 @@ pub fn real_group(
     device: &wgpu::Device,
     label: Option<&str>,
     layout: &wgpu::BindGroupLayout,
-    bound: &[(u32, Bound)],
+    bound: &[(u32, BoundResource)],
 ) -> wgpu::BindGroup {
     let borrowed: Vec<Borrowed<'_>> = bound.iter().map(|(_, bound)| Borrowed::of(bound)).collect();
     let entries: Vec<wgpu::BindGroupEntry<'_>> = bound
@@ -161,8 +161,8 @@ pub fn real_group(
 
 impl BindGroup {
     pub fn new(device: &wgpu::Device, descriptor: &wgpu::BindGroupDescriptor<'_>) -> BindGroup {
-        let entry = |entry: &wgpu::BindGroupEntry<'_>| Some((entry.binding, Bound::of(&entry.resource)?));
-        let entries: Vec<(u32, Bound)> = descriptor.entries.iter().filter_map(entry).collect();
+        let entry = |entry: &wgpu::BindGroupEntry<'_>| Some((entry.binding, BoundResource::of(&entry.resource)?));
+        let entries: Vec<(u32, BoundResource)> = descriptor.entries.iter().filter_map(entry).collect();
         let inner = real_group(device, descriptor.label, descriptor.layout.real(), &entries);
         BindGroup { inner, entries: entries.into() }
     }

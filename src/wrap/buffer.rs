@@ -22,7 +22,11 @@ impl BufferInterface for Buffer {
     fn get_mapped_range(&self, range: Range<u64>) -> Result<DispatchBufferMappedRange, wgpu::MapRangeError> {
         // Whether it is for reading or writing is told later: what may go wrong does so now.
         let view = self.inner.get_mapped_range(range.clone())?;
-        Ok(DispatchBufferMappedRange::custom(MappedRange { buffer: self.inner.clone(), range, view: View::Read(view) }))
+        Ok(DispatchBufferMappedRange::custom(MappedRange {
+            buffer: self.inner.clone(),
+            range,
+            view: MappedView::Read(view),
+        }))
     }
 
     fn unmap(&self) {
@@ -38,11 +42,11 @@ impl BufferInterface for Buffer {
 struct MappedRange {
     buffer: wgpu::Buffer,
     range: Range<u64>,
-    view: View,
+    view: MappedView,
 }
 
 #[derive(Debug)]
-enum View {
+enum MappedView {
     Read(wgpu::BufferView),
     Write(wgpu::BufferViewMut),
     /// The buffer was taken away in between: what is written goes nowhere.
@@ -63,23 +67,23 @@ impl BufferMappedRangeInterface for MappedRange {
 
     unsafe fn read_slice(&self) -> &[u8] {
         match &self.view {
-            View::Read(view) => view,
-            View::Write(_) => &[],
-            View::Gone(bytes) => bytes,
+            MappedView::Read(view) => view,
+            MappedView::Write(_) => &[],
+            MappedView::Gone(bytes) => bytes,
         }
     }
 
     unsafe fn write_slice(&mut self) -> wgpu::WriteOnly<'_, [u8]> {
-        if matches!(self.view, View::Read(_)) {
+        if matches!(self.view, MappedView::Read(_)) {
             // One view at a time may be of these bytes: the first goes before the second comes.
-            self.view = View::Gone(Vec::new());
+            self.view = MappedView::Gone(Vec::new());
             let view = self.buffer.get_mapped_range_mut(self.range.clone());
-            self.view = view.map_or_else(|_| View::Gone(vec![0; self.length()]), View::Write);
+            self.view = view.map_or_else(|_| MappedView::Gone(vec![0; self.length()]), MappedView::Write);
         }
         match &mut self.view {
-            View::Write(view) => view.slice(..),
-            View::Gone(bytes) => wgpu::WriteOnly::from_mut(&mut bytes[..]),
-            View::Read(_) => wgpu::WriteOnly::from_mut(&mut []),
+            MappedView::Write(view) => view.slice(..),
+            MappedView::Gone(bytes) => wgpu::WriteOnly::from_mut(&mut bytes[..]),
+            MappedView::Read(_) => wgpu::WriteOnly::from_mut(&mut []),
         }
     }
 }

@@ -1,5 +1,5 @@
 use super::command::{DrawCommand, PassCommand};
-use super::{Real, bind_group_of, pipeline_of};
+use super::{WrappedObject, bind_group_of, pipeline_of};
 use std::ops::Range;
 use std::sync::Arc;
 use wgpu::custom::{

@@ -1,31 +1,31 @@
 //! What a recorded frame was told, kept so that it can be done draw by draw.
 
-use super::binding::{BindGroup, Bound};
-use super::pipeline::{Described, RenderPipeline};
-use super::texture::Part;
-use super::{Real, slice, view_of};
+use super::binding::{BindGroup, BoundResource};
+use super::pipeline::{PipelineSource, RenderPipeline};
+use super::texture::ViewSubresource;
+use super::{WrappedObject, slice, view_of};
 use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What an encoder was told, in order. Its passes write into it too.
 #[derive(Debug, Clone, Default)]
-pub struct CommandList(Arc<Mutex<Vec<Command>>>);
+pub struct CommandList(Arc<Mutex<Vec<EncoderCommand>>>);
 
 impl CommandList {
-    pub fn push(&self, command: Command) {
+    pub fn push(&self, command: EncoderCommand) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(command);
     }
 
     /// All of it.
-    pub fn take(&self) -> Vec<Command> {
+    pub fn take(&self) -> Vec<EncoderCommand> {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 /// What an encoder has made: the real commands, and the list of a recorded frame.
 #[derive(Debug)]
-pub struct Finished {
+pub struct FinishedCommands {
     pub inner: wgpu::CommandBuffer,
     pub list: Option<CommandList>,
     /// Render passes are among them.
@@ -33,11 +33,11 @@ pub struct Finished {
 }
 
 /// One call of an encoder, or a pass.
-pub enum Command {
-    RenderPass(Targets, Vec<PassCommand>),
+pub enum EncoderCommand {
+    RenderPass(PassTargets, Vec<PassCommand>),
     ComputePass {
         label: Option<String>,
-        timestamps: Option<Timestamps>,
+        timestamps: Option<TimestampWrites>,
         commands: Vec<ComputeCommand>,
     },
     PushGroup(String),
@@ -46,35 +46,35 @@ pub enum Command {
     Encode(Box<dyn Fn(&mut wgpu::CommandEncoder) + Send + Sync>),
 }
 
-impl Command {
+impl EncoderCommand {
     /// Encodes it as it was.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
         match self {
-            Command::RenderPass(targets, commands) => {
+            EncoderCommand::RenderPass(targets, commands) => {
                 let mut pass = targets.begin(encoder, true, true);
                 commands.iter().for_each(|command| command.encode(&mut pass));
             }
-            Command::ComputePass { label, timestamps, commands } => {
-                let timestamp_writes = timestamps.as_ref().map(Timestamps::of_compute);
+            EncoderCommand::ComputePass { label, timestamps, commands } => {
+                let timestamp_writes = timestamps.as_ref().map(TimestampWrites::of_compute);
                 let descriptor = wgpu::ComputePassDescriptor { label: label.as_deref(), timestamp_writes };
                 let mut pass = encoder.begin_compute_pass(&descriptor);
                 commands.iter().for_each(|ComputeCommand(command)| command(&mut pass));
             }
-            Command::PushGroup(name) => encoder.push_debug_group(name),
-            Command::PopGroup => encoder.pop_debug_group(),
-            Command::Encode(command) => command(encoder),
+            EncoderCommand::PushGroup(name) => encoder.push_debug_group(name),
+            EncoderCommand::PopGroup => encoder.pop_debug_group(),
+            EncoderCommand::Encode(command) => command(encoder),
         }
     }
 }
 
-impl fmt::Debug for Command {
+impl fmt::Debug for EncoderCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Command::RenderPass(..) => "RenderPass",
-            Command::ComputePass { .. } => "ComputePass",
-            Command::PushGroup(_) => "PushGroup",
-            Command::PopGroup => "PopGroup",
-            Command::Encode(_) => "Encode",
+            EncoderCommand::RenderPass(..) => "RenderPass",
+            EncoderCommand::ComputePass { .. } => "ComputePass",
+            EncoderCommand::PushGroup(_) => "PushGroup",
+            EncoderCommand::PopGroup => "PopGroup",
+            EncoderCommand::Encode(_) => "Encode",
         })
     }
 }
@@ -90,13 +90,13 @@ impl fmt::Debug for ComputeCommand {
 
 /// When a pass writes timestamps.
 #[derive(Debug, Clone)]
-pub struct Timestamps {
+pub struct TimestampWrites {
     pub queries: wgpu::QuerySet,
     pub begin: Option<u32>,
     pub end: Option<u32>,
 }
 
-impl Timestamps {
+impl TimestampWrites {
     pub fn of_compute(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -108,20 +108,20 @@ impl Timestamps {
 
 /// What a render pass draws into.
 #[derive(Debug, Clone)]
-pub struct Targets {
+pub struct PassTargets {
     pub label: Option<String>,
-    pub colors: Vec<Option<ColorTarget>>,
-    pub depth_stencil: Option<DepthTarget>,
-    timestamps: Option<Timestamps>,
+    pub colors: Vec<Option<ColorAttachment>>,
+    pub depth_stencil: Option<DepthStencilAttachment>,
+    timestamps: Option<TimestampWrites>,
     pub occlusion: Option<wgpu::QuerySet>,
     multiview: Option<std::num::NonZeroU32>,
 }
 
 /// A target of colours.
 #[derive(Debug, Clone)]
-pub struct ColorTarget {
+pub struct ColorAttachment {
     pub view: wgpu::TextureView,
-    pub part: Part,
+    pub part: ViewSubresource,
     depth_slice: Option<u32>,
     resolve: Option<wgpu::TextureView>,
     pub ops: wgpu::Operations<wgpu::Color>,
@@ -129,36 +129,36 @@ pub struct ColorTarget {
 
 /// The target of depth and stencil.
 #[derive(Debug, Clone)]
-pub struct DepthTarget {
+pub struct DepthStencilAttachment {
     pub view: wgpu::TextureView,
-    pub part: Part,
+    pub part: ViewSubresource,
     pub depth_ops: Option<wgpu::Operations<f32>>,
     pub stencil_ops: Option<wgpu::Operations<u32>>,
 }
 
-impl Targets {
+impl PassTargets {
     /// Of what the program asks for.
-    pub fn of(descriptor: &wgpu::RenderPassDescriptor<'_>) -> Targets {
+    pub fn of(descriptor: &wgpu::RenderPassDescriptor<'_>) -> PassTargets {
         let color = |color: &wgpu::RenderPassColorAttachment<'_>| {
             let (view, part) = view_of(color.view);
             let resolve = color.resolve_target.map(|target| view_of(target).0);
-            ColorTarget { view, part, depth_slice: color.depth_slice, resolve, ops: color.ops }
+            ColorAttachment { view, part, depth_slice: color.depth_slice, resolve, ops: color.ops }
         };
         let depth = |depth: &wgpu::RenderPassDepthStencilAttachment<'_>| {
             let (view, part) = view_of(depth.view);
-            DepthTarget { view, part, depth_ops: depth.depth_ops, stencil_ops: depth.stencil_ops }
+            DepthStencilAttachment { view, part, depth_ops: depth.depth_ops, stencil_ops: depth.stencil_ops }
         };
-        let timestamps = |writes: &wgpu::RenderPassTimestampWrites<'_>| Timestamps {
-            queries: Real::real(writes.query_set).clone(),
+        let timestamps = |writes: &wgpu::RenderPassTimestampWrites<'_>| TimestampWrites {
+            queries: WrappedObject::real(writes.query_set).clone(),
             begin: writes.beginning_of_pass_write_index,
             end: writes.end_of_pass_write_index,
         };
-        Targets {
+        PassTargets {
             label: descriptor.label.map(str::to_owned),
             colors: descriptor.color_attachments.iter().map(|one| one.as_ref().map(color)).collect(),
             depth_stencil: descriptor.depth_stencil_attachment.as_ref().map(depth),
             timestamps: descriptor.timestamp_writes.as_ref().map(timestamps),
-            occlusion: descriptor.occlusion_query_set.map(|queries| Real::real(queries).clone()),
+            occlusion: descriptor.occlusion_query_set.map(|queries| WrappedObject::real(queries).clone()),
             multiview: descriptor.multiview_mask,
         }
     }
@@ -226,9 +226,9 @@ fn part_of<V: Copy>(ops: wgpu::Operations<V>, is_first: bool, is_last: bool) -> 
 
 /// A bind group, and what it binds.
 #[derive(Debug, Clone)]
-pub struct HeldGroup {
+pub struct BoundGroup {
     pub real: wgpu::BindGroup,
-    pub entries: Arc<[(u32, Bound)]>,
+    pub entries: Arc<[(u32, BoundResource)]>,
 }
 
 /// One call of a render pass.
@@ -236,11 +236,11 @@ pub struct HeldGroup {
 pub enum PassCommand {
     Pipeline {
         real: wgpu::RenderPipeline,
-        described: Arc<Described>,
+        described: Arc<PipelineSource>,
     },
     BindGroup {
         index: u32,
-        group: Option<HeldGroup>,
+        group: Option<BoundGroup>,
         offsets: Vec<u32>,
     },
     IndexBuffer {
@@ -289,7 +289,7 @@ impl PassCommand {
     }
 
     pub fn bind_group(index: u32, group: Option<&BindGroup>, offsets: &[u32]) -> PassCommand {
-        let held = |group: &BindGroup| HeldGroup { real: group.inner.clone(), entries: group.entries.clone() };
+        let held = |group: &BindGroup| BoundGroup { real: group.inner.clone(), entries: group.entries.clone() };
         PassCommand::BindGroup { index, group: group.map(held), offsets: offsets.to_vec() }
     }
 

@@ -1,5 +1,5 @@
-use super::Real;
-use super::command::{Command, CommandList, ComputeCommand, Timestamps};
+use super::WrappedObject;
+use super::command::{CommandList, ComputeCommand, EncoderCommand, TimestampWrites};
 use wgpu::custom::{
     ComputePassInterface, DispatchBindGroup, DispatchBuffer, DispatchComputePipeline, DispatchQuerySet,
     DispatchTextureView,
@@ -9,15 +9,15 @@ use wgpu::custom::{
 pub struct ComputePass {
     /// `None` where the encoder had been finished.
     inner: Option<wgpu::ComputePass<'static>>,
-    kept: Option<Kept>,
+    kept: Option<ComputePassCommands>,
 }
 
 /// What is written beside.
 #[derive(Debug)]
-struct Kept {
+struct ComputePassCommands {
     list: CommandList,
     label: Option<String>,
-    timestamps: Option<Timestamps>,
+    timestamps: Option<TimestampWrites>,
     commands: Vec<ComputeCommand>,
 }
 
@@ -27,17 +27,17 @@ impl ComputePass {
         list: Option<&CommandList>,
         descriptor: &wgpu::ComputePassDescriptor<'_>,
     ) -> ComputePass {
-        let timestamps = descriptor.timestamp_writes.as_ref().map(|writes| Timestamps {
+        let timestamps = descriptor.timestamp_writes.as_ref().map(|writes| TimestampWrites {
             queries: writes.query_set.real().clone(),
             begin: writes.beginning_of_pass_write_index,
             end: writes.end_of_pass_write_index,
         });
         let inner = encoder.as_mut().map(|encoder| {
-            let timestamp_writes = timestamps.as_ref().map(Timestamps::of_compute);
+            let timestamp_writes = timestamps.as_ref().map(TimestampWrites::of_compute);
             let descriptor = wgpu::ComputePassDescriptor { label: descriptor.label, timestamp_writes };
             encoder.begin_compute_pass(&descriptor).forget_lifetime()
         });
-        let kept = list.map(|list| Kept {
+        let kept = list.map(|list| ComputePassCommands {
             list: list.clone(),
             label: descriptor.label.map(str::to_owned),
             timestamps,
@@ -60,8 +60,8 @@ impl Drop for ComputePass {
     fn drop(&mut self) {
         // The real pass ends here.
         self.inner = None;
-        if let Some(Kept { list, label, timestamps, commands }) = self.kept.take() {
-            list.push(Command::ComputePass { label, timestamps, commands });
+        if let Some(ComputePassCommands { list, label, timestamps, commands }) = self.kept.take() {
+            list.push(EncoderCommand::ComputePass { label, timestamps, commands });
         }
     }
 }

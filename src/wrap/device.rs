@@ -2,9 +2,9 @@ use super::binding::{BindGroup, BindGroupLayout, PipelineLayout};
 use super::bundle::RenderBundleEncoder;
 use super::encoder::CommandEncoder;
 use super::pipeline::{ComputePipeline, PipelineCache, RenderPipeline};
-use super::shader::{ShaderModule, Source};
-use super::shared::Shared;
-use super::{Real, buffer, query, ray_tracing, texture};
+use super::shader::{ShaderModule, ShaderSource};
+use super::shared::SharedDevice;
+use super::{WrappedObject, buffer, query, ray_tracing, texture};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::future::ready;
@@ -28,7 +28,7 @@ pub struct Device {
     /// As the program asked for them.
     pub features: wgpu::Features,
     pub limits: wgpu::Limits,
-    pub shared: Arc<Shared>,
+    pub shared: Arc<SharedDevice>,
 }
 
 impl DeviceInterface for Device {
@@ -51,7 +51,7 @@ impl DeviceInterface for Device {
         descriptor: wgpu::ShaderModuleDescriptor<'_>,
         checks: wgpu::ShaderRuntimeChecks,
     ) -> DispatchShaderModule {
-        let source = Source::of(&descriptor.source);
+        let source = ShaderSource::of(&descriptor.source);
         let inner = unsafe { self.inner.create_shader_module_trusted(descriptor, checks) };
         DispatchShaderModule::custom(ShaderModule { inner, source })
     }
@@ -62,7 +62,7 @@ impl DeviceInterface for Device {
         descriptor: &wgpu::ShaderModuleDescriptorPassthrough<'_>,
     ) -> DispatchShaderModule {
         let inner = unsafe { self.inner.create_shader_module_passthrough(descriptor.clone()) };
-        DispatchShaderModule::custom(ShaderModule { inner, source: Source::Unread })
+        DispatchShaderModule::custom(ShaderModule { inner, source: ShaderSource::Unread })
     }
 
     fn create_bind_group_layout(&self, descriptor: &wgpu::BindGroupLayoutDescriptor<'_>) -> DispatchBindGroupLayout {

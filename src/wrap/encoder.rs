@@ -1,8 +1,8 @@
-use super::command::{Command, CommandList, Finished, Targets};
+use super::command::{CommandList, EncoderCommand, FinishedCommands, PassTargets};
 use super::compute_pass::ComputePass;
 use super::render_pass::RenderPass;
-use super::shared::Shared;
-use super::{Real, copy_end};
+use super::shared::SharedDevice;
+use super::{WrappedObject, copy_end};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use wgpu::custom::{
@@ -22,7 +22,7 @@ impl CommandEncoder {
     pub fn new(
         device: &wgpu::Device,
         descriptor: &wgpu::CommandEncoderDescriptor<'_>,
-        shared: &Shared,
+        shared: &SharedDevice,
     ) -> CommandEncoder {
         let list = shared.recorder.is_recording().then(CommandList::default);
         let inner = Mutex::new(Some(device.create_command_encoder(descriptor)));
@@ -39,7 +39,7 @@ impl CommandEncoder {
             command(encoder);
         }
         if let Some(list) = &self.list {
-            list.push(Command::Encode(Box::new(command)));
+            list.push(EncoderCommand::Encode(Box::new(command)));
         }
     }
 }
@@ -131,14 +131,14 @@ impl CommandEncoderInterface for CommandEncoder {
 
     fn begin_render_pass(&self, descriptor: &wgpu::RenderPassDescriptor<'_>) -> DispatchRenderPass {
         self.has_passes.store(true, Ordering::Relaxed);
-        let targets = Targets::of(descriptor);
+        let targets = PassTargets::of(descriptor);
         DispatchRenderPass::custom(RenderPass::begin(&mut self.lock(), self.list.as_ref(), targets))
     }
 
     fn finish(&mut self) -> DispatchCommandBuffer {
         let inner = self.lock().take().map(wgpu::CommandEncoder::finish);
         let has_passes = *self.has_passes.get_mut();
-        let finished = inner.map(|inner| Finished { inner, list: self.list.take(), has_passes });
+        let finished = inner.map(|inner| FinishedCommands { inner, list: self.list.take(), has_passes });
         DispatchCommandBuffer::custom(CommandBuffer { finished: Mutex::new(finished) })
     }
 
@@ -162,7 +162,7 @@ impl CommandEncoderInterface for CommandEncoder {
             encoder.push_debug_group(label);
         }
         if let Some(list) = &self.list {
-            list.push(Command::PushGroup(label.to_owned()));
+            list.push(EncoderCommand::PushGroup(label.to_owned()));
         }
     }
 
@@ -171,7 +171,7 @@ impl CommandEncoderInterface for CommandEncoder {
             encoder.pop_debug_group();
         }
         if let Some(list) = &self.list {
-            list.push(Command::PopGroup);
+            list.push(EncoderCommand::PopGroup);
         }
     }
 
@@ -233,12 +233,12 @@ impl CommandEncoderInterface for CommandEncoder {
 
 #[derive(Debug)]
 pub struct CommandBuffer {
-    finished: Mutex<Option<Finished>>,
+    finished: Mutex<Option<FinishedCommands>>,
 }
 
 impl CommandBuffer {
     /// What is submitted; once.
-    pub fn take(&self) -> Option<Finished> {
+    pub fn take(&self) -> Option<FinishedCommands> {
         self.finished.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }

@@ -1,6 +1,6 @@
-use super::Real;
+use super::WrappedObject;
 use super::adapter::Adapter;
-use super::shared::{HandsOn, MakeRecorder};
+use super::shared::{MakeRecorder, NoRecorder};
 use super::surface::Surface;
 use std::future::ready;
 use std::pin::Pin;
@@ -25,7 +25,7 @@ impl Instance {
 
 impl InstanceInterface for Instance {
     fn new(descriptor: wgpu::InstanceDescriptor) -> Self {
-        Instance::recorded_by(descriptor, || Box::new(HandsOn))
+        Instance::recorded_by(descriptor, || Box::new(NoRecorder))
     }
 
     #[expect(unsafe_code, reason = "the program promises what wgpu asks for, and it is handed on")]

@@ -28,10 +28,12 @@ mod texture;
 pub(crate) use binding::{BindGroup, real_group};
 pub(crate) use device::Device;
 pub(crate) use instance::Instance;
-pub(crate) use pipeline::{Described, Layout, RenderPipeline, Stage, VertexBuffer};
+pub(crate) use pipeline::{
+    PipelineLayoutSource, PipelineSource, ProgrammableStage, RenderPipeline, VertexBufferSource,
+};
 use shader::ShaderModule;
-pub(crate) use shared::{Record, Shared};
-pub(crate) use texture::Part;
+pub(crate) use shared::{CallRecorder, SharedDevice};
+pub(crate) use texture::ViewSubresource;
 
 use wgpu::custom::{
     DispatchAdapter, DispatchBindGroup, DispatchBlas, DispatchBuffer, DispatchComputePipeline, DispatchDevice,
@@ -40,7 +42,7 @@ use wgpu::custom::{
 };
 
 /// The real object within one that the program holds.
-pub(crate) trait Real {
+pub(crate) trait WrappedObject {
     type Object;
 
     /// # Panics
@@ -52,7 +54,7 @@ const FOREIGN: &str = "an object of another instance than the one that is record
 
 macro_rules! real {
     ($($held:ty: $wrap:ty => $real:ty;)*) => { $(
-        impl Real for $held {
+        impl WrappedObject for $held {
             type Object = $real;
 
             fn real(&self) -> &$real {
@@ -113,7 +115,7 @@ fn copy_end<'a>(end: wgpu::TexelCopyTextureInfo<'a>) -> wgpu::TexelCopyTextureIn
 }
 
 /// A real view, and where it begins.
-pub(crate) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, Part) {
+pub(crate) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, ViewSubresource) {
     let texture::TextureView { inner, part } = view.as_custom().expect(FOREIGN);
     (inner.clone(), *part)
 }

@@ -1,6 +1,6 @@
 use super::binding::{BindGroupLayout, PipelineLayout};
-use super::shader::Source;
-use super::{FOREIGN, Real, module_of};
+use super::shader::ShaderSource;
+use super::{FOREIGN, WrappedObject, module_of};
 use std::sync::Arc;
 use wgpu::custom::{
     ComputePipelineInterface, DispatchBindGroupLayout, PipelineCacheInterface, RenderPipelineInterface,
@@ -9,28 +9,28 @@ use wgpu::custom::{
 #[derive(Debug)]
 pub struct RenderPipeline {
     pub inner: wgpu::RenderPipeline,
-    pub described: Arc<Described>,
+    pub described: Arc<PipelineSource>,
 }
 
 /// What a render pipeline was made from.
 #[derive(Debug)]
-pub struct Described {
+pub struct PipelineSource {
     pub label: String,
     /// `None` where wgpu made it from the shaders.
-    pub layout: Option<Layout>,
-    pub vertex: Stage,
-    pub buffers: Vec<Option<VertexBuffer>>,
+    pub layout: Option<PipelineLayoutSource>,
+    pub vertex: ProgrammableStage,
+    pub buffers: Vec<Option<VertexBufferSource>>,
     pub primitive: wgpu::PrimitiveState,
     pub depth_stencil: Option<wgpu::DepthStencilState>,
     pub multisample: wgpu::MultisampleState,
-    pub fragment: Option<Stage>,
+    pub fragment: Option<ProgrammableStage>,
     pub targets: Vec<Option<wgpu::ColorTargetState>>,
     pub multiview_mask: Option<std::num::NonZeroU32>,
 }
 
 /// A layout that the program made.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct PipelineLayoutSource {
     pub real: wgpu::PipelineLayout,
     pub groups: Vec<Option<wgpu::BindGroupLayout>>,
     /// Bytes.
@@ -39,20 +39,20 @@ pub struct Layout {
 
 /// A programmable stage.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stage {
-    pub source: Source,
+pub struct ProgrammableStage {
+    pub source: ShaderSource,
     pub entry_point: Option<String>,
     pub constants: Vec<(String, f64)>,
 }
 
-impl Stage {
+impl ProgrammableStage {
     fn of(
         module: &wgpu::ShaderModule,
         entry_point: Option<&str>,
         options: &wgpu::PipelineCompilationOptions<'_>,
-    ) -> Stage {
+    ) -> ProgrammableStage {
         let constants = options.constants.iter().map(|(name, value)| ((*name).to_owned(), *value));
-        Stage {
+        ProgrammableStage {
             source: module_of(module).source.clone(),
             entry_point: entry_point.map(str::to_owned),
             constants: constants.collect(),
@@ -62,34 +62,36 @@ impl Stage {
 
 /// How a vertex buffer is read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct VertexBuffer {
+pub struct VertexBufferSource {
     pub stride: u64,
     pub step: wgpu::VertexStepMode,
     pub attributes: Vec<wgpu::VertexAttribute>,
 }
 
-impl Described {
-    fn of(descriptor: &wgpu::RenderPipelineDescriptor<'_>) -> Described {
+impl PipelineSource {
+    fn of(descriptor: &wgpu::RenderPipelineDescriptor<'_>) -> PipelineSource {
         let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor;
         let layout = descriptor.layout.map(|layout| layout.as_custom::<PipelineLayout>().expect(FOREIGN));
-        let buffer = |buffer: &wgpu::VertexBufferLayout<'_>| VertexBuffer {
+        let buffer = |buffer: &wgpu::VertexBufferLayout<'_>| VertexBufferSource {
             stride: buffer.array_stride,
             step: buffer.step_mode,
             attributes: buffer.attributes.to_vec(),
         };
-        Described {
+        PipelineSource {
             label: descriptor.label.unwrap_or_default().to_owned(),
-            layout: layout.map(|layout| Layout {
+            layout: layout.map(|layout| PipelineLayoutSource {
                 real: layout.inner.clone(),
                 groups: layout.groups.clone(),
                 immediate_size: layout.immediate_size,
             }),
-            vertex: Stage::of(vertex.module, vertex.entry_point, &vertex.compilation_options),
+            vertex: ProgrammableStage::of(vertex.module, vertex.entry_point, &vertex.compilation_options),
             buffers: vertex.buffers.iter().map(|one| one.as_ref().map(buffer)).collect(),
             primitive: descriptor.primitive,
             depth_stencil: descriptor.depth_stencil.clone(),
             multisample: descriptor.multisample,
-            fragment: fragment.as_ref().map(|of| Stage::of(of.module, of.entry_point, &of.compilation_options)),
+            fragment: fragment
+                .as_ref()
+                .map(|of| ProgrammableStage::of(of.module, of.entry_point, &of.compilation_options)),
             targets: fragment.as_ref().map_or_else(Vec::new, |fragment| fragment.targets.to_vec()),
             multiview_mask: descriptor.multiview_mask,
         }
@@ -100,28 +102,28 @@ impl RenderPipeline {
     pub fn new(device: &wgpu::Device, asked: &wgpu::RenderPipelineDescriptor<'_>) -> RenderPipeline {
         let fragment = asked.fragment.clone();
         let inner = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            layout: asked.layout.map(Real::real),
+            layout: asked.layout.map(WrappedObject::real),
             vertex: wgpu::VertexState { module: asked.vertex.module.real(), ..asked.vertex.clone() },
             fragment: fragment.map(|of| wgpu::FragmentState { module: of.module.real(), ..of }),
-            cache: asked.cache.map(Real::real),
+            cache: asked.cache.map(WrappedObject::real),
             ..asked.clone()
         });
-        RenderPipeline { inner, described: Arc::new(Described::of(asked)) }
+        RenderPipeline { inner, described: Arc::new(PipelineSource::of(asked)) }
     }
 
     /// Of mesh shaders: no device has their feature, and wgpu says so.
     pub fn of_meshlets(device: &wgpu::Device, asked: &wgpu::MeshPipelineDescriptor<'_>) -> RenderPipeline {
         let fragment = asked.fragment.clone();
         let inner = device.create_mesh_pipeline(&wgpu::MeshPipelineDescriptor {
-            layout: asked.layout.map(Real::real),
+            layout: asked.layout.map(WrappedObject::real),
             task: asked.task.clone().map(|of| wgpu::TaskState { module: of.module.real(), ..of }),
             mesh: wgpu::MeshState { module: asked.mesh.module.real(), ..asked.mesh.clone() },
             fragment: fragment.map(|of| wgpu::FragmentState { module: of.module.real(), ..of }),
-            cache: asked.cache.map(Real::real),
+            cache: asked.cache.map(WrappedObject::real),
             ..asked.clone()
         });
-        let vertex = Stage { source: Source::Unread, entry_point: None, constants: Vec::new() };
-        let described = Described {
+        let vertex = ProgrammableStage { source: ShaderSource::Unread, entry_point: None, constants: Vec::new() };
+        let described = PipelineSource {
             label: asked.label.unwrap_or_default().to_owned(),
             layout: None,
             vertex,
@@ -151,9 +153,9 @@ pub struct ComputePipeline {
 impl ComputePipeline {
     pub fn new(device: &wgpu::Device, asked: &wgpu::ComputePipelineDescriptor<'_>) -> ComputePipeline {
         let inner = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            layout: asked.layout.map(Real::real),
+            layout: asked.layout.map(WrappedObject::real),
             module: asked.module.real(),
-            cache: asked.cache.map(Real::real),
+            cache: asked.cache.map(WrappedObject::real),
             ..asked.clone()
         });
         ComputePipeline { inner }

@@ -1,7 +1,7 @@
 use super::encoder::CommandBuffer;
-use super::shared::Shared;
+use super::shared::SharedDevice;
 use super::surface::SurfaceOutput;
-use super::{Real, copy_end};
+use super::{WrappedObject, copy_end};
 use std::sync::Arc;
 use wgpu::custom::{
     BoxSubmittedWorkDoneCallback, DispatchBlas, DispatchBuffer, DispatchCommandBuffer, DispatchQueueWriteBuffer,
@@ -11,7 +11,7 @@ use wgpu::custom::{
 #[derive(Debug)]
 pub struct Queue {
     pub inner: wgpu::Queue,
-    pub shared: Arc<Shared>,
+    pub shared: Arc<SharedDevice>,
 }
 
 impl QueueInterface for Queue {
@@ -21,7 +21,7 @@ impl QueueInterface for Queue {
 
     fn create_staging_buffer(&self, size: wgpu::BufferSize) -> Option<DispatchQueueWriteBuffer> {
         let bytes = vec![0; usize::try_from(size.get()).ok()?];
-        Some(DispatchQueueWriteBuffer::custom(Staging(bytes)))
+        Some(DispatchQueueWriteBuffer::custom(StagingBytes(bytes)))
     }
 
     fn validate_write_buffer(&self, buffer: &DispatchBuffer, offset: u64, size: wgpu::BufferSize) -> Option<()> {
@@ -37,7 +37,7 @@ impl QueueInterface for Queue {
     }
 
     fn write_staging_buffer(&self, buffer: &DispatchBuffer, offset: u64, staging: &DispatchQueueWriteBuffer) {
-        if let Some(Staging(bytes)) = staging.as_custom() {
+        if let Some(StagingBytes(bytes)) = staging.as_custom() {
             self.inner.write_buffer(buffer.real(), offset, bytes);
         }
     }
@@ -81,10 +81,10 @@ impl QueueInterface for Queue {
 
 /// Bytes on their way into a buffer.
 #[derive(Debug)]
-struct Staging(Vec<u8>);
+struct StagingBytes(Vec<u8>);
 
 #[expect(unsafe_code, reason = "wgpu's interface; nothing unsafe is done")]
-impl QueueWriteBufferInterface for Staging {
+impl QueueWriteBufferInterface for StagingBytes {
     fn len(&self) -> usize {
         self.0.len()
     }

@@ -1,6 +1,6 @@
 use super::bundle::RenderBundle;
-use super::command::{Command, CommandList, DrawCommand, PassCommand, Targets};
-use super::{Real, bind_group_of, bundle_of, pipeline_of};
+use super::command::{CommandList, DrawCommand, EncoderCommand, PassCommand, PassTargets};
+use super::{WrappedObject, bind_group_of, bundle_of, pipeline_of};
 use std::ops::Range;
 use wgpu::custom::{
     DispatchBindGroup, DispatchBuffer, DispatchQuerySet, DispatchRenderBundle, DispatchRenderPipeline,
@@ -11,14 +11,14 @@ use wgpu::custom::{
 pub struct RenderPass {
     /// `None` where the encoder had been finished.
     inner: Option<wgpu::RenderPass<'static>>,
-    kept: Option<(CommandList, Targets, Vec<PassCommand>)>,
+    kept: Option<(CommandList, PassTargets, Vec<PassCommand>)>,
 }
 
 impl RenderPass {
     pub fn begin(
         encoder: &mut Option<wgpu::CommandEncoder>,
         list: Option<&CommandList>,
-        targets: Targets,
+        targets: PassTargets,
     ) -> RenderPass {
         let inner = encoder.as_mut().map(|encoder| targets.begin(encoder, true, true).forget_lifetime());
         RenderPass { inner, kept: list.map(|list| (list.clone(), targets, Vec::new())) }
@@ -49,7 +49,7 @@ impl Drop for RenderPass {
         // The real pass ends here.
         self.inner = None;
         if let Some((list, targets, commands)) = self.kept.take() {
-            list.push(Command::RenderPass(targets, commands));
+            list.push(EncoderCommand::RenderPass(targets, commands));
         }
     }
 }
@@ -87,7 +87,7 @@ impl RenderPassInterface for RenderPass {
         offset: u64,
         size: Option<wgpu::BufferSize>,
     ) {
-        let buffer = buffer.map(Real::real);
+        let buffer = buffer.map(WrappedObject::real);
         self.call(
             || PassCommand::VertexBuffer { slot, buffer: buffer.cloned(), offset, size },
             |pass| pass.set_vertex_buffer(slot, buffer.map(|buffer| super::slice(buffer, offset, size))),

@@ -1,6 +1,6 @@
 //! What a device, its queue, its encoders and its surfaces have in common.
 
-use super::command::Finished;
+use super::command::FinishedCommands;
 use std::any::Any;
 use std::collections::VecDeque;
 use std::fmt::Debug;
@@ -8,50 +8,55 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Who may keep what a device is told.
-pub trait Record: Any + Debug + Send + Sync {
+pub trait CallRecorder: Any + Debug + Send + Sync {
     /// Do encoders keep lists now?
     fn is_recording(&self) -> bool;
 
     /// Does what encoders have made.
-    fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex;
+    fn submit(&self, shared: &SharedDevice, buffers: Vec<FinishedCommands>) -> wgpu::SubmissionIndex;
 
     /// A picture was shown.
-    fn presented(&self, shared: &Shared);
+    fn presented(&self, shared: &SharedDevice);
 }
 
 /// Nobody keeps anything.
 #[derive(Debug)]
-pub struct HandsOn;
+pub struct NoRecorder;
 
-impl Record for HandsOn {
+impl CallRecorder for NoRecorder {
     fn is_recording(&self) -> bool {
         false
     }
 
-    fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex {
+    fn submit(&self, shared: &SharedDevice, buffers: Vec<FinishedCommands>) -> wgpu::SubmissionIndex {
         shared.queue.submit(buffers.into_iter().map(|finished| finished.inner))
     }
 
-    fn presented(&self, _: &Shared) {}
+    fn presented(&self, _: &SharedDevice) {}
 }
 
 /// Makes the recorder of a device.
-pub type MakeRecorder = fn() -> Box<dyn Record>;
+pub type MakeRecorder = fn() -> Box<dyn CallRecorder>;
 
 /// What a device, its queue and its encoders have in common.
 #[derive(Debug)]
-pub struct Shared {
+pub struct SharedDevice {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter: wgpu::Adapter,
-    pub recorder: Box<dyn Record>,
+    pub recorder: Box<dyn CallRecorder>,
     is_presented: AtomicBool,
     submissions: Mutex<Submissions>,
 }
 
-impl Shared {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, recorder: MakeRecorder) -> Shared {
-        Shared {
+impl SharedDevice {
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        adapter: &wgpu::Adapter,
+        recorder: MakeRecorder,
+    ) -> SharedDevice {
+        SharedDevice {
             device: device.clone(),
             queue: queue.clone(),
             adapter: adapter.clone(),

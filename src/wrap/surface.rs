@@ -1,4 +1,4 @@
-use super::Real;
+use super::WrappedObject;
 use super::texture::Texture;
 use std::sync::{Mutex, PoisonError};
 use wgpu::custom::{

@@ -21,7 +21,7 @@ pub fn usage(asked: &wgpu::TextureDescriptor<'_>) -> wgpu::TextureUsages {
 
 impl TextureInterface for Texture {
     fn create_view(&self, descriptor: &wgpu::TextureViewDescriptor<'_>) -> DispatchTextureView {
-        let part = Part { mip: descriptor.base_mip_level, layer: descriptor.base_array_layer };
+        let part = ViewSubresource { mip: descriptor.base_mip_level, layer: descriptor.base_array_layer };
         DispatchTextureView::custom(TextureView { inner: self.inner.create_view(descriptor), part })
     }
 
@@ -32,7 +32,7 @@ impl TextureInterface for Texture {
 
 /// Which level and layer a view begins at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
+pub struct ViewSubresource {
     pub mip: u32,
     pub layer: u32,
 }
@@ -40,7 +40,7 @@ pub struct Part {
 #[derive(Debug)]
 pub struct TextureView {
     pub inner: wgpu::TextureView,
-    pub part: Part,
+    pub part: ViewSubresource,
 }
 
 impl TextureViewInterface for TextureView {}

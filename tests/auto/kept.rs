@@ -6,7 +6,7 @@ use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::Decision;
 use stencilscope::scene::Scene;
-use stencilscope::session::{CaptureRequest, Every, Session};
+use stencilscope::session::{CaptureRequest, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
 fn scene() -> Scene {
@@ -72,7 +72,7 @@ fn draws_of_a_kept_map_are_told_apart() {
     let mut scene = scene();
     scene.objects.push(cuboid("other", [1.0, 1.0, -0.5], [1.5, 1.5, 0.5]));
     let mut after_draws = |redraw| {
-        let request = CaptureRequest { every: Every::Draw, ..asked(Technique::ShadowMap, redraw) };
+        let request = CaptureRequest { every: SnapshotInterval::Draw, ..asked(Technique::ShadowMap, redraw) };
         session.capture(&scene, &request).expect("a capture");
         let capture = session.capture(&scene, &request).expect("a capture");
         let step =

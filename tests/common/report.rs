@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 use stencilscope::capture::AdapterInfo;
-use stencilscope::report::{FrameTimes, Report, Row};
+use stencilscope::report::{FrameTimes, Report, ReportRow};
 
-fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wrong: u64, ms: f64) -> Row {
+fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wrong: u64, ms: f64) -> ReportRow {
     let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
     // No two frames take equally long: a few per cent around the median.
     let spread = 0.03 + 0.05 * (ms * 7.3).fract();
-    Row {
+    ReportRow {
         scene: scene.to_owned(),
         technique: technique.to_owned(),
         settings: settings.collect::<BTreeMap<_, _>>(),
@@ -33,7 +33,7 @@ fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wro
 }
 
 /// A scene as techniques do on it: `light` of it is in shadow, frames take `pace` milliseconds.
-fn scene(name: &str, pace: f64, shadow: u64, z_pass_wrong: u64, planar_wrong: u64) -> Vec<Row> {
+fn scene(name: &str, pace: f64, shadow: u64, z_pass_wrong: u64, planar_wrong: u64) -> Vec<ReportRow> {
     let mut rows = vec![
         row(name, "none", "", &[], shadow, pace),
         row(name, "planar", "", &[], planar_wrong, pace * 1.5),

@@ -3,12 +3,12 @@
 use super::provoke::{CAUSES, PlanFault, Provocation, provoke, set};
 use super::{SMALL, diagnose, faults, first, session, told};
 use std::collections::BTreeSet;
-use stencilscope::diagnosis::{Cause, Diagnosis, MeshTrouble, Proof};
-use stencilscope::plan::Part;
+use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof};
+use stencilscope::plan::DrawPart;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, builtin};
-use stencilscope::session::{CaptureRequest, Fault, Session};
-use stencilscope::stress::{Case, Drives};
+use stencilscope::session::{CaptureRequest, InjectedFault, Session};
+use stencilscope::stress::{CaseNumber, StressCase};
 use stencilscope::technique::Technique;
 
 /// Scenes that are looked at until one has wrong pixels.
@@ -45,8 +45,8 @@ fn proven(diagnosis: &Diagnosis) -> BTreeSet<Cause> {
 fn two_causes_at_once_are_both_named() {
     let mut session = session();
     let both_caps: PlanFault = Box::new(|plan| {
-        faults::without(Part::LightCap)(plan);
-        faults::without(Part::DarkCap)(plan);
+        faults::without(DrawPart::LightCap)(plan);
+        faults::without(DrawPart::DarkCap)(plan);
     });
     let mut caps = provoke(Cause::MissingDarkCap, 3);
     caps.fault = Some(both_caps);
@@ -119,8 +119,8 @@ fn a_silhouette_that_does_not_fit_its_picture_is_outside_the_map() {
 /// Where one shadow ends in the middle of a pixel and the next begins there, rounding leaves a hole in the dark.
 #[test]
 fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
-    let case = Case::named("seam").expect("a case");
-    let Drives::Scene(scene) = case.drives else { panic!("it drives a scene") };
+    let case = StressCase::named("seam").expect("a case");
+    let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
     let provoked = |technique| Provocation {
         cause: Cause::F32Limit,
         scene: scene(0.0).expect("a scene"),
@@ -130,7 +130,7 @@ fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
     let mut session = session();
     for technique in [Technique::ZFail, Technique::Auto] {
         let request = CaptureRequest::new(provoked(technique).choice, [320, 240]);
-        let found = session.diagnose(&provoked(technique).scene, &request, Fault::None, &Progress::default());
+        let found = session.diagnose(&provoked(technique).scene, &request, InjectedFault::None, &Progress::default());
         let found = found.expect("a diagnosis");
         let holes = found.regions.len() + found.rest.regions;
         assert!(holes > 3 && found.error.false_shadow == 0, "{holes}: {}", told(&found));
@@ -150,13 +150,13 @@ fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
 /// Strips of a hundred kilometres are cut where the picture ends, and rounding moves the cut.
 #[test]
 fn what_is_cut_beside_the_border_is_told_with_the_length_of_what_is_cut() {
-    let case = Case::named("long-edge").expect("a case");
-    let Drives::Scene(scene) = case.drives else { panic!("it drives a scene") };
+    let case = StressCase::named("long-edge").expect("a case");
+    let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
     let request = CaptureRequest::new(set(Technique::ZFail, &[]), [640, 480]);
     let mut session = session();
     let mut diagnose = |metres| {
         let scene = scene(metres).expect("a scene");
-        session.diagnose(&scene, &request, Fault::None, &Progress::default()).expect("a diagnosis")
+        session.diagnose(&scene, &request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
     };
     assert!(!diagnose(1e3).is_bad());
     let found = diagnose(1e5);
@@ -305,6 +305,6 @@ fn meshes_are_told_of_with_places() {
         assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
         let of_caster = diagnosis.mesh_findings.iter().filter(|found| found.object == "caster");
         let found: Vec<_> = of_caster.map(|found| (found.kind, found.count, found.at.is_empty())).collect();
-        assert!(found.contains(&(MeshTrouble::Cause(cause), count, false)), "{cause}: {found:?}");
+        assert!(found.contains(&(MeshDefect::Cause(cause), count, false)), "{cause}: {found:?}");
     }
 }

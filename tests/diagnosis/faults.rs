@@ -4,10 +4,10 @@ use super::provoke::PlanFault;
 use crate::common::faults::{draws, turn_caps};
 use glam::{DMat4, DVec3, Mat4};
 use std::collections::BTreeMap;
-use stencilscope::plan::{Blob, Draw, FramePlan, Part};
+use stencilscope::plan::{Blob, Draw, DrawPart, FramePlan};
 
 /// A part of volumes is not drawn.
-pub fn without(part: Part) -> PlanFault {
+pub fn without(part: DrawPart) -> PlanFault {
     Box::new(move |plan| plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != part)))
 }
 
@@ -25,11 +25,13 @@ pub fn textbook_silhouettes() -> PlanFault {
         }
         let surface = |plan: &FramePlan, caster: &Option<String>| {
             let all = plan.passes.iter().flat_map(|pass| &pass.draws);
-            let mesh =
-                all.filter(|draw| draw.part == Part::Surface && draw.caster == *caster).map(|draw| draw.mesh).next();
+            let mesh = all
+                .filter(|draw| draw.part == DrawPart::Surface && draw.caster == *caster)
+                .map(|draw| draw.mesh)
+                .next();
             mesh.map(|mesh| plan.meshes[mesh.0].indices.data().to_vec())
         };
-        let sides: Vec<Draw> = draws(plan, Part::Side).map(|draw| draw.clone()).collect();
+        let sides: Vec<Draw> = draws(plan, DrawPart::Side).map(|draw| draw.clone()).collect();
         for side in sides {
             let Some(surface) = surface(plan, &side.caster) else { continue };
             let mut used: BTreeMap<[u32; 2], u32> = BTreeMap::new();

@@ -5,9 +5,9 @@ use crate::common::random::Random;
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 use stencilscope::diagnosis::Cause;
-use stencilscope::plan::{FramePlan, Part};
+use stencilscope::plan::{DrawPart, FramePlan};
 use stencilscope::scene::{Light, Mesh, MeshBuilder, Object, Scene, SceneBuilder, builtin, shapes};
-use stencilscope::stress::{Case, Drives};
+use stencilscope::stress::{CaseNumber, StressCase};
 use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::Tracer;
 
@@ -146,9 +146,11 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::NearPlaneCut => (near_in_shadow(dice), set(Technique::ZPass, &[]), None),
         Cause::NearPlaneCrack => (near_through_roof(dice), set(Technique::ZPassPlus, &[]), None),
         Cause::MissingDarkCap => {
-            (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(Part::DarkCap)))
+            (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(DrawPart::DarkCap)))
         }
-        Cause::MissingLightCap => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap))),
+        Cause::MissingLightCap => {
+            (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::without(DrawPart::LightCap)))
+        }
         Cause::FarClip => (dice.any_scene(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
         Cause::FiniteExtrusion => {
             let reach = format!("finite:{:.2}", dice.between(0.05, 0.2));
@@ -481,7 +483,7 @@ fn low_sun(dice: &mut Dice) -> Scene {
 
 /// The one view of hundreds in which a mesh of 48 000 triangles, some thirty pixels wide, has a wrong pixel.
 fn far_mesh() -> Scene {
-    let case = Case::named("subpixel-edges").expect("a case");
-    let Drives::Scene(scene) = case.drives else { panic!("it drives a scene") };
+    let case = StressCase::named("subpixel-edges").expect("a case");
+    let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
     scene(30.0).expect("a scene")
 }

@@ -4,7 +4,7 @@ use super::{SIZE, builtin, frame, nested_boxes};
 use crate::common::random::Random;
 use crate::common::session;
 use stencilscope::history::{PixelHistory, TriangleEvent};
-use stencilscope::plan::Part;
+use stencilscope::plan::DrawPart;
 use stencilscope::scene::Scene;
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
@@ -28,7 +28,7 @@ fn agreeing(
         let what = format!("{} {technique:?} {settings:?}", scene.name);
         assert!(history.agrees(), "{what}: {:?}\n{}", history.disagreements(), history.story(&capture.depth));
         assert_eq!(history.computed.stored(), history.captured.expect("a picture"), "{what}");
-        let is_flattened = |one: &TriangleEvent| one.part == Part::PlanarShadow;
+        let is_flattened = |one: &TriangleEvent| one.part == DrawPart::PlanarShadow;
         let shadows = history.triangles().filter(|(event, one)| event.is_of_volume() || is_flattened(one));
         with_volumes += usize::from(shadows.count() >= 2);
     }

@@ -3,8 +3,8 @@
 use super::{SIZE, builtin, choice, frame, nested_boxes};
 use crate::common::{cuboid, from_above, session, square};
 use glam::DVec3;
-use stencilscope::history::{Count, Rung};
-use stencilscope::plan::{Coverage, Part};
+use stencilscope::history::{Rung, VolumeCount};
+use stencilscope::plan::{Coverage, DrawPart};
 use stencilscope::scene::{Light, Scene};
 use stencilscope::session::{CaptureRequest, SessionError};
 use stencilscope::technique::Technique;
@@ -166,7 +166,7 @@ fn a_flattened_box_raises_its_receivers_mark_once() {
     let mut frame = Rendered::on(session(), &scene, &request).expect("a frame");
     let pixel = frame.at(INSIDE);
     pixel.agrees().label(0, PixelLabel::Shadow).stencil_after("receivers", 2).stencil_after("shadows", 3);
-    let shadows = pixel.history().triangles().filter(|(_, one)| one.part == Part::PlanarShadow);
+    let shadows = pixel.history().triangles().filter(|(_, one)| one.part == DrawPart::PlanarShadow);
     let raised: Vec<i32> = shadows.map(|(event, _)| event.counted()).collect();
     assert_eq!(raised, [1, 0], "the second triangle fails the stencil test");
     let why = pixel.history().why(0).expect("a shadow").to_string();
@@ -285,7 +285,7 @@ fn beyond_eight_bits_both_counts_are_told() {
     let text = history.why(0).expect("volumes").to_string();
     assert!(text.ends_with("together 256, which eight bits hold as 0, so the light pass adds the light"), "{text}");
     let ladder = history.ladder(0, &capture.depth).expect("volumes");
-    assert_eq!((ladder.count, ladder.tested), (256, Count::Stencil(0)));
+    assert_eq!((ladder.count, ladder.tested), (256, VolumeCount::Stencil(0)));
 }
 
 #[test]

@@ -5,11 +5,11 @@ use crate::common::random::Random;
 use crate::common::session;
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
-use stencilscope::capture::disk::{Contents, read_whole, write};
-use stencilscope::capture::{Capture, Differs};
+use stencilscope::capture::disk::{FolderContents, read_whole, write};
+use stencilscope::capture::{Capture, RecomputeDifference};
 use stencilscope::diagnosis::{Cause, Proof};
-use stencilscope::import::{Converted, RawFrame, RawKind, convert, read};
-use stencilscope::plan::{Blob, DecidedBy, FramePlan, LightId, RasterState, Side, StartContent, lint};
+use stencilscope::import::{ConvertedFrame, RawFrame, RawKind, convert, read};
+use stencilscope::plan::{Blob, CountedSide, DecidedBy, FramePlan, LightId, RasterState, StartContent, lint};
 use stencilscope::progress::Progress;
 use stencilscope::session::{FrameSource, RunFrame, Session};
 
@@ -18,7 +18,7 @@ const MOST_DIFFERING: u64 = 16;
 
 fn converted(session: &mut Session, name: &str) -> (FramePlan, Capture) {
     let frame = read(&recording(name)).expect("a recording");
-    let Converted { plan, capture, .. } = convert(&frame, name).expect("a frame");
+    let ConvertedFrame { plan, capture, .. } = convert(&frame, name).expect("a frame");
     assert_eq!(lint::check(&plan), []);
     let capture = session.held_against_itself(&plan, &capture, &Progress::default()).expect("checked");
     (plan, capture)
@@ -28,14 +28,14 @@ fn roles(plan: &FramePlan) -> Vec<(&str, Option<usize>)> {
     plan.passes.iter().map(|pass| (pass.name.as_str(), pass.light.map(|light| light.0))).collect()
 }
 
-fn differing(capture: &Capture) -> Vec<Differs> {
+fn differing(capture: &Capture) -> Vec<RecomputeDifference> {
     capture.steps.iter().flat_map(|step| &step.draws).map(|draw| draw.differs.expect("checked")).collect()
 }
 
 #[test]
 fn roles_and_the_counted_side_are_told_by_the_states() {
     let mut session = session();
-    for (name, side) in [("ogre", Side::InFront), ("ogre-inside", Side::AsNeeded)] {
+    for (name, side) in [("ogre", CountedSide::InFront), ("ogre-inside", CountedSide::AsNeeded)] {
         let (plan, capture) = converted(&mut session, name);
         assert_eq!(roles(&plan), [("surfaces", None), ("volumes", Some(0)), ("light", Some(0))], "{name}");
         assert_eq!(capture.decided_by(0), DecidedBy::StencilCount { side }, "{name}");
@@ -60,7 +60,7 @@ fn every_draw_makes_what_was_stored_but_at_a_few_pixels() {
 fn a_draw_that_was_stored_wrong_is_marked_with_its_count() {
     let mut session = session();
     let frame = read(&recording("ogre")).expect("a recording");
-    let Converted { mut plan, capture, .. } = convert(&frame, "ogre").expect("a frame");
+    let ConvertedFrame { mut plan, capture, .. } = convert(&frame, "ogre").expect("a frame");
     // Its faces count the other way round: what was stored is something else.
     let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
     let stencil = &mut volumes.draws[0].raster.stencil;
@@ -92,7 +92,7 @@ fn histories_agree_with_the_stored_bytes_and_have_ladders() {
     for name in ["ogre", "ogre-inside"] {
         let (plan, capture) = converted(&mut session, name);
         let folder = parent.path().join(name);
-        write(Contents { capture: &capture, plan: Some(&plan), scene: None }, &folder, false).expect("written");
+        write(FolderContents { capture: &capture, plan: Some(&plan), scene: None }, &folder, false).expect("written");
         let RunFrame { capture, plan, source } =
             RunFrame::from_folder(read_whole(&folder).expect("read")).expect("a whole frame");
         assert!(source.is_none());
@@ -138,7 +138,7 @@ fn the_light_is_found_where_the_script_put_it() {
     ];
     for (name, eye, target) in frames {
         let frame = read(&recording(name)).expect("a recording");
-        let Converted { lights, capture, .. } = convert(&frame, name).expect("a frame");
+        let ConvertedFrame { lights, capture, .. } = convert(&frame, name).expect("a frame");
         let [Some(found)] = lights[..] else { panic!("{name}: {lights:?}") };
         let expected = seen(eye, target, DVec3::new(120.0, 260.0, 90.0));
         let position = found.position.truncate();
@@ -155,7 +155,7 @@ fn no_pixel_of_right_frames_is_wrong_against_rays_through_their_own_triangles() 
     let mut session = session();
     for name in ["ogre", "ogre-inside"] {
         let frame = read(&recording(name)).expect("a recording");
-        let Converted { capture, scene, .. } = convert(&frame, name).expect("a frame");
+        let ConvertedFrame { capture, scene, .. } = convert(&frame, name).expect("a frame");
         let judged = session.judged(&scene.expect("a scene"), &capture, &Progress::default()).expect("a truth");
         let error = judged.error().expect("an error");
         println!("{name}: {error:?}");
@@ -166,7 +166,7 @@ fn no_pixel_of_right_frames_is_wrong_against_rays_through_their_own_triangles() 
 
 fn frame_of(name: &str) -> RunFrame {
     let frame = read(&recording(name)).expect("a recording");
-    let Converted { plan, capture, scene, .. } = convert(&frame, name).expect("a frame");
+    let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, name).expect("a frame");
     let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
     RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
 }
@@ -302,7 +302,7 @@ fn our_own_frame_on_vulkan_is_computed_anew_to_the_last_bit() {
     assert!(names.contains(&"volumes") && names.contains(&"light"), "{names:?}");
     assert!(plan.passes.iter().any(|pass| pass.recorded.as_ref().is_some_and(|of| of.groups == ["volumes"])));
     for differs in differing(&capture) {
-        assert_eq!(differs, Differs::default());
+        assert_eq!(differs, RecomputeDifference::default());
     }
 }
 

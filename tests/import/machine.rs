@@ -8,7 +8,7 @@ use std::ops::Range;
 use stencilscope::capture::Image;
 use stencilscope::glam::DVec3;
 use stencilscope::import::{
-    RawCompare, RawContents, RawCull, RawDraw, RawFrame, RawKind, RawMay, RawStencilFace, RawStencilOperation,
+    RawCompare, RawContents, RawCull, RawDraw, RawFrame, RawKind, RawShaderEffect, RawStencilFace, RawStencilOperation,
     RawTarget,
 };
 
@@ -36,7 +36,7 @@ pub fn compare(frame: &RawFrame) -> Vec<Compared> {
         let Some(target) = event.depth_target else { continue };
         let before = held.insert(target, event.after.clone());
         let (RawKind::Draw(draw), Some(before)) = (&event.kind, before) else { continue };
-        if draw.fragment.may_discard != RawMay::No {
+        if draw.fragment.may_discard != RawShaderEffect::No {
             continue;
         }
         let texture = &frame.textures[target.texture];

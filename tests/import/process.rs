@@ -6,7 +6,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use stencilscope::import::{self, ImportError, Options};
+use stencilscope::import::{self, ImportError, RenderDocOptions};
 use stencilscope::progress::Progress;
 use tempfile::TempDir;
 
@@ -116,7 +116,7 @@ fn what_takes_too_long_ends_with_all_that_it_has_started() {
     let script = "sleep 100 & echo $! >child; echo progress 1 2; sleep 100";
     let folder = folder(script);
     let python = folder.path().join("python").display().to_string();
-    let options = Options { python, seconds: 1, ..Options::default() };
+    let options = RenderDocOptions { python, seconds: 1, ..RenderDocOptions::default() };
     let child = folder.path().join("child");
     // The script runs where the tests do.
     let script = format!("cd {}; {script}", folder.path().display());
@@ -132,7 +132,7 @@ fn what_takes_too_long_ends_with_all_that_it_has_started() {
 fn what_takes_too_much_memory_is_ended() {
     let folder = folder("x=$(head -c 400000000 /dev/zero | tr '\\0' x); sleep 100");
     let python = folder.path().join("python").display().to_string();
-    let options = Options { python, most_memory: 50 << 20, ..Options::default() };
+    let options = RenderDocOptions { python, most_memory: 50 << 20, ..RenderDocOptions::default() };
     let error = import::import(&folder.path().join("frame.rdc"), &options, &Progress::default());
     assert!(matches!(error, Err(ImportError::TooMuchMemory { .. })), "{error:?}");
 }
@@ -140,7 +140,8 @@ fn what_takes_too_much_memory_is_ended() {
 #[test]
 fn work_that_is_called_off_ends() {
     let folder = folder("sleep 100");
-    let options = Options { python: folder.path().join("python").display().to_string(), ..Options::default() };
+    let options =
+        RenderDocOptions { python: folder.path().join("python").display().to_string(), ..RenderDocOptions::default() };
     let progress = Progress::default();
     progress.cancel();
     let error = import::import(&folder.path().join("frame.rdc"), &options, &progress);

@@ -12,7 +12,7 @@ use stencilscope::ask::{AnatomyOf, TestsOf};
 use stencilscope::capture::{Image, PixelFormat, StepTests};
 use stencilscope::inspector::{Action, ExportData, ExportKind, Overlay, ThemeChoice};
 use stencilscope::reading::TestOutcomes;
-use stencilscope::reading::shown::{PictureKind, Zoom};
+use stencilscope::reading::shown::{PictureKind, TexelZoom};
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -84,7 +84,7 @@ fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
     assert_eq!([flipped.at([3, 4]), flipped.at([36, 4])], [COUNTS[1], COUNTS[0]]);
     assert!(is_near(flipped.at([19, 10]), [255; 3], 120), "a light line between: {:?}", flipped.at([19, 10]));
     // Zoomed to the left quarter, the divider stands over column 10.
-    harness.state_mut().inspector.set_zoom(Zoom::Pixels(40.0), [10.0, 15.0]);
+    harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(40.0), [10.0, 15.0]);
     harness.run_steps(2);
     let zoomed = exported(&mut harness, ExportKind::AsShown);
     assert_eq!(zoomed.size, SIZE, "the whole picture all the same");

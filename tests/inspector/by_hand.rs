@@ -4,14 +4,14 @@ use super::SIZE;
 use glam::{DMat4, DVec3, DVec4};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use stencilscope::accuracy::{ErrorCounts, Finding, Region};
+use stencilscope::accuracy::{ErrorCounts, Finding, WrongRegion};
 use stencilscope::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawState, DrawSummary, FrameSnapshot,
     FrameTarget, Image, PixelFormat, Snapshot, Step, Timing,
 };
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::math::projection::perspective;
-use stencilscope::plan::{DecidedBy, Decision, LeftOut, Part, Side};
+use stencilscope::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
 use stencilscope::scene::Camera;
 
 fn camera() -> Camera {
@@ -32,7 +32,7 @@ fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(
     Arc::new(Image::packed(format, size, bytes))
 }
 
-fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
+fn draw(name: &str, part: DrawPart, triangles: u64) -> DrawSummary {
     DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles, after: None, differs: None }
 }
 
@@ -75,7 +75,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         let target = if writes_labels { FrameTarget::Labels } else { FrameTarget::Picture };
         Snapshot::Frame(FrameSnapshot { color, depth, stencil: Some(stencil), target })
     };
-    let volumes = vec![draw("sides of box", Part::Side, 24), draw("dark cap of box", Part::DarkCap, 1212)];
+    let volumes = vec![draw("sides of box", DrawPart::Side, 24), draw("dark cap of box", DrawPart::DarkCap, 1212)];
     Capture {
         scene: "by hand".to_owned(),
         technique: "z-fail".to_owned(),
@@ -88,7 +88,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
             step(
                 "ambient",
                 None,
-                vec![draw("floor", Part::Surface, 2)],
+                vec![draw("floor", DrawPart::Surface, 2)],
                 frame(new(&dark), new(&depth), new(&zero), false),
             ),
             step("volumes", Some(0), volumes, frame(old(&dark), old(&depth), new(&counts), false)),
@@ -96,14 +96,14 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
             step(
                 "light",
                 Some(0),
-                vec![draw("floor", Part::Surface, 2)],
+                vec![draw("floor", DrawPart::Surface, 2)],
                 frame(new(&lit), old(&depth), new(&after_light), false),
             ),
         ],
         lights: vec![CapturedLight {
             position: DVec4::new(0.0, 4.0, 0.0, 1.0),
             count_of: None,
-            decided_by: DecidedBy::StencilCount { side: Side::Behind },
+            decided_by: DecidedBy::StencilCount { side: CountedSide::Behind },
             shadow: Some(labels),
             count: None,
             map: None,
@@ -137,7 +137,7 @@ pub fn with_truth(mut capture: Capture) -> Capture {
     let findings = image_of(PixelFormat::U8, size, |x, y| [finding(x, y) as u8]);
     let error =
         ErrorCounts { compared: 1170, false_shadow: 40, missing_shadow: 1, edge_band: 20, ..ErrorCounts::default() };
-    let worst = Region { pixels: 40, kind: Finding::FalseShadow, bounds: [18, 0, 19, 19], at: [18, 0] };
+    let worst = WrongRegion { pixels: 40, kind: Finding::FalseShadow, bounds: [18, 0, 19, 19], at: [18, 0] };
     capture.lights[0].truth = Some(CapturedTruth { labels, findings, error, worst: Some(worst) });
     capture
 }
@@ -172,7 +172,7 @@ pub fn with_draws(mut capture: Capture) -> Capture {
         first.draws = ["near box", "far box"]
             .into_iter()
             .zip(states)
-            .map(|(name, after)| DrawSummary { after, ..draw(name, Part::Map, 12) })
+            .map(|(name, after)| DrawSummary { after, ..draw(name, DrawPart::Map, 12) })
             .collect();
     }
     capture
@@ -215,7 +215,7 @@ pub fn layered(technique: &str, what: &str) -> Capture {
         }
     }
     for (face, of) in [(1, "wall, flat piece 2"), (0, "floor, flat piece 1")] {
-        let draws = vec![draw("box", Part::Map, 12)];
+        let draws = vec![draw("box", DrawPart::Map, 12)];
         let map = Snapshot::Map { light: 0, face };
         capture.steps.insert(0, step(&format!("{what} of {of}"), Some(0), draws, map));
     }
@@ -240,7 +240,7 @@ pub fn layered(technique: &str, what: &str) -> Capture {
 pub fn counted_in_floats() -> Capture {
     let mut capture = z_fail(SIZE);
     capture.settings.insert("counter".to_owned(), "float".to_owned());
-    capture.lights[0].decided_by = DecidedBy::FloatCount { side: Side::Behind };
+    capture.lights[0].decided_by = DecidedBy::FloatCount { side: CountedSide::Behind };
     let count = image_of(PixelFormat::Count32F, SIZE, |x, y| {
         let count = match (x, y) {
             (0, 0) => -1.0,

@@ -10,7 +10,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
 use stencilscope::ask::{AnatomyOf, HistoryOf};
 use stencilscope::inspector::ThemeChoice;
-use stencilscope::reading::shown::{PictureKind, Zoom};
+use stencilscope::reading::shown::{PictureKind, TexelZoom};
 
 const FINDINGS: [&str; 6] =
     ["false shadow", "missing shadow", "wrong surface", "edge, excused", "agrees", "not compared"];
@@ -78,7 +78,7 @@ fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
         assert_eq!(places(&harness), before, "{kind}");
         assert!(harness.query_by_label("Before").is_none_or(|found| found.rect() == phases), "{kind}");
     }
-    harness.state_mut().inspector.set_zoom(Zoom::Pixels(3.0), [20.0, 15.0]);
+    harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(3.0), [20.0, 15.0]);
     harness.run_steps(2);
     harness.get_by_label("300 %");
     assert_eq!(places(&harness), before, "zoomed");

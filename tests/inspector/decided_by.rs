@@ -11,7 +11,7 @@ use stencilscope::ask::HistoryOf;
 use stencilscope::ask::RunRequest;
 use stencilscope::capture::Capture;
 use stencilscope::inspector::Inspector;
-use stencilscope::plan::{CountOf, DecidedBy, Side};
+use stencilscope::plan::{CountOf, CountedSide, DecidedBy};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
@@ -72,10 +72,12 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
         assert_eq!(says(&harness, "its stencil count is "), side.is_some(), "{name}: a sum");
         let legend = stencil_legend(&mut harness, &capture);
         let (expected_side, expected_legend, reason) = match technique {
-            Technique::ZPass | Technique::ZPassPlus => (Some(Side::InFront), Some("Stencil count"), "volume face"),
-            Technique::ZFail => (Some(Side::Behind), Some("Stencil count"), "volume face"),
+            Technique::ZPass | Technique::ZPassPlus => {
+                (Some(CountedSide::InFront), Some("Stencil count"), "volume face")
+            }
+            Technique::ZFail => (Some(CountedSide::Behind), Some("Stencil count"), "volume face"),
             // No caster of this scene holds the eye in its shadow.
-            Technique::Auto => (Some(Side::InFront), Some("Stencil count"), "volume face"),
+            Technique::Auto => (Some(CountedSide::InFront), Some("Stencil count"), "volume face"),
             Technique::Planar => (None, Some("Stencil value"), "flattened"),
             Technique::PlanarTexture => (None, None, "The texture of this flat receiver"),
             Technique::ShadowMap => (None, None, "it is nearer, so the light pass adds nothing"),
@@ -108,7 +110,7 @@ fn a_pixel_whose_volumes_count_on_both_sides_has_one_ladder_of_them_all() {
     scene.lights[0].position = glam::DVec4::new(-12.0, 20.0, 0.2, 1.0);
     let request = CaptureRequest::new(Choice::new(Technique::Auto), SIZE);
     let (harness, capture) = panels(&mut session, &scene, &request);
-    assert_eq!(capture.lights[0].decided_by, DecidedBy::StencilCount { side: Side::AsNeeded });
+    assert_eq!(capture.lights[0].decided_by, DecidedBy::StencilCount { side: CountedSide::AsNeeded });
     for text in ["on either side of the surface", "Counted along the whole ray", "its stencil count is 2."] {
         assert!(says(&harness, text), "{text}");
     }

@@ -13,16 +13,16 @@ use std::sync::Arc;
 use stencilscope::accuracy::{ErrorCounts, Finding};
 use stencilscope::ask::{DiagnosisOf, HistoryOf, TruthOf};
 use stencilscope::diagnosis::{
-    Advice, Cause, CauseFound, Diagnosis, Mend, MeshFinding, MeshTrouble, ObjectChange, Proof, RegionFound, RegionKind,
-    Rest, Staying,
+    Advice, Cause, CauseFound, Diagnosis, Fix, FixWithinTechnique, MeshDefect, MeshFinding, ObjectChange, Proof,
+    RegionFound, RegionKind, RemainingRegions,
 };
 use stencilscope::inspector::{Action, Inspector};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{OpenSpec, open};
-use stencilscope::session::Fault;
+use stencilscope::session::InjectedFault;
 use stencilscope::technique::{Choice, Technique};
 
-fn cause(cause: Cause, mend: Mend, proof: Proof, left: u64) -> CauseFound {
+fn cause(cause: Cause, mend: Fix, proof: Proof, left: u64) -> CauseFound {
     let evidence = format!("evidence of {cause}");
     CauseFound {
         cause,
@@ -47,7 +47,7 @@ pub fn found() -> Diagnosis {
         receivers: vec!["floor".to_owned()],
         causes,
     };
-    let z_fail = || Mend::technique(Technique::ZFail);
+    let z_fail = || Fix::technique(Technique::ZFail);
     Diagnosis {
         scene: "by hand".to_owned(),
         technique: Technique::ZPass,
@@ -56,7 +56,7 @@ pub fn found() -> Diagnosis {
         error: ErrorCounts { compared: 1200, false_shadow: 30, missing_shadow: 70, wrong_surface: 0, edge_band: 4 },
         mesh_findings: vec![MeshFinding {
             object: "box".to_owned(),
-            kind: MeshTrouble::Cause(Cause::OpenMesh),
+            kind: MeshDefect::Cause(Cause::OpenMesh),
             count: 3,
             at: Vec::new(),
             effect: "it has holes".to_owned(),
@@ -69,17 +69,17 @@ pub fn found() -> Diagnosis {
                 [5, 6],
                 vec![
                     cause(Cause::EyeInVolume, z_fail(), Proof::Proven, 0),
-                    cause(Cause::OpenMesh, Mend::setting("casters", "all"), Proof::NotIt, 70),
+                    cause(Cause::OpenMesh, Fix::setting("casters", "all"), Proof::NotIt, 70),
                 ],
             ),
             region(
                 30,
                 Finding::FalseShadow,
                 [9, 4],
-                vec![cause(Cause::SplitVertices, Mend::scene(0, "box", ObjectChange::Weld), Proof::Part, 12)],
+                vec![cause(Cause::SplitVertices, Fix::scene(0, "box", ObjectChange::Weld), Proof::Part, 12)],
             ),
         ],
-        rest: Rest { regions: 2, pixels: 5 },
+        rest: RemainingRegions { regions: 2, pixels: 5 },
         advice: Some(Advice {
             mend: z_fail(),
             wrong_left: 0,
@@ -206,7 +206,7 @@ fn another_scene_forgets_what_was_found() {
 fn a_right_frame_says_so_and_small_windows_hold_it() {
     let right = Diagnosis {
         regions: Vec::new(),
-        rest: Rest::default(),
+        rest: RemainingRegions::default(),
         advice: None,
         error: ErrorCounts { compared: 1200, ..ErrorCounts::default() },
         ..found()
@@ -233,7 +233,7 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
         let capture = session.capture(&scene, &request).expect("a capture");
         let progress = Progress::default();
         let capture = session.judged(&scene, &capture, &progress).expect("a truth");
-        let diagnosis = session.diagnose(&scene, &request, Fault::None, &progress).expect("a diagnosis");
+        let diagnosis = session.diagnose(&scene, &request, InjectedFault::None, &progress).expect("a diagnosis");
         assert!(diagnosis.is_bad(), "{}", technique.name());
         for shown in sizes(folder.is_some()) {
             let at = diagnosis.regions[0].at;
@@ -257,11 +257,11 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
 
 #[test]
 fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
-    let bias = Mend::setting("bias-slope", "4");
-    let staying = Some(Staying { mend: bias.clone(), pixels_left: 1 });
+    let bias = Fix::setting("bias-slope", "4");
+    let staying = Some(FixWithinTechnique { mend: bias.clone(), pixels_left: 1 });
     let mut diagnosis = found();
     diagnosis.technique = Technique::ShadowMap;
-    let acne = cause(Cause::Acne, Mend::technique(Technique::ZFail), Proof::Proven, 0);
+    let acne = cause(Cause::Acne, Fix::technique(Technique::ZFail), Proof::Proven, 0);
     diagnosis.regions[0].causes = vec![CauseFound { staying: staying.clone(), ..acne }];
     diagnosis.advice.as_mut().expect("advice").staying = staying;
     let mut inspector = inspector(z_fail(SIZE));

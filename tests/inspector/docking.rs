@@ -7,13 +7,13 @@ use egui::accesskit::Role;
 use egui::{Key, Pos2, Rect, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use stencilscope::inspector::{Inspector, Panel, Remembered};
+use stencilscope::inspector::{Inspector, PanelKind, StoredSettings};
 
 /// A panel may be made no smaller by hand or by a drop, points.
 const LEAST: [f32; 2] = [96.0, 48.0];
 
 fn titles() -> Vec<String> {
-    let mut titles: Vec<String> = Panel::ALL.iter().map(|panel| panel.title().to_owned()).collect();
+    let mut titles: Vec<String> = PanelKind::ALL.iter().map(|panel| panel.title().to_owned()).collect();
     titles.sort_unstable();
     titles
 }
@@ -153,7 +153,7 @@ fn a_layout_that_was_broken_before_is_mended_when_it_is_opened() {
         } }
     });
     let mut inspector: Inspector = inspector(z_fail(SIZE));
-    inspector.recall(Remembered { layout: Some(stored), ..Remembered::default() });
+    inspector.recall(StoredSettings { layout: Some(stored), ..StoredSettings::default() });
     let harness = harness_of(inspector, [1280.0, 800.0]);
     assert!(harness.state().inspector.remembered().layout.is_some(), "it is taken");
     assert_usable(&harness, "mended");

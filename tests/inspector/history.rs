@@ -11,10 +11,10 @@ use egui_kittest::{Harness, Node};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use stencilscope::ask::{Answer, HistoryOf};
-use stencilscope::history::{Event, PixelHistory};
-use stencilscope::plan::Part;
-use stencilscope::reading::coordinates::{Place, vector};
-use stencilscope::reading::shading::Shaded;
+use stencilscope::history::{PixelEvent, PixelHistory};
+use stencilscope::plan::DrawPart;
+use stencilscope::reading::coordinates::{PixelCoordinates, vector};
+use stencilscope::reading::shading::SurfaceShading;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -283,7 +283,7 @@ fn a_history_that_contradicts_the_gpu_says_so() {
 
 #[test]
 fn of_600_events_only_rows_in_sight_are_drawn_and_a_rung_scrolls_to_its_row() {
-    let faces: Vec<Face> = (0..595).map(|index| (Part::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
+    let faces: Vec<Face> = (0..595).map(|index| (DrawPart::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
     let mut harness = answered(&faces);
     harness.get_by_label("600 events");
     assert!((12..=14).contains(&rows(&harness).len()), "{} rows", rows(&harness).len());
@@ -303,7 +303,7 @@ fn of_600_events_only_rows_in_sight_are_drawn_and_a_rung_scrolls_to_its_row() {
 
 #[test]
 fn folded_rungs_open_by_a_click_or_by_enter_and_fold_again() {
-    let faces: Vec<Face> = (0..300).map(|index| (Part::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
+    let faces: Vec<Face> = (0..300).map(|index| (DrawPart::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
     let mut harness = answered(&faces);
     let rungs = |harness: &Harness<Seen>| {
         let rungs = harness.query_all_by_role(Role::ListItem).filter_map(|rung| rung.accesskit_node().label());
@@ -349,7 +349,7 @@ fn a_dragged_pick_ends_with_the_answer_for_its_last_place() {
 #[test]
 fn what_the_near_plane_clipped_counts_nowhere_and_says_so() {
     let mut faces = FACES.to_vec();
-    faces.insert(0, (Part::Side, true, 0.05));
+    faces.insert(0, (DrawPart::Side, true, 0.05));
     let harness = answered(&faces);
     assert!(rows(&harness).contains(&"pass 2: side of box, front; clipped at near; 0".to_owned()));
     harness.get_by_label("rung: side of box, triangle 1, front, at 0.0500 m: not counted, count 1");
@@ -363,7 +363,7 @@ fn faces_that_are_drawn_in_two_passes_are_one_rung_each() {
     let once = history(DARK, &FACES);
     let mut twice = once.clone();
     let second = once.events.iter().filter(|event| event.is_of_volume()).cloned();
-    twice.events.extend(second.map(|event| Event { pass: 2, before: event.after, ..event }));
+    twice.events.extend(second.map(|event| PixelEvent { pass: 2, before: event.after, ..event }));
     let curve = z_fail(SIZE).depth;
     assert_eq!(twice.ladder(0, &curve), once.ladder(0, &curve));
 }
@@ -433,7 +433,7 @@ fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_
     let request = common::request(Technique::ZFail, [160, 120]);
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
     let history = session.history(&plan, &capture, at).expect("a history");
-    let place = Place::of(&capture, at).with_vertices(&capture, &plan, &history);
+    let place = PixelCoordinates::of(&capture, at).with_vertices(&capture, &plan, &history);
     let mut inspector = super::explain::over("tetrahedron", Technique::ZFail);
     inspector.pick(at);
     let mut harness = harness_of(inspector, TALL);
@@ -466,7 +466,7 @@ fn shading_unfolds_into_its_terms_with_the_texel() {
     let request = common::request(Technique::ZFail, [160, 120]);
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
     let history = session.history(&plan, &capture, at).expect("a history");
-    let shaded = Shaded::of(&capture, &plan, &history).expect("a surface");
+    let shaded = SurfaceShading::of(&capture, &plan, &history).expect("a surface");
     let [column, row] = shaded.texture.expect("a picture").texel;
     inspector.pick(at);
     let mut harness = harness_of(inspector, TALL);

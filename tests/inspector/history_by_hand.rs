@@ -1,60 +1,69 @@
 //! Histories of pixels of z-fail by hand: every event known.
 
 use stencilscope::capture::FrameTarget;
-use stencilscope::history::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
-use stencilscope::plan::{Clip, CountBits, Part, Visibility};
-use stencilscope::stencil_machine::Stored;
+use stencilscope::history::{
+    CapturedAfter, FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues, TestResult, TriangleEvent,
+};
+use stencilscope::plan::{ClipPlane, CountBits, DrawPart, Visibility};
+use stencilscope::stencil_machine::DepthStencil;
 use wgpu::StencilOperation;
 
 /// A face of the one volume: its part, whether its outside is seen, its distance in metres.
-pub type Face = (Part, bool, f32);
+pub type Face = (DrawPart, bool, f32);
 
 /// Five faces over the pixel: two before the surface, three behind it, of which one is left.
 pub const FACES: [Face; 5] = [
-    (Part::Side, true, 2.0),
-    (Part::Side, false, 3.0),
-    (Part::Side, true, 8.0),
-    (Part::Side, false, 10.0),
-    (Part::DarkCap, false, 40.0),
+    (DrawPart::Side, true, 2.0),
+    (DrawPart::Side, false, 3.0),
+    (DrawPart::Side, true, 8.0),
+    (DrawPart::Side, false, 10.0),
+    (DrawPart::DarkCap, false, 40.0),
 ];
 
 /// Near plane of the capture, metres.
 const NEAR: f32 = 0.1;
 
 struct Making {
-    events: Vec<Event>,
-    held: Held,
+    events: Vec<PixelEvent>,
+    held: PixelValues,
     after: Vec<CapturedAfter>,
 }
 
 impl Making {
-    fn push(&mut self, pass: usize, kind: EventKind, after: Held) {
+    fn push(&mut self, pass: usize, kind: PixelEventKind, after: PixelValues) {
         let pass_name = ["ambient", "volumes", "mask", "light"][pass].to_owned();
         let light = (pass > 0).then_some(0);
         let before = std::mem::replace(&mut self.held, after);
         let target = if pass == 2 { FrameTarget::Labels } else { FrameTarget::Picture };
-        self.events.push(Event { pass, pass_name, light, is_from_camera: true, target, kind, before, after });
+        self.events.push(PixelEvent { pass, pass_name, light, is_from_camera: true, target, kind, before, after });
     }
 
     fn end_pass(&mut self, pass: usize) {
-        let stored = Stored { depth: self.held.depth, stencil: self.held.stencil };
+        let stored = DepthStencil { depth: self.held.depth, stencil: self.held.stencil };
         self.after.push(CapturedAfter { pass, stored, count: None });
     }
 }
 
-fn triangle(name: &str, part: Part, primitive: u32, is_front: bool, depth: f32, fate: Fate) -> TriangleEvent {
+fn triangle(
+    name: &str,
+    part: DrawPart,
+    primitive: u32,
+    is_front: bool,
+    depth: f32,
+    fate: FragmentOutcome,
+) -> TriangleEvent {
     TriangleEvent {
-        draw: usize::from(part == Part::DarkCap),
+        draw: usize::from(part == DrawPart::DarkCap),
         draw_name: name.to_owned(),
-        caster: (part != Part::Surface).then(|| "box".to_owned()),
+        caster: (part != DrawPart::Surface).then(|| "box".to_owned()),
         part,
         primitive,
         triangle: primitive,
         corners: [[-0.1, -0.1, -NEAR / depth, 1.0], [0.1, -0.1, -NEAR / depth, 1.0], [0.0, 0.1, -NEAR / depth, 1.0]],
         // Triangles of a dark cap face into the volume.
-        is_front: is_front != (part == Part::DarkCap),
-        faces_inwards: part == Part::DarkCap,
-        lights: (part == Part::Surface).then_some(Visibility::Everywhere),
+        is_front: is_front != (part == DrawPart::DarkCap),
+        faces_inwards: part == DrawPart::DarkCap,
+        lights: (part == DrawPart::Surface).then_some(Visibility::Everywhere),
         depth,
         fate,
     }
@@ -64,19 +73,26 @@ fn triangle(name: &str, part: Part, primitive: u32, is_front: bool, depth: f32, 
 /// that read the count. Two clears, a floor in three passes, and as many events more as faces.
 pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
     let surface = NEAR / (1.0 + at[0] as f32);
-    let held = Held { depth: 0.0, stencil: 0, count: 0.0 };
+    let held = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
     let mut making = Making { events: Vec::new(), held, after: Vec::new() };
-    making.push(0, EventKind::ClearDepth, held);
-    making.push(0, EventKind::ClearStencil, held);
-    let fate = Fate::Tested { stencil: Test::Always, depth: Test::Passed, operation: None };
-    let floor = |fate| EventKind::Triangle(Box::new(triangle("floor", Part::Surface, 0, true, surface, fate)));
-    making.push(0, floor(fate), Held { depth: surface, ..held });
+    making.push(0, PixelEventKind::ClearDepth, held);
+    making.push(0, PixelEventKind::ClearStencil, held);
+    let fate = FragmentOutcome::Tested { stencil: TestResult::Always, depth: TestResult::Passed, operation: None };
+    let floor = |fate| PixelEventKind::Triangle(Box::new(triangle("floor", DrawPart::Surface, 0, true, surface, fate)));
+    making.push(0, floor(fate), PixelValues { depth: surface, ..held });
     making.end_pass(0);
     for (index, (part, is_front, distance)) in faces.iter().enumerate() {
         let depth = NEAR / distance;
         if *distance < NEAR {
-            let one = triangle("sides of box", *part, index as u32, *is_front, depth, Fate::Clipped(Clip::Near));
-            making.push(1, EventKind::Triangle(Box::new(one)), making.held);
+            let one = triangle(
+                "sides of box",
+                *part,
+                index as u32,
+                *is_front,
+                depth,
+                FragmentOutcome::Clipped(ClipPlane::Near),
+            );
+            making.push(1, PixelEventKind::Triangle(Box::new(one)), making.held);
             continue;
         }
         let passes = depth > surface;
@@ -85,18 +101,18 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
             (false, true) => (StencilOperation::DecrementWrap, making.held.stencil.wrapping_sub(1)),
             (false, false) => (StencilOperation::IncrementWrap, making.held.stencil.wrapping_add(1)),
         };
-        let test = if passes { Test::Passed } else { Test::Failed };
-        let fate = Fate::Tested { stencil: Test::Always, depth: test, operation: Some(operation) };
-        let name = if *part == Part::Side { "sides of box" } else { "dark cap of box" };
+        let test = if passes { TestResult::Passed } else { TestResult::Failed };
+        let fate = FragmentOutcome::Tested { stencil: TestResult::Always, depth: test, operation: Some(operation) };
+        let name = if *part == DrawPart::Side { "sides of box" } else { "dark cap of box" };
         let one = triangle(name, *part, index as u32, *is_front, depth, fate);
-        making.push(1, EventKind::Triangle(Box::new(one)), Held { stencil, ..making.held });
+        making.push(1, PixelEventKind::Triangle(Box::new(one)), PixelValues { stencil, ..making.held });
     }
     making.end_pass(1);
     for pass in [2, 3] {
         let is_lit = making.held.stencil == 0;
-        let stencil = if is_lit { Test::Passed } else { Test::Failed };
-        let depth = if is_lit { Test::Passed } else { Test::NotReached };
-        let fate = Fate::Tested { stencil, depth, operation: Some(StencilOperation::Keep) };
+        let stencil = if is_lit { TestResult::Passed } else { TestResult::Failed };
+        let depth = if is_lit { TestResult::Passed } else { TestResult::NotReached };
+        let fate = FragmentOutcome::Tested { stencil, depth, operation: Some(StencilOperation::Keep) };
         making.push(pass, floor(fate), making.held);
         making.end_pass(pass);
     }
@@ -105,7 +121,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         has_stencil: true,
         is_reversed: true,
         depth_rounding: 0.0,
-        start: Held { depth: 0.0, stencil: 0, count: 0.0 },
+        start: PixelValues { depth: 0.0, stencil: 0, count: 0.0 },
         computed: making.held,
         captured: making.after.last().map(|after| after.stored),
         captured_after: making.after,

@@ -13,7 +13,7 @@ use stencilscope::ask::HistoryOf;
 use stencilscope::capture::Capture;
 use stencilscope::history::PixelHistory;
 use stencilscope::inspector::Inspector;
-use stencilscope::plan::Part;
+use stencilscope::plan::DrawPart;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -78,7 +78,7 @@ fn pictures_of_histories_can_be_drawn() {
     }
     let faces: Vec<Face> = (0..595)
         .map(|index| {
-            let part = if index < 500 { Part::Side } else { Part::DarkCap };
+            let part = if index < 500 { DrawPart::Side } else { DrawPart::DarkCap };
             (part, index % 2 == 1, if index % 7 < 4 { 1.0 + index as f32 * 0.004 } else { 4.5 + index as f32 * 0.1 })
         })
         .collect();

@@ -42,10 +42,10 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::{Harness, kittest::NodeT, kittest::Queryable};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stencilscope::ask::{Answer, Ask, Asked, Question, RunRequest};
+use stencilscope::ask::{Answer, Ask, PendingQuestion, Question, RunRequest};
 use stencilscope::capture::{Capture, Image, PixelFormat};
 use stencilscope::inspector::{Action, Inspector, SceneEntry};
-use stencilscope::reading::shown::{PictureKind, Zoom};
+use stencilscope::reading::shown::{PictureKind, TexelZoom};
 use stencilscope::scene::Scene;
 use stencilscope::technique::{Choice, Technique};
 
@@ -56,7 +56,7 @@ struct Seen {
     inspector: Inspector,
     actions: Vec<Action>,
     /// What was asked that follows from the capture, where a test answers itself.
-    asked: Option<Vec<Asked>>,
+    asked: Option<Vec<PendingQuestion>>,
 }
 
 fn run_request(technique: Technique) -> RunRequest {
@@ -90,7 +90,7 @@ fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
         for action in seen.inspector.ui(ui) {
             match action {
                 // Whether the frame is timed is seen in no panel.
-                Action::Ask(Asked { ask: Ask::TimingOf(_), .. }) => {}
+                Action::Ask(PendingQuestion { ask: Ask::TimingOf(_), .. }) => {}
                 Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => match &mut seen.asked {
                     Some(held) => held.push(asked),
                     None => {
@@ -108,7 +108,7 @@ fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
 }
 
 /// The answer to what follows from the capture.
-fn found(inspector: &Inspector, asked: &Asked) -> Result<Answer, String> {
+fn found(inspector: &Inspector, asked: &PendingQuestion) -> Result<Answer, String> {
     asked.ask.read_from(inspector.capture().expect("a frame"), inspector.plan())
 }
 
@@ -119,7 +119,7 @@ fn asks<Q: Question>(harness: &Harness<Seen>) -> Vec<Q> {
 }
 
 /// What was asked last of its kind.
-fn last_asked<Q: Question>(harness: &Harness<Seen>) -> Asked {
+fn last_asked<Q: Question>(harness: &Harness<Seen>) -> PendingQuestion {
     let of = |action: &Action| match action {
         Action::Ask(asked) => Q::of(&asked.ask).map(|_| asked.clone()),
         _ => None,
@@ -389,13 +389,13 @@ fn the_wheel_zooms_at_the_pointer_and_the_buttons_go_back() {
         modifiers: Modifiers::NONE,
     });
     harness.run_steps(12);
-    assert!(matches!(harness.state().inspector.zoom(), Zoom::Pixels(pixels) if pixels > 30.0));
+    assert!(matches!(harness.state().inspector.zoom(), TexelZoom::Pixels(pixels) if pixels > 30.0));
     mouse(&mut harness, at, PointerButton::Secondary);
     assert_eq!(harness.state().inspector.picked(), Some([10, 10]), "the texel under the pointer stayed there");
     click_button(&mut harness, "1:1");
-    assert_eq!(harness.state().inspector.zoom(), Zoom::Pixels(1.0));
+    assert_eq!(harness.state().inspector.zoom(), TexelZoom::Pixels(1.0));
     click_button(&mut harness, "Fit");
-    assert_eq!(harness.state().inspector.zoom(), Zoom::Fit);
+    assert_eq!(harness.state().inspector.zoom(), TexelZoom::Fit);
 }
 
 #[test]

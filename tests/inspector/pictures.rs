@@ -13,7 +13,7 @@ use stencilscope::capture::Capture;
 use stencilscope::inspector::{Inspector, SceneEntry};
 use stencilscope::progress::Progress;
 use stencilscope::reading::ObjectMesh;
-use stencilscope::reading::shown::{PictureKind, Zoom};
+use stencilscope::reading::shown::{PictureKind, TexelZoom};
 use stencilscope::report::{MeasuredReport, Report};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::CaptureRequest;
@@ -231,7 +231,7 @@ const VIEWS: [(&str, View); 13] = [
     }),
     ("large", |harness| {
         harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
-        harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), PICK.map(f64::from));
+        harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(28.0), PICK.map(f64::from));
     }),
     ("settings", |harness| click(harness, "Scene settings")),
     ("report", |harness| {
@@ -265,7 +265,7 @@ const JUDGED_VIEWS: [(&str, View); 4] = [
     ("wrong-pixels", |harness| {
         go_to_the_largest(harness);
         let at = harness.state().inspector.picked().unwrap_or(PICK);
-        harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), at.map(f64::from));
+        harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(28.0), at.map(f64::from));
     }),
 ];
 

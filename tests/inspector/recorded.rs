@@ -8,10 +8,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
 use std::sync::Arc;
-use stencilscope::capture::{Capture, Differs};
-use stencilscope::import::{Converted, SHIPPED, Shipped, convert, read};
+use stencilscope::capture::{Capture, RecomputeDifference};
+use stencilscope::import::{ConvertedFrame, SHIPPED, ShippedFrame, convert, read};
 use stencilscope::inspector::{Action, Inspector, SceneEntry};
-use stencilscope::plan::{FramePlan, May, Program};
+use stencilscope::plan::{FramePlan, Program, ShaderEffect};
 use stencilscope::progress::Progress;
 use stencilscope::reading::shown::PictureKind;
 use stencilscope::session::{FrameSource, RunFrame, Session};
@@ -24,7 +24,8 @@ const TALL: [f32; 2] = [1280.0, 2000.0];
 /// A recording of the repository, held against itself.
 pub fn frame(session: &mut Session, name: &str) -> RunFrame {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings").join(name);
-    let Converted { plan, capture, scene, .. } = convert(&read(&folder).expect("a recording"), name).expect("a frame");
+    let ConvertedFrame { plan, capture, scene, .. } =
+        convert(&read(&folder).expect("a recording"), name).expect("a frame");
     let capture = session.held_against_itself(&plan, &capture, &Progress::default()).expect("checked");
     let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
     RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
@@ -119,8 +120,8 @@ fn draws_that_make_something_else_are_marked() {
     let ogre = frame(&mut session, "ogre");
     let ogre = changed(&ogre, |plan, capture| {
         capture.steps.iter_mut().flat_map(|step| &mut step.draws).for_each(|draw| draw.differs = None);
-        capture.steps[1].draws[1].differs = Some(Differs { depth: 0, stencil: 1234, rounded: 5 });
-        let program = Program::Recorded { may_discard: May::Yes, writes_depth: May::Unknown };
+        capture.steps[1].draws[1].differs = Some(RecomputeDifference { depth: 0, stencil: 1234, rounded: 5 });
+        let program = Program::Recorded { may_discard: ShaderEffect::Yes, writes_depth: ShaderEffect::Unknown };
         plan.passes[1].draws[1].program = program;
     });
     let name = ogre.capture.steps[1].draws[1].name.clone();
@@ -234,7 +235,8 @@ fn without_a_found_light_scene_and_truth_say_why() {
 
 #[test]
 fn frames_that_come_with_the_program_are_offered_and_open() {
-    let entry = |shipped: &Shipped| SceneEntry { name: shipped.name.to_owned(), lesson: shipped.lesson.to_owned() };
+    let entry =
+        |shipped: &ShippedFrame| SceneEntry { name: shipped.name.to_owned(), lesson: shipped.lesson.to_owned() };
     let mut inspector = Inspector::new(Vec::new());
     inspector.offer_frames(SHIPPED.iter().map(entry).collect());
     let mut harness = harness_of(inspector, [1280.0, 800.0]);

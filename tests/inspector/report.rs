@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencilscope::ask::ReportOf;
 use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector};
-use stencilscope::report::{MeasuredReport, Report, Row};
+use stencilscope::report::{MeasuredReport, Report, ReportRow};
 use stencilscope::scene::Scene;
 use stencilscope::technique::{Choice, Technique};
 
@@ -31,7 +31,7 @@ fn showing(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
 
 /// What opening the row of `label` asks for.
 fn opening(report: &Report, technique: &str, label: &str) -> Action {
-    let is_row = |row: &&Row| row.technique == technique && row.label == label;
+    let is_row = |row: &&ReportRow| row.technique == technique && row.label == label;
     let row = report.rows.iter().find(is_row).expect("a row");
     Action::OpenReportRow { technique: technique.to_owned(), settings: row.settings.clone() }
 }

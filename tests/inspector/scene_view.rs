@@ -16,7 +16,7 @@ use stencilscope::geometry::GeometryCache;
 use stencilscope::inspector::Inspector;
 use stencilscope::scene::shapes;
 use stencilscope::scene::{Camera, Material, Object, OpenSpec, Scene, open};
-use stencilscope::technique::{Choice, Job, Technique, plan};
+use stencilscope::technique::{Choice, PlanRequest, Technique, plan};
 
 /// A box on a floor, seen from the front.
 pub fn box_scene() -> Scene {
@@ -54,7 +54,7 @@ pub fn anatomy_of(scene: &Scene, technique: Technique) -> Arc<Anatomy> {
 
 fn anatomy_by(scene: &Scene, choice: &Choice) -> Arc<Anatomy> {
     let mut cache = GeometryCache::default();
-    let plan = plan(Job { scene, size: SIZE, choice, cache: &mut cache }).expect("a plan");
+    let plan = plan(PlanRequest { scene, size: SIZE, choice, cache: &mut cache }).expect("a plan");
     Arc::new(anatomy(scene, Some(choice), &plan, &mut cache))
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use egui::Modifiers;
 use std::collections::BTreeSet;
-use stencilscope::inspector::{ExportData, ExportKind, Remembered, ThemeChoice};
+use stencilscope::inspector::{ExportData, ExportKind, StoredSettings, ThemeChoice};
 
 fn shortcut(harness: &mut Harness<Seen>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
@@ -321,13 +321,13 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     assert_eq!(harness.state().inspector.remembered().layout, None);
     let stored = serde_json::to_string(&remembered).expect("text");
     let mut again = inspector(z_fail(SIZE));
-    again.recall(serde_json::from_str::<Remembered>(&stored).expect("a memory"));
+    again.recall(serde_json::from_str::<StoredSettings>(&stored).expect("a memory"));
     let again = harness_of(again, [1280.0, 800.0]);
     let found = again.get_by_role_and_label(Role::Tab, "Report").rect();
     assert!(found.center().distance(moved.center()) < 60.0, "{found:?} is where it was: {moved:?}");
     let mut broken = inspector(z_fail(SIZE));
     let layout = Some(serde_json::json!({ "root": 1, "tiles": {} }));
-    broken.recall(Remembered { layout, ..Remembered::default() });
+    broken.recall(StoredSettings { layout, ..StoredSettings::default() });
     harness_of(broken, [1280.0, 800.0]).get_by_role_and_label(Role::Tab, "Report");
 }
 

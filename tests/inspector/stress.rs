@@ -7,9 +7,9 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencilscope::accuracy::ErrorCounts;
-use stencilscope::ask::{Answer, Asked, StressOf};
+use stencilscope::ask::{Answer, PendingQuestion, StressOf};
 use stencilscope::inspector::{Action, Inspector};
-use stencilscope::stress::{self, Case, Row, StressRows, cases};
+use stencilscope::stress::{self, StressCase, StressRow, StressRows, cases};
 
 fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
@@ -21,13 +21,13 @@ fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
 }
 
 /// Rows of a case, as if every technique had so many wrong pixels at each value.
-pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
-    let case = Case::named(name).expect("a case");
+pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<StressRow> {
+    let case = StressCase::named(name).expect("a case");
     let row = |value: &f64| {
         let value = *value;
         case.entrants().into_iter().map(move |entrant| (entrant, value))
     };
-    let row_of = |(entrant, value): (stress::Entrant, f64)| Row {
+    let row_of = |(entrant, value): (stress::Entrant, f64)| StressRow {
         case: case.name,
         parameter: (case.parameter, value),
         entrant,
@@ -37,7 +37,7 @@ pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
             missing_shadow: wrong(&entrant.to_string(), value),
             ..ErrorCounts::default()
         },
-        seen: stress::Seen { pixels: 2000, lit: 900, shadow: 100 },
+        seen: stress::TruthCounts { pixels: 2000, lit: 900, shadow: 100 },
         flips: None,
         off_limit: None,
         expected: case.expected_at(&entrant, value),
@@ -47,7 +47,7 @@ pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
     case.values.iter().flat_map(row).map(row_of).collect()
 }
 
-fn add(inspector: &mut Inspector, rows: Vec<Row>) {
+fn add(inspector: &mut Inspector, rows: Vec<StressRow>) {
     inspector.tell(StressOf { cases: Vec::new() }, Ok(Arc::new(StressRows::new(rows))));
 }
 
@@ -55,7 +55,7 @@ fn fail(inspector: &mut Inspector) {
     inspector.tell(StressOf { cases: Vec::new() }, Err("the GPU was lost".to_owned()));
 }
 
-fn rows_of(inspector: &Inspector) -> Vec<Row> {
+fn rows_of(inspector: &Inspector) -> Vec<StressRow> {
     inspector.answers().last::<StressOf>().map_or_else(Vec::new, |(_, rows)| rows.rows.clone())
 }
 
@@ -80,7 +80,7 @@ fn cases_are_listed_run_and_cancelled() {
     let all: Vec<&str> = cases::all().map(|case| case.name).collect();
     let asked = asks::<StressOf>(&harness).into_iter().map(|ask| ask.cases).collect::<Vec<_>>();
     assert_eq!(asked, [vec![first], vec!["world-scale"], all.clone()]);
-    let Asked { ticket, progress, .. } = last_asked::<StressOf>(&harness);
+    let PendingQuestion { ticket, progress, .. } = last_asked::<StressOf>(&harness);
     progress.start(1200);
     (0..40).for_each(|_| progress.advance());
     for name in &all[..3] {
@@ -129,7 +129,7 @@ fn any_value_opens_as_a_scene_and_an_error_is_said() {
 /// A million triangles take more than a gigabyte where the GPU's memory is the window's own.
 #[test]
 fn what_takes_gigabytes_is_not_opened_by_a_click() {
-    let case = Case::named("triangle-count").expect("a case");
+    let case = StressCase::named("triangle-count").expect("a case");
     let [light, heavy] = [case.light_values().last(), case.values.last()].map(|value| *value.expect("values"));
     assert!(light < heavy);
     let mut harness = showing(|_| ());
@@ -148,7 +148,7 @@ fn what_is_unexpected_opens_and_a_course_is_told() {
         |entrant: &str, value: f64| u64::from(entrant == "z-fail" && [256.0, 512.0, 600.0].contains(&value)) * 7;
     let mut harness = showing(|inspector| {
         add(inspector, rows("nested", wrong));
-        let row = |mut row: Row| {
+        let row = |mut row: StressRow| {
             row.off_limit = Some(1);
             row
         };

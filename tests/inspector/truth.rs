@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 use stencilscope::ask::TruthOf;
 use stencilscope::capture::{Capture, CapturedTruth};
-use stencilscope::reading::shown::{PictureKind, Zoom};
+use stencilscope::reading::shown::{PictureKind, TexelZoom};
 
 fn asked(harness: &Harness<Seen>) -> usize {
     asks::<TruthOf>(harness).len()
@@ -154,7 +154,7 @@ fn mouse_and_keys_go_to_the_largest_patch() {
             click_button(&mut harness, "Go to the largest");
         }
         assert_eq!(harness.state().inspector.picked(), Some([18, 0]));
-        assert_eq!(harness.state().inspector.zoom(), Zoom::Pixels(12.0));
+        assert_eq!(harness.state().inspector.zoom(), TexelZoom::Pixels(12.0));
     }
 }
 

@@ -9,7 +9,7 @@ use stencilscope::history::PixelDocument;
 use stencilscope::page;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{OpenSpec, Scene, TechniqueRequest, open};
-use stencilscope::session::{CaptureRequest, Every, RunFrame, Session};
+use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
 use stencilscope::technique::Choice;
 use tempfile::TempDir;
 
@@ -32,7 +32,7 @@ impl Made {
         let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
         let choice = Choice::parse(&TechniqueRequest { name: technique.to_owned(), settings }).expect("a choice");
         let mut session = Session::new(None).expect("the reference adapter");
-        let request = CaptureRequest { every: Every::Draw, ..CaptureRequest::new(choice, size) };
+        let request = CaptureRequest { every: SnapshotInterval::Draw, ..CaptureRequest::new(choice, size) };
         Made::new(session.render(scene, request).expect("a frame"), session)
     }
 

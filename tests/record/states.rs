@@ -2,8 +2,8 @@
 
 use super::{draws, folder, record};
 use std::num::NonZeroU64;
-use stencilscope::capture::Differs;
-use stencilscope::record::{RecordError, Recorded};
+use stencilscope::capture::RecomputeDifference;
+use stencilscope::record::{RecordError, RecordedFrame};
 use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use stencilscope::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 
@@ -251,7 +251,7 @@ impl Stage {
         })
     }
 
-    fn recorded(&self, name: &str) -> Recorded {
+    fn recorded(&self, name: &str) -> RecordedFrame {
         record::frame(&self.device, &self.queue, &folder(name), |encoder| self.encode(encoder)).expect(name)
     }
 }
@@ -265,11 +265,11 @@ fn states_come_to_the_same_draw_by_draw() {
     let expected = plain.pictures();
     assert!(expected.iter().all(|picture| picture.chunks(4).any(|texel| texel != &picture[..4])), "nothing is drawn");
     assert!(expected == wrapped.pictures());
-    let Recorded { frame, folder, .. } = wrapped.recorded("states");
+    let RecordedFrame { frame, folder, .. } = wrapped.recorded("states");
     assert!(expected == wrapped.pictures(), "drawn otherwise while it is recorded");
     std::fs::remove_dir_all(folder).expect("removed");
     let exact: Vec<Option<bool>> =
-        draws(&frame.capture).iter().map(|draw| draw.differs.map(Differs::is_nowhere)).collect();
+        draws(&frame.capture).iter().map(|draw| draw.differs.map(RecomputeDifference::is_nowhere)).collect();
     // What a draw of a pass with a query left by itself is not known.
     let [yes, unknown] = [Some(true), None];
     assert_eq!(exact, [yes, yes, yes, yes, unknown, yes], "{:?}", frame.capture.origin);
@@ -292,7 +292,7 @@ fn a_callback_that_submits_goes_past() {
             queue.submit([]);
             sender.send(()).expect("somebody listens");
         });
-        let Recorded { folder, .. } = stage.recorded("callback");
+        let RecordedFrame { folder, .. } = stage.recorded("callback");
         receiver.try_recv().expect("called while the frame was recorded");
         std::fs::remove_dir_all(folder).expect("removed");
     }
@@ -309,7 +309,7 @@ fn a_closure_that_panics_is_forgotten() {
     assert!(std::panic::catch_unwind(panics).is_err());
     stage.draw();
     assert!(!given_up.exists());
-    let Recorded { folder, .. } = stage.recorded("after-panic");
+    let RecordedFrame { folder, .. } = stage.recorded("after-panic");
     std::fs::remove_dir_all(folder).expect("removed");
 }
 
@@ -321,7 +321,7 @@ fn a_closure_and_a_wish_go_side_by_side() {
     record::next_frame(&stage.device, &wished).expect("a wish");
     assert!(matches!(record::next_frame(&stage.device, &wished), Err(RecordError::Busy)));
     assert!(matches!(record::start(&stage.device, &wished), Err(RecordError::Busy)));
-    let Recorded { folder, .. } = stage.recorded("side-by-side");
+    let RecordedFrame { folder, .. } = stage.recorded("side-by-side");
     assert!(!wished.exists());
     stage.draw();
     for folder in [folder, wished] {

@@ -2,9 +2,9 @@
 
 use super::{draws, folder, record};
 use stencilscope::capture::disk::{self, WholeFrame};
-use stencilscope::history::Fate;
-use stencilscope::import::Converted;
-use stencilscope::record::Recorded;
+use stencilscope::history::FragmentOutcome;
+use stencilscope::import::ConvertedFrame;
+use stencilscope::record::RecordedFrame;
 use stencilscope::session::Session;
 use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use stencilscope::wgpu::{self, BufferUsages, IndexFormat, PrimitiveTopology};
@@ -150,11 +150,11 @@ impl Stage {
 
     /// The triangles of the frame's draws, each computed anew to the last bit.
     fn triangles(&self, name: &str, look: Look, draw: impl Fn(&mut wgpu::RenderPass<'_>)) -> Vec<usize> {
-        let Converted { plan, .. } = self.recorded(name, look, draw);
+        let ConvertedFrame { plan, .. } = self.recorded(name, look, draw);
         plan.passes.iter().flat_map(|pass| &pass.draws).map(|draw| draw.triangles.len()).collect()
     }
 
-    fn recorded(&self, name: &str, look: Look, draw: impl Fn(&mut wgpu::RenderPass<'_>)) -> Converted {
+    fn recorded(&self, name: &str, look: Look, draw: impl Fn(&mut wgpu::RenderPass<'_>)) -> ConvertedFrame {
         let pipeline = self.pipeline(look);
         let target = folder(name);
         let recorded = record::frame(&self.device, &self.queue, &target, |encoder| {
@@ -176,7 +176,7 @@ impl Stage {
             pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint16);
             draw(&mut pass);
         });
-        let Recorded { frame, folder, .. } = recorded.expect(name);
+        let RecordedFrame { frame, folder, .. } = recorded.expect(name);
         for draw in draws(&frame.capture) {
             let differs = draw.differs.unwrap_or_else(|| panic!("{name}: not computed anew"));
             assert!(differs.is_nowhere() && differs.rounded == 0, "{name}: {differs:?}");
@@ -220,7 +220,7 @@ fn what_a_shader_discards_is_known() {
     let of = |fragment, look| Look { fragment: Some(fragment), ..look };
     let strip = Look { topology: PrimitiveTopology::TriangleStrip, ..FED };
     let mut session = Session::new(None).expect("a GPU");
-    let mut found = |frame: &Converted| {
+    let mut found = |frame: &ConvertedFrame| {
         let [width, height] = frame.plan.size;
         let pixels = (0..width * height).step_by(7).map(|at| [at % width, at / width]);
         let mut fates = [0; 2];
@@ -228,7 +228,7 @@ fn what_a_shader_discards_is_known() {
             let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
             assert_eq!(history.disagreements(), [], "{pixel:?}");
             for (_, one) in history.triangles() {
-                fates[usize::from(matches!(one.fate, Fate::Discarded(None)))] += 1;
+                fates[usize::from(matches!(one.fate, FragmentOutcome::Discarded(None)))] += 1;
             }
         }
         fates.map(|count| count > 0)

@@ -5,7 +5,13 @@ use crate::common::faults::turn_caps;
 
 /// Runs a case as `stress` does, without the fault and with it: nothing is unexpected without it, and
 /// with it something is, judged by what is expected of that very case, value and technique.
-fn assert_found(session: &mut Session, (name, values): (&str, &[f64]), entrant: Entrant, fault: Fault, what: &str) {
+fn assert_found(
+    session: &mut Session,
+    (name, values): (&str, &[f64]),
+    entrant: Entrant,
+    fault: InjectedFault,
+    what: &str,
+) {
     let adapter = session.adapter().clone();
     let mut run = |fault| {
         let rows = session.stress_faulty(case(name), &[entrant], values, SMALL, fault, &Progress::default());
@@ -14,9 +20,9 @@ fn assert_found(session: &mut Session, (name, values): (&str, &[f64]), entrant: 
             !rows.is_empty()
                 && rows.iter().all(|row| row.expected == case(name).expected_at(&entrant, row.parameter.1))
         );
-        Stress { adapter: adapter.clone(), size: SMALL, rows, part: None }
+        StressResults { adapter: adapter.clone(), size: SMALL, rows, part: None }
     };
-    let good = run(Fault::None);
+    let good = run(InjectedFault::None);
     assert!(!good.is_unexpected(), "{what}: {name} without it:\n{}", good.to_table());
     let bad = run(fault);
     assert!(bad.is_unexpected(), "{what}: {name} with it:\n{}", bad.to_table());
@@ -52,13 +58,13 @@ fn cast_nothing_in_every_case() {
     ];
     let mut session = session();
     let mut passed = BTreeSet::new();
-    let is_slow = |case: &Case| case.values.len() > 100 || case.timed;
+    let is_slow = |case: &StressCase| case.values.len() > 100 || case.timed;
     let cast_nothing = |scene: &mut Scene| scene.objects.iter_mut().for_each(|object| object.casts = false);
     for case in cases::all().filter(|case| !is_slow(case)) {
         for entrant in case.entrants() {
-            let must_fail = |value: &&f64| matches!(case.expected_at(&entrant, **value), Expected::Fails(_));
+            let must_fail = |value: &&f64| matches!(case.expected_at(&entrant, **value), ExpectedResult::Fails(_));
             let values: Vec<f64> = case.values.iter().filter(must_fail).copied().collect();
-            let fault = Fault::Scene(&cast_nothing);
+            let fault = InjectedFault::Scene(&cast_nothing);
             let rows = session.stress_faulty(case, &[entrant], &values, SMALL, fault, &Progress::default());
             let rows = rows.expect("rows").into_iter().filter(|row| row.expected.name() != "no-fit");
             let rows = rows.filter(|row| row.surprise().is_none());
@@ -74,34 +80,40 @@ fn cast_nothing_in_every_case() {
 fn wrong_caps_and_operations_are_found() {
     let mut session = session();
     let drop = |plan: &mut FramePlan| {
-        plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::DarkCap));
+        plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != DrawPart::DarkCap));
     };
     let seeds: Vec<f64> = (0..20).map(f64::from).collect();
     for place in [("light-in-torus-hole", &[0.0][..]), ("random", &seeds)] {
-        assert_found(&mut session, place, Z_FAIL, Fault::Plan(&drop), "dropped dark caps");
+        assert_found(&mut session, place, Z_FAIL, InjectedFault::Plan(&drop), "dropped dark caps");
     }
-    for part in [Part::LightCap, Part::DarkCap, Part::Side] {
+    for part in [DrawPart::LightCap, DrawPart::DarkCap, DrawPart::Side] {
         let swap = |plan: &mut FramePlan| draws(plan, part).for_each(swap_operations);
         let what = format!("swapped operations of {part:?}");
         for place in [("light-in-torus-hole", &[0.0][..]), ("random", &seeds)] {
-            assert_found(&mut session, place, Z_FAIL, Fault::Plan(&swap), &what);
+            assert_found(&mut session, place, Z_FAIL, InjectedFault::Plan(&swap), &what);
         }
     }
     // The sides alone are behind the floor there, and at 256 the count is known to be read as none.
     let drop = |plan: &mut FramePlan| {
-        plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::Side));
+        plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != DrawPart::Side));
     };
     for place in [("nested", &[100.0, 256.0][..]), ("nested", &[255.0]), ("nested", &[257.0, 512.0])] {
-        assert_found(&mut session, place, Z_FAIL, Fault::Plan(&drop), "dropped sides");
+        assert_found(&mut session, place, Z_FAIL, InjectedFault::Plan(&drop), "dropped sides");
     }
     // Swapped everywhere, counts that wrap only change their sign; those that are clamped stop at 0.
     let in_turn = Entrant::with(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]);
     let swap = |plan: &mut FramePlan| {
-        for part in [Part::LightCap, Part::DarkCap, Part::Side] {
+        for part in [DrawPart::LightCap, DrawPart::DarkCap, DrawPart::Side] {
             draws(plan, part).for_each(swap_operations);
         }
     };
-    assert_found(&mut session, ("nested", &[2.0, 100.0]), in_turn, Fault::Plan(&swap), "all operations swapped");
+    assert_found(
+        &mut session,
+        ("nested", &[2.0, 100.0]),
+        in_turn,
+        InjectedFault::Plan(&swap),
+        "all operations swapped",
+    );
 }
 
 fn swap_operations(draw: &mut Draw) {
@@ -134,7 +146,7 @@ fn a_flipped_facing_is_found_under_light_facing() {
             widest.swap(0, 1);
             object.mesh = with_triangles(&object.mesh, triangles);
         };
-        assert_found(&mut session, (name, &[0.0]), LIGHT_FACING, Fault::Scene(&flip), "a facing flipped");
+        assert_found(&mut session, (name, &[0.0]), LIGHT_FACING, InjectedFault::Scene(&flip), "a facing flipped");
     }
 }
 
@@ -147,7 +159,7 @@ fn towards(light: DVec4, from: glam::DVec3) -> glam::DVec3 {
 fn dropped_slivers_and_closed_slits_are_found() {
     let mut session = session();
     let drop = |scene: &mut Scene| scene.objects.truncate(1);
-    assert_found(&mut session, ("sliver", &[1e4, 1e8]), Z_FAIL, Fault::Scene(&drop), "the sliver dropped");
+    assert_found(&mut session, ("sliver", &[1e4, 1e8]), Z_FAIL, InjectedFault::Scene(&drop), "the sliver dropped");
     let weld = |scene: &mut Scene| {
         let object = scene.objects.last_mut().expect("a caster");
         let mut positions = object.mesh.positions().to_vec();
@@ -155,7 +167,7 @@ fn dropped_slivers_and_closed_slits_are_found() {
         let triangles = object.mesh.triangles().to_vec();
         object.mesh = Arc::new(MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh"));
     };
-    assert_found(&mut session, ("thin-gap", &[1e-3, 1e-5]), Z_FAIL, Fault::Scene(&weld), "the slit welded");
+    assert_found(&mut session, ("thin-gap", &[1e-3, 1e-5]), Z_FAIL, InjectedFault::Scene(&weld), "the slit welded");
 }
 
 /// The same triangles, counted the same way, but with corners in another order: depths are no
@@ -163,7 +175,7 @@ fn dropped_slivers_and_closed_slits_are_found() {
 #[test]
 fn caps_in_turned_vertex_order_are_found() {
     let seeds: Vec<f64> = (0..60).map(f64::from).collect();
-    assert_found(&mut session(), ("random", &seeds), Z_FAIL, Fault::Plan(&turn_caps), "turned caps");
+    assert_found(&mut session(), ("random", &seeds), Z_FAIL, InjectedFault::Plan(&turn_caps), "turned caps");
 }
 
 /// Faults of numbers: where counts stop, where positions are rounded, where depth ends.
@@ -172,11 +184,11 @@ fn wrong_numbers_are_found() {
     let mut session = session();
     let clamp = |choice: &mut Choice| choice.set("operations", "clamp").expect("a setting");
     for place in [("open-mesh", &[0.0][..]), ("nested", &[1.0, 100.0, 255.0])] {
-        assert_found(&mut session, place, Z_FAIL, Fault::Choice(&clamp), "clamp for wrap");
+        assert_found(&mut session, place, Z_FAIL, InjectedFault::Choice(&clamp), "clamp for wrap");
     }
     let far = |choice: &mut Choice| choice.set("depth", "standard-finite").expect("a setting");
     for place in [("near-far", &[10.0, 100.0][..]), ("world-scale", &[1.0, 1e6])] {
-        assert_found(&mut session, place, Z_FAIL, Fault::Choice(&far), "a far plane");
+        assert_found(&mut session, place, Z_FAIL, InjectedFault::Choice(&far), "a far plane");
     }
     let round = |plan: &mut FramePlan| {
         let eye = plan.views[0].origin.to_array();
@@ -191,5 +203,5 @@ fn wrong_numbers_are_found() {
         }
     };
     let place = ("world-offset", &[1e6, 1e7][..]);
-    assert_found(&mut session, place, Z_FAIL, Fault::Plan(&round), "f32 before the eye is subtracted");
+    assert_found(&mut session, place, Z_FAIL, InjectedFault::Plan(&round), "f32 before the eye is subtracted");
 }

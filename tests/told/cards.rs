@@ -9,10 +9,10 @@ use super::patterns::{gaps, is_near, mask_of, number};
 use super::purposes::steps;
 use formulas::FORMULAS;
 use lines::LINES;
-use stencilscope::history::{EventKind, PixelHistory};
+use stencilscope::history::{PixelEventKind, PixelHistory};
 use stencilscope::math::depth::DepthMapping;
-use stencilscope::plan::{CountOf, DecidedBy, Part, Program, Side, Visibility};
-use stencilscope::reading::explain_facts::{Known, facts};
+use stencilscope::plan::{CountOf, CountedSide, DecidedBy, DrawPart, Program, Visibility};
+use stencilscope::reading::explain_facts::{ExplainContext, facts};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::scene::Projection;
 use stencilscope::technique::VolumeSettings;
@@ -40,14 +40,14 @@ impl Here<'_> {
         self.frame.plan.lights[self.light()].decided_by
     }
 
-    fn draws(&self, part: Part) -> impl Iterator<Item = &stencilscope::plan::Draw> {
+    fn draws(&self, part: DrawPart) -> impl Iterator<Item = &stencilscope::plan::Draw> {
         self.frame.step(self.step).1.draws.iter().filter(move |draw| draw.part == part)
     }
 
     /// Of each volume that its vertex shader carries, how many triangles its caster has, how many copies of each it has,
     /// and its sides' triangles; of any other all nothing.
     fn copies_and_sides(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        self.draws(Part::Side).map(|draw| {
+        self.draws(DrawPart::Side).map(|draw| {
             let caster = self.frame.scene.objects.iter().find(|object| draw.caster.as_ref() == Some(&object.name));
             let triangles = caster.map_or(0, |object| object.mesh.triangles().len());
             let corners = self.frame.plan.meshes[draw.mesh.0].extruded.as_ref().map_or(0, |of| of.corners.len());
@@ -67,12 +67,12 @@ impl Here<'_> {
     /// not asked to, and nowhere where none of the frame does.
     fn ends_as_told(&self, told: &str) -> bool {
         let ends = |draw: &stencilscope::plan::Draw| {
-            draw.part == Part::Side
+            draw.part == DrawPart::Side
                 && self.frame.plan.meshes[draw.mesh.0].vertices.data().iter().all(|[.., w]| *w != 0.0)
         };
         let mut of_frame = self.frame.plan.passes.iter().flat_map(|pass| &pass.draws);
         match told {
-            "" => !self.draws(Part::Side).any(ends),
+            "" => !self.draws(DrawPart::Side).any(ends),
             "; what ends before, beyond all that it is looked at on, is counted in front and open there" => {
                 of_frame.any(ends)
             }
@@ -80,14 +80,14 @@ impl Here<'_> {
         }
     }
 
-    fn triangles(&self, part: Part) -> f64 {
+    fn triangles(&self, part: DrawPart) -> f64 {
         self.draws(part).map(|draw| f64::from(draw.triangles.end - draw.triangles.start)).sum()
     }
 
     /// Sides that count, and no others, are on this side, and the first adds where its outside is seen.
-    fn counts(&self, side: Side) -> bool {
-        let is_in_front = side == Side::InFront;
-        let mut sides = self.draws(Part::Side).filter_map(steps).peekable();
+    fn counts(&self, side: CountedSide) -> bool {
+        let is_in_front = side == CountedSide::InFront;
+        let mut sides = self.draws(DrawPart::Side).filter_map(steps).peekable();
         sides.peek().is_none()
             || sides.all(|one| {
                 let (up, down) = if is_in_front { (one.outside, one.inside) } else { (one.inside, one.outside) };
@@ -202,7 +202,7 @@ fn faces_add_up(here: &Here, told: &[&str]) -> bool {
     let (mut ups, mut downs, mut rest) = (0.0, 0.0, 0.0);
     for event in history.events.iter().filter(|event| event.pass == here.step) {
         match &event.kind {
-            EventKind::Triangle(one) if one.part.is_of_volume() => {
+            PixelEventKind::Triangle(one) if one.part.is_of_volume() => {
                 *match event.counted() {
                     0 => &mut rest,
                     1.. => &mut ups,
@@ -309,8 +309,14 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
         for (pick, history) in std::iter::once((None, None)).chain(picks) {
             let readers = light.and_then(|light| frame.readers[light].as_ref());
             let map = pick.and_then(|at| MapDecision::of(&frame.capture, readers?, light?, at));
-            let known =
-                Known { capture: &frame.capture, step, lights: &frame.scene.lights, pick, history, map: map.as_ref() };
+            let known = ExplainContext {
+                capture: &frame.capture,
+                step,
+                lights: &frame.scene.lights,
+                pick,
+                history,
+                map: map.as_ref(),
+            };
             for fact in facts(&known) {
                 let here = Here { frame, step, pick, history, map: map.as_ref(), formula: &fact.formula };
                 let formula = find(FORMULAS, &here, here.formula, held);

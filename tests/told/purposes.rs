@@ -4,7 +4,7 @@ use super::Held;
 use super::frames::Frame;
 use super::patterns::{gaps, mask_of};
 use glam::{DVec3, DVec4};
-use stencilscope::plan::{Draw, Part, Pass, Program, Visibility};
+use stencilscope::plan::{Draw, DrawPart, Pass, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
 
@@ -126,7 +126,7 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
         let normal = (b - a).cross(c - a);
         (sides == [true; 3] || sides == [false; 3]) && normal.dot(a) / normal.dot(along) > 0.0
     };
-    let caps = pass.draws.iter().filter(|draw| draw.part.includes(Part::LightCap));
+    let caps = pass.draws.iter().filter(|draw| draw.part.includes(DrawPart::LightCap));
     let met = caps.flat_map(|draw| {
         let mesh = &frame.plan.meshes[draw.mesh.0];
         let corners = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
@@ -200,7 +200,7 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
         _ => return false,
     };
     let own = || frame.plan.passes.iter().filter(|other| other.light == pass.light && other.view.0 == 0);
-    let is_drawn = [Part::LightCap, Part::DarkCap]
+    let is_drawn = [DrawPart::LightCap, DrawPart::DarkCap]
         .map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part.includes(part))));
     // Behind surfaces all volumes need a light cap, and those that do not meet in one point a dark one.
     let light = pass.light.expect("a light").0;
@@ -223,14 +223,14 @@ fn is_even_marked(pass: &Pass) -> bool {
     let marks: Vec<u8> = pass.draws.iter().map(|draw| draw.raster.stencil_reference).collect();
     let mut own = marks.clone();
     own.dedup();
-    pass.draws.iter().all(|draw| draw.part == Part::Receiver)
+    pass.draws.iter().all(|draw| draw.part == DrawPart::Receiver)
         && own.len() == marks.len()
         && marks.iter().all(|mark| mark % 2 == 0)
 }
 
 fn sees_from_the_light(frame: &Frame, pass: &Pass) -> bool {
     pass.view.0 != 0
-        && pass.draws.iter().all(|draw| draw.part == Part::Map)
+        && pass.draws.iter().all(|draw| draw.part == DrawPart::Map)
         && frame.plan.lights[pass.light.expect("a light").0].map.is_some()
 }
 
@@ -372,7 +372,7 @@ const PURPOSES: &[(&str, Check)] = &[
             pass.draws.iter().all(|draw| {
                 let (face, masks) = draw.raster.face(true);
                 let once = face.compare == CompareFunction::Equal && face.pass_op == Operation::IncrementClamp;
-                draw.part == Part::PlanarShadow && once && masks.reference % 2 == 0
+                draw.part == DrawPart::PlanarShadow && once && masks.reference % 2 == 0
             })
         },
     ),
@@ -382,13 +382,13 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     ("Adds the light everywhere: shadows are blended over it afterwards.", |frame, pass, _| {
         let at = frame.plan.passes.iter().position(|one| std::ptr::eq(one, pass)).expect("a pass of it");
-        let flattens = |pass: &Pass| pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow);
+        let flattens = |pass: &Pass| pass.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow);
         let before = frame.plan.passes[..at].iter().any(|one| one.light == pass.light && flattens(one));
         asks(pass, Visibility::Everywhere) && !before
     }),
     (
         "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for every triangle that covers a pixel, and what other lights gave as well.",
-        |_, pass, _| pass.draws.iter().all(|draw| draw.part == Part::PlanarShadow && draw.program == Program::Flat),
+        |_, pass, _| pass.draws.iter().all(|draw| draw.part == DrawPart::PlanarShadow && draw.program == Program::Flat),
     ),
     (
         "Draws the casters between this receiver and the light through the box that the light's pyramid over the receiver becomes: their picture is the shadow on it.",

@@ -5,8 +5,8 @@ use super::purposes::steps;
 use crate::common::{request, session};
 use std::collections::{BTreeMap, BTreeSet};
 use stencilscope::capture::Capture;
-use stencilscope::inspector::{Go, Stop, TOURS, Tour};
-use stencilscope::plan::{DecidedBy, FramePlan, Part, Pass, Program, Visibility};
+use stencilscope::inspector::{TOURS, Tour, TourMove, TourStop};
+use stencilscope::plan::{DecidedBy, DrawPart, FramePlan, Pass, Program, Visibility};
 use stencilscope::progress::Progress;
 use stencilscope::reading::shown::PictureKind;
 use stencilscope::scene::{OpenSpec, Scene, open};
@@ -45,7 +45,8 @@ impl Shown<'_> {
 
     /// All sides count on that side of the surface: up where the ray enters it from there, and down where it leaves.
     fn count(&self, in_front: bool) -> bool {
-        let sides: Vec<_> = self.pass().draws.iter().filter(|draw| draw.part == Part::Side).filter_map(steps).collect();
+        let sides: Vec<_> =
+            self.pass().draws.iter().filter(|draw| draw.part == DrawPart::Side).filter_map(steps).collect();
         let by = if in_front { (1, -1) } else { (-1, 1) };
         !sides.is_empty() && sides.iter().all(|one| one.is_in_front == in_front && (one.outside, one.inside) == by)
     }
@@ -55,7 +56,7 @@ impl Shown<'_> {
         passes.flat_map(|pass| &pass.draws).any(|draw| draw.program == Program::Light(how))
     }
 
-    fn has(&self, part: Part) -> bool {
+    fn has(&self, part: DrawPart) -> bool {
         self.plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.part == part)
     }
 
@@ -84,16 +85,13 @@ const CLAIMS: &[Claim] = &[
         shown.labels(1) == 0 && shown.wrong()[0] == 0 && shown.wrong()[1] > 0
     }),
     (Technique::Planar, "A floor that catches shadows", "Its pixels are marked in the stencil buffer first", |shown| {
-        shown.pass().draws.iter().all(|draw| draw.part == Part::Receiver)
+        shown.pass().draws.iter().all(|draw| draw.part == DrawPart::Receiver)
             && shown.stencil().iter().any(|byte| *byte != 0)
     }),
     (Technique::Planar, "Casters pressed flat", "lets each pixel be darkened once", |shown| {
-        shown
-            .pass()
-            .draws
-            .iter()
-            .all(|draw| draw.part == Part::PlanarShadow && draw.raster.face(true).0.compare == CompareFunction::Equal)
-            && shown.stencil().iter().any(|byte| byte % 2 == 1)
+        shown.pass().draws.iter().all(|draw| {
+            draw.part == DrawPart::PlanarShadow && draw.raster.face(true).0.compare == CompareFunction::Equal
+        }) && shown.stencil().iter().any(|byte| byte % 2 == 1)
     }),
     (
         Technique::Planar,
@@ -128,14 +126,14 @@ const CLAIMS: &[Claim] = &[
     ),
     (Technique::PlanarTexture, "Light, read through the texture", "No stencil is needed", |shown| {
         shown.lights_by(Visibility::ReceiverTexture)
-            && !shown.plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.part == Part::Receiver)
+            && !shown.plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.part == DrawPart::Receiver)
     }),
     (Technique::PlanarTexture, "Its error", "Wrong pixels lie along edges", |shown| shown.capture.error().is_some()),
     (Technique::ZPass, "Shadow as a volume", "A point is in shadow exactly if it is inside one", |shown| {
         shown.count(true) && shown.stencil().iter().any(|count| *count > 0)
     }),
     (Technique::ZPass, "Seen from beside", "sides, light caps and dark caps in their own colours", |shown| {
-        shown.has(Part::Side)
+        shown.has(DrawPart::Side)
     }),
     (
         Technique::ZPass,
@@ -169,7 +167,7 @@ const CLAIMS: &[Claim] = &[
         "The same in the API's words",
         "decrement for front faces, increment for back faces, both wrapping",
         |shown| {
-            shown.pass().draws.iter().filter(|draw| draw.part == Part::Side).all(|draw| {
+            shown.pass().draws.iter().filter(|draw| draw.part == DrawPart::Side).all(|draw| {
                 let [front, back] = [true, false].map(|is_front| draw.raster.face(is_front).0.depth_fail_op);
                 [front, back] == [StencilOperation::DecrementWrap, StencilOperation::IncrementWrap]
             })
@@ -233,7 +231,7 @@ const CLAIMS: &[Claim] = &[
                 .pass()
                 .draws
                 .iter()
-                .filter(|draw| matches!(draw.part, Part::LightCap | Part::DarkCap))
+                .filter(|draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap))
                 .map(|draw| &draw.caster);
             capped.into_iter().all(|caster| !in_front.contains(caster))
         },
@@ -248,7 +246,7 @@ const CLAIMS: &[Claim] = &[
         Technique::ShadowMap,
         "What the light sees",
         "where they fit into one view, as here, one map is enough",
-        |shown| shown.faces() == 1 && shown.has(Part::Map) && shown.capture.lights[0].decided_by == DecidedBy::Map,
+        |shown| shown.faces() == 1 && shown.has(DrawPart::Map) && shown.capture.lights[0].decided_by == DecidedBy::Map,
     ),
     (
         Technique::ShadowMap,
@@ -260,7 +258,7 @@ const CLAIMS: &[Claim] = &[
         shown.faces() > 0
     }),
     (Technique::ShadowMap, "Bias", "The depth is moved by a bias", |shown| {
-        let maps = shown.plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Map);
+        let maps = shown.plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Map);
         maps.clone().count() > 0 && maps.clone().all(|draw| draw.raster.depth_bias.constant != 0)
     }),
     (Technique::ShadowMap, "Its error", "Wrong pixels follow the texels along every edge", |shown| {
@@ -302,18 +300,19 @@ const CLAIMS: &[Claim] = &[
 
 /// The scene that a stop is in: its own, or that of one before it.
 fn scene_at(tour: &Tour, stop: usize) -> &'static str {
-    let of = |stop: &Stop| stop.go.iter().find_map(|go| if let Go::Scene(name) = go { Some(*name) } else { None });
+    let of =
+        |stop: &TourStop| stop.go.iter().find_map(|go| if let TourMove::Scene(name) = go { Some(*name) } else { None });
     tour.stops[..=stop].iter().rev().find_map(of).expect("a tour opens a scene")
 }
 
 /// The step that a stop goes to: what it says, else where the one before was.
-fn step_at(stop: &Stop, plan: &FramePlan, before: usize) -> Option<usize> {
+fn step_at(stop: &TourStop, plan: &FramePlan, before: usize) -> Option<usize> {
     let mut step = Some(before.min(plan.passes.len() - 1));
     for go in stop.go {
         step = match go {
-            Go::First => Some(0),
-            Go::Last => Some(plan.passes.len() - 1),
-            Go::Step(word) => plan.passes.iter().position(|pass| pass.name.contains(word)),
+            TourMove::First => Some(0),
+            TourMove::Last => Some(plan.passes.len() - 1),
+            TourMove::Step(word) => plan.passes.iter().position(|pass| pass.name.contains(word)),
             _ => step,
         };
     }
@@ -348,12 +347,12 @@ fn every_stop_of_a_tour_shows_what_it_says() {
             }
             for go in stop.go {
                 let is_there = match go {
-                    Go::PickShadow => shown.labels(1) > 0,
-                    Go::PickLit => shown.labels(0) > 0,
-                    Go::Picture(PictureKind::Stencil) => {
+                    TourMove::PickShadow => shown.labels(1) > 0,
+                    TourMove::PickLit => shown.labels(0) > 0,
+                    TourMove::Picture(PictureKind::Stencil) => {
                         capture.frame_at(step).is_some_and(|frame| frame.stencil.is_some())
                     }
-                    Go::Picture(PictureKind::Map) => capture.lights.iter().any(|light| light.map.is_some()),
+                    TourMove::Picture(PictureKind::Map) => capture.lights.iter().any(|light| light.map.is_some()),
                     _ => true,
                 };
                 assert!(is_there, "{place}: {go:?} finds nothing");

@@ -6,9 +6,10 @@ use super::frames::Frame;
 use super::patterns::{gaps, number};
 use stencilscope::capture::FrameTarget;
 use stencilscope::history::{
-    Count, Counted, EventKind, Evidence, Flattened, LightPass, PixelHistory, TestedCount, Verdict, Why,
+    CountedFaces, FlattenedShadow, LightDecision, LightPassResult, PixelEventKind, PixelHistory, TestedCount, Verdict,
+    VerdictEvidence, VolumeCount,
 };
-use stencilscope::plan::{CountBits, DecidedBy, Part, Program, Side};
+use stencilscope::plan::{CountBits, CountedSide, DecidedBy, DrawPart, Program};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::truth::PixelLabel;
 
@@ -50,10 +51,10 @@ impl Here<'_> {
         self.frame.plan.passes.iter().rposition(is_one).expect("a pass that counts")
     }
 
-    fn is_count(&self, count: Count) -> bool {
+    fn is_count(&self, count: VolumeCount) -> bool {
         let count = match count {
-            Count::Stencil(count) => f64::from(count),
-            Count::Float(count) => f64::from(count),
+            VolumeCount::Stencil(count) => f64::from(count),
+            VolumeCount::Float(count) => f64::from(count),
         };
         count == self.signed() || count == self.count()
     }
@@ -72,7 +73,7 @@ impl Here<'_> {
     }
 
     /// Do the faces that count lie where they are said to, as their depths and the surface's have it?
-    fn lie(&self, side: Side, on_surface: u32) -> bool {
+    fn lie(&self, side: CountedSide, on_surface: u32) -> bool {
         let is_nearer =
             |depth: f32, of: f32| if self.frame.plan.depth.mapping.is_reversed() { depth > of } else { depth < of };
         let all = self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_from_camera);
@@ -81,10 +82,10 @@ impl Here<'_> {
             Some((is_nearer(one.depth, event.before.depth), one.depth == event.before.depth))
         });
         match side {
-            Side::Behind if on_surface > 0 => counted.all(|(nearer, _)| !nearer),
-            Side::Behind => counted.all(|(nearer, on)| !nearer && !on),
-            Side::InFront => counted.all(|(nearer, _)| nearer),
-            Side::AsNeeded => self.is_side(Side::AsNeeded),
+            CountedSide::Behind if on_surface > 0 => counted.all(|(nearer, _)| !nearer),
+            CountedSide::Behind => counted.all(|(nearer, on)| !nearer && !on),
+            CountedSide::InFront => counted.all(|(nearer, _)| nearer),
+            CountedSide::AsNeeded => self.is_side(CountedSide::AsNeeded),
         }
     }
 
@@ -94,7 +95,7 @@ impl Here<'_> {
         let starts_at_eye = self.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
         let is_point = self.frame.capture.lights[self.light].position.w != 0.0;
         let is_parallel = self.frame.capture.camera.is_parallel();
-        starts_at_eye || (is_parallel && is_point && !self.is_side(Side::InFront))
+        starts_at_eye || (is_parallel && is_point && !self.is_side(CountedSide::InFront))
     }
 
     /// How often faces turned its bit over.
@@ -109,7 +110,7 @@ impl Here<'_> {
         events.map(|event| f64::from(event.counted())).sum()
     }
 
-    fn is_side(&self, side: Side) -> bool {
+    fn is_side(&self, side: CountedSide) -> bool {
         self.decided_by().counted_side() == Some(side)
     }
 
@@ -138,7 +139,7 @@ impl Here<'_> {
     }
 
     /// A count is told where the light pass tests one, and what it is says whether the pixel is dark.
-    fn tested(&self, label: Option<PixelLabel>, count: Option<Count>) -> bool {
+    fn tested(&self, label: Option<PixelLabel>, count: Option<VolumeCount>) -> bool {
         match (label, count) {
             (None | Some(PixelLabel::Background), count) => count.is_none(),
             (_, None) => !self.decided_by().counts_volumes(),
@@ -149,30 +150,30 @@ impl Here<'_> {
 
     fn evidence(&self, verdict: &Verdict) -> bool {
         match &verdict.evidence {
-            Evidence::Label => verdict.label == Some(PixelLabel::Background),
-            Evidence::Shading { wraps: false } => !self.frame.plan.wraps_diffuse && !self.is_brighter(),
-            Evidence::Shading { wraps: true } => {
+            VerdictEvidence::Label => verdict.label == Some(PixelLabel::Background),
+            VerdictEvidence::Shading { wraps: false } => !self.frame.plan.wraps_diffuse && !self.is_brighter(),
+            VerdictEvidence::Shading { wraps: true } => {
                 self.frame.plan.wraps_diffuse
                     && verdict.count.is_none_or(|_| self.is_brighter() == (self.count() == 0.0))
             }
-            Evidence::Decision(decided_by) => self.decision(*decided_by),
-            Evidence::NoCount => false,
-            Evidence::Count(tested) => self.sum(verdict, tested),
-            Evidence::History(why, tested) => {
+            VerdictEvidence::Decision(decided_by) => self.decision(*decided_by),
+            VerdictEvidence::NoCount => false,
+            VerdictEvidence::Count(tested) => self.sum(verdict, tested),
+            VerdictEvidence::History(why, tested) => {
                 let shown = match why {
-                    Why::Background => false,
-                    Why::Counted(counted, pass) => self.counted(counted, *pass),
-                    Why::Flattened(flattened, pass) => self.flattened(flattened, *pass),
+                    LightDecision::Background => false,
+                    LightDecision::Counted(counted, pass) => self.counted(counted, *pass),
+                    LightDecision::Flattened(flattened, pass) => self.flattened(flattened, *pass),
                 };
                 shown && tested.is_none_or(|tested| self.sum(verdict, &tested))
             }
-            Evidence::Texels(sentence) => self.texels(sentence),
+            VerdictEvidence::Texels(sentence) => self.texels(sentence),
         }
     }
 
     fn decision(&self, decided_by: DecidedBy) -> bool {
         let asks = |draw: &stencilscope::plan::Draw| {
-            draw.part.is_of_volume() || [Part::PlanarShadow, Part::Map].contains(&draw.part)
+            draw.part.is_of_volume() || [DrawPart::PlanarShadow, DrawPart::Map].contains(&draw.part)
         };
         let passes = self.frame.plan.passes.iter();
         let of_light = passes.filter(|pass| pass.light.is_some_and(|light| light.0 == self.light));
@@ -193,8 +194,8 @@ impl Here<'_> {
         };
         let held = self.frame.capture.lights[self.light].count.as_ref().and_then(|count| count.count_at(self.at));
         let reads_zero = |count: f32| match tested.count {
-            Count::Stencil(_) => self.count() == 0.0 && held == Some(count),
-            Count::Float(_) => self.count() == f64::from(count) && self.count() % 256.0 == 0.0,
+            VolumeCount::Stencil(_) => self.count() == 0.0 && held == Some(count),
+            VolumeCount::Float(_) => self.count() == f64::from(count) && self.count() % 256.0 == 0.0,
         };
         Some(tested.count) == verdict.count
             && self.is_side(tested.side)
@@ -205,22 +206,22 @@ impl Here<'_> {
             && tested.reads_as_zero().is_none_or(reads_zero)
     }
 
-    fn counted(&self, counted: &Counted, pass: LightPass) -> bool {
-        let Counted { side, faces, cleared_to, near, sum, bits, count } = counted;
+    fn counted(&self, counted: &CountedFaces, pass: LightPassResult) -> bool {
+        let CountedFaces { side, faces, cleared_to, near, sum, bits, count } = counted;
         let begins = self.history.events.iter().rev().find_map(|event| match event.kind {
-            EventKind::ClearStencil if event.light == Some(self.light) => Some(f64::from(event.after.stencil)),
-            EventKind::ClearCount if event.light == Some(self.light) => Some(f64::from(event.after.count)),
+            PixelEventKind::ClearStencil if event.light == Some(self.light) => Some(f64::from(event.after.stencil)),
+            PixelEventKind::ClearCount if event.light == Some(self.light) => Some(f64::from(event.after.count)),
             _ => None,
         });
         let holds_otherwise = match count {
-            Count::Stencil(byte) => bits.hold_otherwise(*sum, *byte),
-            Count::Float(_) => false,
+            VolumeCount::Stencil(byte) => bits.hold_otherwise(*sum, *byte),
+            VolumeCount::Float(_) => false,
         };
         let rest = (f64::from(*sum) - self.count()).rem_euclid(bits.modulus().into());
         let does = match pass {
-            LightPass::Adds => self.label() != Some(1) && self.count() == 0.0,
-            LightPass::Skips => self.label() != Some(0) && self.count() != 0.0,
-            LightPass::FacesAway | LightPass::AsksNothing => false,
+            LightPassResult::Adds => self.label() != Some(1) && self.count() == 0.0,
+            LightPassResult::Skips => self.label() != Some(0) && self.count() != 0.0,
+            LightPassResult::FacesAway | LightPassResult::AsksNothing => false,
         };
         f64::from(*cleared_to) == begins.unwrap_or(0.0)
             && near.is_none_or(|near| f64::from(near) == self.near())
@@ -231,23 +232,25 @@ impl Here<'_> {
             && does
     }
 
-    fn flattened(&self, flattened: &Flattened, pass: LightPass) -> bool {
+    fn flattened(&self, flattened: &FlattenedShadow, pass: LightPassResult) -> bool {
         let of_light = || {
             self.history.triangles().filter(|(event, one)| {
-                event.light == Some(self.light) && event.target != FrameTarget::Labels && one.part == Part::PlanarShadow
+                event.light == Some(self.light)
+                    && event.target != FrameTarget::Labels
+                    && one.part == DrawPart::PlanarShadow
             })
         };
         let falls = |name: &String| of_light().any(|(_, one)| one.fate.passed() && one.caster.as_ref() == Some(name));
-        let Flattened { casters, failed_stencil, failed_depth, hidden, .. } = flattened;
+        let FlattenedShadow { casters, failed_stencil, failed_depth, hidden, .. } = flattened;
         if !casters.is_empty() {
-            let does = matches!(pass, LightPass::Adds | LightPass::Skips);
+            let does = matches!(pass, LightPassResult::Adds | LightPassResult::Skips);
             return casters.iter().all(falls) && does && self.label() == Some(1);
         }
         let left = failed_stencil + failed_depth + hidden;
         of_light().all(|(_, one)| !one.fate.passed())
             && left >= 1
             && left as usize == of_light().count()
-            && pass == LightPass::Adds
+            && pass == LightPassResult::Adds
             && self.label() == Some(0)
     }
 
@@ -306,35 +309,41 @@ fn kind(verdict: &Verdict) -> &'static str {
     let is_dark = verdict.label == Some(PixelLabel::Shadow);
     let of = |dark, lit| if is_dark { dark } else { lit };
     match &verdict.evidence {
-        Evidence::Label => "background",
-        Evidence::Shading { wraps: true } => "shading, wrapped",
-        Evidence::Shading { .. } if verdict.count.is_some() => "shading, counted",
-        Evidence::Shading { .. } => "shading",
-        Evidence::Decision(DecidedBy::Map) => of("dark by Map", "lit by Map"),
-        Evidence::Decision(DecidedBy::Flattened) => of("dark by Flattened", "lit by Flattened"),
-        Evidence::Decision(DecidedBy::ReceiverTextures) => of("dark by ReceiverTextures", "lit by ReceiverTextures"),
-        Evidence::Decision(DecidedBy::Silhouettes) => of("dark by Silhouettes", "lit by Silhouettes"),
-        Evidence::Decision(DecidedBy::Nothing) => of("dark by Nothing", "lit by Nothing"),
-        Evidence::Decision(_) => of("dark by Labels", "lit by Labels"),
-        Evidence::NoCount => "no count",
-        Evidence::Count(TestedCount { inverts: true, begins_elsewhere: true, .. }) => {
+        VerdictEvidence::Label => "background",
+        VerdictEvidence::Shading { wraps: true } => "shading, wrapped",
+        VerdictEvidence::Shading { .. } if verdict.count.is_some() => "shading, counted",
+        VerdictEvidence::Shading { .. } => "shading",
+        VerdictEvidence::Decision(DecidedBy::Map) => of("dark by Map", "lit by Map"),
+        VerdictEvidence::Decision(DecidedBy::Flattened) => of("dark by Flattened", "lit by Flattened"),
+        VerdictEvidence::Decision(DecidedBy::ReceiverTextures) => {
+            of("dark by ReceiverTextures", "lit by ReceiverTextures")
+        }
+        VerdictEvidence::Decision(DecidedBy::Silhouettes) => of("dark by Silhouettes", "lit by Silhouettes"),
+        VerdictEvidence::Decision(DecidedBy::Nothing) => of("dark by Nothing", "lit by Nothing"),
+        VerdictEvidence::Decision(_) => of("dark by Labels", "lit by Labels"),
+        VerdictEvidence::NoCount => "no count",
+        VerdictEvidence::Count(TestedCount { inverts: true, begins_elsewhere: true, .. }) => {
             "an inverted bit that begins elsewhere"
         }
-        Evidence::Count(TestedCount { inverts: true, .. }) => of("dark by an inverted bit", "lit by an inverted bit"),
-        Evidence::Count(TestedCount { begins_elsewhere: true, .. }) => {
+        VerdictEvidence::Count(TestedCount { inverts: true, .. }) => {
+            of("dark by an inverted bit", "lit by an inverted bit")
+        }
+        VerdictEvidence::Count(TestedCount { begins_elsewhere: true, .. }) => {
             of("dark by a count that begins elsewhere", "lit by a count that begins elsewhere")
         }
-        Evidence::Count(tested) if tested.bits != CountBits::EIGHT => {
+        VerdictEvidence::Count(tested) if tested.bits != CountBits::EIGHT => {
             of("dark by a count in few bits", "lit by a count in few bits")
         }
-        Evidence::Count(TestedCount { count: Count::Stencil(_), .. }) => {
+        VerdictEvidence::Count(TestedCount { count: VolumeCount::Stencil(_), .. }) => {
             of("dark by a count in the stencil", "lit by a count in the stencil")
         }
-        Evidence::Count(_) => of("dark by a count in a float", "lit by a count in a float"),
-        Evidence::History(Why::Flattened(flattened, _), _) if flattened.casters.is_empty() => "no flattened shadow",
-        Evidence::History(Why::Flattened(..), _) => "a flattened shadow",
-        Evidence::History(..) => of("dark by faces", "lit by faces"),
-        Evidence::Texels(_) => "texels",
+        VerdictEvidence::Count(_) => of("dark by a count in a float", "lit by a count in a float"),
+        VerdictEvidence::History(LightDecision::Flattened(flattened, _), _) if flattened.casters.is_empty() => {
+            "no flattened shadow"
+        }
+        VerdictEvidence::History(LightDecision::Flattened(..), _) => "a flattened shadow",
+        VerdictEvidence::History(..) => of("dark by faces", "lit by faces"),
+        VerdictEvidence::Texels(_) => "texels",
     }
 }
 

@@ -1,11 +1,11 @@
 //! A film, a picture a turn: everything that is asked for comes between two of them.
 
-use super::Work;
+use super::WorkerState;
 use crate::app::news::News;
 use crate::app::queue::{Inbox, Order};
-use crate::ask::{Answer, Ask, Asked, FilmOf, FilmSubject, Filmed};
-use crate::film::{Film, LightRound, PLACES, Shows};
-use crate::picture::apng::Colors;
+use crate::ask::{Answer, Ask, FilmOf, FilmSubject, Filmed, PendingQuestion};
+use crate::film::{Film, FilmContent, LightRound, PLACES};
+use crate::picture::apng::ColorDepth;
 use crate::session::CaptureRequest;
 use std::path::Path;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub(super) struct FilmRun {
     film: Film,
 }
 
-impl Work {
+impl WorkerState {
     /// The film that is being made; of the one before nothing is left.
     pub(super) fn set_film(&mut self, film: Option<FilmRun>) {
         self.film = film;
@@ -25,7 +25,7 @@ impl Work {
     }
 
     /// Makes the next picture of the film that is asked for, and puts the question back while any is left.
-    pub(super) fn film_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+    pub(super) fn film_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let had_session = self.session.is_some();
         self.is_filming.store(true, Ordering::Release);
         let result = self.next_picture(of, &asked);
@@ -42,7 +42,7 @@ impl Work {
     }
 
     /// The film once it is whole; `None` where more is to come. Of one that fails nothing is left.
-    fn next_picture(&mut self, of: [u64; 2], asked: &Asked) -> Result<Option<Filmed>, String> {
+    fn next_picture(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<Option<Filmed>, String> {
         let before = self.film.take();
         let mut run = match (before, &asked.ask) {
             (Some(run), _) if run.ticket == asked.ticket => run,
@@ -66,14 +66,18 @@ impl Work {
 
     fn begin_film(&self, of: [u64; 2], question: &FilmOf) -> Result<Film, String> {
         let shows = match &question.subject {
-            FilmSubject::Steps(capture) => Shows::Steps(Arc::clone(capture)),
+            FilmSubject::Steps(capture) => FilmContent::Steps(Arc::clone(capture)),
             FilmSubject::LightRound { request, light } => {
                 let open = self.open.as_ref().filter(|_| of[0] == self.scenes);
                 let open = open.ok_or("another scene is open by now: export it again")?;
                 let scene = request.applied_to(open).at(request.time);
                 let round = LightRound::new(scene, *light, PLACES).map_err(|error| error.to_string())?;
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
-                Shows::LightRound { round: Box::new(round), request: Box::new(request), colors: Colors::Rounded }
+                FilmContent::LightRound {
+                    round: Box::new(round),
+                    request: Box::new(request),
+                    colors: ColorDepth::Rounded,
+                }
             }
         };
         let milliseconds = shows.milliseconds();

@@ -11,7 +11,7 @@ use crate::ask::{
 use crate::progress::Progress;
 use crate::report::MeasuredReport;
 use crate::scene::{Light, WallCache};
-use crate::stress::Case;
+use crate::stress::StressCase;
 use crate::technique::Technique;
 
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// A worker over a small built-in scene, its first frame, and the news after it.
 fn started() -> (Worker, u64, Receiver<News>) {
     let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let start = Start {
+    let start = WorkerStart {
         source: ViewSource::Scene(Box::new(scene)),
         name: OpenSpec::new("table"),
         capture: CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]),
@@ -47,7 +47,7 @@ fn ask(worker: &Worker, frame: u64, ticket: u64, ask: impl Into<Ask>) -> Progres
 
 fn ask_of(worker: &Worker, [scene, frame]: [u64; 2], ticket: u64, ask: impl Into<Ask>) -> Progress {
     let progress = Progress::default();
-    let asked = Asked { ticket, ask: ask.into(), progress: progress.clone() };
+    let asked = PendingQuestion { ticket, ask: ask.into(), progress: progress.clone() };
     assert!(worker.order(Order::Answer { scene, frame, asked }));
     progress
 }
@@ -66,8 +66,8 @@ fn history(x: u32, y: u32) -> HistoryOf {
     HistoryOf { at: [x, y] }
 }
 
-fn case(name: &str) -> &'static Case {
-    Case::named(name).expect("a case")
+fn case(name: &str) -> &'static StressCase {
+    StressCase::named(name).expect("a case")
 }
 
 fn wait_until_busy(news: &Receiver<News>, with: &str) {
@@ -333,7 +333,7 @@ fn a_changed_file_is_loaded_again_with_camera_and_lights_as_they_are() {
     std::fs::write(&path, text(1.0)).expect("a file");
     let spec = OpenSpec::new(path.display().to_string());
     let scene = crate::scene::open(&spec).expect("a scene file");
-    let start = Start {
+    let start = WorkerStart {
         source: ViewSource::Scene(Box::new(scene.clone())),
         name: spec,
         capture: CaptureRequest::new(Choice::new(Technique::ZFail), [64, 36]),

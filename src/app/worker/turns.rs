@@ -1,14 +1,14 @@
 //! What takes many turns: a report, which lets short questions come between its rows, and stress cases, which let
 //! everything come between theirs.
 
-use super::Work;
+use super::WorkerState;
 use crate::app::allocator;
 use crate::app::news::News;
 use crate::app::queue::{Inbox, Order};
-use crate::ask::{Answer, Ask, Asked, Holds, ReportOf};
+use crate::ask::{Answer, AnswerLifetime, Ask, PendingQuestion, ReportOf};
 use crate::report::{MeasuredReport, Report};
 use crate::session::{Measurement, Session, SessionError, StressSteps, report_rows};
-use crate::stress::{Case, Row, StressRows};
+use crate::stress::{StressCase, StressRow, StressRows};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -24,21 +24,21 @@ pub(super) struct StressRun {
     /// The rows to make.
     steps: StressSteps,
     /// The rows so far of the case that is under way.
-    rows: Vec<Row>,
+    rows: Vec<StressRow>,
 }
 
 impl StressRun {
     /// All of the named cases, but for what would keep the window waiting.
     fn new(ticket: u64, cases: &[&'static str]) -> StressRun {
-        let cases: Vec<&'static Case> = cases.iter().filter_map(|name| Case::named(name)).collect();
+        let cases: Vec<&'static StressCase> = cases.iter().filter_map(|name| StressCase::named(name)).collect();
         let steps = StressSteps::new(&cases, &[], STRESS_SIZE).without_heavy();
         StressRun { ticket, steps, rows: Vec::new() }
     }
 }
 
-impl Work {
+impl WorkerState {
     /// Makes the next row of the stress cases that are asked for, and puts the question back while any is left.
-    pub(super) fn stress_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+    pub(super) fn stress_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::StressOf(question) = &asked.ask else { return };
         let run = self.stress.take().filter(|run| run.ticket == asked.ticket);
         let mut run = run.unwrap_or_else(|| {
@@ -77,7 +77,7 @@ impl Work {
 
     /// Measures the open scene as it was captured last. What is asked of its frame meanwhile is told
     /// in between.
-    pub(super) fn report(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+    pub(super) fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::ReportOf(question) = &asked.ask else { return };
         (self.tell)(News::Busy("measuring every technique".to_owned()));
         let result = if of[0] == self.scenes {
@@ -96,7 +96,7 @@ impl Work {
     fn measured(
         &mut self,
         question: &ReportOf,
-        asked: &Asked,
+        asked: &PendingQuestion,
         inbox: &mut Inbox,
     ) -> Result<MeasuredReport, SessionError> {
         // A folder's frame was shown without it.
@@ -120,7 +120,7 @@ impl Work {
                 if asked.progress.is_cancelled() {
                     continue;
                 }
-                if asked.ask.kind().holds() != Holds::Frame || of == frames {
+                if asked.ask.kind().holds() != AnswerLifetime::Frame || of == frames {
                     let result = session.answer(&asked.ask, Some(open), Some(frame), &asked.progress);
                     tell(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
                 }

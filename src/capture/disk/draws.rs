@@ -6,8 +6,8 @@
 
 use super::super::manifest::{DrawStateEntry, StateFiles};
 use super::super::{Aspect, Capture, CapturedLight, DrawState, DrawSummary, FrameTarget, PixelFormat, Snapshot, Step};
-use super::reader::Reader;
-use super::{CaptureError, MANIFEST, Written, count_file, frame_files, map_files, shadow_file};
+use super::reader::FolderReader;
+use super::{CaptureError, MANIFEST, WrittenImages, count_file, frame_files, map_files, shadow_file};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ pub(super) fn write(
     stem: &str,
     step: &Step,
     capture: &Capture,
-    written: &mut Written,
+    written: &mut WrittenImages,
 ) -> Result<Option<Vec<DrawStateEntry>>, CaptureError> {
     let states: Option<Vec<&DrawState>> = step.draws.iter().map(|draw| draw.after.as_ref()).collect();
     // Of a step without draws nobody can say whether they were asked for.
@@ -45,7 +45,7 @@ fn state_files(
     step: &Step,
     state: &DrawState,
     capture: &Capture,
-    written: &mut Written,
+    written: &mut WrittenImages,
 ) -> Result<StateFiles, CaptureError> {
     let mut files = match &state.snapshot {
         Snapshot::Frame(frame) => frame_files(folder, stem, frame, written)?,
@@ -91,7 +91,7 @@ fn state_files(
     Ok(files)
 }
 
-impl Reader<'_> {
+impl FolderReader<'_> {
     /// Reads the states after the draws of a step that left `snapshot`.
     pub(super) fn draw_states(
         &mut self,

@@ -9,7 +9,7 @@ use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, ExtrudedCorner, FramePlan,
     LightId, MakeImage, PlanLight, PlanTexture, StartContent, SurfaceData, lint,
 };
-use crate::scene::Picture;
+use crate::scene::TextureImage;
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -105,7 +105,7 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     let mut entry =
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
-        let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
+        let mut put = ArrayWriter { folder, stem: format!("mesh{index:03}"), written: &mut written };
         let DrawMesh { name, vertices, indices, surface, extruded, kept } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
@@ -148,7 +148,7 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     }
     for (pass, of) in plan.passes.iter().enumerate() {
         let Some(start) = of.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) else { continue };
-        let mut put = Put { folder, stem: format!("pass{pass:03}.start"), written: &mut written };
+        let mut put = ArrayWriter { folder, stem: format!("pass{pass:03}.start"), written: &mut written };
         let depth = start.depth.as_ref().map(|depth| put.blob("depth", depth, |values| (values, 1))).transpose()?;
         let stencil = start.stencil.as_ref();
         let stencil = stencil.map(|stencil| put.blob("stencil", stencil, |values| (values, 1))).transpose()?;
@@ -158,14 +158,14 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
 }
 
 /// Writes each array once.
-struct Put<'a> {
+struct ArrayWriter<'a> {
     folder: &'a Path,
     stem: String,
     /// By its kind, its hash and its length.
     written: &'a mut BTreeMap<(&'static str, u64, usize), String>,
 }
 
-impl Put<'_> {
+impl ArrayWriter<'_> {
     fn blob<T: bytemuck::Pod, V: Element>(
         &mut self,
         kind: &'static str,
@@ -194,7 +194,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     let text = files::read_text(&file)?;
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
-    let mut get = Get::new(folder);
+    let mut get = ArrayReader::new(folder);
     for MeshEntry { name, vertices, indices, surface, extruded, kept } in entry.meshes {
         let surface = match surface {
             None => None,
@@ -261,27 +261,27 @@ fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> 
 }
 
 /// Reads each array once.
-struct Get<'a> {
+struct ArrayReader<'a> {
     folder: &'a Path,
     rows: BTreeMap<String, Blob<[f32; 4]>>,
     pairs: BTreeMap<String, Blob<[f32; 2]>>,
     corners: BTreeMap<String, Blob<ExtrudedCorner>>,
     words: BTreeMap<String, Blob<u32>>,
-    pictures: BTreeMap<String, Arc<Picture>>,
+    pictures: BTreeMap<String, Arc<TextureImage>>,
     /// How many more they may have.
     texels_left: u64,
 }
 
-impl Get<'_> {
-    fn new(folder: &Path) -> Get<'_> {
-        Get {
+impl ArrayReader<'_> {
+    fn new(folder: &Path) -> ArrayReader<'_> {
+        ArrayReader {
             folder,
             rows: BTreeMap::new(),
             pairs: BTreeMap::new(),
             corners: BTreeMap::new(),
             words: BTreeMap::new(),
             pictures: BTreeMap::new(),
-            texels_left: Picture::MOST_TOGETHER,
+            texels_left: TextureImage::MOST_TOGETHER,
         }
     }
 
@@ -298,12 +298,12 @@ impl Get<'_> {
     }
 
     /// By the name that it was asked for by first.
-    fn picture(&mut self, name: String, file: &str) -> Result<Arc<Picture>, CaptureError> {
+    fn picture(&mut self, name: String, file: &str) -> Result<Arc<TextureImage>, CaptureError> {
         if let Some(known) = self.pictures.get(file) {
             return Ok(Arc::clone(known));
         }
         let path = plain(self.folder, file)?;
-        let read = Picture::load_within(&path, self.texels_left);
+        let read = TextureImage::load_within(&path, self.texels_left);
         let picture = read.map_err(|error| CaptureError::Read { file: path, reason: error.to_string() })?.named(name);
         self.texels_left -= picture.texels().len() as u64;
         let picture = Arc::new(picture);

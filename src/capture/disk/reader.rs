@@ -33,7 +33,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     if !manifest.size.iter().all(|pixels| (1..=files::LARGEST).contains(pixels)) {
         return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
     }
-    let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
+    let mut reader = FolderReader { folder, size: manifest.size, images: BTreeMap::new() };
     let lights =
         manifest.lights.iter().map(|light| reader.light(light, &manifest.technique)).collect::<Result<Vec<_>, _>>()?;
     let steps = manifest.passes.iter().map(|pass| reader.step(pass, &lights)).collect::<Result<_, _>>()?;
@@ -95,13 +95,13 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
 }
 
 /// Reads each file once: what the manifest names twice is shared again.
-pub(super) struct Reader<'a> {
+pub(super) struct FolderReader<'a> {
     folder: &'a Path,
     size: [u32; 2],
     images: BTreeMap<String, Arc<Image>>,
 }
 
-impl Reader<'_> {
+impl FolderReader<'_> {
     pub(super) fn wrong(&self, file: &str, reason: &str) -> CaptureError {
         CaptureError::Read { file: self.folder.join(file), reason: reason.to_owned() }
     }

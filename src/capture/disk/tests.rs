@@ -1,13 +1,13 @@
 //! Capture folders of a hand-made capture: padded rows, shared aspects, a cube, a sun; no GPU.
 
 use super::*;
-use crate::accuracy::{ErrorCounts, Finding, Region};
+use crate::accuracy::{ErrorCounts, Finding, WrongRegion};
 use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
     PixelFormat, Snapshot, Step, Timing,
 };
 use crate::math::depth::DepthMapping;
-use crate::plan::{DecidedBy, Decision, LeftOut, Part, Side};
+use crate::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
 use crate::scene::{Camera, Projection};
 use glam::{DMat4, DVec3, DVec4};
 use std::fs;
@@ -33,7 +33,7 @@ fn step(name: &str, light: Option<usize>, snapshot: Snapshot) -> Step {
     let draw = DrawSummary {
         name: "sides of bunny".into(),
         caster: Some("bunny".into()),
-        part: Part::Side,
+        part: DrawPart::Side,
         triangles: 7,
         after: None,
         differs: None,
@@ -42,7 +42,7 @@ fn step(name: &str, light: Option<usize>, snapshot: Snapshot) -> Step {
         name: name.to_owned(),
         purpose: "To be seen.".to_owned(),
         light,
-        draws: vec![draw.clone(), DrawSummary { caster: None, part: Part::Surface, ..draw }],
+        draws: vec![draw.clone(), DrawSummary { caster: None, part: DrawPart::Surface, ..draw }],
         gpu_ms: light.map(|_| 0.1 + 0.2),
         snapshot,
     }
@@ -75,7 +75,7 @@ fn example() -> Capture {
         layer_names: vec!["floor".to_owned(), "wall".to_owned(), "box".to_owned()],
         clip_from_light: (0..3).map(|index| DMat4::from_rotation_y(f64::from(index))).collect(),
     };
-    let decided_by = DecidedBy::StencilCount { side: Side::Behind };
+    let decided_by = DecidedBy::StencilCount { side: CountedSide::Behind };
     let unlit = |position: DVec4, map| CapturedLight {
         position,
         decided_by,
@@ -90,7 +90,7 @@ fn example() -> Capture {
         labels: padded(PixelFormat::U8, 0),
         findings: padded(PixelFormat::U8, 2),
         error: ErrorCounts { compared: 11, false_shadow: 1, missing_shadow: 2, wrong_surface: 3, edge_band: 4 },
-        worst: Some(Region { pixels: 2, kind: Finding::MissingShadow, bounds: [1, 0, 4, 2], at: [1, 2] }),
+        worst: Some(WrongRegion { pixels: 2, kind: Finding::MissingShadow, bounds: [1, 0, 4, 2], at: [1, 2] }),
     };
     Capture {
         scene: "bunny \"on\" a floor".into(),
@@ -388,7 +388,7 @@ fn what_decides_a_light_is_written_and_derived_where_a_folder_does_not_say() {
     json["left_out"][0]["decision"] = "unheard-of".into();
     fs::write(path.join(MANIFEST), json.to_string()).expect("written");
     let older = read(&path).expect("read");
-    let side = Side::AsNeeded;
+    let side = CountedSide::AsNeeded;
     assert_eq!(older.lights[0].decided_by, DecidedBy::StencilCount { side });
     assert_eq!(older.lights[2].decided_by, DecidedBy::FloatCount { side });
     assert_eq!((older.left_out[0].decision, older.left_out[0].count), (None, Some(1)));

@@ -1,39 +1,39 @@
 //! What eight bits do to counts.
 
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount};
-use crate::diagnosis::mend::Mend;
-use crate::history::{Count, Why};
+use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount};
+use crate::diagnosis::mend::Fix;
+use crate::history::{LightDecision, VolumeCount};
 use crate::plan::{CountBits, CountOf};
-use crate::technique::CountsBy;
+use crate::technique::CountOperations;
 
-pub(crate) const RULES: &[Rule] = &[clamped, wrap_256, few_bits, parity, operation_order];
+pub(crate) const RULES: &[CauseRule] = &[clamped, wrap_256, few_bits, parity, operation_order];
 
 /// The first step of a light's count that was lost at a limit: what the count was, and how many were lost.
-fn first_lost(sample: &Sample, light: usize) -> Option<(u8, u64)> {
-    let is_lost = |(event, _): &(&crate::history::Event, _)| event.step() != 0 && event.counted() == 0;
+fn first_lost(sample: &PixelSample, light: usize) -> Option<(u8, u64)> {
+    let is_lost = |(event, _): &(&crate::history::PixelEvent, _)| event.step() != 0 && event.counted() == 0;
     let mut lost = sample.volume_events(light).filter(is_lost);
     let first = lost.next()?.0.before.stencil;
     Some((first, 1 + lost.count() as u64))
 }
 
 /// What the count was cleared to, and of all steps together, as no limit would have them.
-fn true_count(sample: &Sample, light: usize) -> i32 {
+fn true_count(sample: &PixelSample, light: usize) -> i32 {
     let start = sample.history.as_ref().map_or(0, |history| history.cleared_to(light));
     start + sample.volume_events(light).map(|(event, _)| event.step()).sum::<i32>()
 }
 
-fn stored(sample: &Sample, light: usize) -> Option<u8> {
+fn stored(sample: &PixelSample, light: usize) -> Option<u8> {
     match sample.history.as_ref()?.why(light)? {
-        Why::Counted(counted, _) => match counted.count {
-            Count::Stencil(byte) => Some(byte),
-            Count::Float(_) => None,
+        LightDecision::Counted(counted, _) => match counted.count {
+            VolumeCount::Stencil(byte) => Some(byte),
+            VolumeCount::Float(_) => None,
         },
         _ => None,
     }
 }
 
-fn clamped(_: &Facts, case: &Case) -> Option<Suspicion> {
+fn clamped(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((lost, count, stored), shown_by) = case.shown(|sample| {
         let (limit, lost) = first_lost(sample, light)?;
@@ -44,11 +44,11 @@ fn clamped(_: &Facts, case: &Case) -> Option<Suspicion> {
         amount(lost, "face"),
         if lost == 1 { "was" } else { "were" },
     );
-    let mends = vec![Mend::setting("operations", "wrap"), Mend::setting("counter", "float")];
-    Suspicion::new(Cause::Clamped, evidence, mends, shown_by)
+    let mends = vec![Fix::setting("operations", "wrap"), Fix::setting("counter", "float")];
+    SuspectedCause::new(Cause::Clamped, evidence, mends, shown_by)
 }
 
-fn operation_order(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((lost, count, stored), shown_by) = case.shown(|sample| {
         let (limit, lost) = first_lost(sample, light)?;
@@ -60,15 +60,15 @@ fn operation_order(facts: &Facts, case: &Case) -> Option<Suspicion> {
         if lost == 1 { "takes" } else { "take" },
         if lost == 1 { "was" } else { "were" },
     );
-    let mut mends = vec![Mend::setting("operations", "wrap")];
+    let mut mends = vec![Fix::setting("operations", "wrap")];
     // Where passes stand in the wrong order, that alone is to be turned round.
     if facts.volumes().is_some_and(|settings| settings.two_pass && settings.takes_away_first) {
-        mends.push(Mend::setting("order", "add-first"));
+        mends.push(Fix::setting("order", "add-first"));
     }
-    Suspicion::new(Cause::OperationOrder, evidence, mends, shown_by)
+    SuspectedCause::new(Cause::OperationOrder, evidence, mends, shown_by)
 }
 
-fn wrap_256(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let is_whole = facts.volumes().is_none_or(|settings| settings.mask() == u8::MAX);
     let light = case.light();
     let (count, shown_by) = case.shown(|sample| {
@@ -79,12 +79,12 @@ fn wrap_256(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let of = facts.capture.lights.get(light).and_then(|light| light.count_of);
     let what = of.map_or("volumes", CountOf::what);
     let evidence = format!("{count} {what} are counted here, a multiple of 256: eight bits hold 0");
-    Suspicion::new(Cause::Wrap256, evidence, vec![Mend::setting("counter", "float")], shown_by)
+    SuspectedCause::new(Cause::Wrap256, evidence, vec![Fix::setting("counter", "float")], shown_by)
 }
 
 /// Fewer bits than a stencil has, by its masks.
-fn few_bits(facts: &Facts, case: &Case) -> Option<Suspicion> {
-    let settings = facts.volumes().filter(|settings| settings.operations != CountsBy::Inverting)?;
+fn few_bits(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    let settings = facts.volumes().filter(|settings| settings.operations != CountOperations::Inverting)?;
     let bits = CountBits::of_mask(settings.mask().into());
     if bits == CountBits::EIGHT {
         return None;
@@ -100,12 +100,12 @@ fn few_bits(facts: &Facts, case: &Case) -> Option<Suspicion> {
         bits.modulus(),
         if bits.modulus() == 2 { "holds" } else { "hold" }
     );
-    let mends = vec![Mend::setting("stencil-bits", "8"), Mend::setting("counter", "float")];
-    Suspicion::new(Cause::FewBits, evidence, mends, shown_by)
+    let mends = vec![Fix::setting("stencil-bits", "8"), Fix::setting("counter", "float")];
+    SuspectedCause::new(Cause::FewBits, evidence, mends, shown_by)
 }
 
-fn parity(facts: &Facts, case: &Case) -> Option<Suspicion> {
-    facts.volumes().filter(|settings| settings.operations == CountsBy::Inverting)?;
+fn parity(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    facts.volumes().filter(|settings| settings.operations == CountOperations::Inverting)?;
     let light = case.light();
     let (count, shown_by) = case.shown(|sample| {
         let count = sample.between.iter().filter(|met| facts.casts(light, met)).count();
@@ -113,6 +113,6 @@ fn parity(facts: &Facts, case: &Case) -> Option<Suspicion> {
     })?;
     let evidence =
         format!("{count} volumes contain the surface, an even number, and the one bit that faces turn over ends at 0");
-    let mends = vec![Mend::setting("operations", "wrap")];
-    Suspicion::new(Cause::Parity, evidence, mends, shown_by)
+    let mends = vec![Fix::setting("operations", "wrap")];
+    SuspectedCause::new(Cause::Parity, evidence, mends, shown_by)
 }

@@ -7,19 +7,19 @@ use super::planar::larger;
 use crate::accuracy::Finding;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
-use crate::diagnosis::mend::{Mend, PlanEdit};
+use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
+use crate::diagnosis::mend::{Fix, PlanEdit};
 use crate::numbers;
-use crate::plan::{Part, PlanMap};
+use crate::plan::{DrawPart, PlanMap};
 use crate::technique::{MapSettings, Technique};
 use crate::truth::SeenSurface;
 use glam::{DMat4, DVec2, DVec3};
 
-pub(crate) const RULES: &[Rule] = &[acne, peter_panning, aliasing, outside_map];
+pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, aliasing, outside_map];
 
 /// What a shadow map does at a surface point.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct MapLook {
+pub(crate) struct MapComparison {
     pub cause: Cause,
     /// Whose texel it is, or would be.
     pub caster: Option<usize>,
@@ -37,18 +37,25 @@ pub(crate) struct MapLook {
 }
 
 /// Why the map's answer is wrong at a surface point; `None` where there is no map of depths.
-pub(crate) fn look(facts: &Facts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapLook> {
+pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapComparison> {
     if facts.technique() != Technique::ShadowMap {
         return None;
     }
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     map.lookup?;
-    let nothing =
-        MapLook { cause: Cause::OutsideMap, caster: None, texel: 0.0, slope: 0.0, gap: 0.0, bias: 0.0, place: 0.0 };
+    let nothing = MapComparison {
+        cause: Cause::OutsideMap,
+        caster: None,
+        texel: 0.0,
+        slope: 0.0,
+        gap: 0.0,
+        bias: 0.0,
+        place: 0.0,
+    };
     let relative = seen.point - facts.scene.camera.eye;
     let Some((face, device)) = find_face(map, relative) else {
         let caster = facts.tracer.between(light, seen).last().map(|met| met.place.object);
-        return Some(MapLook { caster, place: farthest(map, relative), ..nothing });
+        return Some(MapComparison { caster, place: farthest(map, relative), ..nothing });
     };
     texel_look(facts, light, kind, seen, (map, face, device), nothing)
 }
@@ -72,13 +79,13 @@ fn farthest(map: &PlanMap, relative: DVec3) -> f64 {
 }
 
 fn texel_look(
-    facts: &Facts,
+    facts: &FrameFacts,
     light: usize,
     kind: RegionKind,
     seen: &SeenSurface,
     (map, face, device): (&PlanMap, usize, DVec3),
-    nothing: MapLook,
-) -> Option<MapLook> {
+    nothing: MapComparison,
+) -> Option<MapComparison> {
     let image = facts.capture.lights.get(light)?.map.as_ref()?.faces.get(face)?.clone();
     let size = f64::from(image.size()[0]);
     let texel =
@@ -92,7 +99,7 @@ fn texel_look(
     let beside = unproject(center.x + 2.0 / size, center.y, device.z);
     let width = (beside - target).length();
     let origin_side = facts.tracer.light_distance(light, target);
-    let drawn = |name: &str| facts.draws(light, Part::Map).any(|draw| draw.caster.as_deref() == Some(name));
+    let drawn = |name: &str| facts.draws(light, DrawPart::Map).any(|draw| draw.caster.as_deref() == Some(name));
     // From the light on, in order.
     let mut met = facts.tracer.along(light, target);
     met.retain(|met| met.towards_light < origin_side && drawn(facts.tracer.name(met.place)));
@@ -107,7 +114,7 @@ fn texel_look(
     let clear = map.lookup.map_or(0.0, |lookup| f64::from(lookup.clear_depth));
     let height_of = |z: f64| facts.tracer.towards(light, target).dot(unproject(center.x, center.y, z) - target);
     let bias = first.filter(|_| stored != clear).map_or(0.0, |first| first.towards_light - height_of(stored));
-    let look = MapLook {
+    let look = MapComparison {
         caster: first.map(|first| first.place.object),
         texel: width,
         slope,
@@ -137,11 +144,11 @@ fn texel_look(
         (Cause::PeterPanning, Some(first)) => first.towards_light,
         _ => look.gap,
     };
-    Some(MapLook { cause, gap, ..look })
+    Some(MapComparison { cause, gap, ..look })
 }
 
 /// The look of the first sample that shows a cause, and how many do.
-fn shown(facts: &Facts, case: &Case, cause: Cause) -> Option<(MapLook, usize)> {
+fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapComparison, usize)> {
     case.shown(|sample| {
         let look = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
         (look.cause == cause).then_some(look)
@@ -149,13 +156,13 @@ fn shown(facts: &Facts, case: &Case, cause: Cause) -> Option<(MapLook, usize)> {
 }
 
 /// Biases as they are by default, and some that are more or less.
-fn bias(constant: i32, slope: f64) -> Mend {
-    let mut mend = Mend::setting("bias-slope", &format!("{slope}"));
+fn bias(constant: i32, slope: f64) -> Fix {
+    let mut mend = Fix::setting("bias-slope", &format!("{slope}"));
     mend.settings.insert("bias-constant".to_owned(), constant.to_string());
     mend
 }
 
-fn acne(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let (look, shown_by) = shown(facts, case, Cause::Acne)?;
     let evidence = format!(
         "a texel is {} wide here, over which the surface gets {} farther from the light; the bias is {}",
@@ -166,12 +173,12 @@ fn acne(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let steps = [(16, 2.0), (64, 4.0), (256, 8.0)];
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
-    let mut mends: Vec<Mend> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
-    mends.push(Mend::technique(Technique::ZFail));
-    Suspicion::new(Cause::Acne, evidence, mends, shown_by)
+    let mut mends: Vec<Fix> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
+    mends.push(Fix::technique(Technique::ZFail));
+    SuspectedCause::new(Cause::Acne, evidence, mends, shown_by)
 }
 
-fn peter_panning(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let (look, shown_by) = shown(facts, case, Cause::PeterPanning)?;
     let evidence = match facts.map().bias_normal {
         texels if texels > 0.0 => format!(
@@ -189,15 +196,15 @@ fn peter_panning(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let steps = [(16, 2.0), (16, 1.0), (4, 0.5)];
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let less = steps.into_iter().filter(|(c, s)| *c < constant || *s < slope);
-    let mut mends: Vec<Mend> = less.map(|(c, s)| bias(c.min(constant), s.min(slope))).collect();
+    let mut mends: Vec<Fix> = less.map(|(c, s)| bias(c.min(constant), s.min(slope))).collect();
     if facts.map().bias_normal != 0.0 {
-        mends = vec![Mend::setting("bias-normal", "0")];
+        mends = vec![Fix::setting("bias-normal", "0")];
     }
-    mends.push(Mend::technique(Technique::ZFail));
-    Suspicion::new(Cause::PeterPanning, evidence, mends, shown_by)
+    mends.push(Fix::technique(Technique::ZFail));
+    SuspectedCause::new(Cause::PeterPanning, evidence, mends, shown_by)
 }
 
-fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let ((look, pixels), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
         let look = look(facts, case.light(), case.region.key.kind, &seen)?;
@@ -209,16 +216,16 @@ fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(look.texel),
         numbers::digits(pixels)
     );
-    Suspicion::new(Cause::Aliasing, evidence, larger(facts.texels(), 8192.0), shown_by)
+    SuspectedCause::new(Cause::Aliasing, evidence, larger(facts.texels(), 8192.0), shown_by)
 }
 
-fn outside_map(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn outside_map(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let (look, shown_by) = shown(facts, case, Cause::OutsideMap).filter(|_| case.is_missing())?;
     let place = match look.place.is_finite() {
         true => format!("{} times as far from the map's middle as its border", numbers::digits(look.place)),
         false => "behind what the map looks at".to_owned(),
     };
     let evidence = format!("the surface lies {place}, where nothing is looked up");
-    let mends = vec![Mend::plan(PlanEdit::Refit), Mend::technique(Technique::ZFail)];
-    Suspicion::new(Cause::OutsideMap, evidence, mends, shown_by)
+    let mends = vec![Fix::plan(PlanEdit::Refit), Fix::technique(Technique::ZFail)];
+    SuspectedCause::new(Cause::OutsideMap, evidence, mends, shown_by)
 }

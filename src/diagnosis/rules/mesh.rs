@@ -1,14 +1,14 @@
 //! Casters of which only some triangles cast, although their mesh does not allow that.
 
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion, amount};
-use crate::diagnosis::mend::{Mend, ObjectChange};
+use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
+use crate::diagnosis::mend::{Fix, ObjectChange};
 use crate::diagnosis::mesh_facts::MeshFacts;
 use crate::geometry::Casters;
 use crate::numbers;
-use crate::technique::WhoCasts;
+use crate::technique::CasterRule;
 
-pub(crate) const RULES: &[Rule] =
+pub(crate) const RULES: &[CauseRule] =
     &[light_inside, split_vertices, near_vertices, inconsistent_winding, non_manifold, open_mesh];
 
 /// A caster that is at fault at a sample.
@@ -21,12 +21,12 @@ struct Suspect<'f> {
 }
 
 /// Casters whose casting triangles alone do not make their shadow here.
-fn suspects<'f>(facts: &'f Facts, case: &Case) -> Vec<Suspect<'f>> {
+fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>> {
     let light = case.light();
     let way = match facts.volumes().map(|settings| settings.casters) {
-        Some(WhoCasts::Always(Casters::LightFacing)) => "towards",
-        Some(WhoCasts::Always(Casters::LightBackFacing)) => "away from",
-        Some(WhoCasts::Always(Casters::All) | WhoCasts::ByTopology) | None => return Vec::new(),
+        Some(CasterRule::Always(Casters::LightFacing)) => "towards",
+        Some(CasterRule::Always(Casters::LightBackFacing)) => "away from",
+        Some(CasterRule::Always(Casters::All) | CasterRule::ByTopology) | None => return Vec::new(),
     };
     let mut found: Vec<Suspect> = Vec::new();
     for sample in &case.samples {
@@ -66,30 +66,30 @@ fn suspects<'f>(facts: &'f Facts, case: &Case) -> Vec<Suspect<'f>> {
 
 /// The rule of a cause: `measure` tells what is the matter with a mesh and how often.
 fn rule(
-    facts: &Facts,
-    case: &Case,
+    facts: &FrameFacts,
+    case: &RegionSamples,
     cause: Cause,
     measure: impl Fn(&MeshFacts) -> Option<(String, usize)>,
-) -> Option<Suspicion> {
+) -> Option<SuspectedCause> {
     let all = suspects(facts, case).into_iter();
     let (suspect, (measured, weight)) =
         all.filter_map(|suspect| Some((measure(suspect.mesh)?, suspect))).map(|(m, s)| (s, m)).next()?;
     let Suspect { index, mesh, what, shown_by } = suspect;
     let mends = match cause {
         Cause::SplitVertices => {
-            vec![Mend::scene(index, &mesh.name, ObjectChange::Weld), Mend::setting("casters", "all")]
+            vec![Fix::scene(index, &mesh.name, ObjectChange::Weld), Fix::setting("casters", "all")]
         }
-        _ => vec![Mend::setting("casters", "all")],
+        _ => vec![Fix::setting("casters", "all")],
     };
     let evidence = format!("{} {measured}; {what}", mesh.name);
-    Suspicion::new(cause, evidence, mends, shown_by).map(|suspicion| Suspicion { weight, ..suspicion })
+    SuspectedCause::new(cause, evidence, mends, shown_by).map(|suspicion| SuspectedCause { weight, ..suspicion })
 }
 
 fn edges(count: usize) -> String {
     amount(count as u64, "edge")
 }
 
-fn light_inside(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn light_inside(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = facts.tracer.light_position(case.light());
     rule(facts, case, Cause::LightInside, |mesh| {
         let winding = mesh.winding_around(light)?;
@@ -97,7 +97,7 @@ fn light_inside(facts: &Facts, case: &Case) -> Option<Suspicion> {
     })
 }
 
-fn split_vertices(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn split_vertices(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     rule(facts, case, Cause::SplitVertices, |mesh| {
         let count = mesh.split.len();
         let text = format!("has {} along which equal positions have different indices", edges(count));
@@ -105,7 +105,7 @@ fn split_vertices(facts: &Facts, case: &Case) -> Option<Suspicion> {
     })
 }
 
-fn near_vertices(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn near_vertices(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     rule(facts, case, Cause::NearVertices, |mesh| {
         let count = mesh.near.len();
         let text = format!("has {} within a millionth of its size of another that they do not share", edges(count));
@@ -113,21 +113,21 @@ fn near_vertices(facts: &Facts, case: &Case) -> Option<Suspicion> {
     })
 }
 
-fn inconsistent_winding(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn inconsistent_winding(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     rule(facts, case, Cause::InconsistentWinding, |mesh| match mesh.inconsistent.0 {
         0 => mesh.is_inside_out.then(|| ("has its inside out".to_owned(), usize::MAX / 2)),
         count => Some((format!("has {} whose two triangles disagree on which side is out", edges(count)), count)),
     })
 }
 
-fn non_manifold(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn non_manifold(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     rule(facts, case, Cause::NonManifold, |mesh| {
         let count = mesh.non_manifold.0;
         (count > 0).then(|| (format!("has {} of more than two triangles", edges(count)), count))
     })
 }
 
-fn open_mesh(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn open_mesh(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     rule(facts, case, Cause::OpenMesh, |mesh| {
         let count = mesh.open.len();
         (count > 0).then(|| (format!("is open along {}", edges(count)), count))

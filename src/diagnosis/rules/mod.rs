@@ -11,13 +11,13 @@ pub(crate) mod planar;
 pub(crate) mod projective;
 pub(crate) mod volume;
 
-use super::facts::{Case, Facts, Rule, Suspicion};
+use super::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
 
 /// All of them.
-pub(crate) const ALL: &[&[Rule]] =
+pub(crate) const ALL: &[&[CauseRule]] =
     &[volume::RULES, count::RULES, mesh::RULES, planar::RULES, map::RULES, projective::RULES, number::RULES];
 
 /// What may be the cause of a region.
-pub(crate) fn suspicions(facts: &Facts, case: &Case) -> Vec<Suspicion> {
+pub(crate) fn suspicions(facts: &FrameFacts, case: &RegionSamples) -> Vec<SuspectedCause> {
     ALL.iter().flat_map(|rules| rules.iter()).filter_map(|rule| rule(facts, case)).collect()
 }

@@ -1,17 +1,17 @@
 //! What single precision and parts of a pixel can't tell.
 
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
-use crate::diagnosis::mend::Mend;
+use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
+use crate::diagnosis::mend::Fix;
 use crate::math::side_of_triangle;
 use crate::numbers;
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use crate::scene::Object;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-pub(crate) const RULES: &[Rule] = &[f32_limit, subpixel_edges];
+pub(crate) const RULES: &[CauseRule] = &[f32_limit, subpixel_edges];
 
 /// Half a unit in the last place of 24 bits, as a part of the number.
 const ROUNDING: f64 = 6e-8;
@@ -27,18 +27,18 @@ const LARGER: [u32; 3] = [3, 5, 15];
 const MOST_SIDE: u32 = 8192;
 
 /// What 24 bits round away. Nothing that could be run proves it, so the numbers must.
-fn f32_limit(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     // Only what counts volumes has sides that pass a pixel, or faces that it can miss.
-    let looks: &[Rule] =
+    let looks: &[CauseRule] =
         if facts.counts_volumes(case.light()) { &[grazed, cut_at_border, side_through_middle] } else { &[grazed] };
     looks.iter().find_map(|look| look(facts, case))
 }
 
 /// Positions are rounded when they go to the GPU; where light grazes, that moves a shadow's edge by the
 /// rounding over the tangent of the light's height, for a lamp farther the nearer the caster is to it.
-fn grazed(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
-    let is_geometric = facts.counts_volumes(light) || facts.draws(light, Part::PlanarShadow).next().is_some();
+    let is_geometric = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
     if !is_geometric {
         return None;
     }
@@ -64,7 +64,7 @@ fn grazed(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(rounding),
         numbers::digits(moved)
     );
-    Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
+    SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
 }
 
 /// Roundings between a corner and the depths that are compared: of its position, its place in the picture, the side's
@@ -73,7 +73,7 @@ const ROUNDINGS: f64 = 4.0;
 
 /// A side that meets the surface in the very middle of a pixel, as near as positions are rounded, is counted or not by
 /// chance. Where a shadow ends there, the truth's edge excuses that; where another shadow begins, a hole is left in both.
-fn side_through_middle(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, at, pixels, rounding), shown_by) = case.shown(|sample| {
         let seen = sample.seen?.point;
@@ -94,12 +94,12 @@ fn side_through_middle(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::digits(rounding)
     );
     // By chance one pixel of many lies so: what is wrong all over a region has another cause.
-    (shown_by == case.samples.len()).then(|| Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
+    (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
 }
 
 /// The GPU cuts what reaches beyond the picture where that ends, and rounds the place by the length of what it cuts: pixels
 /// along the border miss faces that cover them.
-fn cut_at_border(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn cut_at_border(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, length, away, at, moved), shown_by) = case.shown(|sample| {
         let seen = sample.seen?.point;
@@ -121,7 +121,7 @@ fn cut_at_border(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::digits(away),
         numbers::digits(moved)
     );
-    (shown_by == case.samples.len()).then(|| Suspicion::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
+    (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
 }
 
 fn longest_edge(object: &Object) -> f64 {
@@ -143,7 +143,7 @@ struct NearSide {
 }
 
 /// The side of an object's volume that passes a point that is seen nearer than roundings move it.
-fn nearest_side(facts: &Facts, object: &Object, seen: DVec3, light: DVec4) -> Option<NearSide> {
+fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) -> Option<NearSide> {
     let to_light = light.truncate() - seen * light.w;
     let towards = to_light.normalize_or_zero();
     let reach = if light.w == 0.0 { f64::INFINITY } else { to_light.length() };
@@ -199,7 +199,7 @@ fn nearest_side(facts: &Facts, object: &Object, seen: DVec3, light: DVec4) -> Op
 
 /// Corners snap to 1/256 of a pixel. Where a caster's edges are two pixels long or less, its volume's sides are narrow strips
 /// that reach far: as their corners snap, their depth tilts, and they meet a surface beside their place.
-fn subpixel_edges(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     if !facts.counts_volumes(light) {
         return None;
@@ -215,12 +215,12 @@ fn subpixel_edges(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::digits(edge)
     );
     let fits = |times: &u32| facts.plan.size.iter().all(|side| side * times <= MOST_SIDE);
-    let mends = LARGER.into_iter().filter(fits).map(Mend::larger).collect();
-    Suspicion::new(Cause::SubpixelEdges, evidence, mends, shown_by)
+    let mends = LARGER.into_iter().filter(fits).map(Fix::larger).collect();
+    SuspectedCause::new(Cause::SubpixelEdges, evidence, mends, shown_by)
 }
 
 /// The median length of an object's edges, in pixels where its nearest corner is.
-fn usual_edge(facts: &Facts, object: &Object) -> Option<f64> {
+fn usual_edge(facts: &FrameFacts, object: &Object) -> Option<f64> {
     let world = object.world_positions();
     let nearest = world.iter().map(|point| facts.tracer.depth_of(*point)).fold(f64::INFINITY, f64::min);
     let corners = object.mesh.triangles().iter();

@@ -2,19 +2,19 @@
 
 use crate::capture::{Aspect, Capture, Snapshot};
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
-use crate::diagnosis::mend::Mend;
-use crate::geometry::planar::Clip;
-use crate::history::{Event, Fate, Test, TriangleEvent};
+use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
+use crate::diagnosis::mend::Fix;
+use crate::geometry::planar::FlattenClip;
+use crate::history::{FragmentOutcome, PixelEvent, TestResult, TriangleEvent};
 use crate::math::{Plane, Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{ColorWrite, Draw, FramePlan, Part, Pass};
+use crate::plan::{ColorWrite, Draw, DrawPart, FramePlan, Pass};
 use crate::technique::{PlanarSettings, Technique};
 use crate::truth::SeenSurface;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
-pub(crate) const RULES: &[Rule] =
+pub(crate) const RULES: &[CauseRule] =
     &[double_blend, z_fighting, off_receiver, anti_shadow, false_shadow, not_planar, texture_aliasing];
 
 /// As many flat pieces have a shadow of their own.
@@ -30,7 +30,7 @@ pub(crate) fn darkens_in_the_picture(plan: &FramePlan) -> bool {
 }
 
 fn is_blend(pass: &Pass) -> bool {
-    pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
+    pass.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
 }
 
 /// Pixels that a pass of a light has darkened more than one flattened triangle would, by number.
@@ -76,7 +76,7 @@ fn linear(byte: u8) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-fn double_blend(_: &Facts, case: &Case) -> Option<Suspicion> {
+fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     if !case.is_too_dark() {
         return None;
     }
@@ -86,26 +86,26 @@ fn double_blend(_: &Facts, case: &Case) -> Option<Suspicion> {
         (passing > 1).then_some(passing)
     })?;
     let evidence = format!("{count} flattened triangles cover this pixel, and each darkens it");
-    let mut mend = Mend::setting("blend", "once");
+    let mut mend = Fix::setting("blend", "once");
     mend.settings.insert("stencil".to_owned(), "on".to_owned());
-    let mends = vec![Mend::setting("blend", "once"), mend];
-    Suspicion::new(Cause::DoubleBlend, evidence, mends, shown_by)
+    let mends = vec![Fix::setting("blend", "once"), mend];
+    SuspectedCause::new(Cause::DoubleBlend, evidence, mends, shown_by)
 }
 
 /// The flattened triangles of a light over a sample.
-fn flattened(sample: &Sample, light: usize) -> impl Iterator<Item = (&Event, &TriangleEvent)> {
+fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
     let all = sample.history.iter().flat_map(|history| history.triangles());
     // What writes labels runs the same triangles again.
     all.filter(move |(event, one)| {
         event.light == Some(light)
-            && one.part == Part::PlanarShadow
+            && one.part == DrawPart::PlanarShadow
             && event.target == crate::capture::FrameTarget::Picture
     })
 }
 
 /// The plane of a flattened triangle, world space; `None` where its corners tell none. Corners may be at
 /// infinity, or beyond it.
-fn plane_of(facts: &Facts, one: &TriangleEvent) -> Option<Plane> {
+fn plane_of(facts: &FrameFacts, one: &TriangleEvent) -> Option<Plane> {
     through(one.corners, facts.scene.camera.eye)
 }
 
@@ -123,12 +123,12 @@ fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
 }
 
 /// How far a seen surface lies off a flattened triangle's plane, if it does.
-fn off_plane(facts: &Facts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
+fn off_plane(facts: &FrameFacts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
     let off = plane_of(facts, one)?.at(seen.point.extend(1.0)).abs();
     (off > OFF_PLANE * (seen.point - facts.scene.camera.eye).length()).then_some(off)
 }
 
-fn off_receiver(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn off_receiver(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     if !case.is_false() || settings(facts).is_none_or(|settings| settings.marks) {
         return None;
     }
@@ -146,14 +146,14 @@ fn off_receiver(facts: &Facts, case: &Case) -> Option<Suspicion> {
     })?;
     let evidence =
         format!("the {name} darkens a surface that lies {} off the plane it is flattened onto", numbers::metres(off));
-    Suspicion::new(Cause::OffReceiver, evidence, vec![Mend::setting("stencil", "on")], shown_by)
+    SuspectedCause::new(Cause::OffReceiver, evidence, vec![Fix::setting("stencil", "on")], shown_by)
 }
 
-fn z_fighting(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, shadow, surface), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
-        let fails = |fate: Fate| matches!(fate, Fate::Tested { depth: Test::Failed, .. });
+        let fails = |fate: FragmentOutcome| matches!(fate, FragmentOutcome::Tested { depth: TestResult::Failed, .. });
         let mut failing = flattened(sample, light).filter(|(_, one)| fails(one.fate));
         let (event, one) = failing.find(|(_, one)| off_plane(facts, one, &seen).is_none())?;
         Some((one.draw_name.clone(), one.depth, event.before.depth))
@@ -165,12 +165,12 @@ fn z_fighting(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::depth(surface),
         amount(steps, "step")
     );
-    let mends = vec![Mend::setting("z-fighting", "depth-off"), Mend::setting("z-fighting", "polygon-offset")];
-    Suspicion::new(Cause::ZFighting, evidence, mends, shown_by)
+    let mends = vec![Fix::setting("z-fighting", "depth-off"), Fix::setting("z-fighting", "polygon-offset")];
+    SuspectedCause::new(Cause::ZFighting, evidence, mends, shown_by)
 }
 
 /// What a pixel of planar shadows alone tells: what lies on the light's line, but not between.
-pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Cause> {
+pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<Cause> {
     if !is_unclipped(facts) {
         return None;
     }
@@ -183,10 +183,10 @@ pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Ca
 }
 
 /// Names of casters, each with how far it is, metres.
-type Far = Vec<(String, f64)>;
+type CasterDistances = Vec<(String, f64)>;
 
 /// Casters on the line from a light to a surface that lie beyond the light, and below the surface.
-fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Far, Far) {
+fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterDistances, CasterDistances) {
     let distance = facts.tracer.light_distance(light, seen.point);
     let plane =
         Plane::through(seen.point, (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]));
@@ -208,7 +208,7 @@ fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Far, Far) {
 /// A caster with a triangle that reaches past the light's height over the surface's plane, and whose corners span the
 /// surface when each is carried through the light on its own: its name, and how far the triangle reaches under and
 /// over that height, metres.
-fn spans_the_light(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(String, f64, f64)> {
+fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(String, f64, f64)> {
     let position = facts.tracer.light_position(light);
     if position.w == 0.0 {
         return None;
@@ -251,20 +251,20 @@ fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
 }
 
 /// What planar shadows were told; `None` of another technique.
-fn settings(facts: &Facts) -> Option<PlanarSettings> {
+fn settings(facts: &FrameFacts) -> Option<PlanarSettings> {
     (facts.technique() == Technique::Planar).then(|| PlanarSettings::read(facts.choice.settings()))
 }
 
 /// Are casters flattened whole, with what lies beyond the light or below the receiver?
-fn is_unclipped(facts: &Facts) -> bool {
-    settings(facts).is_some_and(|settings| settings.clip == Clip::Off)
+fn is_unclipped(facts: &FrameFacts) -> bool {
+    settings(facts).is_some_and(|settings| settings.clip == FlattenClip::Off)
 }
 
-fn is_flattened_unclipped(facts: &Facts, case: &Case) -> bool {
+fn is_flattened_unclipped(facts: &FrameFacts, case: &RegionSamples) -> bool {
     is_unclipped(facts) && case.is_false()
 }
 
-fn anti_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn anti_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     if !is_flattened_unclipped(facts, case) {
         return None;
     }
@@ -285,10 +285,10 @@ fn anti_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
             ))
         })
     })?;
-    Suspicion::new(Cause::AntiShadow, evidence, vec![Mend::setting("clip", "on")], shown_by)
+    SuspectedCause::new(Cause::AntiShadow, evidence, vec![Fix::setting("clip", "on")], shown_by)
 }
 
-fn false_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     if !is_flattened_unclipped(facts, case) {
         return None;
     }
@@ -300,11 +300,11 @@ fn false_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
         "nothing lies between light and surface, but {name} lies on their line, {} under the surface",
         numbers::metres(far)
     );
-    Suspicion::new(Cause::FalseShadow, evidence, vec![Mend::setting("clip", "on")], shown_by)
+    SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")], shown_by)
 }
 
 /// How many flat pieces an object shows, by the exact planes of its triangles; `None` of unknown objects.
-fn flat_pieces(facts: &Facts, name: &str) -> Option<usize> {
+fn flat_pieces(facts: &FrameFacts, name: &str) -> Option<usize> {
     let (_, object) = facts.object(name)?;
     let mesh = &object.mesh;
     let edges = crate::geometry::EdgeList::new(mesh.triangles(), mesh.positions().len());
@@ -313,7 +313,7 @@ fn flat_pieces(facts: &Facts, name: &str) -> Option<usize> {
 }
 
 /// Does the plan serve the flat piece that a triangle lies in?
-fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
+fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let eye = facts.scene.camera.eye;
     let distance = (seen.point - eye).length();
     let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
@@ -331,26 +331,27 @@ fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
         })
     };
     let name = facts.tracer.name(seen.place);
-    let mut marks = facts.draws(light, Part::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
+    let mut marks =
+        facts.draws(light, DrawPart::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
     match marks.peek() {
         Some(_) => marks.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane))),
         // Without marks, receivers are known by what falls on them.
         None => {
             let suffix = format!(" on {name},");
-            let mut onto = facts.draws(light, Part::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
+            let mut onto = facts.draws(light, DrawPart::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
             onto.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane)))
         }
     }
 }
 
 /// Is a triangle's flat piece among those that have a texture?
-fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
+fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
     let is_of_piece = |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
     let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
     let eye = facts.scene.camera.eye;
-    light_passes.filter(|draw| draw.part == Part::Surface).filter(is_of_piece).any(|draw| {
+    light_passes.filter(|draw| draw.part == DrawPart::Surface).filter(is_of_piece).any(|draw| {
         let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
         draw.triangles.clone().any(|index| {
             (0..3).all(|corner| {
@@ -369,7 +370,7 @@ fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     })
 }
 
-fn not_planar(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn not_planar(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let is_texture = facts.technique() == Technique::PlanarTexture;
     if !case.is_missing() || !(facts.technique() == Technique::Planar || is_texture) {
@@ -389,10 +390,10 @@ fn not_planar(facts: &Facts, case: &Case) -> Option<Suspicion> {
         amount(pieces, "flat piece"),
         listed(&casters)
     );
-    Suspicion::new(Cause::NotPlanar, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::NotPlanar, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-fn texture_aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     if facts.technique() != Technique::PlanarTexture {
         return None;
     }
@@ -403,17 +404,17 @@ fn texture_aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
     })?;
     let size = facts.texels();
     let evidence = format!("the receiver's texture has {size} texels a side, and the outline runs between two of them");
-    Suspicion::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
+    SuspectedCause::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }
 
 /// A map of twice the size, one of four times, and what needs none.
-pub(crate) fn larger(size: f64, most: f64) -> Vec<Mend> {
+pub(crate) fn larger(size: f64, most: f64) -> Vec<Fix> {
     let mut sizes = vec![size];
     for larger in [size * 2.0, size * 4.0].map(|larger| larger.min(most)) {
         if sizes.iter().all(|known| larger > *known) {
             sizes.push(larger);
         }
     }
-    let grow = sizes[1..].iter().map(|larger| Mend::setting("size", &format!("{larger}")));
-    grow.chain([Mend::technique(Technique::ZFail)]).collect()
+    let grow = sizes[1..].iter().map(|larger| Fix::setting("size", &format!("{larger}")));
+    grow.chain([Fix::technique(Technique::ZFail)]).collect()
 }

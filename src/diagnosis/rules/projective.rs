@@ -4,19 +4,19 @@ use super::planar::larger;
 use crate::accuracy::Finding;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
-use crate::diagnosis::mend::Mend;
+use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
+use crate::diagnosis::mend::Fix;
 use crate::numbers;
-use crate::plan::{Decision, LeftOut, Part};
+use crate::plan::{Decision, DrawPart, LeftOut};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
 use glam::{DMat3, DVec2, DVec3};
 
-pub(crate) const RULES: &[Rule] = &[reverse_projection, between, edge_smear, self_shadow, aliasing, no_fit];
+pub(crate) const RULES: &[CauseRule] = &[reverse_projection, between, edge_smear, self_shadow, aliasing, no_fit];
 
 /// Why a silhouette's answer is wrong at a surface point, with the caster and a distance that tells.
 pub(crate) fn look(
-    facts: &Facts,
+    facts: &FrameFacts,
     light: usize,
     kind: RegionKind,
     seen: &SeenSurface,
@@ -26,7 +26,7 @@ pub(crate) fn look(
     }
     let drawn = |object: usize| {
         let name = facts.scene.objects.get(object).map(|object| object.name.as_str());
-        facts.draws(light, Part::Map).any(|draw| draw.caster.as_deref() == name)
+        facts.draws(light, DrawPart::Map).any(|draw| draw.caster.as_deref() == name)
     };
     let distance = facts.tracer.light_distance(light, seen.point);
     match kind {
@@ -61,14 +61,14 @@ pub(crate) fn look(
 }
 
 /// Where a surface point is in the picture of a caster's silhouette: from −1 to 1 across it. `None` behind the light.
-fn place_in_picture(facts: &Facts, light: usize, caster: usize, seen: &SeenSurface) -> Option<DVec2> {
+fn place_in_picture(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurface) -> Option<DVec2> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let clip = *map.clip_from_light.get(layer_of(facts, light, caster)?)? * seen.point.extend(1.0);
     (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
 }
 
 /// Which layer of a light's map is a caster's picture.
-fn layer_of(facts: &Facts, light: usize, caster: usize) -> Option<usize> {
+fn layer_of(facts: &FrameFacts, light: usize, caster: usize) -> Option<usize> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let name = &facts.scene.objects.get(caster)?.name;
     map.layer_names.iter().position(|of| of == name).filter(|layer| map.faces[*layer].is_some())
@@ -79,7 +79,7 @@ fn is_outside(place: DVec2) -> bool {
 }
 
 /// The caster whose picture's last texels, or what goes on beyond them, darken this place, with the place across it.
-fn smearing(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
+fn smearing(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
     facts.plan.lights.get(light)?.map.as_ref().filter(|map| map.repeats_edge)?;
     let last_texel = 1.0 - 2.0 / facts.texels();
     let others = (0..facts.scene.objects.len()).filter(|object| *object != seen.place.object);
@@ -92,7 +92,7 @@ fn smearing(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(usize, f
 }
 
 /// Does the caster's silhouette cover a texel of its picture that is read at a place: the nearest, or one beside it?
-fn is_covered(facts: &Facts, light: usize, caster: usize, seen: &SeenSurface, place: DVec2) -> bool {
+fn is_covered(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurface, place: DVec2) -> bool {
     let layer = layer_of(facts, light, caster);
     let Some((map, layer)) = facts.plan.lights.get(light).and_then(|light| light.map.as_ref()).zip(layer) else {
         return false;
@@ -118,7 +118,7 @@ fn is_covered(facts: &Facts, light: usize, caster: usize, seen: &SeenSurface, pl
 }
 
 /// The caster's name and the distance of the first sample that shows a cause, and how many do.
-fn shown(facts: &Facts, case: &Case, cause: Cause) -> Option<((String, f64), usize)> {
+fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<((String, f64), usize)> {
     case.shown(|sample| {
         let (found, caster, far) = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
         let name = caster.and_then(|object| facts.scene.objects.get(object)).map_or("nothing", |object| &object.name);
@@ -126,50 +126,50 @@ fn shown(facts: &Facts, case: &Case, cause: Cause) -> Option<((String, f64), usi
     })
 }
 
-fn reverse_projection(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn reverse_projection(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let ((caster, far), shown_by) = shown(facts, case, Cause::ReverseProjection)?;
     let evidence = format!(
         "the surface is behind the light as {caster} sees it (q ≤ 0): {caster} lies on their line, {} beyond the light",
         numbers::metres(far)
     );
-    Suspicion::new(Cause::ReverseProjection, evidence, vec![Mend::setting("reverse", "off")], shown_by)
+    SuspectedCause::new(Cause::ReverseProjection, evidence, vec![Fix::setting("reverse", "off")], shown_by)
 }
 
-fn between(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn between(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let ((caster, far), shown_by) = shown(facts, case, Cause::Between)?;
     let evidence = format!(
         "the surface lies {} nearer to the light than {caster}, whose silhouette falls on it",
         numbers::metres(far)
     );
-    Suspicion::new(Cause::Between, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::Between, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-fn edge_smear(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn edge_smear(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let ((caster, place), shown_by) = shown(facts, case, Cause::EdgeSmear)?;
     let evidence = format!(
         "the surface is at {} of half the width of {caster}'s picture, whose last texels go on from 1 outwards",
         numbers::digits(place)
     );
-    Suspicion::new(Cause::EdgeSmear, evidence, vec![Mend::setting("border", "on")], shown_by)
+    SuspectedCause::new(Cause::EdgeSmear, evidence, vec![Fix::setting("border", "on")], shown_by)
 }
 
-fn self_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn self_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let ((caster, far), shown_by) = shown(facts, case, Cause::SelfShadow)?;
     let evidence = format!(
         "{caster} itself lies between light and surface, {} before it, and its silhouette spares it",
         numbers::metres(far)
     );
-    Suspicion::new(Cause::SelfShadow, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::SelfShadow, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let (_, shown_by) = shown(facts, case, Cause::Aliasing)?;
     let size = facts.texels();
     let evidence = format!("the silhouette has {size} texels a side, and its outline runs between two of them");
-    Suspicion::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
+    SuspectedCause::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }
 
-fn no_fit(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn no_fit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let ((caster, _), shown_by) = shown(facts, case, Cause::OutsideMap)?;
     let size_of_it = case.shown(|sample| {
         let object = facts.object(&caster)?.0;
@@ -182,12 +182,12 @@ fn no_fit(facts: &Facts, case: &Case) -> Option<Suspicion> {
         );
         // Fitted pictures end beyond their casters, but for rounding.
         let is_fitted = facts.plan.settings.get("fit").is_none_or(|fit| fit == "on");
-        let mend = if is_fitted { Mend::technique(Technique::ZFail) } else { Mend::setting("fit", "on") };
-        return Suspicion::new(Cause::OutsideMap, evidence, vec![mend], shown_by);
+        let mend = if is_fitted { Fix::technique(Technique::ZFail) } else { Fix::setting("fit", "on") };
+        return SuspectedCause::new(Cause::OutsideMap, evidence, vec![mend], shown_by);
     }
     let is_its = |left: &&LeftOut| left.names(Decision::Silhouette, &caster);
     let because = facts.plan.left_out.iter().find(is_its).map(|left| left.because.clone());
     let evidence =
         format!("there is no silhouette of {caster}: {}", because.unwrap_or_else(|| "none was drawn".to_owned()));
-    Suspicion::new(Cause::OutsideMap, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::OutsideMap, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }

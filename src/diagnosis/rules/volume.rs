@@ -1,18 +1,18 @@
 //! Where volumes are counted from, and whether they are closed.
 
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
-use crate::diagnosis::mend::{Mend, PlanEdit};
+use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
+use crate::diagnosis::mend::{Fix, PlanEdit};
 use crate::geometry::{Extruder, Extrusion, ViewVolume};
-use crate::history::Fate;
+use crate::history::FragmentOutcome;
 use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{Clip, Decision, Draw, Part, Pass};
+use crate::plan::{ClipPlane, Decision, Draw, DrawPart, Pass};
 use crate::technique::Technique;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
-pub(crate) const RULES: &[Rule] = &[
+pub(crate) const RULES: &[CauseRule] = &[
     eye_in_volume,
     near_plane_cut,
     near_plane_crack,
@@ -26,30 +26,30 @@ pub(crate) const RULES: &[Rule] = &[
 ];
 
 /// Counting in front of surfaces begins at the near plane with one number, whatever is there.
-fn begins_with_one_number(facts: &Facts, light: usize) -> bool {
+fn begins_with_one_number(facts: &FrameFacts, light: usize) -> bool {
     let has_near_count = facts.passes(light).any(Pass::counts_at_near_plane);
     matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
 }
 
 /// Is that number the count of volumes around the eye?
-fn starts_at_eye(facts: &Facts) -> bool {
+fn starts_at_eye(facts: &FrameFacts) -> bool {
     facts.volumes().is_some_and(|settings| settings.starts_at_eye)
 }
 
 /// What draws the caps again: the setting that leaves them out, or the plan itself.
-fn draw_caps(facts: &Facts, light_or_dark: usize, edit: PlanEdit) -> Mend {
+fn draw_caps(facts: &FrameFacts, light_or_dark: usize, edit: PlanEdit) -> Fix {
     let is_set = facts.volumes().is_some_and(|settings| !settings.caps[light_or_dark]);
-    if is_set { Mend::setting("caps", "both") } else { Mend::plan(edit) }
+    if is_set { Fix::setting("caps", "both") } else { Fix::plan(edit) }
 }
 
 /// Casters whose volumes hold a point, with how many volumes those are.
-fn holding(facts: &Facts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
+fn holding(facts: &FrameFacts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
     let mut met = facts.tracer.between_points(light, point);
     met.retain(|met| facts.casts(light, met));
     (facts.names(&met), met.len() as u64)
 }
 
-fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn eye_in_volume(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     // Parallel lines of sight begin at the near plane, each in volumes of its own.
     let has_eye = !facts.scene.camera.is_parallel();
@@ -67,10 +67,10 @@ fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::light(light),
         listed(&eye_in)
     );
-    Suspicion::new(Cause::EyeInVolume, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::EyeInVolume, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     if !begins_with_one_number(facts, light) {
         return None;
@@ -88,7 +88,7 @@ fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
             camera.counting_place_name(),
             numbers::metres(facts.scene.camera.near),
         );
-        return Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by);
+        return SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by);
     }
     let is_of_eye = |near_in: &BTreeSet<String>| {
         !facts.scene.camera.is_parallel() && near_in.intersection(&eye_in).next().is_some()
@@ -106,11 +106,11 @@ fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
         near_in.len(),
         amount(meeting.len() as u64, "caster"),
     );
-    Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
 /// Casters that meet the space between near rectangle and light.
-fn meeting_near_clip(facts: &Facts, light: usize) -> Vec<String> {
+fn meeting_near_clip(facts: &FrameFacts, light: usize) -> Vec<String> {
     let camera = &facts.scene.camera;
     let [width, height] = facts.plan.size.map(f64::from);
     let position = facts.tracer.light_position(light);
@@ -125,7 +125,7 @@ fn meeting_near_clip(facts: &Facts, light: usize) -> Vec<String> {
     meets.map(|object| object.name.clone()).collect()
 }
 
-fn near_plane_crack(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn near_plane_crack(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     if facts.technique() != Technique::ZPassPlus || begins_with_one_number(facts, light) {
         return None;
@@ -151,33 +151,39 @@ fn near_plane_crack(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(*high),
         numbers::metres(near)
     );
-    Suspicion::new(Cause::NearPlaneCrack, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+    SuspectedCause::new(Cause::NearPlaneCrack, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
 /// Draws of a part of a caster's volume.
-fn part_of<'f>(facts: &'f Facts, light: usize, caster: &'f str, part: Part) -> impl Iterator<Item = &'f Draw> {
+fn part_of<'f>(facts: &'f FrameFacts, light: usize, caster: &'f str, part: DrawPart) -> impl Iterator<Item = &'f Draw> {
     facts.draws(light, part).filter(move |draw| draw.caster.as_deref() == Some(caster) && !draw.triangles.is_empty())
 }
 
 /// The plan says why a caster does without something.
-fn is_excused(facts: &Facts, caster: &str, decision: Decision) -> bool {
+fn is_excused(facts: &FrameFacts, caster: &str, decision: Decision) -> bool {
     facts.plan.left_out.iter().any(|left| left.is(decision, caster) || left.is(Decision::Caps, caster))
 }
 
 /// The first caster counted wrongly at a sample of which `lacks` says so.
-fn lacking(facts: &Facts, case: &Case, lacks: impl Fn(&str) -> bool) -> Option<((String, i32, i32), usize)> {
-    case.shown(|sample: &Sample| sample.miscounted(facts, case.light()).into_iter().find(|(caster, ..)| lacks(caster)))
+fn lacking(
+    facts: &FrameFacts,
+    case: &RegionSamples,
+    lacks: impl Fn(&str) -> bool,
+) -> Option<((String, i32, i32), usize)> {
+    case.shown(|sample: &PixelSample| {
+        sample.miscounted(facts, case.light()).into_iter().find(|(caster, ..)| lacks(caster))
+    })
 }
 
-fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn missing_dark_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let is_finite = facts.volumes().is_some_and(|settings| settings.extrusion != Extrusion::Infinite);
     let is_point = facts.tracer.light_position(light).w != 0.0;
     let lacks = |caster: &str| {
         let needs = is_finite || (is_point && facts.counts_behind(light, caster));
         needs
-            && part_of(facts, light, caster, Part::Side).next().is_some()
-            && part_of(facts, light, caster, Part::DarkCap).next().is_none()
+            && part_of(facts, light, caster, DrawPart::Side).next().is_some()
+            && part_of(facts, light, caster, DrawPart::DarkCap).next().is_none()
             && !is_excused(facts, caster, Decision::DarkCap)
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, lacks)?;
@@ -186,10 +192,10 @@ fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
          {} between light and surface",
         lie(expected)
     );
-    Suspicion::new(Cause::MissingDarkCap, evidence, vec![draw_caps(facts, 1, PlanEdit::DrawDarkCaps)], shown_by)
+    SuspectedCause::new(Cause::MissingDarkCap, evidence, vec![draw_caps(facts, 1, PlanEdit::DrawDarkCaps)], shown_by)
 }
 
-fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let needs = |caster: &str| {
         let is_drawn = facts.object(caster).is_none_or(|(_, object)| object.visible);
@@ -197,8 +203,8 @@ fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
     };
     let lacks = |caster: &str| {
         needs(caster)
-            && part_of(facts, light, caster, Part::Side).next().is_some()
-            && part_of(facts, light, caster, Part::LightCap).next().is_none()
+            && part_of(facts, light, caster, DrawPart::Side).next().is_some()
+            && part_of(facts, light, caster, DrawPart::LightCap).next().is_none()
             && !is_excused(facts, caster, Decision::LightCap)
     };
     if let Some(((caster, counted, expected), shown_by)) = lacking(facts, case, lacks) {
@@ -207,7 +213,7 @@ fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
              where {} between light and surface",
             lie(expected)
         );
-        return Suspicion::new(
+        return SuspectedCause::new(
             Cause::MissingLightCap,
             evidence,
             vec![draw_caps(facts, 0, PlanEdit::DrawLightCaps)],
@@ -216,7 +222,7 @@ fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
     }
     let is_untested = |caster: &str| {
         let never = wgpu::CompareFunction::Never;
-        part_of(facts, light, caster, Part::LightCap).any(|draw| draw.raster.depth_compare == never)
+        part_of(facts, light, caster, DrawPart::LightCap).any(|draw| draw.raster.depth_compare == never)
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, is_untested)?;
     let evidence = format!(
@@ -224,7 +230,7 @@ fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
          here: it counts {counted} where {} between",
         lie(expected)
     );
-    Suspicion::new(Cause::MissingLightCap, evidence, vec![Mend::setting("light-caps", "tested")], shown_by)
+    SuspectedCause::new(Cause::MissingLightCap, evidence, vec![Fix::setting("light-caps", "tested")], shown_by)
 }
 
 /// `1 of its triangles lies`.
@@ -236,7 +242,7 @@ fn lie(count: i32) -> String {
     }
 }
 
-fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let mapping = facts.plan.depth.mapping;
     if mapping.is_reversed() {
@@ -247,7 +253,7 @@ fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
         return beyond_clamped(facts, case, far?);
     }
     let ((what, count), shown_by) = case.shown(|sample| {
-        let is_clipped = |fate: Fate| fate == Fate::Clipped(Clip::Far);
+        let is_clipped = |fate: FragmentOutcome| fate == FragmentOutcome::Clipped(ClipPlane::Far);
         let faces = sample.volume_events(light).filter(|(_, one)| is_clipped(one.fate)).count();
         let is_beyond = sample.seen.zip(far).is_some_and(|(seen, far)| facts.tracer.depth_of(seen.point) >= far);
         match (faces, is_beyond) {
@@ -266,12 +272,12 @@ fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let place = far.map_or_else(|| "at infinity".to_owned(), |far| format!("{} away", numbers::metres(far)));
     let evidence =
         format!("{what} beyond the far plane, {place}, and {} cut away", if count == 1 { "is" } else { "are" });
-    let mends = vec![Mend::setting("depth", "reversed-infinite"), Mend::setting("depth", "standard-finite-clamp")];
-    Suspicion::new(Cause::FarClip, evidence, mends, shown_by)
+    let mends = vec![Fix::setting("depth", "reversed-infinite"), Fix::setting("depth", "standard-finite-clamp")];
+    SuspectedCause::new(Cause::FarClip, evidence, mends, shown_by)
 }
 
 /// Clamped depth cuts no volume, but a surface beyond the far plane is at the depth of what was not drawn.
-fn beyond_clamped(facts: &Facts, case: &Case, far: f64) -> Option<Suspicion> {
+fn beyond_clamped(facts: &FrameFacts, case: &RegionSamples, far: f64) -> Option<SuspectedCause> {
     let (distance, shown_by) = case.shown(|sample| {
         let distance = facts.tracer.depth_of(sample.seen?.point);
         (distance >= far).then_some(distance)
@@ -282,10 +288,10 @@ fn beyond_clamped(facts: &Facts, case: &Case, far: f64) -> Option<Suspicion> {
         numbers::metres(distance),
         numbers::metres(far)
     );
-    Suspicion::new(Cause::FarClip, evidence, vec![Mend::setting("depth", "reversed-infinite")], shown_by)
+    SuspectedCause::new(Cause::FarClip, evidence, vec![Fix::setting("depth", "reversed-infinite")], shown_by)
 }
 
-fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     // Of a light that is not added back: as far as its volumes would reach if it were.
     let (Extrusion::Finite(factor) | Extrusion::FromOrigin(factor)) = facts.volumes()?.extrusion else { return None };
@@ -315,11 +321,11 @@ fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(reach),
         numbers::metres(needed)
     );
-    Suspicion::new(Cause::FiniteExtrusion, evidence, vec![Mend::setting("extrusion", "infinite")], shown_by)
+    SuspectedCause::new(Cause::FiniteExtrusion, evidence, vec![Fix::setting("extrusion", "infinite")], shown_by)
 }
 
 /// What single precision makes of a volume that a vertex shader carries.
-struct Carried {
+struct ExtrusionInF32 {
     /// Triangles that are told to face another way than they do.
     misfaced: usize,
     triangles: usize,
@@ -327,10 +333,10 @@ struct Carried {
     beside: f64,
 }
 
-impl Carried {
+impl ExtrusionInF32 {
     /// `None` where the CPU carries it.
-    fn of(facts: &Facts, light: usize, caster: &str) -> Option<Carried> {
-        let draw = part_of(facts, light, caster, Part::Side).next()?;
+    fn of(facts: &FrameFacts, light: usize, caster: &str) -> Option<ExtrusionInF32> {
+        let draw = part_of(facts, light, caster, DrawPart::Side).next()?;
         let extruded = facts.plan.meshes.get(draw.mesh.0)?.extruded.as_ref()?;
         let (_, object) = facts.object(caster)?;
         let (position, world) = (facts.tracer.light_position(light), object.world_positions());
@@ -339,7 +345,7 @@ impl Carried {
         let triangles = object.mesh.triangles();
         // Of each a front, or a front and a back.
         let copies = if extruded.corners.len() == triangles.len() * 3 { 3 } else { 6 };
-        let mut carried = Carried { misfaced: 0, triangles: triangles.len(), beside: 0.0 };
+        let mut carried = ExtrusionInF32 { misfaced: 0, triangles: triangles.len(), beside: 0.0 };
         for (triangle, corners) in triangles.iter().zip(extruded.corners.data().chunks_exact(copies)) {
             let places = triangle.map(|vertex| world[vertex as usize]);
             // Of one whose back alone casts the front has no plane.
@@ -359,17 +365,17 @@ impl Carried {
     }
 }
 
-fn carried_in_f32(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn carried_in_f32(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     facts.volumes().filter(|settings| settings.by_vertex_shader)?;
     let (found, shown_by) = case.shown(|sample| {
         let miscounted = sample.miscounted(facts, light).into_iter();
         // What goes beside its way by less moves no edge by a pixel.
-        let is_off = |of: &Carried| of.misfaced > 0 || of.beside > facts.pixel_angle() / 2.0;
-        let carried = |caster: String| Some((Carried::of(facts, light, &caster).filter(is_off)?, caster));
+        let is_off = |of: &ExtrusionInF32| of.misfaced > 0 || of.beside > facts.pixel_angle() / 2.0;
+        let carried = |caster: String| Some((ExtrusionInF32::of(facts, light, &caster).filter(is_off)?, caster));
         miscounted.map(|(caster, ..)| caster).find_map(carried)
     })?;
-    let (Carried { misfaced, triangles, beside }, caster) = found;
+    let (ExtrusionInF32 { misfaced, triangles, beside }, caster) = found;
     let faces = match misfaced {
         0 => "each triangle is told to face as it does".to_owned(),
         1 => format!("1 of {} is told to face the wrong way", amount(triangles as u64, "triangle")),
@@ -380,10 +386,10 @@ fn carried_in_f32(facts: &Facts, case: &Case) -> Option<Suspicion> {
          radians beside its way",
         numbers::digits(beside)
     );
-    Suspicion::new(Cause::CarriedInF32, evidence, vec![Mend::setting("extruded-by", "cpu")], shown_by)
+    SuspectedCause::new(Cause::CarriedInF32, evidence, vec![Fix::setting("extruded-by", "cpu")], shown_by)
 }
 
-fn light_not_added(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn light_not_added(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let Extrusion::FromOrigin(factor) = facts.volumes()?.extrusion else { return None };
     let position = facts.tracer.light_position(case.light());
     if position.w == 0.0 {
@@ -397,16 +403,16 @@ fn light_not_added(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::digits(factor + 1.0),
         numbers::metres(light.length())
     );
-    Suspicion::new(Cause::LightNotAdded, evidence, vec![Mend::setting("far-vertices", "from-light")], shown_by)
+    SuspectedCause::new(Cause::LightNotAdded, evidence, vec![Fix::setting("far-vertices", "from-light")], shown_by)
 }
 
 /// The diagonal of an object's bounding box, world space.
-fn size_of(facts: &Facts, name: &str) -> f64 {
+fn size_of(facts: &FrameFacts, name: &str) -> f64 {
     let Some((_, object)) = facts.object(name) else { return 0.0 };
     AxisBox::around(object.world_positions()).diagonal()
 }
 
-fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
+fn cap_fighting(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((caster, cap, surface), shown_by) = case.shown(|sample| {
         let history = sample.history.as_ref()?;
@@ -415,10 +421,10 @@ fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
             bits.sort_unstable();
             bits
         };
-        let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == Part::Surface);
+        let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == DrawPart::Surface);
         let visible: Vec<_> = visible.filter(|(_, one)| one.fate.passed()).map(|(_, one)| one).collect();
         let visible = visible.last()?;
-        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part.includes(Part::LightCap));
+        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part.includes(DrawPart::LightCap));
         let (event, cap) = caps.find(|(_, one)| corners(one) == corners(visible))?;
         let differs = cap.depth.to_bits() != event.before.depth.to_bits();
         differs.then(|| (cap.caster.clone().unwrap_or_default(), cap.depth, event.before.depth))
@@ -431,5 +437,5 @@ fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::depth(surface),
         amount(steps, "step")
     );
-    Suspicion::new(Cause::CapFighting, evidence, vec![Mend::plan(PlanEdit::SurfaceOrder)], shown_by)
+    SuspectedCause::new(Cause::CapFighting, evidence, vec![Fix::plan(PlanEdit::SurfaceOrder)], shown_by)
 }

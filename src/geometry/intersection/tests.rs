@@ -2,7 +2,7 @@ use super::*;
 
 /// With the areas that they have.
 fn pair_meets(world: &[DVec3], one: [u32; 3], other: [u32; 3]) -> bool {
-    let has_area = |triangle: [u32; 3]| Flat::of(triangle.map(|vertex| world[vertex as usize])).is_some();
+    let has_area = |triangle: [u32; 3]| FlatTriangle::of(triangle.map(|vertex| world[vertex as usize])).is_some();
     meet(world, [one, other].map(|triangle| (triangle, has_area(triangle))))
 }
 

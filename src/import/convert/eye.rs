@@ -5,7 +5,7 @@
 //! is taken as 90 degrees with square pixels, which keeps every straight line, every "between" and every silhouette.
 
 use crate::math::depth::{DepthCurve, DepthMapping, LengthUnit};
-use crate::plan::{Draw, FramePlan, Part, Pass};
+use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3};
 
@@ -19,7 +19,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
     let picture = || plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
     let is_reversed = is_reversed(picture().flat_map(|pass| &pass.draws));
     let surfaces = picture().flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)));
-    let surfaces = surfaces.filter(|(_, draw)| draw.part == Part::Surface && draw.raster.depth_write);
+    let surfaces = surfaces.filter(|(_, draw)| draw.part == DrawPart::Surface && draw.raster.depth_write);
     // A sky, an interface or a hand-held thing may have a projection of its own: most vertices decide.
     let fits: Vec<(usize, [f64; 2])> = surfaces
         .filter_map(|(pass, draw)| {
@@ -43,7 +43,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
             // Where depth is 1, or 0 where it is reversed.
             let far = if is_reversed { -b / a } else { b / (1.0 - a) };
             // Depth that is clamped shows what lies beyond, too.
-            let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Surface);
+            let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Surface);
             let is_clipped = is_clipped.filter(|draw| draw.raster.depth_write).all(|draw| !draw.raster.unclipped_depth);
             let far = Some(far).filter(|far| far.is_finite() && *far > 0.0 && is_clipped);
             Some(DepthCurve {

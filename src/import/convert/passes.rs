@@ -1,11 +1,11 @@
 //! Runs of draws that do the same become passes, and what was stored after each draw becomes steps.
 
-use super::stage::{Place, Stage, size_of};
-use super::states::{self, Role};
+use super::stage::{DrawTarget, FollowedTargets, size_of};
+use super::states::{self, DrawRole};
 use crate::capture::{Aspect, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::import::raw::{RawContents, RawDraw, RawEvent, RawFrame, RawKind, RawTarget};
 use crate::plan::{
-    Blob, DepthStencilTarget, Draw, DrawMesh, LeftOut, LightId, MeshId, Part, Pass, Program, RecordedPass,
+    Blob, DepthStencilTarget, Draw, DrawMesh, DrawPart, LeftOut, LightId, MeshId, Pass, Program, RecordedPass,
     StartContent, ViewId, Viewport,
 };
 use std::collections::BTreeMap;
@@ -13,22 +13,22 @@ use std::sync::Arc;
 
 /// What the draws of a pass have in common.
 #[derive(Debug, Clone, PartialEq)]
-struct Run {
-    place: Place,
+struct DrawRun {
+    place: DrawTarget,
     groups: Vec<String>,
     viewport: Viewport,
     scissor: Option<[u32; 4]>,
-    role: Role,
+    role: DrawRole,
 }
 
 /// Passes and steps in the making.
-pub(super) struct Making<'a> {
+pub(super) struct PassBuilder<'a> {
     frame: &'a RawFrame,
-    stage: &'a Stage,
+    stage: &'a FollowedTargets,
     held: BTreeMap<RawTarget, RawContents>,
     /// Places whose depth or stencil something other than a draw has set since: a clear, a load, a copy.
-    put: BTreeMap<Place, [bool; 2]>,
-    run: Option<Run>,
+    put: BTreeMap<DrawTarget, [bool; 2]>,
+    run: Option<DrawRun>,
     /// What the steps last showed: colour, depth, stencil.
     shown: [Option<Arc<Image>>; 3],
     counting_light: Option<LightId>,
@@ -40,9 +40,9 @@ pub(super) struct Making<'a> {
     pub left_out: Vec<LeftOut>,
 }
 
-impl<'a> Making<'a> {
-    pub fn new(frame: &'a RawFrame, stage: &'a Stage) -> Making<'a> {
-        let mut making = Making {
+impl<'a> PassBuilder<'a> {
+    pub fn new(frame: &'a RawFrame, stage: &'a FollowedTargets) -> PassBuilder<'a> {
+        let mut making = PassBuilder {
             frame,
             stage,
             held: BTreeMap::new(),
@@ -65,7 +65,7 @@ impl<'a> Making<'a> {
 
     /// What each face of a depth map holds now, where that is known.
     pub fn face(&self, map: usize, layer: u32) -> Option<Arc<Image>> {
-        self.held.get(&self.stage.target(Place::Map(map, layer)))?.depth.clone()
+        self.held.get(&self.stage.target(DrawTarget::Map(map, layer)))?.depth.clone()
     }
 
     pub fn event(&mut self, event: &RawEvent) {
@@ -87,7 +87,7 @@ impl<'a> Making<'a> {
         let changed = [before.depth != after.depth, before.stencil != after.stencil];
         // A clear is one even where it changes nothing: what is counted from then on is another light's.
         let clears = matches!(event.kind, RawKind::Clear { stencil: true, .. });
-        self.is_emptied |= place == Place::Picture && (clears || changed[1]);
+        self.is_emptied |= place == DrawTarget::Picture && (clears || changed[1]);
         let changed = [changed[0], changed[1] || clears];
         if changed != [false; 2] {
             let put = self.put.entry(place).or_default();
@@ -118,10 +118,14 @@ impl<'a> Making<'a> {
     }
 
     /// Begins a pass for a draw, unless it goes on with the one before; or says why the draw can't be followed.
-    fn begin_for(&mut self, event: &RawEvent, draw: &RawDraw) -> Result<(Place, Option<wgpu::Face>), &'static str> {
+    fn begin_for(
+        &mut self,
+        event: &RawEvent,
+        draw: &RawDraw,
+    ) -> Result<(DrawTarget, Option<wgpu::Face>), &'static str> {
         let place = match (event.depth_target, event.color_targets.first()) {
             (Some(target), _) => self.stage.place(target),
-            (None, Some(target)) => (Some(*target) == self.stage.color).then_some(Place::Colors),
+            (None, Some(target)) => (Some(*target) == self.stage.color).then_some(DrawTarget::Colors),
             (None, None) => None,
         };
         let place = place.ok_or("it draws into a picture that is neither this one nor a depth map")?;
@@ -131,7 +135,7 @@ impl<'a> Making<'a> {
             return Err("its scissor leaves no pixel");
         }
         let (viewport, role) = (states::viewport(draw), states::role(draw, place));
-        let run = Run { place, groups: event.groups.clone(), viewport, scissor, role };
+        let run = DrawRun { place, groups: event.groups.clone(), viewport, scissor, role };
         if self.run.as_ref() != Some(&run) {
             self.begin(run);
         }
@@ -151,25 +155,26 @@ impl<'a> Making<'a> {
 
     /// The light of a pass: a map's own, or that whose volumes were counted last. A stencil that is emptied and counted
     /// in again is another light's.
-    fn light(&mut self, run: &Run) -> Option<LightId> {
-        if let Place::Map(map, _) = run.place {
+    fn light(&mut self, run: &DrawRun) -> Option<LightId> {
+        if let DrawTarget::Map(map, _) = run.place {
             return Some(LightId(map));
         }
-        if run.role == Role::Counts && std::mem::take(&mut self.is_emptied) {
+        if run.role == DrawRole::Counts && std::mem::take(&mut self.is_emptied) {
             let next = self.counting_light.map_or(self.stage.maps.len(), |light| light.0 + 1);
             self.counting_light = Some(LightId(next));
         }
-        self.counting_light.filter(|_| matches!(run.role, Role::Counts | Role::Tests))
+        self.counting_light.filter(|_| matches!(run.role, DrawRole::Counts | DrawRole::Tests))
     }
 
-    fn begin(&mut self, run: Run) {
-        let put = if run.place == Place::Colors { [false; 2] } else { self.put.remove(&run.place).unwrap_or_default() };
+    fn begin(&mut self, run: DrawRun) {
+        let put =
+            if run.place == DrawTarget::Colors { [false; 2] } else { self.put.remove(&run.place).unwrap_or_default() };
         // What it held before its first draw: what is held now may be what that left.
         let (content, clears) = self.content(run.place, put);
         let light = self.light(&run);
         let (attachment, layer) = match run.place {
-            Place::Picture | Place::Colors => (super::DEPTH_STENCIL, 0),
-            Place::Map(map, layer) => (super::map_attachment(map), layer),
+            DrawTarget::Picture | DrawTarget::Colors => (super::DEPTH_STENCIL, 0),
+            DrawTarget::Map(map, layer) => (super::map_attachment(map), layer),
         };
         let target = DepthStencilTarget { attachment, layer, clear_depth: clears.0, clear_stencil: clears.1 };
         let (name, purpose) = (run.role.name().to_owned(), run.role.purpose().to_owned());
@@ -181,14 +186,14 @@ impl<'a> Making<'a> {
             timed: true,
             view: ViewId(0),
             color: None,
-            depth_stencil: (run.place != Place::Colors).then_some(target),
+            depth_stencil: (run.place != DrawTarget::Colors).then_some(target),
             scissor: run.scissor,
             draws: Vec::new(),
             image: None,
             recorded: Some(Box::new(recorded)),
         });
         let snapshot = match run.place {
-            Place::Map(map, face) => Snapshot::Map { light: map, face: face as usize },
+            DrawTarget::Map(map, face) => Snapshot::Map { light: map, face: face as usize },
             _ => Snapshot::Frame(self.snapshot()),
         };
         let light = light.map(|light| light.0);
@@ -197,7 +202,11 @@ impl<'a> Making<'a> {
     }
 
     /// What depth and stencil of a place were set to since its last pass: content, or one value everywhere.
-    fn content(&self, place: Place, [depth, stencil]: [bool; 2]) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
+    fn content(
+        &self,
+        place: DrawTarget,
+        [depth, stencil]: [bool; 2],
+    ) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
         let held = self.held.get(&self.stage.target(place)).cloned().unwrap_or_default();
         let depth = held.depth.filter(|_| depth);
         let stencil = held.stencil.filter(|_| stencil);
@@ -213,22 +222,22 @@ impl<'a> Making<'a> {
         (Some(start).filter(|start| *start != StartContent::default()), (one_depth, one_stencil))
     }
 
-    fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: Place, cull: Option<wgpu::Face>) {
-        let is_of_picture = !matches!(place, Place::Map(..));
+    fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: DrawTarget, cull: Option<wgpu::Face>) {
+        let is_of_picture = !matches!(place, DrawTarget::Map(..));
         // Of draws that are not taken apart it is not known.
         let is_known = is_of_picture && event.after != RawContents::default();
         let after = is_known.then(|| DrawState { snapshot: Snapshot::Frame(self.snapshot()), target: None });
         let (Some(pass), Some(step)) = (self.passes.last_mut(), self.steps.last_mut()) else { return };
         let part = match self.run.as_ref().map(|run| run.role) {
-            Some(Role::FillsMap) => Part::Map,
-            Some(Role::Counts) => Part::Side,
-            _ => Part::Surface,
+            Some(DrawRole::FillsMap) => DrawPart::Map,
+            Some(DrawRole::Counts) => DrawPart::Side,
+            _ => DrawPart::Surface,
         };
         let (name, triangles) = (format!("event {}", event.id), draw.triangles.len() as u32);
         let mesh = MeshId(self.meshes.len());
         self.meshes.push(mesh_of(draw, name.clone()));
         let target = self.frame.textures[self.stage.target(place).texture].format.clone();
-        let raster = states::raster(draw, cull, place != Place::Colors && target.has_stencil());
+        let raster = states::raster(draw, cull, place != DrawTarget::Colors && target.has_stencil());
         let program = Program::Recorded {
             may_discard: states::may(draw.fragment.may_discard),
             writes_depth: states::may(draw.fragment.writes_depth),

@@ -8,7 +8,7 @@ use wgpu::TextureFormat;
 
 /// Where a draw goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Place {
+pub(super) enum DrawTarget {
     /// Into the picture, with its depth.
     Picture,
     /// Into the picture's colours alone.
@@ -19,7 +19,7 @@ pub(super) enum Place {
 
 /// The targets that are followed.
 #[derive(Debug)]
-pub(super) struct Stage {
+pub(super) struct FollowedTargets {
     /// The picture's depth and stencil.
     pub depth: RawTarget,
     /// The picture's colours, if it has any.
@@ -28,9 +28,9 @@ pub(super) struct Stage {
     pub maps: Vec<RawTarget>,
 }
 
-impl Stage {
+impl FollowedTargets {
     /// The picture is where most triangles are drawn with depth and colours; other depth buffers are maps.
-    pub fn of(frame: &RawFrame) -> Result<Stage, ImportError> {
+    pub fn of(frame: &RawFrame) -> Result<FollowedTargets, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
         for event in &frame.events {
@@ -49,7 +49,7 @@ impl Stage {
         }
         let of_picture = colors.iter().filter(|((of, _), _)| *of == depth);
         let color = of_picture.max_by_key(|(_, triangles)| **triangles).map(|((_, color), _)| *color);
-        let mut stage = Stage { depth, color, maps: Vec::new() };
+        let mut stage = FollowedTargets { depth, color, maps: Vec::new() };
         let size = stage.size(frame);
         stage.color = stage.color.filter(|color| size_of(frame, *color) == size);
         for event in frame.events.iter().filter(|event| matches!(event.kind, RawKind::Draw(_))) {
@@ -70,27 +70,27 @@ impl Stage {
     }
 
     /// What a depth target is.
-    pub fn place(&self, target: RawTarget) -> Option<Place> {
+    pub fn place(&self, target: RawTarget) -> Option<DrawTarget> {
         if target == self.depth {
-            return Some(Place::Picture);
+            return Some(DrawTarget::Picture);
         }
         let map = self.maps.iter().position(|map| (map.texture, map.mip) == (target.texture, target.mip))?;
-        (target.layer < PlanMap::MOST_FACES as u32).then_some(Place::Map(map, target.layer))
+        (target.layer < PlanMap::MOST_FACES as u32).then_some(DrawTarget::Map(map, target.layer))
     }
 
     /// The target of a place.
-    pub fn target(&self, place: Place) -> RawTarget {
+    pub fn target(&self, place: DrawTarget) -> RawTarget {
         match place {
-            Place::Picture | Place::Colors => self.depth,
-            Place::Map(map, layer) => RawTarget { layer, ..self.maps[map] },
+            DrawTarget::Picture | DrawTarget::Colors => self.depth,
+            DrawTarget::Map(map, layer) => RawTarget { layer, ..self.maps[map] },
         }
     }
 
     /// The attachment of a place's depth and stencil.
-    pub fn attachment(&self, frame: &RawFrame, place: Place, role: AttachmentRole) -> Attachment {
+    pub fn attachment(&self, frame: &RawFrame, place: DrawTarget, role: AttachmentRole) -> Attachment {
         let target = self.target(place);
         let texture = &frame.textures[target.texture];
-        let layers = if matches!(place, Place::Map(..)) { texture.layers.max(1) } else { 1 };
+        let layers = if matches!(place, DrawTarget::Map(..)) { texture.layers.max(1) } else { 1 };
         Attachment {
             name: texture.name.clone(),
             role,

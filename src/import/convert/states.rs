@@ -3,16 +3,16 @@
 //! wgpu's clip space has y up and z from 0 to w, and its viewport has the smaller depth first: y and z are turned where
 //! the program's are not so. Which way round a triangle runs was told as it is seen, so that stays.
 
-use super::stage::Place;
+use super::stage::DrawTarget;
 use crate::import::raw::{
-    RawBlend, RawCompare, RawCull, RawDepth, RawDraw, RawFill, RawMay, RawStencilFace, RawStencilOperation,
+    RawBlend, RawCompare, RawCull, RawDepth, RawDraw, RawFill, RawShaderEffect, RawStencilFace, RawStencilOperation,
 };
-use crate::plan::{ColorWrite, FaceMasks, May, RasterState, Side, StencilFace, Viewport};
+use crate::plan::{ColorWrite, CountedSide, FaceMasks, RasterState, ShaderEffect, StencilFace, Viewport};
 use wgpu::{CompareFunction, StencilOperation};
 
 named_enum! {
     /// What a run of draws is for, as its states say.
-    pub enum Role {
+    pub enum DrawRole {
         /// Draws surfaces: depth is written.
         Surfaces = "surfaces",
         /// Counts in the stencil, as shadow volumes do.
@@ -28,26 +28,26 @@ named_enum! {
     }
 }
 
-impl Role {
+impl DrawRole {
     /// One sentence for the learner.
     pub fn purpose(self) -> &'static str {
         match self {
-            Role::Surfaces => "Surfaces are drawn, and the nearest leave their depth.",
-            Role::Counts => "Faces add to the stencil or take away from it, as those of shadow volumes do.",
-            Role::Marks => "The stencil is set to a value where these draws show.",
-            Role::Tests => {
+            DrawRole::Surfaces => "Surfaces are drawn, and the nearest leave their depth.",
+            DrawRole::Counts => "Faces add to the stencil or take away from it, as those of shadow volumes do.",
+            DrawRole::Marks => "The stencil is set to a value where these draws show.",
+            DrawRole::Tests => {
                 "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
             }
-            Role::FillsMap => "Depth alone is drawn into a picture of its own: a shadow map.",
-            Role::Overlays => "Colours are drawn over what is there; no depth is left.",
+            DrawRole::FillsMap => "Depth alone is drawn into a picture of its own: a shadow map.",
+            DrawRole::Overlays => "Colours are drawn over what is there; no depth is left.",
         }
     }
 }
 
 /// What a draw is for.
-pub(super) fn role(draw: &RawDraw, place: Place) -> Role {
-    if matches!(place, Place::Map(..)) {
-        return Role::FillsMap;
+pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
+    if matches!(place, DrawTarget::Map(..)) {
+        return DrawRole::FillsMap;
     }
     let faces = draw.stencil.as_ref().map_or(&[][..], |faces| &faces[..]);
     let operations = |face: &RawStencilFace| [face.fail, face.depth_fail, face.pass];
@@ -60,11 +60,11 @@ pub(super) fn role(draw: &RawDraw, place: Place) -> Role {
     let counts = counts && !(tests && draws);
     let writes_depth = draw.depth.is_some_and(|depth| depth.write);
     match (counts, tests, writes.is_empty()) {
-        (true, ..) => Role::Counts,
-        (false, true, _) => Role::Tests,
-        (false, false, false) => Role::Marks,
-        (false, false, true) if writes_depth => Role::Surfaces,
-        (false, false, true) => Role::Overlays,
+        (true, ..) => DrawRole::Counts,
+        (false, true, _) => DrawRole::Tests,
+        (false, false, false) => DrawRole::Marks,
+        (false, false, true) if writes_depth => DrawRole::Surfaces,
+        (false, false, true) => DrawRole::Overlays,
     }
 }
 
@@ -78,7 +78,7 @@ fn steps(operation: RawStencilOperation) -> i32 {
 }
 
 /// On which side of the surface a counting state counts.
-pub(super) fn counted_sides(raster: &RasterState) -> Vec<Side> {
+pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
     let counts = |operation: StencilOperation| {
         matches!(
             operation,
@@ -89,8 +89,8 @@ pub(super) fn counted_sides(raster: &RasterState) -> Vec<Side> {
         )
     };
     let faces = [&raster.stencil.front, &raster.stencil.back];
-    let behind = faces.iter().any(|face| counts(face.depth_fail_op)).then_some(Side::Behind);
-    let in_front = faces.iter().any(|face| counts(face.pass_op)).then_some(Side::InFront);
+    let behind = faces.iter().any(|face| counts(face.depth_fail_op)).then_some(CountedSide::Behind);
+    let in_front = faces.iter().any(|face| counts(face.pass_op)).then_some(CountedSide::InFront);
     behind.into_iter().chain(in_front).collect()
 }
 
@@ -209,11 +209,11 @@ fn color(blend: &RawBlend) -> ColorWrite {
 }
 
 /// In the plan's words.
-pub(super) fn may(may: RawMay) -> May {
+pub(super) fn may(may: RawShaderEffect) -> ShaderEffect {
     match may {
-        RawMay::No => May::No,
-        RawMay::Yes => May::Yes,
-        RawMay::Unknown => May::Unknown,
+        RawShaderEffect::No => ShaderEffect::No,
+        RawShaderEffect::Yes => ShaderEffect::Yes,
+        RawShaderEffect::Unknown => ShaderEffect::Unknown,
     }
 }
 

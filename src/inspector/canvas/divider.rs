@@ -3,7 +3,7 @@
 
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
-use crate::inspector::model::looking::{Compare, NUDGE};
+use crate::inspector::model::looking::{Comparison, NUDGE};
 use egui::accesskit::Action as Access;
 use egui::{
     Align2, Color32, CornerRadius, CursorIcon, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
@@ -13,13 +13,13 @@ use egui::{
 const HANDLE: [f32; 2] = [14.0, 36.0];
 
 /// The part of `rect` that the compared picture takes.
-pub fn part(rect: Rect, compare: &Compare) -> Rect {
+pub fn part(rect: Rect, compare: &Comparison) -> Rect {
     let x = rect.left() + rect.width() * compare.at;
     if compare.flipped { rect.with_min_x(x) } else { rect.with_max_x(x) }
 }
 
 /// Draws divider, handle and the names of both sides, and moves the divider.
-pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Compare, names: [&str; 2]) {
+pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Comparison, names: [&str; 2]) {
     let x = rect.left() + rect.width() * compare.at;
     let handle = Rect::from_center_size(pos2(x, rect.center().y), HANDLE.into());
     let response = ui.interact(handle, ui.scope_id().with("divider"), Sense::click_and_drag());
@@ -47,7 +47,7 @@ pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Compare, names: [&str; 2]) {
 }
 
 /// The line at `x` and the names of both sides, if any: of the compared one, and of the other.
-pub fn paint(ui: &Ui, rect: Rect, compare: &Compare, x: f32, names: [&str; 2]) {
+pub fn paint(ui: &Ui, rect: Rect, compare: &Comparison, x: f32, names: [&str; 2]) {
     let painter = ui.painter_at(rect);
     for (width, color) in [(4.0, Color32::from_black_alpha(150)), (1.5, Color32::WHITE)] {
         painter.vline(x, rect.y_range(), Stroke::new(width, color));

@@ -11,7 +11,7 @@ const STEPS: [f64; 2] = [0.01, 0.1];
 
 /// What can be moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Grip {
+pub enum HandleKind {
     /// A light, or the direction towards it.
     Light(usize),
     /// The camera's eye.
@@ -22,21 +22,21 @@ pub enum Grip {
     Object(usize),
 }
 
-impl Grip {
+impl HandleKind {
     /// For people: `Light 1`.
     pub fn name(self) -> String {
         match self {
-            Grip::Light(index) => format::light_title(index),
-            Grip::Eye => "Camera".to_owned(),
-            Grip::Target => "Camera target".to_owned(),
-            Grip::Object(index) => format!("Object {}", index + 1),
+            HandleKind::Light(index) => format::light_title(index),
+            HandleKind::Eye => "Camera".to_owned(),
+            HandleKind::Target => "Camera target".to_owned(),
+            HandleKind::Object(index) => format!("Object {}", index + 1),
         }
     }
 }
 
 /// Where the handle of a directional light stands: so far from a point towards the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Anchor {
+pub struct HandleAnchor {
     /// World space.
     pub middle: DVec3,
     /// Metres.
@@ -44,7 +44,7 @@ pub struct Anchor {
 }
 
 /// Where a light's handle is at a moment, world space.
-pub fn place_of_light(light: &Light, time: f64, anchor: Anchor) -> DVec3 {
+pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     let position = light.motion.apply_to_light(light.position, time);
     match position.w == 0.0 {
         true => anchor.middle + position.truncate().normalize_or_zero() * anchor.reach,
@@ -53,7 +53,7 @@ pub fn place_of_light(light: &Light, time: f64, anchor: Anchor) -> DVec3 {
 }
 
 /// The light's homogeneous position at the scene's start once its handle was moved at a moment.
-pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: Anchor) -> DVec4 {
+pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) -> DVec4 {
     let turned = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
     let back = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z)).transpose();
     if !light.is_directional() {
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::scene::{Motion, Orbit, Swing};
 
-    const ANCHOR: Anchor = Anchor { middle: DVec3::new(1.0, 0.0, 2.0), reach: 5.0 };
+    const ANCHOR: HandleAnchor = HandleAnchor { middle: DVec3::new(1.0, 0.0, 2.0), reach: 5.0 };
 
     #[test]
     fn a_light_that_moves_is_moved_where_it_is_seen() {

@@ -5,7 +5,7 @@ use crate::inspector::canvas;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::reading::shown::Shown;
+use crate::reading::shown::ShownPicture;
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
 /// Texels across and down; odd, so that the pick is in the middle.
@@ -17,7 +17,7 @@ const CELL: f32 = 26.0;
 const MARGIN: f32 = 12.0;
 
 /// Draws the inset around `pick` into a lower corner of `rect`.
-pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &Shown, coloring: Coloring, placement: Placement) {
+pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &ShownPicture, coloring: Coloring, placement: Placement) {
     let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * CELL;
     let is_large = placement.pixels(ui.pixels_per_point()) >= canvas::NUMBERS_FROM;
     if is_large || rect.width() < size.x * 2.0 || rect.height() < size.y * 2.0 {

@@ -15,7 +15,7 @@ use crate::inspector::look::texture::{PictureCache, TextureSize};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::selection::moved;
-use crate::reading::shown::{PictureView, Shown, Zoom};
+use crate::reading::shown::{PictureView, ShownPicture, TexelZoom};
 use egui::epaint::Mesh;
 use egui::{
     Align2, Color32, CornerRadius, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
@@ -39,7 +39,7 @@ pub const PICTURE: &str = "Picture canvas";
 
 /// A picture over the shown one, of the same size.
 #[derive(Debug, Clone)]
-pub struct Sheet {
+pub struct PictureSheet {
     /// Its texels.
     pub image: Arc<Image>,
     /// What they mean.
@@ -76,9 +76,9 @@ pub fn ui(
     ui: &mut Ui,
     canvas: Canvas<'_>,
     rect: Rect,
-    shown: &Shown,
+    shown: &ShownPicture,
     coloring: Coloring,
-    sheets: &[Sheet],
+    sheets: &[PictureSheet],
 ) -> (Placement, Option<[u32; 2]>) {
     let image = &shown.images[0];
     let Canvas { name, view, pick, textures, has_arrows } = canvas;
@@ -172,7 +172,7 @@ fn move_view(ui: &Ui, view: &mut PictureView, response: &Response, placement: Pl
 }
 
 fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
-    view.zoom = Zoom::Pixels(pixels);
+    view.zoom = TexelZoom::Pixels(pixels);
     view.center = [f64::from(center.x), f64::from(center.y)];
 }
 

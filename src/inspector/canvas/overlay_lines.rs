@@ -4,7 +4,7 @@ use crate::anatomy::Anatomy;
 use crate::capture::Capture;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme::Theme;
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use crate::reading::projected::Projector;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Pos2, Rect, pos2, vec2};
@@ -27,23 +27,23 @@ pub enum LineKind {
     /// A silhouette edge, with its multiplicity.
     Silhouette(i32),
     /// An edge of a part of a shadow volume.
-    Volume(Part),
+    Volume(DrawPart),
 }
 
 /// Lines in texels.
 #[derive(Debug, Default)]
-pub struct Lines {
+pub struct OverlayLines {
     /// Both ends, and what each is of.
     pub lines: Vec<([DVec2; 2], LineKind)>,
     /// Lines that were too many to be drawn.
     pub left_out: usize,
 }
 
-impl Lines {
+impl OverlayLines {
     /// The silhouettes of the casters of a light.
-    pub fn silhouettes(anatomy: &Anatomy, capture: &Capture, light: usize) -> Lines {
+    pub fn silhouettes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
-        let mut lines = Lines::default();
+        let mut lines = OverlayLines::default();
         for silhouette in anatomy.silhouettes.iter().filter(|silhouette| silhouette.light == light) {
             let positions = &anatomy.objects[silhouette.caster].positions;
             for edge in &silhouette.edges {
@@ -55,9 +55,9 @@ impl Lines {
     }
 
     /// The edges of the shadow volumes of a light, each once a part.
-    pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> Lines {
+    pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
-        let mut lines = Lines::default();
+        let mut lines = OverlayLines::default();
         for volume in anatomy.volumes.iter().filter(|volume| volume.light == light) {
             for part in &volume.parts {
                 let sides = part.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
@@ -85,7 +85,7 @@ impl Lines {
     /// `seen`, and do not lie on one another.
     pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
         let mut numbers: Vec<(Pos2, i32)> = Vec::new();
-        let mut taken = Taken::default();
+        let mut taken = TakenCells::default();
         for ([from, to], multiplicity) in self.counting(placement) {
             let at = from + (to - from) / 2.0;
             let room = Rect::from_center_size(at, NUMBER_SIZE.into());
@@ -130,9 +130,9 @@ impl Lines {
 /// Where numbers are written, by cells of a number's size: each holds one middle at most, and what is written at another
 /// cell's middle reaches the cells beside it and no farther.
 #[derive(Debug, Default)]
-struct Taken(HashMap<[i32; 2], Pos2>);
+struct TakenCells(HashMap<[i32; 2], Pos2>);
 
-impl Taken {
+impl TakenCells {
     /// Takes the room of a number with its middle at `at`, where no other is written over it.
     fn take(&mut self, at: Pos2) -> bool {
         let [width, height] = NUMBER_SIZE;
@@ -201,7 +201,14 @@ pub struct PlacedLines {
 
 impl PlacedLines {
     /// The mesh of `lines`.
-    pub fn of(&mut self, lines: &Lines, placement: Placement, theme: &Theme, is_dark: bool, pixels: f32) -> Arc<Mesh> {
+    pub fn of(
+        &mut self,
+        lines: &OverlayLines,
+        placement: Placement,
+        theme: &Theme,
+        is_dark: bool,
+        pixels: f32,
+    ) -> Arc<Mesh> {
         let key = Some((placement, is_dark, pixels.to_bits()));
         if self.key != key {
             self.key = key;
@@ -211,7 +218,7 @@ impl PlacedLines {
     }
 
     /// The multiplicities of `lines` that can be read in `seen`.
-    pub fn numbers(&mut self, lines: &Lines, placement: Placement, seen: Rect) -> Arc<Vec<(Pos2, i32)>> {
+    pub fn numbers(&mut self, lines: &OverlayLines, placement: Placement, seen: Rect) -> Arc<Vec<(Pos2, i32)>> {
         let key = Some((placement, seen));
         if self.numbers_key != key {
             self.numbers_key = key;
@@ -233,9 +240,9 @@ mod tests {
 
     const SEEN: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(400.0, 300.0) };
 
-    fn lines(edges: &[([[f64; 2]; 2], i32)]) -> Lines {
+    fn lines(edges: &[([[f64; 2]; 2], i32)]) -> OverlayLines {
         let lines = edges.iter().map(|(ends, times)| (ends.map(DVec2::from_array), LineKind::Silhouette(*times)));
-        Lines { lines: lines.collect(), left_out: 0 }
+        OverlayLines { lines: lines.collect(), left_out: 0 }
     }
 
     fn placed(scale: f32) -> Placement {

@@ -1,6 +1,6 @@
 //! Where the picture lies on the screen, and which texel is where.
 
-use crate::reading::shown::{PictureView, Zoom};
+use crate::reading::shown::{PictureView, TexelZoom};
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// Where a picture lies on the screen.
@@ -22,11 +22,11 @@ impl Placement {
     pub fn new(view: &PictureView, size: [u32; 2], panel: Rect, pixels_per_point: f32) -> Placement {
         let texels = vec2(size[0] as f32, size[1] as f32);
         let (scale, middle) = match view.zoom {
-            Zoom::Fit => {
+            TexelZoom::Fit => {
                 let scale = (panel.width() / texels.x).min(panel.height() / texels.y).max(1e-4);
                 (scale, texels / 2.0)
             }
-            Zoom::Pixels(pixels) => (pixels / pixels_per_point, view.center.map(|c| c as f32).into()),
+            TexelZoom::Pixels(pixels) => (pixels / pixels_per_point, view.center.map(|c| c as f32).into()),
         };
         let origin = panel.center() - middle * scale;
         // Texels are sharp only where their edges are on the screen's grid.

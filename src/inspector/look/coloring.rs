@@ -7,7 +7,7 @@ use crate::numbers;
 use crate::picture::colors;
 use crate::reading::change::{self, ChangeKind};
 use crate::reading::depth::DepthScale;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::Color32;
 
 /// How much of what lies under an overlay of colours is hidden.
@@ -48,7 +48,7 @@ pub enum Coloring {
 
 impl Coloring {
     /// Of a shown picture, depths over `range`.
-    pub fn of_shown(shown: &Shown, range: [f64; 2]) -> Coloring {
+    pub fn of_shown(shown: &ShownPicture, range: [f64; 2]) -> Coloring {
         match shown.kind {
             PictureKind::Color => Coloring::Srgb,
             PictureKind::Stencil => Coloring::Stencil,

@@ -4,7 +4,7 @@
 //! Hatching is part of the texels, so that it is as fine as they are at any zoom. Only what lies
 //! inside a region is hatched: its rim, and so every pixel on its own, has its full colour.
 
-use crate::accuracy::{ErrorCounts, Finding, Region};
+use crate::accuracy::{ErrorCounts, Finding, WrongRegion};
 use crate::capture::Image;
 use crate::inspector::look::palette;
 use crate::picture::colors;
@@ -13,7 +13,7 @@ use egui::{Color32, ColorImage};
 
 /// How a finding is drawn and called.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Style {
+pub struct FindingStyle {
     /// In legends.
     pub name: &'static str,
     /// At a pixel, in a sentence.
@@ -21,12 +21,12 @@ pub struct Style {
     /// Its own colour.
     pub color: Color32,
     /// The second sign beside colour.
-    pub pattern: Pattern,
+    pub pattern: FindingPattern,
 }
 
 /// What lies over a finding's colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pattern {
+pub enum FindingPattern {
     /// Nothing.
     Plain,
     /// ╱
@@ -40,41 +40,41 @@ pub enum Pattern {
 }
 
 /// How a finding is drawn and called.
-pub fn style(finding: Finding) -> Style {
+pub fn style(finding: Finding) -> FindingStyle {
     let (name, meaning, color, pattern) = match finding {
-        Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, Pattern::Plain),
+        Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, FindingPattern::Plain),
         Finding::FalseShadow => (
             "false shadow",
             "False shadow: dark here, but the light reaches it.",
             colors::FALSE_SHADOW,
-            Pattern::Rising,
+            FindingPattern::Rising,
         ),
         Finding::MissingShadow => (
             "missing shadow",
             "Missing shadow: lit here, but something lies between.",
             colors::MISSING_SHADOW,
-            Pattern::Falling,
+            FindingPattern::Falling,
         ),
         Finding::WrongSurface => (
             "wrong surface",
             "Another surface than the truth's is seen here, or none.",
             colors::WRONG_SURFACE,
-            Pattern::Crossed,
+            FindingPattern::Crossed,
         ),
         Finding::EdgeBand => (
             "edge, excused",
             "They differ, but the truth changes within this pixel: excused.",
             colors::EDGE_BAND,
-            Pattern::Dotted,
+            FindingPattern::Dotted,
         ),
         Finding::NotCompared => (
             "not compared",
             "Not compared: here the truth is background, or faces away from the light.",
             colors::NOTHING,
-            Pattern::Plain,
+            FindingPattern::Plain,
         ),
     };
-    Style { name, meaning, color: palette::opaque(color), pattern }
+    FindingStyle { name, meaning, color: palette::opaque(color), pattern }
 }
 
 /// How far a line of the hatching goes from the colour towards black.
@@ -82,18 +82,18 @@ const LINE_DARKNESS: f32 = 0.5;
 /// Texels from one line of the hatching to the next.
 const LINE_SPACING: usize = 5;
 
-impl Pattern {
+impl FindingPattern {
     /// Does a line go through that texel?
     fn has_line(self, x: usize, y: usize) -> bool {
         let rising = (x + y).is_multiple_of(LINE_SPACING);
         // x − y, with x raised by a multiple of the spacing so that it stays positive.
         let falling = (x + y * (LINE_SPACING - 1)).is_multiple_of(LINE_SPACING);
         match self {
-            Pattern::Plain => false,
-            Pattern::Rising => rising,
-            Pattern::Falling => falling,
-            Pattern::Crossed => rising || falling,
-            Pattern::Dotted => (x + y) % 2 == 1,
+            FindingPattern::Plain => false,
+            FindingPattern::Rising => rising,
+            FindingPattern::Falling => falling,
+            FindingPattern::Crossed => rising || falling,
+            FindingPattern::Dotted => (x + y) % 2 == 1,
         }
     }
 }
@@ -139,7 +139,7 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
         let Some(finding) = Finding::from_byte(at(x, y)) else { return color(at(x, y)) };
         let style = style(finding);
         // An edge band is a line of pixels: it has no inside, and is dotted all along.
-        let is_line = style.pattern.has_line(x, y) && (style.pattern == Pattern::Dotted || is_inside(x, y));
+        let is_line = style.pattern.has_line(x, y) && (style.pattern == FindingPattern::Dotted || is_inside(x, y));
         if is_line { style.color.lerp_to_gamma(Color32::BLACK, LINE_DARKNESS) } else { style.color }
     };
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y));
@@ -147,7 +147,7 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
 }
 
 /// How a technique did for one light, in a sentence.
-pub fn sentence(error: &ErrorCounts, worst: Option<&Region>) -> String {
+pub fn sentence(error: &ErrorCounts, worst: Option<&WrongRegion>) -> String {
     // A line of the sentence must not end inside a number.
     let count = |value: u64| format::count(value).replace('\u{2009}', "\u{a0}");
     let compared = count(error.compared);
@@ -236,7 +236,7 @@ mod tests {
             "No pixel of 876 871 is wrong; 412 at edges are excused."
         );
         let counts = ErrorCounts { false_shadow: 1100, missing_shadow: 104, ..none };
-        let worst = Region { pixels: 800, kind: Finding::FalseShadow, bounds: [3, 4, 50, 60], at: [7, 4] };
+        let worst = WrongRegion { pixels: 800, kind: Finding::FalseShadow, bounds: [3, 4, 50, 60], at: [7, 4] };
         assert_eq!(
             sentence(&counts, Some(&worst)).replace('\u{a0}', " "),
             "1 204 of 876 871 pixels are wrong: 1 100 false shadow, 104 missing; the largest patch has 800 at 7, 4."

@@ -7,16 +7,20 @@ use crate::picture::colors::{self, Rgb};
 use egui::Color32;
 
 /// Labels of a light, by value.
-pub const LABELS: [Label; 4] = [
-    Label { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
-    Label { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },
-    Label { name: "background", meaning: "no surface is here", color: opaque(colors::LABELS[2]) },
-    Label { name: "faces away", meaning: "the light is on the surface's other side", color: opaque(colors::LABELS[3]) },
+pub const LABELS: [LabelMeaning; 4] = [
+    LabelMeaning { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
+    LabelMeaning { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },
+    LabelMeaning { name: "background", meaning: "no surface is here", color: opaque(colors::LABELS[2]) },
+    LabelMeaning {
+        name: "faces away",
+        meaning: "the light is on the surface's other side",
+        color: opaque(colors::LABELS[3]),
+    },
 ];
 
 /// What a byte of a shadow mask means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Label {
+pub struct LabelMeaning {
     /// In words.
     pub name: &'static str,
     /// In more words.

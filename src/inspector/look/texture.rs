@@ -26,7 +26,7 @@ pub struct PictureCache {
     textures: Vec<CachedTexture>,
     histograms: Vec<(Arc<Image>, Box<[u64; 256]>)>,
     tallies: Vec<(Arc<Image>, Arc<Tally>)>,
-    shares: Vec<(Arc<Image>, Shares)>,
+    shares: Vec<(Arc<Image>, LightShares)>,
     ranges: Vec<(Arc<Image>, DepthMeasure, Option<[f64; 2]>)>,
     depth_histogram: Option<(Arc<Image>, DepthMeasure, [f64; 2], DepthHistogram)>,
     clock: u64,
@@ -34,7 +34,7 @@ pub struct PictureCache {
 
 /// How many texels let all of the light through, none of it, or a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Shares {
+pub struct LightShares {
     /// White.
     pub all: u64,
     /// Black.
@@ -168,7 +168,7 @@ impl PictureCache {
     }
 
     /// How many texels of a picture of linear colours are white, black, or neither.
-    pub fn shares(&mut self, image: &Arc<Image>) -> Shares {
+    pub fn shares(&mut self, image: &Arc<Image>) -> LightShares {
         if let Some((_, shares)) = self.shares.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return *shares;
         }
@@ -318,8 +318,8 @@ pub fn over(color: Color32, under: Rgb) -> Rgb {
     std::array::from_fn(|channel| over[channel].saturating_add(stays(under[channel])))
 }
 
-fn shares_of(image: &Image) -> Shares {
-    let mut shares = Shares::default();
+fn shares_of(image: &Image) -> LightShares {
+    let mut shares = LightShares::default();
     for row in image.rows() {
         for texel in row.chunks_exact(4) {
             match texel[..3] {

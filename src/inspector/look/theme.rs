@@ -3,7 +3,7 @@
 //! One accent means "selected" and nothing else; the same colour means the same thing in every
 //! panel and in both themes. Palettes of the pictures themselves are in `palette.rs`.
 
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2};
 
 /// What each colour means, and what it is in one theme.
@@ -115,12 +115,12 @@ pub fn in_visuals(visuals: &egui::Visuals) -> &'static Theme {
 
 impl Theme {
     /// The colour of a part of a shadow volume; `None` for what has none of its own.
-    pub fn part(&self, part: Part) -> Option<Color32> {
+    pub fn part(&self, part: DrawPart) -> Option<Color32> {
         match part {
-            Part::Side => Some(self.side),
-            Part::LightCap | Part::Caps => Some(self.light_cap),
-            Part::DarkCap => Some(self.dark_cap),
-            Part::Surface | Part::Receiver | Part::PlanarShadow | Part::Map => None,
+            DrawPart::Side => Some(self.side),
+            DrawPart::LightCap | DrawPart::Caps => Some(self.light_cap),
+            DrawPart::DarkCap => Some(self.dark_cap),
+            DrawPart::Surface | DrawPart::Receiver | DrawPart::PlanarShadow | DrawPart::Map => None,
         }
     }
 }

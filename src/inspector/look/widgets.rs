@@ -5,7 +5,7 @@ use egui::{Align2, CornerRadius, Response, RichText, Stroke, StrokeKind, Ui, pos
 
 /// One of several buttons side by side.
 #[derive(Debug, Clone, Copy)]
-pub struct Segment<'a> {
+pub struct ButtonSegment<'a> {
     /// Its words.
     pub label: &'a str,
     /// What it does, or why it can't be pressed.
@@ -18,10 +18,10 @@ pub struct Segment<'a> {
     pub changed: &'a str,
 }
 
-impl<'a> Segment<'a> {
+impl<'a> ButtonSegment<'a> {
     /// One that can be pressed.
-    pub fn new(label: &'a str, explanation: &'a str) -> Segment<'a> {
-        Segment { label, explanation, is_enabled: true, is_seen: false, changed: "" }
+    pub fn new(label: &'a str, explanation: &'a str) -> ButtonSegment<'a> {
+        ButtonSegment { label, explanation, is_enabled: true, is_seen: false, changed: "" }
     }
 }
 
@@ -31,12 +31,13 @@ const SEGMENT_PADDING: f32 = 7.0;
 /// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
 /// Returns the one that was clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
-    let all: Vec<Segment> = labels.iter().map(|(label, explanation)| Segment::new(label, explanation)).collect();
+    let all: Vec<ButtonSegment> =
+        labels.iter().map(|(label, explanation)| ButtonSegment::new(label, explanation)).collect();
     segments_of(ui, &all, chosen)
 }
 
 /// As [`segments`], where some can't be pressed.
-pub fn segments_of(ui: &mut Ui, segments: &[Segment], chosen: Option<usize>) -> Option<usize> {
+pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize>) -> Option<usize> {
     let mut clicked = None;
     let frame = egui::Frame::new()
         .fill(theme::of(ui).raised)

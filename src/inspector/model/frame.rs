@@ -2,7 +2,7 @@
 //! is; its truth, its draws and its time are answers, and are put beside it here and nowhere else.
 
 use super::Model;
-use crate::ask::{DrawsOf, FilmOf, Filmed, Kind, TestsOf, TimingOf, TruthOf};
+use crate::ask::{DrawsOf, FilmOf, Filmed, QuestionKind, TestsOf, TimingOf, TruthOf};
 use crate::capture::{Capture, FrameTruth, Origin};
 use crate::plan::FramePlan;
 use crate::reading::format;
@@ -78,16 +78,16 @@ impl Model {
     }
 
     /// Stops what is being found out, for good.
-    pub fn cancel(&mut self, kind: Kind) {
+    pub fn cancel(&mut self, kind: QuestionKind) {
         self.answers.cancel(kind);
-        if kind == Kind::TruthOf {
+        if kind == QuestionKind::TruthOf {
             self.view.older_truth = None;
         }
     }
 
     /// Takes an answer to a question of this kind into the frame, where it belongs there.
-    pub fn take_in(&mut self, kind: Kind) {
-        if kind == Kind::FilmOf
+    pub fn take_in(&mut self, kind: QuestionKind) {
+        if kind == QuestionKind::FilmOf
             && let Some((film, Filmed { pictures, bytes })) =
                 self.answers.last::<FilmOf>().map(|(film, filmed)| (film, **filmed))
         {
@@ -96,13 +96,13 @@ impl Model {
         }
         let Some(capture) = &self.frame.capture else { return };
         let known = match kind {
-            Kind::TruthOf => self.answers.current::<TruthOf>().map(|(_, truth)| capture.with_truth(truth)),
-            Kind::DrawsOf => self.answers.current::<DrawsOf>().map(|(_, draws)| capture.with_draws(draws)),
-            Kind::TimingOf => {
+            QuestionKind::TruthOf => self.answers.current::<TruthOf>().map(|(_, truth)| capture.with_truth(truth)),
+            QuestionKind::DrawsOf => self.answers.current::<DrawsOf>().map(|(_, draws)| capture.with_draws(draws)),
+            QuestionKind::TimingOf => {
                 let timing = self.answers.current::<TimingOf>();
                 timing.map(|(_, timing)| Capture { timing: **timing, ..Capture::clone(capture) })
             }
-            Kind::TestsOf => {
+            QuestionKind::TestsOf => {
                 self.view.tests = self.answers.current::<TestsOf>().map(|(_, found)| Arc::clone(&found.tests));
                 None
             }

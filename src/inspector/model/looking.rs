@@ -11,9 +11,9 @@ use crate::inspector::look::texture::PictureCache;
 use crate::numbers::percent;
 use crate::reading::counts;
 use crate::reading::format;
-use crate::reading::moment::Moment;
+use crate::reading::moment::CapturePoint;
 use crate::reading::outcomes::TestOutcomes;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use crate::reading::steps;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeSet;
@@ -24,7 +24,7 @@ pub const NUDGE: f32 = 0.02;
 
 /// Which side of the selected step or draw is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Phase {
+pub enum StepPhase {
     /// As it was before.
     Before,
     /// As it is now.
@@ -34,9 +34,9 @@ pub enum Phase {
     Diff,
 }
 
-impl Phase {
+impl StepPhase {
     /// In the order of their buttons.
-    pub const ALL: [Phase; 3] = [Phase::Before, Phase::After, Phase::Diff];
+    pub const ALL: [StepPhase; 3] = [StepPhase::Before, StepPhase::After, StepPhase::Diff];
     /// Labels and explanations of the buttons.
     pub const LABELS: [(&'static str, &'static str); 3] = [
         ("Before", "As it was before the selected step or draw (B goes there and back)"),
@@ -47,19 +47,21 @@ impl Phase {
 
 /// Why there is nothing to show of the time before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NoBefore {
+pub enum NoStepBefore {
     /// It is the first step.
     First,
     /// The state after the draw before is being captured, or can't be had.
     NotKnown,
 }
 
-impl NoBefore {
+impl NoStepBefore {
     /// In a sentence, with what to do.
     pub fn sentence(self) -> &'static str {
         match self {
-            NoBefore::First => "Nothing comes before the first step: its buffers start cleared. Select a later one.",
-            NoBefore::NotKnown => {
+            NoStepBefore::First => {
+                "Nothing comes before the first step: its buffers start cleared. Select a later one."
+            }
+            NoStepBefore::NotKnown => {
                 "The state before this draw is not known yet; a folder has it where it was captured with --every draw."
             }
         }
@@ -68,9 +70,9 @@ impl NoBefore {
 
 /// A comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compare {
+pub struct Comparison {
     /// What is shown beside the picture.
-    pub with: With,
+    pub with: ComparedWith,
     /// Where the divider is: 0 at the left, 1 at the right.
     pub at: f32,
     /// The current picture is on the left, the compared one on the right.
@@ -79,26 +81,26 @@ pub struct Compare {
 
 /// What is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum With {
+pub enum ComparedWith {
     /// Another step of the frame, by index.
     Step(usize),
     /// The same step of another technique.
     Technique(Technique),
 }
 
-impl Compare {
+impl Comparison {
     /// Beside step `step`: the one before it, or the one after the first.
-    pub fn new(step: usize) -> Compare {
-        Compare { with: With::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
+    pub fn new(step: usize) -> Comparison {
+        Comparison { with: ComparedWith::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
     }
 }
 
-impl With {
+impl ComparedWith {
     /// In a few words.
     pub fn words(self, capture: &Capture) -> String {
         match self {
-            With::Step(step) => step_words(capture, step),
-            With::Technique(technique) => technique.name().to_owned(),
+            ComparedWith::Step(step) => step_words(capture, step),
+            ComparedWith::Technique(technique) => technique.name().to_owned(),
         }
     }
 }
@@ -113,13 +115,13 @@ pub fn step_words(capture: &Capture, step: usize) -> String {
 
 /// How the picture is looked at.
 #[derive(Debug, Default)]
-pub struct Modes {
+pub struct ViewModes {
     /// Before, after, or what changed.
-    pub phase: Phase,
+    pub phase: StepPhase,
     /// The one bit of the stencil that is shown; `None`: all.
     pub bit: Option<u8>,
     /// What is shown beside it.
-    pub compare: Option<Compare>,
+    pub compare: Option<Comparison>,
     /// What is drawn over it.
     pub overlays: BTreeSet<Overlay>,
 }
@@ -133,26 +135,26 @@ pub fn has_phases(kind: PictureKind) -> bool {
 ///
 /// # Errors
 /// There is nothing, or it is not known.
-pub fn before(capture: &Capture, at: Moment) -> Result<Moment, NoBefore> {
+pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoStepBefore> {
     match at.draw.and_then(|draw| draw.checked_sub(1)) {
         Some(draw) => {
-            let before = Moment { draw: Some(draw), ..at };
-            if before.is_held(capture) { Ok(before) } else { Err(NoBefore::NotKnown) }
+            let before = CapturePoint { draw: Some(draw), ..at };
+            if before.is_held(capture) { Ok(before) } else { Err(NoStepBefore::NotKnown) }
         }
-        None => at.step.checked_sub(1).map(Moment::from).ok_or(NoBefore::First),
+        None => at.step.checked_sub(1).map(CapturePoint::from).ok_or(NoStepBefore::First),
     }
 }
 
 impl Model {
     /// The picture that is shown: of the selected moment, or of the one before it.
-    pub fn shown(&self, capture: &Capture) -> Option<Shown> {
+    pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
         let now = self.view.shown(capture, self.moment());
         match self.modes.phase {
-            Phase::Before => match now {
+            StepPhase::Before => match now {
                 Some(now) if !has_phases(now.kind) => Some(now),
                 _ => self.shown_before(capture).ok(),
             },
-            Phase::After | Phase::Diff => now,
+            StepPhase::After | StepPhase::Diff => now,
         }
     }
 
@@ -160,11 +162,11 @@ impl Model {
     ///
     /// # Errors
     /// There is nothing before it, or it is not known.
-    pub fn shown_before(&self, capture: &Capture) -> Result<Shown, NoBefore> {
+    pub fn shown_before(&self, capture: &Capture) -> Result<ShownPicture, NoStepBefore> {
         let at = self.moment();
         let before = before(capture, at)?;
-        let kind = self.view.kind_at(capture, at).ok_or(NoBefore::First)?;
-        let mut shown = self.view.shown_as(capture, before, kind).ok_or(NoBefore::First)?;
+        let kind = self.view.kind_at(capture, at).ok_or(NoStepBefore::First)?;
+        let mut shown = self.view.shown_as(capture, before, kind).ok_or(NoStepBefore::First)?;
         let of = shown.title.split(" after ").next().unwrap_or_default().to_owned();
         shown.title = format!("{of} before {}", at.words(capture));
         Ok(shown)
@@ -172,8 +174,8 @@ impl Model {
 
     /// Does something that is shown need the state before the selected draw, which is not known?
     pub fn lacks_draw_before(&self) -> bool {
-        let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoBefore::NotKnown);
-        self.modes.phase != Phase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
+        let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoStepBefore::NotKnown);
+        self.modes.phase != StepPhase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
     }
 
     /// The run that captures another technique as the shown frame was.
@@ -186,14 +188,14 @@ impl Model {
 
     /// What stands beside the picture first: the step before it, or of a picture of the whole frame, which no step
     /// changes, that of another technique.
-    pub fn first_comparison(&self) -> Compare {
-        let compare = Compare::new(self.selection.step);
+    pub fn first_comparison(&self) -> Comparison {
+        let compare = Comparison::new(self.selection.step);
         let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
         match (&self.scene, shown) {
             (Some(scene), Some(shown)) if !has_phases(shown.kind) && shown.kind != PictureKind::Overdraw => {
                 let is_fail = scene.draft.choice.technique() == Technique::ZFail;
                 let other = if is_fail { Technique::ShadowMap } else { Technique::ZFail };
-                Compare { with: With::Technique(other), ..compare }
+                Comparison { with: ComparedWith::Technique(other), ..compare }
             }
             _ => compare,
         }
@@ -203,14 +205,14 @@ impl Model {
     ///
     /// # Errors
     /// There is none, in a sentence.
-    pub fn shown_compared(&self, capture: &Capture, shown: &Shown) -> Result<Shown, String> {
+    pub fn shown_compared(&self, capture: &Capture, shown: &ShownPicture) -> Result<ShownPicture, String> {
         let compare = self.modes.compare.ok_or("Nothing is compared.")?;
         let found = match compare.with {
-            With::Step(step) if step >= capture.steps.len() => {
+            ComparedWith::Step(step) if step >= capture.steps.len() => {
                 return Err(format!("This frame has no step {}: choose another.", step + 1));
             }
-            With::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
-            With::Technique(technique) => {
+            ComparedWith::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
+            ComparedWith::Technique(technique) => {
                 let request = self.request_of(technique).ok_or("A folder holds one technique only: choose a step.")?;
                 match self.answers.want(CaptureOf { request: Box::new(request) }) {
                     Reply { ready: Some(other), .. } => {
@@ -233,7 +235,7 @@ impl Model {
 
     /// Wants to know how the fragments of the selected step or draw fared in the tests.
     pub fn want_tests(&self) -> Reply<TestOutcomes> {
-        let Moment { step, draw } = self.selected();
+        let CapturePoint { step, draw } = self.selected();
         self.answers.want(TestsOf { step, draw })
     }
 
@@ -256,7 +258,7 @@ impl Model {
 
 impl Model {
     /// What the texels of `shown` mean as it is looked at, and the ends of the grey ramp.
-    pub fn shown_coloring(&mut self, shown: &Shown) -> (Coloring, [f64; 2]) {
+    pub fn shown_coloring(&mut self, shown: &ShownPicture) -> (Coloring, [f64; 2]) {
         let range = self.shown_range(shown);
         match (Coloring::of_shown(shown, range), self.modes.bit) {
             (Coloring::Stencil, Some(bit)) => (Coloring::Bit(bit), range),
@@ -265,18 +267,18 @@ impl Model {
     }
 
     /// The grey ramp's ends: as set by hand, or those of all shown pictures.
-    fn shown_range(&mut self, shown: &Shown) -> [f64; 2] {
+    fn shown_range(&mut self, shown: &ShownPicture) -> [f64; 2] {
         self.view.depth_range.unwrap_or_else(|| self.full_range(shown))
     }
 
     /// The smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
-    pub fn full_range(&mut self, shown: &Shown) -> [f64; 2] {
+    pub fn full_range(&mut self, shown: &ShownPicture) -> [f64; 2] {
         full_range(&mut self.textures, shown)
     }
 }
 
 /// As [`Model::full_range`].
-pub fn full_range(textures: &mut PictureCache, shown: &Shown) -> [f64; 2] {
+pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2] {
     if !matches!(Coloring::of_shown(shown, [0.0, 1.0]), Coloring::Depth(_)) {
         return [0.0, 1.0];
     }

@@ -39,7 +39,7 @@ impl ThemeChoice {
 /// What is remembered; unknown or missing parts of a stored one are as at first.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Remembered {
+pub struct StoredSettings {
     /// Dark or light.
     pub theme: ThemeChoice,
     /// What was opened, the last first: built-in names and paths.
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn a_stored_memory_with_parts_missing_or_unknown_is_read() {
-        let read = serde_json::from_str::<Remembered>(r#"{"theme":"light","colour":"red"}"#).expect("a memory");
-        assert_eq!(read, Remembered { theme: ThemeChoice::Light, ..Remembered::default() });
+        let read = serde_json::from_str::<StoredSettings>(r#"{"theme":"light","colour":"red"}"#).expect("a memory");
+        assert_eq!(read, StoredSettings { theme: ThemeChoice::Light, ..StoredSettings::default() });
     }
 }

@@ -20,21 +20,21 @@ pub mod selection;
 pub mod undo;
 pub mod walk;
 
-use crate::ask::{Answers, Kind, ReportOf, TruthOf};
-use crate::inspector::action::{Dialog, Panel};
+use crate::ask::{Answers, QuestionKind, ReportOf, TruthOf};
+use crate::inspector::action::{DialogKind, PanelKind};
 use crate::inspector::look::texture::PictureCache;
 use crate::reading::shown::{PictureKind, PictureView, available, has_truth};
 use crate::report::MeasuredReport;
 use animation::Animation;
 use frame::ShownFrame;
-use looking::Modes;
+use looking::ViewModes;
 use memory::ThemeChoice;
 use scene::OpenScene;
 use selection::Selection;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use undo::Undo;
-use walk::Walk;
+use undo::UndoHistory;
+use walk::WalkState;
 
 /// All that more than one panel looks at.
 #[derive(Debug, Default)]
@@ -52,13 +52,13 @@ pub struct Model {
     /// The picture panel's picture.
     pub view: PictureView,
     /// How it is looked at.
-    pub modes: Modes,
+    pub modes: ViewModes,
     /// What goes on.
     pub activity: Activity,
     /// What one panel wishes of another.
     pub requests: Requests,
     /// The dialog that is open.
-    pub dialog: Option<Dialog>,
+    pub dialog: Option<DialogKind>,
     /// Dark or light.
     pub theme: ThemeChoice,
     /// What was opened, the last first.
@@ -66,13 +66,13 @@ pub struct Model {
     /// What was measured of scenes that were open before, by name.
     reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
     /// Changes that can be taken back.
-    pub undo: Undo,
+    pub undo: UndoHistory,
     /// How the scene is to be run that was asked for by taking a change back.
-    restoring: Option<undo::Moment>,
+    restoring: Option<undo::RunState>,
     /// The scene's animation.
     pub animation: Animation,
     /// Walking through the scene.
-    pub walk: Walk,
+    pub walk: WalkState,
     /// Textures and facts of images.
     pub textures: PictureCache,
 }
@@ -106,7 +106,7 @@ impl Activity {
 #[derive(Debug, Default)]
 pub struct Requests {
     /// Tabs to show.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<PanelKind>,
     /// A tour to begin, by its index.
     pub tour: Option<usize>,
     /// The Scene tab brings the selected triangle to the middle.
@@ -134,7 +134,7 @@ impl Model {
     /// The user wishes to see `kind`. Wishing again for what was not traced tries again.
     pub fn choose_picture(&mut self, kind: PictureKind) {
         if kind.needs_truth() {
-            self.answers.try_again(Kind::TruthOf);
+            self.answers.try_again(QuestionKind::TruthOf);
         }
         self.view.choose(kind);
     }

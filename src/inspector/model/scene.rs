@@ -208,7 +208,7 @@ impl Model {
     /// How the scene is run now is a step that can be taken back.
     fn note_for_undo(&mut self) {
         if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
-            self.undo.note(undo::Moment {
+            self.undo.note(undo::RunState {
                 source: scene.source.clone(),
                 request: scene.draft.clone(),
                 lights_opened: scene.lights_opened.clone(),
@@ -228,7 +228,7 @@ impl Model {
         self.restore(after, actions);
     }
 
-    fn restore(&mut self, moment: Option<undo::Moment>, actions: &mut Vec<Action>) {
+    fn restore(&mut self, moment: Option<undo::RunState>, actions: &mut Vec<Action>) {
         let Some(moment) = moment else { return };
         self.animation.is_running = false;
         match &mut self.scene {
@@ -248,7 +248,7 @@ impl Model {
     /// Runs the scene that was opened by taking a change back as it was run then.
     pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
         let is_open =
-            |moment: &mut undo::Moment| self.scene.as_ref().is_some_and(|scene| scene.source == moment.source);
+            |moment: &mut undo::RunState| self.scene.as_ref().is_some_and(|scene| scene.source == moment.source);
         if let Some(moment) = self.restoring.take_if(is_open)
             && let Some(scene) = &mut self.scene
         {

@@ -2,11 +2,11 @@
 //! without one asks for those of its pass; until they come the picture stays as it was.
 
 use super::Model;
-use crate::ask::{DrawsOf, Kind, Reply};
+use crate::ask::{DrawsOf, QuestionKind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
-use crate::history::Event;
-use crate::reading::moment::Moment;
-use crate::reading::shown::{PictureKind, Zoom};
+use crate::history::PixelEvent;
+use crate::reading::moment::CapturePoint;
+use crate::reading::shown::{PictureKind, TexelZoom};
 use crate::reading::steps;
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ pub struct Selection {
     /// Index of the draw of that step; `None`: the step as a whole.
     pub draw: Option<usize>,
     /// What is shown while the state after the selected draw is not there.
-    stays: Moment,
+    stays: CapturePoint,
     /// Its row has to be scrolled to.
     pub wants_scroll: bool,
     /// While playing: the time of the next step, in egui's seconds.
@@ -63,17 +63,17 @@ impl Selection {
     }
 
     /// Selects the triangle of an event, or nothing where it has none.
-    pub fn select_event(&mut self, event: &Event) {
+    pub fn select_event(&mut self, event: &PixelEvent) {
         self.triangle = key(event);
     }
 
     /// Is the event that of the selected triangle?
-    pub fn has_event(&self, event: &Event) -> bool {
+    pub fn has_event(&self, event: &PixelEvent) -> bool {
         self.triangle.is_some() && key(event) == self.triangle
     }
 }
 
-fn key(event: &Event) -> Option<TriangleKey> {
+fn key(event: &PixelEvent) -> Option<TriangleKey> {
     event.triangle().map(|one| [event.pass, one.draw, one.primitive as usize])
 }
 
@@ -90,12 +90,12 @@ impl Model {
     }
 
     /// What is selected.
-    pub fn selected(&self) -> Moment {
-        Moment { step: self.selection.step, draw: self.selection.draw }
+    pub fn selected(&self) -> CapturePoint {
+        CapturePoint { step: self.selection.step, draw: self.selection.draw }
     }
 
     /// What is shown: what is selected, or what was shown before while that is not known.
-    pub fn moment(&self) -> Moment {
+    pub fn moment(&self) -> CapturePoint {
         let selected = self.selected();
         let is_held = self.frame.capture.as_ref().is_none_or(|capture| selected.is_held(capture));
         if is_held { selected } else { self.selection.stays }
@@ -130,12 +130,12 @@ impl Model {
         self.selection.step = step.min(capture.steps.len().saturating_sub(1));
         self.selection.draw = None;
         self.selection.wants_scroll = true;
-        self.answers.try_again(Kind::DrawsOf);
+        self.answers.try_again(QuestionKind::DrawsOf);
         self.view.follow(&capture, self.selection.step);
     }
 
     /// Selects a moment; without a draw of that number, the step.
-    pub fn select(&mut self, at: Moment) {
+    pub fn select(&mut self, at: CapturePoint) {
         let stays = self.moment();
         self.select_step(at.step);
         self.selection.stays = stays;
@@ -211,8 +211,8 @@ impl Model {
         self.selection.pick = Some(at);
         let fitting = (GO_TO_PIXELS / side.max(1) as f32).clamp(1.0, MOST_GO_TO_ZOOM);
         self.view.zoom = match self.view.zoom {
-            Zoom::Fit => Zoom::Pixels(fitting),
-            Zoom::Pixels(pixels) => Zoom::Pixels(pixels.max(1.0)),
+            TexelZoom::Fit => TexelZoom::Pixels(fitting),
+            TexelZoom::Pixels(pixels) => TexelZoom::Pixels(pixels.max(1.0)),
         };
         self.view.center = at.map(|v| f64::from(v) + 0.5);
     }

@@ -11,7 +11,7 @@ const MOST: usize = 200;
 
 /// How a scene was run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Moment {
+pub struct RunState {
     /// What opened the scene: a built-in name or a path; `None` where it can't be opened again by name.
     pub source: Option<String>,
     /// How it was run.
@@ -22,17 +22,17 @@ pub struct Moment {
 
 /// What can be undone and redone.
 #[derive(Debug, Default)]
-pub struct Undo {
-    past: Vec<Moment>,
-    now: Option<Moment>,
-    future: Vec<Moment>,
+pub struct UndoHistory {
+    past: Vec<RunState>,
+    now: Option<RunState>,
+    future: Vec<RunState>,
     /// A button is held, or one walks: what changes now belongs to one step.
     is_held: bool,
     /// The step under way has begun.
     has_begun: bool,
 }
 
-impl Undo {
+impl UndoHistory {
     /// Tells whether what changes from now on belongs to one step.
     pub fn hold(&mut self, is_held: bool) {
         self.has_begun &= is_held;
@@ -40,7 +40,7 @@ impl Undo {
     }
 
     /// The scene is run like this now.
-    pub fn note(&mut self, moment: Moment) {
+    pub fn note(&mut self, moment: RunState) {
         let Some(before) = self.now.replace(moment.clone()) else { return };
         if before == moment {
             return;
@@ -72,14 +72,14 @@ impl Undo {
     }
 
     /// Goes a step back: how it was.
-    pub fn undo(&mut self) -> Option<Moment> {
+    pub fn undo(&mut self) -> Option<RunState> {
         let before = self.past.pop()?;
         self.future.extend(self.now.replace(before.clone()));
         Some(before)
     }
 
     /// Goes a step forth again: how it is after it.
-    pub fn redo(&mut self) -> Option<Moment> {
+    pub fn redo(&mut self) -> Option<RunState> {
         let after = self.future.pop()?;
         self.past.extend(self.now.replace(after.clone()));
         Some(after)
@@ -95,7 +95,7 @@ mod tests {
     use glam::DVec3;
     use std::collections::BTreeSet;
 
-    fn moment(width: u32, time: f64) -> Moment {
+    fn moment(width: u32, time: f64) -> RunState {
         let camera = Camera {
             eye: DVec3::Y,
             target: DVec3::ZERO,
@@ -108,16 +108,16 @@ mod tests {
         let choice = Choice::new(Technique::ZFail);
         let (off, objects) = (BTreeSet::new(), ObjectChanges::default());
         let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off, objects };
-        Moment { source: Some("tori".to_owned()), request, lights_opened: Vec::new() }
+        RunState { source: Some("tori".to_owned()), request, lights_opened: Vec::new() }
     }
 
-    fn widths(undo: &mut Undo) -> Vec<u32> {
+    fn widths(undo: &mut UndoHistory) -> Vec<u32> {
         std::iter::from_fn(|| undo.undo()).map(|moment| moment.request.size[0]).collect()
     }
 
     #[test]
     fn steps_go_back_and_forth_and_a_change_forgets_what_was_undone() {
-        let mut undo = Undo::default();
+        let mut undo = UndoHistory::default();
         (1..=3).for_each(|width| undo.note(moment(width, 0.0)));
         assert_eq!(undo.undo(), Some(moment(2, 0.0)));
         assert_eq!(undo.redo(), Some(moment(3, 0.0)));
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn what_is_dragged_is_one_step() {
-        let mut undo = Undo::default();
+        let mut undo = UndoHistory::default();
         undo.note(moment(1, 0.0));
         undo.hold(true);
         (2..=5).for_each(|width| undo.note(moment(width, 0.0)));
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_running_animation_is_no_step_and_neither_is_the_same_again() {
-        let mut undo = Undo::default();
+        let mut undo = UndoHistory::default();
         undo.note(moment(1, 0.0));
         undo.note(moment(1, 0.5));
         undo.note(moment(1, 0.5));
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn only_so_many_steps_are_kept() {
-        let mut undo = Undo::default();
+        let mut undo = UndoHistory::default();
         (0..500).for_each(|width| undo.note(moment(width, 0.0)));
         assert_eq!(widths(&mut undo).len(), MOST);
     }

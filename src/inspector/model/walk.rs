@@ -2,8 +2,8 @@
 //! `shell/walk.rs`.
 
 use super::Model;
-use crate::inspector::action::Panel;
-use crate::scene::{Standing, Walls};
+use crate::inspector::action::PanelKind;
+use crate::scene::{Footing, Walls};
 use egui::{Context, CursorGrab, Vec2, ViewportCommand};
 use glam::DVec3;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ const SPEED: f64 = 2.0;
 
 /// How one walks.
 #[derive(Debug)]
-pub struct Walk {
+pub struct WalkState {
     is_on: bool,
     /// Walls stop.
     pub collides: bool,
@@ -22,7 +22,7 @@ pub struct Walk {
     /// Why the last key did nothing.
     pub nothing_because: Option<String>,
     /// One weighs something; `None`: one floats at the height of the eye.
-    pub weight: Option<Weight>,
+    pub weight: Option<WalkGravity>,
     /// egui's time of the last step, seconds.
     pub last: Option<f64>,
     /// Mouse movement that no frame shows yet, points.
@@ -31,9 +31,9 @@ pub struct Walk {
 
 /// How one stands who weighs something.
 #[derive(Debug, Default)]
-pub struct Weight {
+pub struct WalkGravity {
     /// `None` until the walls are known.
-    pub standing: Option<Standing>,
+    pub standing: Option<Footing>,
     /// The walls that this is so in: others may leave nothing under the feet.
     pub within: Option<Arc<Walls>>,
     /// Where the feet stood last.
@@ -42,9 +42,9 @@ pub struct Weight {
     pub began_at: Option<DVec3>,
 }
 
-impl Default for Walk {
-    fn default() -> Walk {
-        Walk {
+impl Default for WalkState {
+    fn default() -> WalkState {
+        WalkState {
             is_on: false,
             collides: true,
             speed: SPEED,
@@ -56,7 +56,7 @@ impl Default for Walk {
     }
 }
 
-impl Weight {
+impl WalkGravity {
     /// On the ground, and nothing has changed about it.
     pub fn is_at_rest(&self, walls: &Arc<Walls>) -> bool {
         let is_same = self.within.as_ref().is_some_and(|within| Arc::ptr_eq(within, walls));
@@ -64,7 +64,7 @@ impl Weight {
     }
 }
 
-impl Walk {
+impl WalkState {
     /// Does one walk?
     pub fn is_on(&self) -> bool {
         self.is_on
@@ -77,10 +77,10 @@ impl Model {
         if self.scene.is_none() || self.frame.capture.is_none() || self.walk.is_on {
             return;
         }
-        let weight = self.walk.weight.as_ref().map(|_| Weight::default());
-        let Walk { collides, speed, .. } = self.walk;
-        self.walk = Walk { is_on: true, collides, speed, weight, ..Walk::default() };
-        self.requests.panels.push(Panel::Picture);
+        let weight = self.walk.weight.as_ref().map(|_| WalkGravity::default());
+        let WalkState { collides, speed, .. } = self.walk;
+        self.walk = WalkState { is_on: true, collides, speed, weight, ..WalkState::default() };
+        self.requests.panels.push(PanelKind::Picture);
         if let Some(id) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(id));
         }

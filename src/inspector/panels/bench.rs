@@ -4,7 +4,7 @@ use crate::history::operation_name;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::{RasterState, StencilFace};
-use crate::reading::bench::{Bench, COMPARES, Pushed, name};
+use crate::reading::bench::{COMPARES, TestBench, TestedDraw, name};
 use egui::{ComboBox, DragValue, Grid, Label, Ui};
 use wgpu::{CompareFunction, StencilOperation};
 
@@ -20,10 +20,10 @@ const OPERATIONS: [StencilOperation; 8] = [
 ];
 
 /// Which operation of a face.
-type Of = fn(&mut StencilFace) -> &mut StencilOperation;
+type FaceOperation = fn(&mut StencilFace) -> &mut StencilOperation;
 
 /// Draws the tab.
-pub fn ui(ui: &mut Ui, own: &mut Bench, model: &Model) {
+pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let text = "One pixel and the tests of one draw. Push fragments: each is tested as the GPU would, the stencil \
                     first, then the depth, and one operation changes what is held.";
@@ -41,7 +41,7 @@ pub fn ui(ui: &mut Ui, own: &mut Bench, model: &Model) {
 }
 
 /// The state of the selected draw, to try it out.
-fn take_over(ui: &mut Ui, own: &mut Bench, model: &Model) {
+fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     let plan = model.frame.plan.clone();
     let pass = plan.as_ref().and_then(|plan| plan.passes.get(model.selection.step));
     let draw =
@@ -56,12 +56,12 @@ fn take_over(ui: &mut Ui, own: &mut Bench, model: &Model) {
             own.state = draw.raster.clone();
         }
         if ui.button("Start again").on_hover_text("The state of z-fail over an empty count").clicked() {
-            *own = Bench::default();
+            *own = TestBench::default();
         }
     });
 }
 
-fn pixel(ui: &mut Ui, own: &mut Bench) {
+fn pixel(ui: &mut Ui, own: &mut TestBench) {
     theme::heading(ui, "The pixel holds");
     ui.horizontal(|ui| {
         number(ui, "stencil held", &mut own.held.stencil);
@@ -86,7 +86,7 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
         compare(ui, "front function", width, &mut front.compare);
         compare(ui, "back function", width, &mut back.compare);
         ui.end_row();
-        let rows: [(&str, Of); 3] = [
+        let rows: [(&str, FaceOperation); 3] = [
             ("stencil fails", |face| &mut face.fail_op),
             ("depth fails", |face| &mut face.depth_fail_op),
             ("both pass", |face| &mut face.pass_op),
@@ -116,7 +116,7 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
     });
 }
 
-fn push(ui: &mut Ui, own: &mut Bench) {
+fn push(ui: &mut Ui, own: &mut TestBench) {
     theme::heading(ui, "A fragment comes");
     ui.horizontal_wrapped(|ui| {
         depth(ui, "its depth", &mut own.depth);
@@ -129,8 +129,8 @@ fn push(ui: &mut Ui, own: &mut Bench) {
 }
 
 /// The newest on top.
-fn pushed(ui: &mut Ui, own: &Bench) {
-    for Pushed { number, words } in own.pushed.iter().rev() {
+fn pushed(ui: &mut Ui, own: &TestBench) {
+    for TestedDraw { number, words } in own.pushed.iter().rev() {
         ui.add(Label::new(theme::note(format!("{number}. {words}"))).wrap());
     }
 }

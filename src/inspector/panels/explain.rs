@@ -5,13 +5,13 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::pixel::map;
 use crate::inspector::tours::TOURS;
-use crate::reading::explain_facts::{Known, facts};
+use crate::reading::explain_facts::{ExplainContext, facts};
 use crate::reading::left_out::by_reason;
 use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
 /// Draws the tab.
-pub fn ui(ui: &mut Ui, own: &mut Explain, model: &mut Model) {
+pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(Label::new(theme::note("Open a scene: what each pass is for is told here.")).wrap());
         return;
@@ -25,7 +25,7 @@ pub fn ui(ui: &mut Ui, own: &mut Explain, model: &mut Model) {
         let history = model.history_of_frame();
         let light = capture.steps.get(model.selection.step).and_then(|step| step.light).unwrap_or(0);
         let map = model.selection.pick.and_then(|at| map::decision(model, &capture, light, at));
-        let known = Known {
+        let known = ExplainContext {
             capture: &capture,
             step: model.selection.step,
             lights: model.scene.as_ref().map_or(&[], |scene| &scene.draft.lights),
@@ -72,17 +72,21 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
 
 /// The tab: the facts that were told last, with what they were told of.
 #[derive(Debug, Default)]
-pub struct Explain {
-    of: Option<Key>,
-    facts: std::rc::Rc<Vec<crate::reading::explain_facts::Fact>>,
+pub struct ExplainPanel {
+    of: Option<ExplainKey>,
+    facts: std::rc::Rc<Vec<crate::reading::explain_facts::ExplainFact>>,
 }
 
 /// Facts change with these: frame, step, pixel, of which pixel the history is, whether there is a truth, and under which
 /// light a texel is known.
-type Key = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, (bool, Option<usize>));
+type ExplainKey = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, (bool, Option<usize>));
 
-impl Explain {
-    fn of(&mut self, frame: u64, known: &Known) -> std::rc::Rc<Vec<crate::reading::explain_facts::Fact>> {
+impl ExplainPanel {
+    fn of(
+        &mut self,
+        frame: u64,
+        known: &ExplainContext,
+    ) -> std::rc::Rc<Vec<crate::reading::explain_facts::ExplainFact>> {
         let has_truth = known.capture.lights.iter().any(|light| light.truth.is_some());
         let key = (
             frame,

@@ -1,5 +1,5 @@
 //! The tabs, one file or folder each: what it remembers, and a function that draws it of that and of the model. A new one
-//! is a file here, a field and an arm below, and its name among [`Panel`]s.
+//! is a file here, a field and an arm below, and its name among [`PanelKind`]s.
 
 pub mod bench;
 pub mod diagnosis;
@@ -14,15 +14,15 @@ pub mod settings;
 pub mod shadow_map;
 pub mod stress;
 
-use crate::inspector::action::{Action, Panel};
+use crate::inspector::action::{Action, PanelKind};
 use crate::inspector::model::Model;
-use crate::reading::bench::Bench;
+use crate::reading::bench::TestBench;
 use diagnosis::DiagnosisPanel;
 use egui::Ui;
-use explain::Explain;
-use passes::Passes;
+use explain::ExplainPanel;
+use passes::PassesPanel;
 use picture::PicturePanel;
-use pixel::Pixel;
+use pixel::PixelPanel;
 use raster_state::RasterStatePanel;
 use report::ReportPanel;
 use scene::SceneView;
@@ -33,16 +33,16 @@ use stress::StressPanel;
 #[derive(Debug, Default)]
 pub struct Panels {
     /// The frame, step by step.
-    pub passes: Passes,
+    pub passes: PassesPanel,
     /// The selected buffer.
     pub picture: PicturePanel,
     scene: SceneView,
     /// A light's map, linked with the picture.
     pub shadow_map: ShadowMapPanel,
-    pixel: Pixel,
+    pixel: PixelPanel,
     raster_state: RasterStatePanel,
-    explain: Explain,
-    bench: Bench,
+    explain: ExplainPanel,
+    bench: TestBench,
     report: ReportPanel,
     diagnosis: DiagnosisPanel,
     stress: StressPanel,
@@ -56,20 +56,20 @@ impl Panels {
     }
 
     /// Draws a tab.
-    pub fn ui(&mut self, panel: Panel, ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    pub fn ui(&mut self, panel: PanelKind, ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         match panel {
-            Panel::Passes => passes::ui(ui, &mut self.passes, model),
-            Panel::Settings => settings::ui(ui, model, actions),
-            Panel::Picture => picture::ui(ui, &mut self.picture, model, actions),
-            Panel::Scene => scene::ui(ui, &mut self.scene, model, actions),
-            Panel::ShadowMap => shadow_map::ui(ui, &mut self.shadow_map, model),
-            Panel::Pixel => pixel::ui(ui, &mut self.pixel, model),
-            Panel::State => raster_state::ui(ui, &mut self.raster_state, model),
-            Panel::Explain => explain::ui(ui, &mut self.explain, model),
-            Panel::Bench => bench::ui(ui, &mut self.bench, model),
-            Panel::Report => report::ui(ui, &mut self.report, model, actions),
-            Panel::Diagnosis => diagnosis::ui(ui, &mut self.diagnosis, model, actions),
-            Panel::Stress => stress::ui(ui, &mut self.stress, model, actions),
+            PanelKind::Passes => passes::ui(ui, &mut self.passes, model),
+            PanelKind::Settings => settings::ui(ui, model, actions),
+            PanelKind::Picture => picture::ui(ui, &mut self.picture, model, actions),
+            PanelKind::Scene => scene::ui(ui, &mut self.scene, model, actions),
+            PanelKind::ShadowMap => shadow_map::ui(ui, &mut self.shadow_map, model),
+            PanelKind::Pixel => pixel::ui(ui, &mut self.pixel, model),
+            PanelKind::State => raster_state::ui(ui, &mut self.raster_state, model),
+            PanelKind::Explain => explain::ui(ui, &mut self.explain, model),
+            PanelKind::Bench => bench::ui(ui, &mut self.bench, model),
+            PanelKind::Report => report::ui(ui, &mut self.report, model, actions),
+            PanelKind::Diagnosis => diagnosis::ui(ui, &mut self.diagnosis, model, actions),
+            PanelKind::Stress => stress::ui(ui, &mut self.stress, model, actions),
         }
     }
 }

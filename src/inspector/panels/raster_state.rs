@@ -3,7 +3,7 @@
 
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::plan::words::{self, Api};
+use crate::plan::words::{self, RasterApi};
 use crate::plan::{Draw, FramePlan, Pass};
 use crate::reading::format;
 use crate::reading::steps;
@@ -13,7 +13,7 @@ use egui::{Label, Ui};
 #[derive(Debug, Default)]
 pub struct RasterStatePanel {
     /// In whose words it tells.
-    api: Api,
+    api: RasterApi,
 }
 
 /// Draws the tab.
@@ -84,10 +84,10 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
     }
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        let labels = Api::ALL.map(|api| (api.name(), "The same state in these words"));
-        let chosen = Api::ALL.iter().position(|api| *api == own.api);
+        let labels = RasterApi::ALL.map(|api| (api.name(), "The same state in these words"));
+        let chosen = RasterApi::ALL.iter().position(|api| *api == own.api);
         if let Some(index) = crate::inspector::look::widgets::segments(ui, &labels, chosen) {
-            own.api = Api::ALL[index];
+            own.api = RasterApi::ALL[index];
         }
     });
     let lines = words::lines(&draw.raster, own.api);

@@ -17,7 +17,7 @@ use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
 use crate::reading::map_readers::{MapReaders, MapTexel};
 use crate::reading::pick_ray;
-use crate::reading::shown::{FaceChoice, PictureKind, PictureView, Zoom};
+use crate::reading::shown::{FaceChoice, PictureKind, PictureView, TexelZoom};
 use crate::technique::MapSettings;
 use egui::{
     Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,
@@ -37,7 +37,7 @@ pub struct ShadowMapPanel {
     pick: Option<[u32; 2]>,
     /// Whose map.
     light: usize,
-    marked: Option<Marked>,
+    marked: Option<MarkedTexel>,
     /// What the pointer is over in the small picture.
     over_pixel: Option<[u32; 2]>,
     /// Nobody has chosen the face that is shown.
@@ -48,7 +48,7 @@ pub struct ShadowMapPanel {
 
 /// The marked texel.
 #[derive(Debug)]
-struct Marked {
+struct MarkedTexel {
     texel: MapTexel,
     /// Whose pixels they are.
     of: Weak<MapReaders>,
@@ -64,12 +64,13 @@ impl ShadowMapPanel {
 
     /// The pixels that read a texel, found once.
     fn pixels(&mut self, readers: &Arc<MapReaders>, texel: MapTexel) -> Arc<Vec<[u32; 2]>> {
-        let is_it = |marked: &&Marked| marked.texel == texel && std::ptr::eq(marked.of.as_ptr(), Arc::as_ptr(readers));
+        let is_it =
+            |marked: &&MarkedTexel| marked.texel == texel && std::ptr::eq(marked.of.as_ptr(), Arc::as_ptr(readers));
         if let Some(marked) = self.marked.as_ref().filter(is_it) {
             return Arc::clone(&marked.pixels);
         }
         let pixels = Arc::new(readers.of_texel(texel));
-        self.marked = Some(Marked { texel, of: Arc::downgrade(readers), pixels: Arc::clone(&pixels) });
+        self.marked = Some(MarkedTexel { texel, of: Arc::downgrade(readers), pixels: Arc::clone(&pixels) });
         pixels
     }
 
@@ -154,7 +155,7 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
             Arc::default()
         }
     };
-    let links = Links {
+    let links = TexelLinks {
         readers: readers.as_deref(),
         is_waited_for,
         of_pick,
@@ -171,7 +172,7 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
 }
 
 /// What is linked with what in this frame.
-struct Links<'a> {
+struct TexelLinks<'a> {
     readers: Option<&'a MapReaders>,
     /// They are being found.
     is_waited_for: bool,
@@ -187,7 +188,7 @@ struct Links<'a> {
     pixels: &'a [[u32; 2]],
 }
 
-impl Links<'_> {
+impl TexelLinks<'_> {
     /// A pixel on whose surface the texel is measured: of many the middle one in reading order.
     fn on_surface(&self) -> Option<[u32; 2]> {
         self.pixel.or_else(|| self.pixels.get(self.pixels.len() / 2).copied())
@@ -229,7 +230,7 @@ fn tools(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, lights: &[usi
                 }
             }
             if ui.button("Fit map").on_hover_text("The whole face").clicked() {
-                own.view.zoom = Zoom::Fit;
+                own.view.zoom = TexelZoom::Fit;
             }
             if own.pick.is_some()
                 && ui.button("Clear").on_hover_text("No texel is picked, and none of its pixels marked").clicked()
@@ -245,14 +246,14 @@ fn tools(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, lights: &[usi
 fn show_face(own: &mut ShadowMapPanel, face: usize) {
     own.view.face = FaceChoice::One(face);
     own.is_any_face = false;
-    own.view.zoom = Zoom::Fit;
+    own.view.zoom = TexelZoom::Fit;
     own.pick = None;
 }
 
 /// Brings a texel to the middle, so large that it shows its number.
 fn show_texel(own: &mut ShadowMapPanel, texel: MapTexel) {
     show_face(own, texel.face);
-    own.view.zoom = Zoom::Pixels(canvas::NUMBERS_FROM + 4.0);
+    own.view.zoom = TexelZoom::Pixels(canvas::NUMBERS_FROM + 4.0);
     own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
 }
 
@@ -303,7 +304,7 @@ fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
 }
 
 /// The frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
-fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, capture: &Capture, links: &Links) {
+fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, capture: &Capture, links: &TexelLinks) {
     let [width, height] = capture.size.map(|side| side as f32);
     let scale = (ui.available_width() / width.max(1.0)).min(240.0 / height.max(1.0));
     let (rect, response) = ui.allocate_exact_size(vec2(width, height) * scale, Sense::click());
@@ -340,13 +341,13 @@ fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, captu
 }
 
 /// What the texel covers of the surface, in texels of the picture.
-fn texel_in_picture(capture: &Capture, links: &Links) -> Option<[DVec2; 4]> {
+fn texel_in_picture(capture: &Capture, links: &TexelLinks) -> Option<[DVec2; 4]> {
     let corners = links.readers?.texel_on_surface(links.texel?, links.on_surface()?)?;
     let [a, b, c, d] = corners.map(|corner| pick_ray::texel_of(capture, corner.extend(1.0)).map(DVec2::from_array));
     Some([a?, b?, c?, d?])
 }
 
-fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Links) {
+fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &TexelLinks) {
     ui.add_space(4.0);
     let light = own.light;
     let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) else { return };
@@ -405,7 +406,7 @@ fn values(
     light: usize,
     map: &CapturedMap,
     texel: MapTexel,
-    links: &Links,
+    links: &TexelLinks,
     name: String,
 ) -> Vec<(&'static str, String)> {
     let [width, height] = map.faces.get(texel.face).map_or([0, 0], |face| face.size());

@@ -3,12 +3,12 @@
 //!
 //! It shows data and asks for it; running is the app's.
 
-use crate::ask::{Kind, Reply, StressOf};
+use crate::ask::{QuestionKind, Reply, StressOf};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
-use crate::stress::{Case, StressRows, Summary, Verdict, cases, value_text};
+use crate::stress::{StressCase, StressRows, StressSummary, StressVerdict, cases, value_text};
 use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
@@ -29,13 +29,13 @@ pub struct StressPanel {
 }
 
 /// The worst verdict of a case; `None` where it was not run.
-fn verdict(rows: &StressRows, case: &Case) -> Option<Verdict> {
+fn verdict(rows: &StressRows, case: &StressCase) -> Option<StressVerdict> {
     rows.of(case).map(|summary| summary.verdict).max()
 }
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut StressPanel, model: &mut Model, actions: &mut Vec<Action>) {
-    let all: Vec<&'static Case> = cases::all().collect();
+    let all: Vec<&'static StressCase> = cases::all().collect();
     let selected = own.selected.min(all.len().saturating_sub(1));
     let Some(case) = all.get(selected).copied() else { return };
     let reply = model.answers.under_way::<StressOf>();
@@ -68,13 +68,13 @@ fn top_line(
     model: &mut Model,
     rows: &StressRows,
     reply: &Reply<StressRows>,
-    case: &Case,
-    all: &[&'static Case],
+    case: &StressCase,
+    all: &[&'static StressCase],
 ) {
     ui.horizontal_wrapped(|ui| match reply.steps() {
         Some((rows, all)) => {
             if ui.button("Cancel").on_hover_text("Stop; the cases that are done stay").clicked() {
-                model.answers.cancel(Kind::StressOf);
+                model.answers.cancel(QuestionKind::StressOf);
             }
             let share = rows as f32 / all.max(1) as f32;
             let bar = egui::ProgressBar::new(share).desired_width(ui.available_width().min(180.0)).desired_height(8.0);
@@ -96,7 +96,7 @@ fn top_line(
             if ui.button("Run all").on_hover_text("Run every case; this takes minutes").clicked() {
                 model.answers.start(StressOf { cases: all.iter().map(|case| case.name).collect() });
             }
-            let unexpected = rows.summaries.iter().filter(|one| one.verdict == Verdict::Unexpected).count();
+            let unexpected = rows.summaries.iter().filter(|one| one.verdict == StressVerdict::Unexpected).count();
             let ran = all.iter().filter(|case| verdict(rows, case).is_some()).count();
             let text = match (ran, unexpected) {
                 (0, _) => "Each case drives one number from easy to extreme, and says who must hold and who must fail."
@@ -111,16 +111,16 @@ fn top_line(
 }
 
 /// A sign and a word for a verdict.
-fn mark(ui: &Ui, verdict: Option<Verdict>) -> (&'static str, egui::Color32) {
+fn mark(ui: &Ui, verdict: Option<StressVerdict>) -> (&'static str, egui::Color32) {
     match verdict {
         None => ("", theme::of(ui).faint),
-        Some(Verdict::Holds) => ("holds", theme::of(ui).passed),
-        Some(Verdict::FailsAsKnown) => ("as known", theme::of(ui).dim),
-        Some(Verdict::Unexpected) => ("unexpected", theme::of(ui).error),
+        Some(StressVerdict::Holds) => ("holds", theme::of(ui).passed),
+        Some(StressVerdict::FailsAsKnown) => ("as known", theme::of(ui).dim),
+        Some(StressVerdict::Unexpected) => ("unexpected", theme::of(ui).error),
     }
 }
 
-fn list_row(ui: &mut Ui, own: &mut StressPanel, rows: &StressRows, case: &Case, index: usize) {
+fn list_row(ui: &mut Ui, own: &mut StressPanel, rows: &StressRows, case: &StressCase, index: usize) {
     let is_selected = own.selected == index;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let (word, color) = mark(ui, verdict(rows, case));
@@ -143,7 +143,7 @@ fn list_row(ui: &mut Ui, own: &mut StressPanel, rows: &StressRows, case: &Case, 
 }
 
 /// The selected case: its lesson, its values, and who did what.
-fn detail(ui: &mut Ui, rows: &StressRows, case: &'static Case, actions: &mut Vec<Action>) {
+fn detail(ui: &mut Ui, rows: &StressRows, case: &'static StressCase, actions: &mut Vec<Action>) {
     theme::heading(ui, case.name);
     ui.add(egui::Label::new(theme::note(case.lesson).color(theme::of(ui).text)).wrap());
     ui.add_space(4.0);
@@ -186,7 +186,7 @@ fn offered(values: &[f64]) -> Vec<f64> {
 }
 
 /// A technique; a click opens the case where it is unexpected, else where it breaks, or at its last value.
-fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut Vec<Action>) {
+fn table_row(ui: &mut Ui, case: &'static StressCase, summary: &StressSummary, actions: &mut Vec<Action>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let (found, verdict, expected) = (summary.found_text(), summary.verdict_text(), summary.expected.name());
     let name = format!("{}: {found}, {verdict}", summary.entrant);

@@ -5,7 +5,7 @@
 //! called `Horizontal` holds both. So a drop is settled here: a split is one of the whole group, what is new gets as much
 //! room as the others have on average, and a drop for which there is no room joins the group under the pointer.
 
-use crate::inspector::action::Panel;
+use crate::inspector::action::PanelKind;
 use egui::{Pos2, Vec2, vec2};
 use egui_tiles::{Container, LinearDir, Shares, SimplificationOptions, Tile, TileId, Tiles, Tree};
 use std::collections::BTreeSet;
@@ -22,23 +22,23 @@ pub fn options() -> SimplificationOptions {
 
 /// Where a tile is to be dropped, and what was there before.
 #[derive(Debug)]
-pub struct Drag {
+pub struct TileDrag {
     tile: TileId,
-    before: Tree<Panel>,
+    before: Tree<PanelKind>,
     pointer: Option<Pos2>,
 }
 
-impl Drag {
+impl TileDrag {
     /// The one that is under way.
-    pub fn under_way(tree: &Tree<Panel>, ui: &egui::Ui) -> Option<Drag> {
+    pub fn under_way(tree: &Tree<PanelKind>, ui: &egui::Ui) -> Option<TileDrag> {
         let tile = tree.dragged_id(ui)?;
-        Some(Drag { tile, before: tree.clone(), pointer: ui.input(|input| input.pointer.interact_pos()) })
+        Some(TileDrag { tile, before: tree.clone(), pointer: ui.input(|input| input.pointer.interact_pos()) })
     }
 
     /// Settles it once the tile was dropped, in a window of this size.
-    pub fn settle(self, tree: &mut Tree<Panel>, size: Vec2) {
+    pub fn settle(self, tree: &mut Tree<PanelKind>, size: Vec2) {
         mend(tree, self.pointer);
-        let least = |tree: &Tree<Panel>| tree.root.map_or(Vec2::ZERO, |root| least(&tree.tiles, root));
+        let least = |tree: &Tree<PanelKind>| tree.root.map_or(Vec2::ZERO, |root| least(&tree.tiles, root));
         let (needed, most) = (least(tree), size.max(least(&self.before)));
         let has_room = needed.x <= most.x && needed.y <= most.y;
         if has_room && is_whole(tree) {
@@ -54,23 +54,23 @@ impl Drag {
 }
 
 /// Is every panel there once?
-pub fn is_whole(tree: &Tree<Panel>) -> bool {
+pub fn is_whole(tree: &Tree<PanelKind>) -> bool {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
     panels.sort_unstable();
-    is_tree && panels == Panel::ALL
+    is_tree && panels == PanelKind::ALL
 }
 
 /// Adds panels that are not there, as in a layout that a program before them stored: to the tabs that tell about a pixel,
 /// or to the first.
-pub fn complete(tree: &mut Tree<Panel>) {
+pub fn complete(tree: &mut Tree<PanelKind>) {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
     if !is_tree {
         return;
     }
-    for panel in Panel::ALL.into_iter().filter(|panel| !panels.contains(panel)) {
-        let explain = tree.tiles.find_pane(&Panel::Explain);
+    for panel in PanelKind::ALL.into_iter().filter(|panel| !panels.contains(panel)) {
+        let explain = tree.tiles.find_pane(&PanelKind::Explain);
         let tabs = explain.and_then(|tile| tree.tiles.parent_of(tile));
         let is_tabs = |tile: &TileId| matches!(tree.tiles.get(*tile), Some(Tile::Container(Container::Tabs(_))));
         let first = || tree.tiles.tile_ids().filter(is_tabs).min_by_key(|tile| tile.0);
@@ -83,7 +83,7 @@ pub fn complete(tree: &mut Tree<Panel>) {
 }
 
 /// Gathers the panels below a tile; false where a tile is missing or stands twice.
-fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<Panel>) -> bool {
+fn visit(tiles: &Tiles<PanelKind>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<PanelKind>) -> bool {
     if !seen.insert(tile.0) {
         return false;
     }
@@ -99,7 +99,7 @@ fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &
 
 /// Takes groups out of tabs, and gives what is new its share. Panels that shared the tabs with a group join that of its
 /// groups which is at `pointer`, or else its first.
-pub fn mend(tree: &mut Tree<Panel>, pointer: Option<Pos2>) {
+pub fn mend(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
     share_fairly(tree);
     tree.simplify(&options());
     while let Some((tabs, split)) = split_in_tabs(&tree.tiles) {
@@ -130,7 +130,7 @@ pub fn mend(tree: &mut Tree<Panel>, pointer: Option<Pos2>) {
 }
 
 /// Tabs with a group among them, and that group.
-fn split_in_tabs(tiles: &Tiles<Panel>) -> Option<(TileId, TileId)> {
+fn split_in_tabs(tiles: &Tiles<PanelKind>) -> Option<(TileId, TileId)> {
     let mut found: Vec<(TileId, TileId)> = Vec::new();
     for (id, tile) in tiles.iter() {
         let Tile::Container(Container::Tabs(tabs)) = tile else { continue };
@@ -142,7 +142,7 @@ fn split_in_tabs(tiles: &Tiles<Panel>) -> Option<(TileId, TileId)> {
 }
 
 /// All groups of tabs below a tile, from left to right and top to bottom.
-fn groups_below(tiles: &Tiles<Panel>, tile: TileId) -> Vec<TileId> {
+fn groups_below(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec<TileId> {
     match tiles.get(tile) {
         Some(Tile::Container(Container::Tabs(_))) => vec![tile],
         Some(Tile::Container(container)) => {
@@ -153,14 +153,14 @@ fn groups_below(tiles: &Tiles<Panel>, tile: TileId) -> Vec<TileId> {
 }
 
 /// The group of tabs at a place, of those that are meant.
-fn group_at(tiles: &Tiles<Panel>, at: Pos2, is_meant: &dyn Fn(TileId) -> bool) -> Option<TileId> {
+fn group_at(tiles: &Tiles<PanelKind>, at: Pos2, is_meant: &dyn Fn(TileId) -> bool) -> Option<TileId> {
     let is_group = |id: &TileId| matches!(tiles.get(*id), Some(Tile::Container(Container::Tabs(_))));
     let is_there = |id: &TileId| tiles.rect(*id).is_some_and(|rect| rect.contains(at));
     tiles.tile_ids().filter(|id| is_meant(*id) && is_group(id) && is_there(id)).min_by_key(|id| id.0)
 }
 
 /// What has no share yet gets as much as the others have on average.
-fn share_fairly(tree: &mut Tree<Panel>) {
+fn share_fairly(tree: &mut Tree<PanelKind>) {
     for tile in tree.tiles.tiles_mut() {
         let Tile::Container(Container::Linear(linear)) = tile else { continue };
         let known = |id: &TileId| linear.shares.iter().find(|(of, _)| *of == id).map(|(_, share)| *share);
@@ -173,7 +173,7 @@ fn share_fairly(tree: &mut Tree<Panel>) {
 }
 
 /// What a tile takes at least.
-fn least(tiles: &Tiles<Panel>, tile: TileId) -> Vec2 {
+fn least(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec2 {
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(tile) else { return LEAST };
     let gaps = GAP * linear.children.len().saturating_sub(1) as f32;
     let parts = linear.children.iter().map(|child| least(tiles, *child));
@@ -185,7 +185,7 @@ fn least(tiles: &Tiles<Panel>, tile: TileId) -> Vec2 {
 
 /// Gives every group at least what it needs, where a window of this size has that. What was there before, to be put
 /// back once the tiles are drawn: in a larger window the shares are as they were.
-pub fn fit(tree: &mut Tree<Panel>, size: Vec2) -> Vec<(TileId, Shares)> {
+pub fn fit(tree: &mut Tree<PanelKind>, size: Vec2) -> Vec<(TileId, Shares)> {
     let mut before = Vec::new();
     if let Some(root) = tree.root {
         fit_tile(&mut tree.tiles, root, size, &mut before);
@@ -194,7 +194,7 @@ pub fn fit(tree: &mut Tree<Panel>, size: Vec2) -> Vec<(TileId, Shares)> {
 }
 
 /// Puts shares back that were changed for one window.
-pub fn put_back(tree: &mut Tree<Panel>, shares: Vec<(TileId, Shares)>) {
+pub fn put_back(tree: &mut Tree<PanelKind>, shares: Vec<(TileId, Shares)>) {
     for (id, before) in shares {
         if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(id) {
             linear.shares = before;
@@ -202,7 +202,7 @@ pub fn put_back(tree: &mut Tree<Panel>, shares: Vec<(TileId, Shares)>) {
     }
 }
 
-fn fit_tile(tiles: &mut Tiles<Panel>, tile: TileId, size: Vec2, before: &mut Vec<(TileId, Shares)>) {
+fn fit_tile(tiles: &mut Tiles<PanelKind>, tile: TileId, size: Vec2, before: &mut Vec<(TileId, Shares)>) {
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(tile) else { return };
     let (children, is_row) = (linear.children.clone(), linear.dir == LinearDir::Horizontal);
     let along = |size: Vec2| if is_row { size.x } else { size.y };

@@ -5,12 +5,12 @@
 //! report its height, and the picture takes what is left.
 
 use crate::ask::ReportOf;
-use crate::inspector::action::{Action, Panel};
+use crate::inspector::action::{Action, PanelKind};
 use crate::inspector::model::Model;
 use crate::inspector::panels::Panels;
 
 use crate::inspector::look::theme;
-use crate::inspector::shell::arrangement::{self, Drag};
+use crate::inspector::shell::arrangement::{self, TileDrag};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -30,12 +30,12 @@ const REPORT_HEIGHT: f32 = 312.0;
 const REPORT_SHARE: f32 = 0.42;
 
 /// A layout as stored: egui's own form of it.
-pub type Layout = serde_json::Value;
+pub type StoredLayout = serde_json::Value;
 
 /// The panels and where they are.
 #[derive(Debug)]
 pub struct Dock {
-    tree: Tree<Panel>,
+    tree: Tree<PanelKind>,
     row: TileId,
     left: TileId,
     middle: TileId,
@@ -58,19 +58,19 @@ impl Dock {
     /// As first shown in a window that is wide, so that the scene has room beside the picture, or is not.
     fn first(is_wide: bool) -> Dock {
         let mut tiles = Tiles::default();
-        let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
+        let sides = [PanelKind::Passes, PanelKind::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
-        let mut group = |panels: &[Panel]| {
+        let mut group = |panels: &[PanelKind]| {
             let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
             tiles.insert_tab_tile(panes)
         };
-        let report = group(&[Panel::Report, Panel::Diagnosis, Panel::Stress]);
-        let right = group(&[Panel::Pixel, Panel::State, Panel::Explain, Panel::Bench]);
+        let report = group(&[PanelKind::Report, PanelKind::Diagnosis, PanelKind::Stress]);
+        let right = group(&[PanelKind::Pixel, PanelKind::State, PanelKind::Explain, PanelKind::Bench]);
         let picture = if is_wide {
-            let beside = [group(&[Panel::Picture]), group(&[Panel::Scene, Panel::ShadowMap])];
+            let beside = [group(&[PanelKind::Picture]), group(&[PanelKind::Scene, PanelKind::ShadowMap])];
             tiles.insert_horizontal_tile(beside.to_vec())
         } else {
-            group(&[Panel::Picture, Panel::Scene, Panel::ShadowMap])
+            group(&[PanelKind::Picture, PanelKind::Scene, PanelKind::ShadowMap])
         };
         let middle = tiles.insert_vertical_tile(vec![picture, report]);
         let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
@@ -79,13 +79,13 @@ impl Dock {
     }
 
     /// Where the panels are; `None` while they are where they were at first.
-    pub fn layout(&self) -> Option<Layout> {
+    pub fn layout(&self) -> Option<StoredLayout> {
         self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
     }
 
     /// Puts the panels where they were. A layout that is not one of these panels is not taken.
-    pub fn restore(&mut self, layout: Layout) {
-        let Ok(mut tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
+    pub fn restore(&mut self, layout: StoredLayout) {
+        let Ok(mut tree) = serde_json::from_value::<Tree<PanelKind>>(layout) else { return };
         arrangement::complete(&mut tree);
         if arrangement::is_whole(&tree) {
             self.tree = tree;
@@ -110,14 +110,14 @@ impl Dock {
             };
             let has_report = model.answers.last::<ReportOf>().is_some_and(|(_, found)| !found.report.rows.is_empty());
             let is_full = has_report || model.answers.asked::<ReportOf>().is_some();
-            let is_empty = !is_full && !is_shown(Panel::Diagnosis) && !is_shown(Panel::Stress);
+            let is_empty = !is_full && !is_shown(PanelKind::Diagnosis) && !is_shown(PanelKind::Stress);
             self.keep_heights(ui.available_height(), is_empty);
         }
         for wanted in std::mem::take(&mut model.requests.panels) {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
         }
         let shown = self.tree.active_tiles();
-        let has_map = shown.iter().any(|id| matches!(self.tree.tiles.get(*id), Some(Tile::Pane(Panel::ShadowMap))));
+        let has_map = shown.iter().any(|id| matches!(self.tree.tiles.get(*id), Some(Tile::Pane(PanelKind::ShadowMap))));
         if !has_map {
             panels.shadow_map.hide(model);
         }
@@ -126,7 +126,7 @@ impl Dock {
             self.shown = shown;
             ui.ctx().request_repaint();
         }
-        let (size, drag) = (ui.available_size(), Drag::under_way(&self.tree, ui));
+        let (size, drag) = (ui.available_size(), TileDrag::under_way(&self.tree, ui));
         let fitted = if self.arranged_by_user { arrangement::fit(&mut self.tree, size) } else { Vec::new() };
         let mut behavior =
             Panes { panels, model, actions, edited: false, dropped: false, resized: false, theme: theme::of(ui) };
@@ -171,10 +171,12 @@ struct Panes<'a> {
     theme: &'static theme::Theme,
 }
 
-impl Behavior<Panel> for Panes<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
+impl Behavior<PanelKind> for Panes<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut PanelKind) -> UiResponse {
         let frame = match panel {
-            Panel::Picture | Panel::Scene | Panel::ShadowMap => egui::Frame::new().fill(theme::of(ui).panel),
+            PanelKind::Picture | PanelKind::Scene | PanelKind::ShadowMap => {
+                egui::Frame::new().fill(theme::of(ui).panel)
+            }
             _ => theme::panel_frame(ui),
         };
         let place = ui.max_rect();
@@ -187,11 +189,18 @@ impl Behavior<Panel> for Panes<'_> {
         UiResponse::None
     }
 
-    fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
+    fn tab_title_for_pane(&mut self, panel: &PanelKind) -> WidgetText {
         panel.title().into()
     }
 
-    fn tab_ui(&mut self, tiles: &mut Tiles<Panel>, ui: &mut Ui, id: Id, tile_id: TileId, tab: &TabState) -> Response {
+    fn tab_ui(
+        &mut self,
+        tiles: &mut Tiles<PanelKind>,
+        ui: &mut Ui,
+        id: Id,
+        tile_id: TileId,
+        tab: &TabState,
+    ) -> Response {
         let color = if tab.active { theme::of(ui).text } else { theme::of(ui).dim };
         let text = self.tab_title_for_tile(tiles, tile_id);
         let font = egui::TextStyle::Button.resolve(ui.style());

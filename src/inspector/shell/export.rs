@@ -4,13 +4,13 @@
 
 use crate::ask::{FilmOf, FilmSubject, ReportOf, RunRequest};
 use crate::capture::{Capture, Image};
-use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{Phase, has_phases};
-use crate::inspector::panels::picture::as_shown::{self, Drawing};
+use crate::inspector::model::looking::{StepPhase, has_phases};
+use crate::inspector::panels::picture::as_shown::{self, PictureDrawing};
 use crate::inspector::panels::picture::{self, PicturePanel};
 use crate::numbers;
 use crate::picture::Picture;
@@ -51,7 +51,7 @@ impl ExportDialog {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
             let shown = model.shown(capture)?;
-            let is_change = model.modes.phase == Phase::Diff && has_phases(shown.kind);
+            let is_change = model.modes.phase == StepPhase::Diff && has_phases(shown.kind);
             Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
         };
         let stem = format!("{}-{}", capture.scene, capture.technique);
@@ -77,7 +77,7 @@ pub enum ExportData {
     /// Pixels.
     Picture(Picture),
     /// Pixels, once it is finished.
-    AsShown(Box<Drawing>),
+    AsShown(Box<PictureDrawing>),
     /// One picture, or all layers of a map.
     Data(Vec<Arc<Image>>),
     /// All of it.
@@ -183,7 +183,7 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
             _ => "There is nothing of this kind to export now",
         };
         if button.on_disabled_hover_text(nothing).clicked() {
-            model.dialog = dialog.map(|dialog| Dialog::Export(dialog.kind));
+            model.dialog = dialog.map(|dialog| DialogKind::Export(dialog.kind));
             ui.close();
         }
     }
@@ -191,7 +191,7 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
 
 /// Draws the dialog while it is open; `own` is what is typed into it.
 pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, actions: &mut Vec<Action>) {
-    let Some(Dialog::Export(kind)) = model.dialog else {
+    let Some(DialogKind::Export(kind)) = model.dialog else {
         *own = None;
         return;
     };
@@ -206,13 +206,13 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
         contents(ui, &mut dialog)
     });
     match answer.inner {
-        Answer::Waiting if !answer.should_close() => {}
-        Answer::Waiting | Answer::Cancel => {
+        ExportReply::Waiting if !answer.should_close() => {}
+        ExportReply::Waiting | ExportReply::Cancel => {
             model.dialog = None;
             return;
         }
-        Answer::Browse => actions.push(Action::BrowseExport { path: dialog.path.clone() }),
-        Answer::Write => {
+        ExportReply::Browse => actions.push(Action::BrowseExport { path: dialog.path.clone() }),
+        ExportReply::Write => {
             let path = dialog.path.trim().to_owned();
             let replace = dialog.taken.as_ref() == Some(&path);
             dialog.error = None;
@@ -222,14 +222,14 @@ pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, acti
     *own = Some(dialog);
 }
 
-enum Answer {
+enum ExportReply {
     Waiting,
     Cancel,
     Browse,
     Write,
 }
 
-fn contents(ui: &mut Ui, dialog: &mut ExportDialog) -> Answer {
+fn contents(ui: &mut Ui, dialog: &mut ExportDialog) -> ExportReply {
     theme::heading(ui, &format!("Export: {}", dialog.kind.name().trim_end_matches('…')));
     ui.label(theme::note(dialog.kind.explanation()));
     ui.add_space(8.0);
@@ -251,18 +251,18 @@ fn contents(ui: &mut Ui, dialog: &mut ExportDialog) -> Answer {
         ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     ui.add_space(8.0);
-    let mut answer = Answer::Waiting;
+    let mut answer = ExportReply::Waiting;
     ui.horizontal(|ui| {
         let word = if is_taken { "Replace it" } else { "Save" };
         let save = ui.add_enabled(!path.is_empty(), egui::Button::new(word));
         if !path.is_empty() && (save.clicked() || (is_entered && !is_taken)) {
-            answer = Answer::Write;
+            answer = ExportReply::Write;
         }
         if ui.button("Browse…").on_hover_text("Choose the place with the system's dialog").clicked() {
-            answer = Answer::Browse;
+            answer = ExportReply::Browse;
         }
         if ui.button("Cancel").clicked() {
-            answer = Answer::Cancel;
+            answer = ExportReply::Cancel;
         }
     });
     answer

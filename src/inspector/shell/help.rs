@@ -1,9 +1,9 @@
 //! The help window: every key and what it does, from the one table of keys.
 
-use crate::inspector::action::Dialog;
+use crate::inspector::action::DialogKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::shell::keys::{BINDINGS, Binding, PICTURE, Scope};
+use crate::inspector::shell::keys::{BINDINGS, KeyBinding, KeyScope, PICTURE};
 use crate::inspector::shell::walk;
 use egui::{Context, Id, Ui};
 
@@ -12,7 +12,7 @@ const KEYS_WIDTH: f32 = 168.0;
 
 /// Draws the window while it is open.
 pub fn ui(ctx: &Context, model: &mut Model) {
-    if model.dialog != Some(Dialog::Help) {
+    if model.dialog != Some(DialogKind::Help) {
         return;
     }
     let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
@@ -38,15 +38,15 @@ pub fn ui(ctx: &Context, model: &mut Model) {
 
 fn contents(ui: &mut Ui) {
     theme::heading(ui, "Keys");
-    section(ui, "Anywhere", of_scope(Scope::Anywhere));
-    section(ui, "Through the frame", of_scope(Scope::Steps));
-    section(ui, "While no text is typed", of_scope(Scope::Picture));
-    section(ui, "On the picture", PICTURE.into_iter().chain(of_scope(Scope::Free)));
+    section(ui, "Anywhere", of_scope(KeyScope::Anywhere));
+    section(ui, "Through the frame", of_scope(KeyScope::Steps));
+    section(ui, "While no text is typed", of_scope(KeyScope::Picture));
+    section(ui, "On the picture", PICTURE.into_iter().chain(of_scope(KeyScope::Free)));
     section(ui, "While walking (Tab over the picture, or Walk)", walk::KEYS.iter().map(|key| (key.keys, key.does)));
 }
 
-fn of_scope(scope: Scope) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let has_words = |binding: &&Binding| !binding.keys.is_empty();
+fn of_scope(scope: KeyScope) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let has_words = |binding: &&KeyBinding| !binding.keys.is_empty();
     BINDINGS
         .iter()
         .filter(has_words)

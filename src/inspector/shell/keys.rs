@@ -5,16 +5,16 @@
 //! picture and the keys of walking are handled where they act; their words are here, so that the help window
 //! lists all.
 
-use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::canvas;
 use crate::inspector::look::widgets;
-use crate::inspector::model::looking::Phase;
+use crate::inspector::model::looking::StepPhase;
 use crate::inspector::model::{Model, StepSearch};
 use egui::{Context, EventFilter, Id, Key, Modifiers};
 
 /// What a key does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Command {
+pub enum KeyCommand {
     /// One pass back.
     PreviousPass,
     /// One pass on.
@@ -65,7 +65,7 @@ pub enum Command {
 
 /// Where a key acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scope {
+pub enum KeyScope {
     /// Wherever the focus is, but for a text field.
     Anywhere,
     /// As those, but for what is moved by arrows itself.
@@ -78,15 +78,15 @@ pub enum Scope {
 
 /// A key and what it does.
 #[derive(Debug, Clone, Copy)]
-pub struct Binding {
+pub struct KeyBinding {
     /// Held with it.
     pub modifiers: Modifiers,
     /// The key.
     pub key: Key,
     /// Where it acts.
-    pub scope: Scope,
+    pub scope: KeyScope,
     /// What it does.
-    pub command: Command,
+    pub command: KeyCommand,
     /// The key in words.
     pub keys: &'static str,
     /// What it does, in words.
@@ -96,24 +96,24 @@ pub struct Binding {
 const fn binding(
     modifiers: Modifiers,
     key: Key,
-    scope: Scope,
-    command: Command,
+    scope: KeyScope,
+    command: KeyCommand,
     keys: &'static str,
     does: &'static str,
-) -> Binding {
-    Binding { modifiers, key, scope, command, keys, does }
+) -> KeyBinding {
+    KeyBinding { modifiers, key, scope, command, keys, does }
 }
 
 const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 const FAR: Modifiers = REDO;
 
 /// Told among what one does on the picture, all at once.
-const fn move_pick(modifiers: Modifiers, key: Key, [right, down]: [i32; 2]) -> Binding {
-    binding(modifiers, key, Scope::Steps, Command::MovePick(right, down), "", "")
+const fn move_pick(modifiers: Modifiers, key: Key, [right, down]: [i32; 2]) -> KeyBinding {
+    binding(modifiers, key, KeyScope::Steps, KeyCommand::MovePick(right, down), "", "")
 }
 
 /// All of them. Of two with the same key the one with more modifiers stands first.
-pub const BINDINGS: [Binding; 33] = [
+pub const BINDINGS: [KeyBinding; 33] = [
     move_pick(FAR, Key::ArrowLeft, [-10, 0]),
     move_pick(FAR, Key::ArrowRight, [10, 0]),
     move_pick(FAR, Key::ArrowUp, [0, -10]),
@@ -122,38 +122,59 @@ pub const BINDINGS: [Binding; 33] = [
     move_pick(Modifiers::SHIFT, Key::ArrowRight, [1, 0]),
     move_pick(Modifiers::SHIFT, Key::ArrowUp, [0, -1]),
     move_pick(Modifiers::SHIFT, Key::ArrowDown, [0, 1]),
-    binding(Modifiers::NONE, Key::Escape, Scope::Free, Command::Unpick, "Esc", "no pixel is picked"),
-    binding(Modifiers::NONE, Key::ArrowLeft, Scope::Steps, Command::PreviousPass, "Left", "the pass before"),
-    binding(Modifiers::NONE, Key::ArrowRight, Scope::Steps, Command::NextPass, "Right", "the next pass"),
-    binding(Modifiers::NONE, Key::ArrowUp, Scope::Steps, Command::PreviousDraw, "Up", "the draw before"),
-    binding(Modifiers::NONE, Key::ArrowDown, Scope::Steps, Command::NextDraw, "Down", "the next draw"),
-    binding(Modifiers::NONE, Key::Home, Scope::Steps, Command::FirstPass, "Home", "the first pass"),
-    binding(Modifiers::NONE, Key::End, Scope::Steps, Command::LastPass, "End", "the last pass"),
-    binding(Modifiers::NONE, Key::Space, Scope::Free, Command::Play, "Space", "play through the frame, or stop"),
-    binding(Modifiers::COMMAND, Key::G, Scope::Anywhere, Command::GoTo, "Ctrl-G", "go to a step by its number"),
-    binding(Modifiers::COMMAND, Key::F, Scope::Anywhere, Command::Find, "Ctrl-F", "find a pass"),
-    binding(Modifiers::COMMAND, Key::O, Scope::Anywhere, Command::Open, "Ctrl-O", "open a scene, a model or a capture"),
-    binding(REDO, Key::Z, Scope::Anywhere, Command::Redo, "Ctrl-Shift-Z", "redo"),
-    binding(Modifiers::COMMAND, Key::Y, Scope::Anywhere, Command::Redo, "Ctrl-Y", "redo"),
+    binding(Modifiers::NONE, Key::Escape, KeyScope::Free, KeyCommand::Unpick, "Esc", "no pixel is picked"),
+    binding(Modifiers::NONE, Key::ArrowLeft, KeyScope::Steps, KeyCommand::PreviousPass, "Left", "the pass before"),
+    binding(Modifiers::NONE, Key::ArrowRight, KeyScope::Steps, KeyCommand::NextPass, "Right", "the next pass"),
+    binding(Modifiers::NONE, Key::ArrowUp, KeyScope::Steps, KeyCommand::PreviousDraw, "Up", "the draw before"),
+    binding(Modifiers::NONE, Key::ArrowDown, KeyScope::Steps, KeyCommand::NextDraw, "Down", "the next draw"),
+    binding(Modifiers::NONE, Key::Home, KeyScope::Steps, KeyCommand::FirstPass, "Home", "the first pass"),
+    binding(Modifiers::NONE, Key::End, KeyScope::Steps, KeyCommand::LastPass, "End", "the last pass"),
+    binding(Modifiers::NONE, Key::Space, KeyScope::Free, KeyCommand::Play, "Space", "play through the frame, or stop"),
+    binding(Modifiers::COMMAND, Key::G, KeyScope::Anywhere, KeyCommand::GoTo, "Ctrl-G", "go to a step by its number"),
+    binding(Modifiers::COMMAND, Key::F, KeyScope::Anywhere, KeyCommand::Find, "Ctrl-F", "find a pass"),
+    binding(
+        Modifiers::COMMAND,
+        Key::O,
+        KeyScope::Anywhere,
+        KeyCommand::Open,
+        "Ctrl-O",
+        "open a scene, a model or a capture",
+    ),
+    binding(REDO, Key::Z, KeyScope::Anywhere, KeyCommand::Redo, "Ctrl-Shift-Z", "redo"),
+    binding(Modifiers::COMMAND, Key::Y, KeyScope::Anywhere, KeyCommand::Redo, "Ctrl-Y", "redo"),
     binding(
         Modifiers::COMMAND,
         Key::Z,
-        Scope::Anywhere,
-        Command::Undo,
+        KeyScope::Anywhere,
+        KeyCommand::Undo,
         "Ctrl-Z",
         "undo a change of scene or technique",
     ),
-    binding(Modifiers::COMMAND, Key::S, Scope::Anywhere, Command::Export, "Ctrl-S", "export the shown picture"),
-    binding(Modifiers::NONE, Key::T, Scope::Picture, Command::Animate, "T", "run the scene's animation, or stop it"),
-    binding(Modifiers::NONE, Key::Period, Scope::Picture, Command::AnimateStep, ".", "the animation, a frame on"),
-    binding(Modifiers::COMMAND, Key::L, Scope::Anywhere, Command::Theme, "Ctrl-L", "light or dark theme"),
-    binding(Modifiers::NONE, Key::B, Scope::Picture, Command::Before, "B", "the picture before the step, or after it"),
-    binding(Modifiers::NONE, Key::D, Scope::Picture, Command::Diff, "D", "what the step changed"),
-    binding(Modifiers::NONE, Key::O, Scope::Picture, Command::Overlays, "O", "the menu of overlays"),
-    binding(Modifiers::NONE, Key::X, Scope::Picture, Command::Flip, "X", "swap the sides of a comparison"),
-    binding(Modifiers::NONE, Key::F1, Scope::Anywhere, Command::Help, "F1", "this help"),
-    binding(Modifiers::NONE, Key::H, Scope::Picture, Command::Help, "H", "this help"),
-    binding(Modifiers::NONE, Key::Questionmark, Scope::Picture, Command::Help, "?", "this help"),
+    binding(Modifiers::COMMAND, Key::S, KeyScope::Anywhere, KeyCommand::Export, "Ctrl-S", "export the shown picture"),
+    binding(
+        Modifiers::NONE,
+        Key::T,
+        KeyScope::Picture,
+        KeyCommand::Animate,
+        "T",
+        "run the scene's animation, or stop it",
+    ),
+    binding(Modifiers::NONE, Key::Period, KeyScope::Picture, KeyCommand::AnimateStep, ".", "the animation, a frame on"),
+    binding(Modifiers::COMMAND, Key::L, KeyScope::Anywhere, KeyCommand::Theme, "Ctrl-L", "light or dark theme"),
+    binding(
+        Modifiers::NONE,
+        Key::B,
+        KeyScope::Picture,
+        KeyCommand::Before,
+        "B",
+        "the picture before the step, or after it",
+    ),
+    binding(Modifiers::NONE, Key::D, KeyScope::Picture, KeyCommand::Diff, "D", "what the step changed"),
+    binding(Modifiers::NONE, Key::O, KeyScope::Picture, KeyCommand::Overlays, "O", "the menu of overlays"),
+    binding(Modifiers::NONE, Key::X, KeyScope::Picture, KeyCommand::Flip, "X", "swap the sides of a comparison"),
+    binding(Modifiers::NONE, Key::F1, KeyScope::Anywhere, KeyCommand::Help, "F1", "this help"),
+    binding(Modifiers::NONE, Key::H, KeyScope::Picture, KeyCommand::Help, "H", "this help"),
+    binding(Modifiers::NONE, Key::Questionmark, KeyScope::Picture, KeyCommand::Help, "?", "this help"),
 ];
 
 /// What is done on the picture by the mouse, and to the pick by keys: key, what it does.
@@ -175,7 +196,7 @@ pub struct FocusBefore {
 
 /// Acts on the keys of this frame.
 pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &mut Vec<Action>) {
-    if matches!(model.dialog, Some(Dialog::Open | Dialog::Export(_))) {
+    if matches!(model.dialog, Some(DialogKind::Open | DialogKind::Export(_))) {
         return;
     }
     let focus = ctx.memory(egui::Memory::focused);
@@ -184,10 +205,10 @@ pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &
     let is_free = |focus: Option<Id>| focus.is_none_or(|id| id == canvas::picture_id());
     for binding in &BINDINGS {
         let acts = match binding.scope {
-            Scope::Anywhere => !is_typing || binding.modifiers == Modifiers::NONE || !edits_text(binding.command),
-            Scope::Steps => !is_typing && !is_in_menu && !widgets::has_own_arrows(ctx, focus),
-            Scope::Picture => !is_typing && !is_in_menu,
-            Scope::Free => {
+            KeyScope::Anywhere => !is_typing || binding.modifiers == Modifiers::NONE || !edits_text(binding.command),
+            KeyScope::Steps => !is_typing && !is_in_menu && !widgets::has_own_arrows(ctx, focus),
+            KeyScope::Picture => !is_typing && !is_in_menu,
+            KeyScope::Free => {
                 is_free(focus) && is_free(before.widget) && !before.is_typing && !is_in_menu && model.dialog.is_none()
             }
         };
@@ -214,40 +235,40 @@ pub fn remember(ctx: &Context) -> FocusBefore {
 }
 
 /// A text field has these keys for its own text.
-fn edits_text(command: Command) -> bool {
-    matches!(command, Command::Undo | Command::Redo)
+fn edits_text(command: KeyCommand) -> bool {
+    matches!(command, KeyCommand::Undo | KeyCommand::Redo)
 }
 
 /// Does what a key says.
-pub fn act(ctx: &Context, model: &mut Model, command: Command, presses: usize, actions: &mut Vec<Action>) {
+pub fn act(ctx: &Context, model: &mut Model, command: KeyCommand, presses: usize, actions: &mut Vec<Action>) {
     let by = presses as isize;
     match command {
-        Command::PreviousPass => model.step_by(-by),
-        Command::NextPass => model.step_by(by),
-        Command::PreviousDraw => model.draw_by(-by),
-        Command::NextDraw => model.draw_by(by),
-        Command::FirstPass => model.select_step(0),
-        Command::LastPass => model.select_step(usize::MAX),
-        Command::Play => model.toggle_play(ctx.input(|input| input.time)),
-        Command::GoTo => open_search(model, StepSearch::GoTo(String::new())),
-        Command::Find => open_search(model, StepSearch::Find(String::new())),
-        Command::Open => model.dialog = Some(Dialog::Open),
-        Command::Undo => model.take_back(actions),
-        Command::Redo => model.make_again(actions),
-        Command::Export => model.dialog = Some(Dialog::Export(ExportKind::Picture)),
-        Command::Help => {
-            let is_open = model.dialog == Some(Dialog::Help);
-            model.dialog = (!is_open).then_some(Dialog::Help);
+        KeyCommand::PreviousPass => model.step_by(-by),
+        KeyCommand::NextPass => model.step_by(by),
+        KeyCommand::PreviousDraw => model.draw_by(-by),
+        KeyCommand::NextDraw => model.draw_by(by),
+        KeyCommand::FirstPass => model.select_step(0),
+        KeyCommand::LastPass => model.select_step(usize::MAX),
+        KeyCommand::Play => model.toggle_play(ctx.input(|input| input.time)),
+        KeyCommand::GoTo => open_search(model, StepSearch::GoTo(String::new())),
+        KeyCommand::Find => open_search(model, StepSearch::Find(String::new())),
+        KeyCommand::Open => model.dialog = Some(DialogKind::Open),
+        KeyCommand::Undo => model.take_back(actions),
+        KeyCommand::Redo => model.make_again(actions),
+        KeyCommand::Export => model.dialog = Some(DialogKind::Export(ExportKind::Picture)),
+        KeyCommand::Help => {
+            let is_open = model.dialog == Some(DialogKind::Help);
+            model.dialog = (!is_open).then_some(DialogKind::Help);
         }
-        Command::Animate => model.animation.toggle(),
-        Command::AnimateStep => model.step_animation(actions),
-        Command::Theme => model.theme = model.theme.other(),
-        Command::Before => toggle_phase(model, Phase::Before),
-        Command::Diff => toggle_phase(model, Phase::Diff),
-        Command::Overlays => model.requests.overlay_menu = true,
-        Command::MovePick(right, down) => model.move_pick([right * presses as i32, down * presses as i32]),
-        Command::Unpick => model.selection.pick = None,
-        Command::Flip => {
+        KeyCommand::Animate => model.animation.toggle(),
+        KeyCommand::AnimateStep => model.step_animation(actions),
+        KeyCommand::Theme => model.theme = model.theme.other(),
+        KeyCommand::Before => toggle_phase(model, StepPhase::Before),
+        KeyCommand::Diff => toggle_phase(model, StepPhase::Diff),
+        KeyCommand::Overlays => model.requests.overlay_menu = true,
+        KeyCommand::MovePick(right, down) => model.move_pick([right * presses as i32, down * presses as i32]),
+        KeyCommand::Unpick => model.selection.pick = None,
+        KeyCommand::Flip => {
             if let Some(compare) = &mut model.modes.compare {
                 compare.flipped = !compare.flipped;
             }
@@ -256,8 +277,8 @@ pub fn act(ctx: &Context, model: &mut Model, command: Command, presses: usize, a
 }
 
 /// There and back between a phase and after.
-fn toggle_phase(model: &mut Model, phase: Phase) {
-    model.modes.phase = if model.modes.phase == phase { Phase::After } else { phase };
+fn toggle_phase(model: &mut Model, phase: StepPhase) {
+    model.modes.phase = if model.modes.phase == phase { StepPhase::After } else { phase };
 }
 
 fn open_search(model: &mut Model, search: StepSearch) {

@@ -1,6 +1,6 @@
 //! The dialog that opens a scene: built-in ones with their lessons, or a path.
 
-use crate::inspector::action::{Action, Dialog};
+use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::{Context, Id, Key, RichText, Ui, vec2};
@@ -42,7 +42,7 @@ impl OpenDialog {
 
 /// Draws the dialog while it is open.
 pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut Vec<Action>) {
-    if model.dialog != Some(Dialog::Open) {
+    if model.dialog != Some(DialogKind::Open) {
         own.path.clear();
         return;
     }
@@ -52,16 +52,16 @@ pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut 
         contents(ui, own, &model.recent)
     });
     match answer.inner {
-        Answer::Waiting if !answer.should_close() => return,
-        Answer::Waiting | Answer::Cancel => {}
-        Answer::Open(what) => actions.push(Action::Open(what)),
-        Answer::Browse => actions.push(Action::Browse),
-        Answer::BrowseFolder => actions.push(Action::BrowseFolder),
+        OpenReply::Waiting if !answer.should_close() => return,
+        OpenReply::Waiting | OpenReply::Cancel => {}
+        OpenReply::Open(what) => actions.push(Action::Open(what)),
+        OpenReply::Browse => actions.push(Action::Browse),
+        OpenReply::BrowseFolder => actions.push(Action::BrowseFolder),
     }
     model.dialog = None;
 }
 
-enum Answer {
+enum OpenReply {
     Waiting,
     Cancel,
     Browse,
@@ -69,8 +69,8 @@ enum Answer {
     Open(String),
 }
 
-fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
-    let mut answer = Answer::Waiting;
+fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenReply {
+    let mut answer = OpenReply::Waiting;
     theme::heading(ui, "Open");
     let files: Vec<&String> = recent.iter().filter(|source| !dialog.names(source)).take(MOST_RECENT).collect();
     if !files.is_empty() {
@@ -81,7 +81,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
         let name = path.file_name().map_or_else(|| file.to_string(), |name| name.to_string_lossy().into_owned());
         let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
         if scene_row(ui, &name, &folder) {
-            answer = Answer::Open(file.to_string());
+            answer = OpenReply::Open(file.to_string());
         }
     }
     ui.add_space(if files.is_empty() { 0.0 } else { 8.0 });
@@ -95,7 +95,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
         scroll.show(ui, |ui| {
             for entry in entries {
                 if scene_row(ui, &entry.name, &entry.lesson) {
-                    answer = Answer::Open(entry.name.clone());
+                    answer = OpenReply::Open(entry.name.clone());
                 }
             }
         });
@@ -114,16 +114,16 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
     ui.horizontal(|ui| {
         let open = ui.add_enabled(!path.is_empty(), egui::Button::new("Open this"));
         if !path.is_empty() && (open.clicked() || entered) {
-            answer = Answer::Open(path.to_owned());
+            answer = OpenReply::Open(path.to_owned());
         }
         if ui.button("Browse…").on_hover_text("Choose a scene or model with the system's dialog").clicked() {
-            answer = Answer::Browse;
+            answer = OpenReply::Browse;
         }
         if ui.button("Browse captures…").on_hover_text("Choose a capture folder with the system's dialog").clicked() {
-            answer = Answer::BrowseFolder;
+            answer = OpenReply::BrowseFolder;
         }
         if ui.button("Cancel").clicked() {
-            answer = Answer::Cancel;
+            answer = OpenReply::Cancel;
         }
     });
     answer

@@ -1,13 +1,13 @@
 //! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
 
-use crate::ask::{FilmOf, Kind, TimingOf};
+use crate::ask::{FilmOf, QuestionKind, TimingOf};
 use crate::capture::Capture;
 use crate::inspector::look::coloring::{self, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers;
 use crate::reading::format;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Margin, Ui};
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
     });
 }
 
-fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &Shown) {
+fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture) {
     let [width, height] = shown.images.first().map_or([0, 0], |image| image.size());
     ui.label(theme::note(format!("{} · {width}×{height} · {}", shown.title, shown.format)));
     let Some(hover) = model.selection.hover else { return };
@@ -100,7 +100,7 @@ fn costs(ui: &mut Ui, model: &mut Model) {
 fn film(ui: &mut Ui, model: &mut Model) {
     let Some(progress) = model.answers.under_way::<FilmOf>().running else { return };
     if ui.small_button("Cancel").on_hover_text("Stop writing the animation; nothing of it is left").clicked() {
-        model.answers.cancel(Kind::FilmOf);
+        model.answers.cancel(QuestionKind::FilmOf);
     }
     let (done, of) = progress.steps();
     let words = if of == 0 { "animation begins".to_owned() } else { format!("animation: {done} of {of} pictures") };

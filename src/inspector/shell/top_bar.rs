@@ -1,8 +1,8 @@
 //! The bar at the top: what is open, and the technique.
 
-use crate::inspector::action::{Action, Dialog};
+use crate::inspector::action::{Action, DialogKind};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{Segment, at_right, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::scene::OpenScene;
@@ -24,7 +24,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             theme::heading(ui, "stencilscope");
             ui.separator();
             if ui.button("Open…").on_hover_text("Open a scene, a model or a capture folder (Ctrl-O)").clicked() {
-                model.dialog = Some(Dialog::Open);
+                model.dialog = Some(DialogKind::Open);
             }
             recent(ui, model, actions);
             ui.add_space(8.0);
@@ -79,7 +79,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         model.theme = model.theme.other();
     }
     if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
-        model.dialog = Some(Dialog::Help);
+        model.dialog = Some(DialogKind::Help);
     }
 }
 
@@ -120,8 +120,9 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         picked.filter(|index| chosen != Some(*index))
     } else {
         let changes = Technique::ALL.map(|technique| changes(scene, technique));
-        let segment = |((label, explanation), changed)| Segment { changed, ..Segment::new(label, explanation) };
-        let all: Vec<Segment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
+        let segment =
+            |((label, explanation), changed)| ButtonSegment { changed, ..ButtonSegment::new(label, explanation) };
+        let all: Vec<ButtonSegment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
         segments_of(ui, &all, chosen)
     };
     if let Some(index) = picked {

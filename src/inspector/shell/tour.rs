@@ -11,7 +11,7 @@ use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::at_right;
 use crate::inspector::model::Model;
-use crate::inspector::tours::{Go, TOURS, Tour, tour_of};
+use crate::inspector::tours::{TOURS, Tour, TourMove, tour_of};
 use crate::technique::Technique;
 use egui::{Label, Margin, RichText, Ui};
 
@@ -138,25 +138,25 @@ fn run_technique(model: &mut Model, technique: Technique, actions: &mut Vec<Acti
     }
 }
 
-fn do_stop(model: &mut Model, go: Go, capture: &Capture) {
+fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
     let with = |word: &str| capture.steps.iter().position(|step| step.name.contains(word));
     match go {
-        Go::Scene(_) | Go::Technique(_) => {}
-        Go::First => model.select_step(0),
-        Go::Last => model.select_step(usize::MAX),
-        Go::Step(word) => {
+        TourMove::Scene(_) | TourMove::Technique(_) => {}
+        TourMove::First => model.select_step(0),
+        TourMove::Last => model.select_step(usize::MAX),
+        TourMove::Step(word) => {
             if let Some(step) = with(word) {
                 model.select_step(step);
             }
         }
-        Go::Picture(kind) => model.choose_picture(kind),
-        Go::Panel(panel) => model.requests.panels.push(panel),
-        Go::Over(overlay) => {
+        TourMove::Picture(kind) => model.choose_picture(kind),
+        TourMove::Panel(panel) => model.requests.panels.push(panel),
+        TourMove::Over(overlay) => {
             model.modes.overlays.insert(overlay);
         }
-        Go::PickShadow => model.selection.pick = pixel_with(capture, SHADOW).or(model.selection.pick),
-        Go::PickLit => model.selection.pick = pixel_with(capture, LIT).or(model.selection.pick),
-        Go::PickWrong => {
+        TourMove::PickShadow => model.selection.pick = pixel_with(capture, SHADOW).or(model.selection.pick),
+        TourMove::PickLit => model.selection.pick = pixel_with(capture, LIT).or(model.selection.pick),
+        TourMove::PickWrong => {
             model.selection.pick = wrong_pixel(capture).or_else(|| pixel_with(capture, SHADOW)).or(model.selection.pick)
         }
     }
@@ -167,8 +167,8 @@ pub fn stops_of(technique: Technique) -> usize {
     tour_of(technique).map_or(0, |(_, tour)| tour.stops.len())
 }
 
-fn scene_of(go: &[Go]) -> Option<&'static str> {
-    go.iter().find_map(|go| if let Go::Scene(name) = go { Some(*name) } else { None })
+fn scene_of(go: &[TourMove]) -> Option<&'static str> {
+    go.iter().find_map(|go| if let TourMove::Scene(name) = go { Some(*name) } else { None })
 }
 
 /// The pixel nearest to the middle that has this label under the first light.

@@ -9,9 +9,9 @@ use crate::ask::{RunRequest, WallsOf};
 use crate::inspector::action::{Action, Overlay};
 use crate::inspector::canvas;
 use crate::inspector::model::Model;
-use crate::inspector::model::walk::Weight;
+use crate::inspector::model::walk::WalkGravity;
 use crate::reading::shown::PictureKind;
-use crate::scene::{Body, Camera, Standing, Walls};
+use crate::scene::{Camera, Footing, WalkerBody, Walls};
 use crate::technique::Technique;
 use egui::{Context, Event, FocusDirection, Key, Vec2};
 use glam::{DQuat, DVec3};
@@ -172,7 +172,7 @@ fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec
         }
         WalkCommand::Collision => model.walk.collides = !model.walk.collides,
         WalkCommand::Gravity => {
-            model.walk.weight = if model.walk.weight.is_some() { None } else { Some(Weight::default()) }
+            model.walk.weight = if model.walk.weight.is_some() { None } else { Some(WalkGravity::default()) }
         }
         WalkCommand::Slower => model.walk.speed = (model.walk.speed / FASTER).max(slowest),
         WalkCommand::Faster => model.walk.speed = (model.walk.speed * FASTER).min(fastest),
@@ -250,7 +250,7 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     let by = direction(&scene.draft.camera, goes, floats && !model.walk.collides) * (model.walk.speed * passed);
     let radius = RADIUS.max(before.near * RADIUS_OF_NEAR);
     let eye = match (&walls, floats) {
-        (Some(walls), false) if moves => fallen(model, before.eye, (by, passed), (walls, &Body::new(radius))),
+        (Some(walls), false) if moves => fallen(model, before.eye, (by, passed), (walls, &WalkerBody::new(radius))),
         (Some(walls), true) if model.walk.collides => walls.walk(before.eye, by, radius),
         (_, true) => before.eye + by,
         (_, false) => before.eye,
@@ -266,7 +266,12 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
 
 /// Where the eye of a body is that weighs something, and has gone by a way in some seconds. Who falls beyond all that there is
 /// is put back to where they stood last; who stood nowhere floats again.
-fn fallen(model: &mut Model, eye: DVec3, (by, seconds): (DVec3, f64), (walls, body): (&Arc<Walls>, &Body)) -> DVec3 {
+fn fallen(
+    model: &mut Model,
+    eye: DVec3,
+    (by, seconds): (DVec3, f64),
+    (walls, body): (&Arc<Walls>, &WalkerBody),
+) -> DVec3 {
     let Some(weight) = &mut model.walk.weight else { return eye };
     // A camera that was set elsewhere begins anew.
     let known = weight.standing.filter(|standing| body.eye_of(standing.feet).distance(eye) < SAME_PLACE);
@@ -283,7 +288,7 @@ fn fallen(model: &mut Model, eye: DVec3, (by, seconds): (DVec3, f64), (walls, bo
     }
     match weight.stood_at.take() {
         Some(feet) => {
-            weight.standing = Some(Standing { feet, falls_by: 0.0, is_on_ground: false, is_beyond: false });
+            weight.standing = Some(Footing { feet, falls_by: 0.0, is_on_ground: false, is_beyond: false });
             model.walk.nothing_because = Some("Nothing is below: back where you stood last".to_owned());
             body.eye_of(feet)
         }

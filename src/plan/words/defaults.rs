@@ -1,6 +1,6 @@
 //! What each API has unless it is told otherwise. Lines as [`super::lines`] writes them: what is not among them was set.
 
-use super::Api;
+use super::RasterApi;
 
 /// A pipeline's descriptor without these members. It has no default for depthCompare and depthWriteEnabled: where there is
 /// a depth format, one must say.
@@ -63,11 +63,11 @@ const DIRECT_3D: &[&str] = &[
 ];
 
 /// The lines that need not be said.
-pub fn defaults(api: Api) -> &'static [&'static str] {
+pub fn defaults(api: RasterApi) -> &'static [&'static str] {
     match api {
-        Api::WebGpu => WEB_GPU,
-        Api::OpenGl => OPEN_GL,
-        Api::Direct3D => DIRECT_3D,
+        RasterApi::WebGpu => WEB_GPU,
+        RasterApi::OpenGl => OPEN_GL,
+        RasterApi::Direct3D => DIRECT_3D,
     }
 }
 
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn each_default_is_a_line_that_is_written_and_its_opposite_is_none() {
-        for api in Api::ALL {
+        for api in RasterApi::ALL {
             let written: Vec<String> = states().iter().flat_map(|state| lines(state, api)).collect();
             for line in defaults(api) {
                 assert!(written.iter().any(|one| one == line), "{}: {line} is never written", api.name());
@@ -103,7 +103,7 @@ mod tests {
                 unclipped_depth: true,
                 depth_write: false,
                 depth_bias: wgpu::DepthBiasState { constant: 3, slope_scale: 2.0, clamp: 0.0 },
-                front_face: if api == Api::Direct3D { FrontFace::Ccw } else { FrontFace::Cw },
+                front_face: if api == RasterApi::Direct3D { FrontFace::Ccw } else { FrontFace::Cw },
                 cull: Some(Face::Front),
                 color: ColorWrite::Multiply,
                 ..RasterState::surface()

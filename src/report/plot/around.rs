@@ -1,12 +1,15 @@
 //! What is around the charts: heading, legend, notes.
 
-use super::{Ink, Key, LINE, Line, Plot, SMALL_SIZE, STYLES, Style, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width};
-use crate::report::{Report, Row, table};
+use super::{
+    LINE, LegendKey, Plot, PlotInk, PlotLine, PlotText, SMALL_SIZE, STYLES, TEXT_SIZE, TITLE_SIZE, TechniqueStyle,
+    style_of, text_width,
+};
+use crate::report::{Report, ReportRow, table};
 
 /// The plot in a sentence, for who can't see it.
 pub fn summary(report: &Report) -> String {
     let (rows, scenes) = (report.rows.len(), report.scenes());
-    let front: Vec<String> = report.rows.iter().filter(|row| row.pareto).map(Row::summary).collect();
+    let front: Vec<String> = report.rows.iter().filter(|row| row.pareto).map(ReportRow::summary).collect();
     format!(
         "Wrong pixels against frame time of {rows} runs, scenes: {}. On the Pareto front: {}.",
         if scenes.is_empty() { "none".to_owned() } else { scenes.join(", ") },
@@ -16,7 +19,7 @@ pub fn summary(report: &Report) -> String {
 
 /// Title and what it was measured on; where the charts begin.
 pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
-    let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
+    let title = PlotText::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong();
     let adapter = &report.adapter;
     let sizes = table::sizes(report.rows.iter().map(|row| row.size));
     let facts = [adapter.name.as_str(), adapter.driver.as_str(), sizes.as_str()];
@@ -25,7 +28,7 @@ pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
     plot.texts.push(title);
     let mut y = 38.0;
     for line in lines {
-        plot.texts.push(Text::new([8.0, y], line, TEXT_SIZE, Ink::Dim));
+        plot.texts.push(PlotText::new([8.0, y], line, TEXT_SIZE, PlotInk::Dim));
         y += LINE;
     }
     y + 4.0
@@ -49,7 +52,7 @@ fn wrapped(text: &str, width: f64) -> Vec<String> {
 /// Each technique's mark, and what filled marks, lines and whiskers mean.
 pub fn legend(report: &Report, width: f64) -> Plot {
     let mut legend = Plot::empty(width);
-    let mut used: Vec<(&'static Style, &str)> = Vec::new();
+    let mut used: Vec<(&'static TechniqueStyle, &str)> = Vec::new();
     for row in report.rows.iter().filter(|row| row.is_measured()) {
         let entry = (style_of(&row.technique), row.technique.as_str());
         if !used.contains(&entry) {
@@ -60,20 +63,20 @@ pub fn legend(report: &Report, width: f64) -> Plot {
         return legend;
     }
     used.sort_by_key(|(style, _)| STYLES.iter().position(|other| other == *style).unwrap_or(STYLES.len()));
-    let mut flow = Flow { legend: &mut legend, at: [8.0, LINE / 2.0], width };
+    let mut flow = LegendFlow { legend: &mut legend, at: [8.0, LINE / 2.0], width };
     for (style, name) in used {
-        flow.add(name, Ink::Technique(style), &|legend, at| {
-            legend.keys.push(Key { at: [at[0] + 6.0, at[1]], style, filled: true });
+        flow.add(name, PlotInk::Technique(style), &|legend, at| {
+            legend.keys.push(LegendKey { at: [at[0] + 6.0, at[1]], style, filled: true });
         });
     }
     flow.next_line();
-    flow.add("Pareto front, filled: none is faster and more right", Ink::Dim, &|legend, [x, y]| {
+    flow.add("Pareto front, filled: none is faster and more right", PlotInk::Dim, &|legend, [x, y]| {
         let points = vec![[x, y - 4.0], [x + 7.0, y - 4.0], [x + 7.0, y + 4.0], [x + 13.0, y + 4.0]];
-        legend.lines.push(Line { points, width: 1.5, ink: Ink::Front, faint: false });
+        legend.lines.push(PlotLine { points, width: 1.5, ink: PlotInk::Front, faint: false });
     });
-    flow.add("fastest to slowest frame", Ink::Dim, &|legend, [x, y]| {
+    flow.add("fastest to slowest frame", PlotInk::Dim, &|legend, [x, y]| {
         let points = vec![[x, y], [x + 13.0, y]];
-        legend.lines.push(Line { points, width: 1.0, ink: Ink::Dim, faint: false });
+        legend.lines.push(PlotLine { points, width: 1.0, ink: PlotInk::Dim, faint: false });
     });
     let bottom = flow.at[1] + LINE / 2.0;
     legend.size[1] = bottom;
@@ -81,21 +84,21 @@ pub fn legend(report: &Report, width: f64) -> Plot {
 }
 
 /// Entries of a legend, in lines.
-struct Flow<'a> {
+struct LegendFlow<'a> {
     legend: &'a mut Plot,
     at: [f64; 2],
     width: f64,
 }
 
-impl Flow<'_> {
+impl LegendFlow<'_> {
     /// An entry: a sign of 14 points, then its words.
-    fn add(&mut self, words: &str, ink: Ink, sign: &dyn Fn(&mut Plot, [f64; 2])) {
+    fn add(&mut self, words: &str, ink: PlotInk, sign: &dyn Fn(&mut Plot, [f64; 2])) {
         let taken = 18.0 + text_width(words, SMALL_SIZE) + 14.0;
         if self.at[0] > 8.0 && self.at[0] + taken > self.width {
             self.next_line();
         }
         sign(self.legend, self.at);
-        self.legend.texts.push(Text::new([self.at[0] + 18.0, self.at[1]], words, SMALL_SIZE, ink));
+        self.legend.texts.push(PlotText::new([self.at[0] + 18.0, self.at[1]], words, SMALL_SIZE, ink));
         self.at[0] += taken;
     }
 

@@ -1,12 +1,13 @@
 //! One scene's chart: axes, lines and marks of its rows.
 
-use super::labels::{self, Obstacles, Wish};
-use super::scale::{self, Log};
+use super::labels::{self, LabelObstacles, LabelRequest};
+use super::scale::{self, LogScale};
 use super::{
-    Anchor, Chart, Ink, Line, RADIUS, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width,
+    PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, RADIUS, SMALL_SIZE, SceneChart, TEXT_SIZE, TITLE_SIZE,
+    TextAnchor, style_of, text_width,
 };
 use crate::numbers;
-use crate::report::{Report, Row};
+use crate::report::{Report, ReportRow};
 use std::collections::BTreeMap;
 
 /// Above the area: title and caption of the axis that goes up, points; in one line where compact.
@@ -29,24 +30,24 @@ const NONE_WRONG: &str = "none wrong";
 
 /// What all charts of a plot share: size and axes, relative to the chart's corner.
 #[derive(Debug)]
-pub struct Frame {
+pub struct ChartFrame {
     /// Width and height in points.
     pub size: [f64; 2],
-    area: Rect,
-    band: Rect,
+    area: PlotRect,
+    band: PlotRect,
     /// Milliseconds.
-    across: Log,
+    across: LogScale,
     /// Per cent.
-    up: Log,
+    up: LogScale,
     x_ticks: Vec<f64>,
     y_ticks: Vec<f64>,
     lanes: usize,
     compact: bool,
 }
 
-impl Frame {
+impl ChartFrame {
     /// Axes that hold the rows of all `scenes`, in charts of `size`.
-    pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2], compact: bool) -> Frame {
+    pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2], compact: bool) -> ChartFrame {
         let [top, below] = if compact { [COMPACT_TOP, COMPACT_BOTTOM] } else { [TOP, BOTTOM] };
         let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
         let times = rows().flat_map(|row| [row.frame_ms.median, row.frame_ms.min, row.frame_ms.max]);
@@ -58,7 +59,7 @@ impl Frame {
         // The widest words that the axis may have.
         let left = 8.0 + text_width(NONE_WRONG, SMALL_SIZE).max(text_width("0.00001 %", SMALL_SIZE)) + 6.0;
         let [x0, x1] = [left, size[0] - RIGHT];
-        let across = Log::new(times, [x0, x1]);
+        let across = LogScale::new(times, [x0, x1]);
         let lanes = scenes.iter().map(|(_, rows)| {
             let band = band_rows(report, rows);
             lanes(&band, &captions(report, rows), &across, [x0, x1], most_lanes)
@@ -68,16 +69,17 @@ impl Frame {
         });
         let lanes = lanes.max().unwrap_or(1);
         let bottom = size[1] - below;
-        let band = Rect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
-        let area = Rect { min: [x0, top], max: [x1, band.min[1] - BREAK] };
-        let up = Log::new([low, high], [area.max[1], area.min[1]]);
+        let band = PlotRect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
+        let area = PlotRect { min: [x0, top], max: [x1, band.min[1] - BREAK] };
+        let up = LogScale::new([low, high], [area.max[1], area.min[1]]);
         let x_ticks = across.ticks(39.0);
         let y_ticks = up.ticks(17.0).into_iter().filter(|percent| *percent <= 100.0).collect();
-        Frame { size, area, band, across, up, x_ticks, y_ticks, lanes, compact }
+        ChartFrame { size, area, band, across, up, x_ticks, y_ticks, lanes, compact }
     }
 
-    fn grid(&self) -> Vec<Line> {
-        let line = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
+    fn grid(&self) -> Vec<PlotLine> {
+        let line =
+            |points: [[f64; 2]; 2]| PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false };
         let [left, right] = [self.area.min[0], self.area.max[0]];
         let level = self.y_ticks.iter().map(|tick| {
             let y = self.up.position(*tick);
@@ -90,36 +92,38 @@ impl Frame {
         level.chain(upright).collect()
     }
 
-    fn texts(&self, title: &str) -> Vec<Text> {
-        let small = |at, text: String, ink| Text::new(at, text, SMALL_SIZE, ink);
+    fn texts(&self, title: &str) -> Vec<PlotText> {
+        let small = |at, text: String, ink| PlotText::new(at, text, SMALL_SIZE, ink);
         let mut texts = if self.compact {
             let words = "wrong pixels against frame time".to_owned();
             let after = 8.0 + text_width(title, TEXT_SIZE) + 10.0;
             let fits = after + text_width(&words, SMALL_SIZE) <= self.size[0];
-            let caption = fits.then(|| small([after, 9.0], words, Ink::Dim));
-            let title = Text::new([8.0, 9.0], title, TEXT_SIZE, Ink::Text).strong();
+            let caption = fits.then(|| small([after, 9.0], words, PlotInk::Dim));
+            let title = PlotText::new([8.0, 9.0], title, TEXT_SIZE, PlotInk::Text).strong();
             [title].into_iter().chain(caption).collect()
         } else {
             let at = [self.area.max[0], self.band.max[1] + 28.0];
             vec![
-                Text::new([8.0, 10.0], title, TITLE_SIZE, Ink::Text).strong(),
-                small([8.0, 27.0], "wrong pixels, of those compared".to_owned(), Ink::Dim),
-                small(at, "frame time, median".to_owned(), Ink::Dim).anchored(Anchor::End),
+                PlotText::new([8.0, 10.0], title, TITLE_SIZE, PlotInk::Text).strong(),
+                small([8.0, 27.0], "wrong pixels, of those compared".to_owned(), PlotInk::Dim),
+                small(at, "frame time, median".to_owned(), PlotInk::Dim).anchored(TextAnchor::End),
             ]
         };
         let beside = self.area.min[0] - 6.0;
         let levels =
             self.y_ticks.iter().map(|percent| (self.up.position(*percent), format!("{}\u{a0}%", tick(*percent))));
         let none = ((self.band.min[1] + self.band.max[1]) / 2.0, NONE_WRONG.to_owned());
-        texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text, Ink::Dim).anchored(Anchor::End)));
+        texts.extend(
+            levels.chain([none]).map(|(y, text)| small([beside, y], text, PlotInk::Dim).anchored(TextAnchor::End)),
+        );
         texts.extend(self.x_ticks.iter().map(|ms| {
             let at = [self.across.position(*ms), self.band.max[1] + 11.0];
-            small(at, format!("{}\u{a0}ms", tick(*ms)), Ink::Dim).anchored(Anchor::Middle)
+            small(at, format!("{}\u{a0}ms", tick(*ms)), PlotInk::Dim).anchored(TextAnchor::Middle)
         }));
         texts
     }
 
-    fn place(&self, row: &Row, lane: Option<&usize>) -> [f64; 2] {
+    fn place(&self, row: &ReportRow, lane: Option<&usize>) -> [f64; 2] {
         let y = match lane {
             Some(lane) => self.band.min[1] + 3.0 + (*lane as f64 + 0.5) * LANE,
             None => self.up.position(row.wrong_fraction * 100.0),
@@ -138,24 +142,24 @@ fn tick(value: f64) -> String {
 }
 
 /// The chart of `rows` at a place of the page.
-pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &Frame, corner: [f64; 2]) -> Chart {
+pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, corner: [f64; 2]) -> SceneChart {
     let captions = captions(report, rows);
     let sides = [frame.area.min[0], frame.area.max[0]];
     let lanes = lanes(&band_rows(report, rows), &captions, &frame.across, sides, frame.lanes);
     let place = |index: usize| frame.place(&report.rows[index], lanes.get(&index));
-    let mut spots: Vec<Spot> = rows.iter().map(|index| spot(report, *index, place(*index), frame)).collect();
+    let mut spots: Vec<PlotPoint> = rows.iter().map(|index| spot(report, *index, place(*index), frame)).collect();
     // Height in the band says nothing, so a line between two of its rows would say something wrong.
     let is_apart = |pair: &&[usize]| pair.iter().any(|index| report.rows[*index].wrong_fraction > 0.0);
     let chains = chains(report, rows);
-    let joins = chains.iter().flat_map(|chain| chain.windows(2)).filter(is_apart).map(|pair| Line {
+    let joins = chains.iter().flat_map(|chain| chain.windows(2)).filter(is_apart).map(|pair| PlotLine {
         points: pair.iter().map(|index| place(*index)).collect(),
         width: 1.2,
-        ink: Ink::Technique(style_of(&report.rows[pair[0]].technique)),
+        ink: PlotInk::Technique(style_of(&report.rows[pair[0]].technique)),
         faint: true,
     });
-    let mut over_grid: Vec<Line> = joins.collect();
+    let mut over_grid: Vec<PlotLine> = joins.collect();
     over_grid.extend(front(report, rows, &place));
-    let obstacles = Obstacles {
+    let obstacles = LabelObstacles {
         marks: spots.iter().map(|spot| spot.at).collect(),
         segments: segments(&over_grid).chain(spots.iter().map(|spot| spot.whisker.map(|x| [x, spot.at[1]]))).collect(),
     };
@@ -165,11 +169,12 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &Frame, corner
     let mut lines = frame.grid();
     lines.extend(over_grid);
     let title = title.to_owned();
-    Chart { texts: frame.texts(&title), title, area: frame.area, band: frame.band, lines, spots, labels }.moved(corner)
+    SceneChart { texts: frame.texts(&title), title, area: frame.area, band: frame.band, lines, spots, labels }
+        .moved(corner)
 }
 
 /// Rows without a wrong pixel, those on the front first: they are nearest to the chart's area.
-fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a Row)> {
+fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a ReportRow)> {
     let rows = rows.iter().map(|index| (*index, &report.rows[*index]));
     let mut rows: Vec<_> = rows.filter(|(_, row)| row.wrong_fraction == 0.0).collect();
     rows.sort_by(|(_, a), (_, b)| b.pareto.cmp(&a.pareto).then(a.frame_ms.median.total_cmp(&b.frame_ms.median)));
@@ -179,9 +184,9 @@ fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a Row)> {
 /// A lane for each row of the band, so that marks with their labels stay apart; beyond `most`
 /// lanes they may meet.
 fn lanes(
-    rows: &[(usize, &Row)],
-    captions: &BTreeMap<usize, Caption>,
-    across: &Log,
+    rows: &[(usize, &ReportRow)],
+    captions: &BTreeMap<usize, MarkCaption>,
+    across: &LogScale,
     [left, right]: [f64; 2],
     most: usize,
 ) -> BTreeMap<usize, usize> {
@@ -215,15 +220,15 @@ fn lanes(
 }
 
 /// How far the fastest and the slowest frame are from the median, which is at `x`.
-fn whiskers(row: &Row, x: f64, across: &Log) -> [f64; 2] {
+fn whiskers(row: &ReportRow, x: f64, across: &LogScale) -> [f64; 2] {
     let length = |ms: f64| if ms.is_finite() { (across.position(ms) - x).abs() } else { 0.0 };
     [length(row.frame_ms.min), length(row.frame_ms.max)]
 }
 
-fn spot(report: &Report, index: usize, at: [f64; 2], frame: &Frame) -> Spot {
+fn spot(report: &Report, index: usize, at: [f64; 2], frame: &ChartFrame) -> PlotPoint {
     let row = &report.rows[index];
     let [left, right] = whiskers(row, at[0], &frame.across);
-    Spot {
+    PlotPoint {
         row: index,
         at,
         whisker: [at[0] - left, at[0] + right],
@@ -236,14 +241,14 @@ fn spot(report: &Report, index: usize, at: [f64; 2], frame: &Frame) -> Spot {
 
 /// What stands beside a row's mark.
 #[derive(Debug)]
-struct Caption {
+struct MarkCaption {
     text: String,
     /// It names its technique, and no other in the chart does.
     names_technique: bool,
 }
 
 /// Words for each row: one row of a technique carries its name, the others what sets them apart.
-fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, Caption> {
+fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, MarkCaption> {
     let caption = |index: &usize| {
         let row = &report.rows[*index];
         let of_technique = || rows.iter().filter(|other| report.rows[**other].technique == row.technique);
@@ -254,7 +259,7 @@ fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, Caption> {
         });
         let names_technique = namer == Some(index);
         let text = if names_technique || row.label.is_empty() { row.name() } else { row.label.clone() };
-        (*index, Caption { text, names_technique })
+        (*index, MarkCaption { text, names_technique })
     };
     rows.iter().map(caption).collect()
 }
@@ -300,7 +305,7 @@ fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
 }
 
 /// The front as a staircase: right of it and above it, everything is beaten.
-fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<Line> {
+fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<PlotLine> {
     let mut on_front: Vec<[f64; 2]> =
         rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();
     on_front.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
@@ -311,10 +316,10 @@ fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> 
         }
         points.push(at);
     }
-    (points.len() > 1).then_some(Line { points, width: 1.6, ink: Ink::Front, faint: false })
+    (points.len() > 1).then_some(PlotLine { points, width: 1.6, ink: PlotInk::Front, faint: false })
 }
 
-fn segments(lines: &[Line]) -> impl Iterator<Item = [[f64; 2]; 2]> {
+fn segments(lines: &[PlotLine]) -> impl Iterator<Item = [[f64; 2]; 2]> {
     lines.iter().flat_map(|line| line.points.windows(2).map(|pair| [pair[0], pair[1]]))
 }
 
@@ -322,21 +327,22 @@ fn segments(lines: &[Line]) -> impl Iterator<Item = [[f64; 2]; 2]> {
 /// the front.
 fn label(
     report: &Report,
-    spots: &[Spot],
-    captions: &BTreeMap<usize, Caption>,
-    frame: &Frame,
-    obstacles: &Obstacles,
-) -> (Vec<Text>, Vec<Line>) {
+    spots: &[PlotPoint],
+    captions: &BTreeMap<usize, MarkCaption>,
+    frame: &ChartFrame,
+    obstacles: &LabelObstacles,
+) -> (Vec<PlotText>, Vec<PlotLine>) {
     let with_caption = spots.iter().filter_map(|spot| Some((spot, captions.get(&spot.row)?)));
-    let mut ordered: Vec<(&Spot, &Caption)> = with_caption.filter(|(_, caption)| !caption.text.is_empty()).collect();
+    let mut ordered: Vec<(&PlotPoint, &MarkCaption)> =
+        with_caption.filter(|(_, caption)| !caption.text.is_empty()).collect();
     ordered.sort_by_key(|(spot, caption)| (!caption.names_technique, !spot.filled));
-    let wishes: Vec<Wish> = ordered
+    let wishes: Vec<LabelRequest> = ordered
         .iter()
-        .map(|(spot, caption)| Wish {
+        .map(|(spot, caption)| LabelRequest {
             at: spot.at,
             whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
             text: caption.text.clone(),
-            ink: Ink::Technique(spot.style),
+            ink: PlotInk::Technique(spot.style),
             area: if report.rows[spot.row].wrong_fraction == 0.0 { frame.band } else { frame.area },
             must: caption.names_technique,
         })
@@ -344,21 +350,21 @@ fn label(
     let placed = labels::place(&wishes, obstacles);
     let leaders = placed.iter().flatten().filter_map(|placed| {
         let points = placed.leader?.to_vec();
-        Some(Line { points, width: 0.8, ink: placed.text.ink, faint: true })
+        Some(PlotLine { points, width: 0.8, ink: placed.text.ink, faint: true })
     });
     let leaders = leaders.collect();
     (placed.into_iter().flatten().map(|placed| placed.text).collect(), leaders)
 }
 
-impl Chart {
+impl SceneChart {
     /// The same chart at another corner of the page.
-    pub(crate) fn moved(self, [right, down]: [f64; 2]) -> Chart {
+    pub(crate) fn moved(self, [right, down]: [f64; 2]) -> SceneChart {
         let to = |[x, y]: [f64; 2]| [x + right, y + down];
-        let rect = |rect: Rect| Rect { min: to(rect.min), max: to(rect.max) };
-        let text = |text: Text| Text { at: to(text.at), ..text };
-        let line = |line: Line| Line { points: line.points.into_iter().map(to).collect(), ..line };
-        let spot = |spot: Spot| Spot { at: to(spot.at), whisker: spot.whisker.map(|x| x + right), ..spot };
-        Chart {
+        let rect = |rect: PlotRect| PlotRect { min: to(rect.min), max: to(rect.max) };
+        let text = |text: PlotText| PlotText { at: to(text.at), ..text };
+        let line = |line: PlotLine| PlotLine { points: line.points.into_iter().map(to).collect(), ..line };
+        let spot = |spot: PlotPoint| PlotPoint { at: to(spot.at), whisker: spot.whisker.map(|x| x + right), ..spot };
+        SceneChart {
             title: self.title,
             area: rect(self.area),
             band: rect(self.band),

@@ -4,11 +4,11 @@
 //! around its point. One that must be shown goes further away where nothing is free nearby, with
 //! a thin line back; any other is left out.
 
-use super::{Anchor, Ink, RADIUS, Rect, SMALL_SIZE, Text, text_width};
+use super::{PlotInk, PlotRect, PlotText, RADIUS, SMALL_SIZE, TextAnchor, text_width};
 
 /// A label to be placed.
 #[derive(Debug, Clone)]
-pub struct Wish {
+pub struct LabelRequest {
     /// The middle of its point.
     pub at: [f64; 2],
     /// How far its whiskers reach to the left and to the right of it.
@@ -16,16 +16,16 @@ pub struct Wish {
     /// The words.
     pub text: String,
     /// Their colour.
-    pub ink: Ink,
+    pub ink: PlotInk,
     /// Where they may be.
-    pub area: Rect,
+    pub area: PlotRect,
     /// Never left out.
     pub must: bool,
 }
 
 /// What labels keep away from.
 #[derive(Debug, Default)]
-pub struct Obstacles {
+pub struct LabelObstacles {
     /// Middles of marks: never covered.
     pub marks: Vec<[f64; 2]>,
     /// Lines: covered only where there is no other place.
@@ -34,9 +34,9 @@ pub struct Obstacles {
 
 /// A label in its place.
 #[derive(Debug, Clone)]
-pub struct Placed {
+pub struct PlacedLabel {
     /// The words.
-    pub text: Text,
+    pub text: PlotText,
     /// A line from the mark to words that are far away.
     pub leader: Option<[[f64; 2]; 2]>,
 }
@@ -62,8 +62,8 @@ const LINE_COST: f64 = 2.6;
 const LINE_GAP: f64 = 2.0;
 
 /// Places labels in the order of `wishes`; `None` for those that are left out.
-pub fn place(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
-    let mut taken: Vec<Rect> = Vec::new();
+pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<PlacedLabel>> {
+    let mut taken: Vec<PlotRect> = Vec::new();
     wishes
         .iter()
         .map(|wish| {
@@ -73,13 +73,13 @@ pub fn place(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
             let rect = text.rect();
             taken.push(rect);
             let leader = near.is_none().then(|| leader(wish.at, &rect));
-            Some(Placed { text, leader })
+            Some(PlacedLabel { text, leader })
         })
         .collect()
 }
 
 /// The best free place at a distance.
-fn best(wish: &Wish, away: f64, obstacles: &Obstacles, taken: &[Rect]) -> Option<Text> {
+fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[PlotRect]) -> Option<PlotText> {
     let candidates = AROUND.iter().filter_map(|(direction, cost)| {
         let text = beside(wish, *direction, away);
         let rect = text.rect();
@@ -88,7 +88,7 @@ fn best(wish: &Wish, away: f64, obstacles: &Obstacles, taken: &[Rect]) -> Option
             return None;
         }
         let [[left, top], [right, bottom]] = [rect.min, rect.max];
-        let room = Rect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
+        let room = PlotRect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
         let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &room)).count();
         Some((cost + LINE_COST * lines as f64, text))
     });
@@ -96,28 +96,28 @@ fn best(wish: &Wish, away: f64, obstacles: &Obstacles, taken: &[Rect]) -> Option
 }
 
 /// The words in a direction from their point.
-fn beside(wish: &Wish, [right, down]: [f64; 2], away: f64) -> Text {
+fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     let anchor = if right > 0.0 {
-        Anchor::Start
+        TextAnchor::Start
     } else if right < 0.0 {
-        Anchor::End
+        TextAnchor::End
     } else {
-        Anchor::Middle
+        TextAnchor::Middle
     };
     let free = |whisker: f64| if down == 0.0 { away.max(whisker.min(LONGEST_FREE) + 3.0) } else { away };
     let [left_away, right_away] = wish.whiskers.map(free);
     let across = if right < 0.0 { right * left_away } else { right * right_away };
     // Above and below, the words' half height is between them and the mark too.
     let at = [wish.at[0] + across, wish.at[1] + down * (away + SMALL_SIZE * 0.3)];
-    Text::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
+    PlotText::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
 }
 
 /// What a mark covers.
-fn around([x, y]: [f64; 2]) -> Rect {
-    Rect { min: [x - RADIUS, y - RADIUS], max: [x + RADIUS, y + RADIUS] }
+fn around([x, y]: [f64; 2]) -> PlotRect {
+    PlotRect { min: [x - RADIUS, y - RADIUS], max: [x + RADIUS, y + RADIUS] }
 }
 
-fn leader(from: [f64; 2], rect: &Rect) -> [[f64; 2]; 2] {
+fn leader(from: [f64; 2], rect: &PlotRect) -> [[f64; 2]; 2] {
     let to = [from[0].clamp(rect.min[0], rect.max[0]), from[1].clamp(rect.min[1], rect.max[1])];
     let [right, down] = [to[0] - from[0], to[1] - from[1]];
     let length = right.hypot(down).max(f64::MIN_POSITIVE);
@@ -126,7 +126,7 @@ fn leader(from: [f64; 2], rect: &Rect) -> [[f64; 2]; 2] {
 }
 
 /// Does a segment touch the rectangle (Liang and Barsky 1984)?
-fn crosses([from, to]: &[[f64; 2]; 2], rect: &Rect) -> bool {
+fn crosses([from, to]: &[[f64; 2]; 2], rect: &PlotRect) -> bool {
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {
         let along = to[axis] - from[axis];
@@ -154,32 +154,32 @@ pub fn reach(text: &str, whisker: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const AREA: Rect = Rect { min: [0.0, 0.0], max: [200.0, 100.0] };
+    const AREA: PlotRect = PlotRect { min: [0.0, 0.0], max: [200.0, 100.0] };
 
-    fn wish(at: [f64; 2], must: bool) -> Wish {
-        Wish { at, whiskers: [0.0; 2], text: "1024".to_owned(), ink: Ink::Text, area: AREA, must }
+    fn wish(at: [f64; 2], must: bool) -> LabelRequest {
+        LabelRequest { at, whiskers: [0.0; 2], text: "1024".to_owned(), ink: PlotInk::Text, area: AREA, must }
     }
 
-    fn placed(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
+    fn placed(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<PlacedLabel>> {
         place(wishes, obstacles)
     }
 
     #[test]
     fn a_lone_label_is_to_the_right_and_at_the_edge_to_the_left() {
-        let found = placed(&[wish([50.0, 50.0], false), wish([195.0, 50.0], false)], &Obstacles::default());
+        let found = placed(&[wish([50.0, 50.0], false), wish([195.0, 50.0], false)], &LabelObstacles::default());
         let anchors: Vec<_> = found.iter().flatten().map(|placed| placed.text.anchor).collect();
-        assert_eq!(anchors, [Anchor::Start, Anchor::End]);
+        assert_eq!(anchors, [TextAnchor::Start, TextAnchor::End]);
     }
 
     #[test]
     fn in_a_crowd_none_overlap_and_those_that_must_are_shown() {
         let at = |index: usize| [90.0 + (index % 5) as f64 * 4.0, 45.0 + (index / 5) as f64 * 4.0];
-        let wishes: Vec<Wish> = (0..25).map(|index| wish(at(index), index < 4)).collect();
-        let obstacles = Obstacles { marks: (0..25).map(at).collect(), segments: Vec::new() };
+        let wishes: Vec<LabelRequest> = (0..25).map(|index| wish(at(index), index < 4)).collect();
+        let obstacles = LabelObstacles { marks: (0..25).map(at).collect(), segments: Vec::new() };
         let found = placed(&wishes, &obstacles);
         assert!(found[..4].iter().all(Option::is_some));
         assert!(found.iter().any(Option::is_none), "there is no room for all");
-        let rects: Vec<Rect> = found.iter().flatten().map(|placed| placed.text.rect()).collect();
+        let rects: Vec<PlotRect> = found.iter().flatten().map(|placed| placed.text.rect()).collect();
         for (index, rect) in rects.iter().enumerate() {
             assert!(AREA.holds(rect));
             assert!(rects[..index].iter().all(|other| !other.overlaps(rect)));
@@ -191,16 +191,16 @@ mod tests {
     fn words_far_away_have_a_line_back() {
         let marks: Vec<[f64; 2]> =
             (0..49).map(|i| [76.0 + f64::from(i % 7) * 8.0, 26.0 + f64::from(i / 7) * 8.0]).collect();
-        let obstacles = Obstacles { marks, segments: Vec::new() };
+        let obstacles = LabelObstacles { marks, segments: Vec::new() };
         let found = placed(&[wish([100.0, 50.0], true)], &obstacles);
         assert!(found[0].as_ref().is_some_and(|placed| placed.leader.is_some()));
     }
 
     #[test]
     fn a_line_is_covered_only_where_there_is_no_other_place() {
-        let obstacles = Obstacles { marks: Vec::new(), segments: vec![[[50.0, 50.0], [200.0, 50.0]]] };
+        let obstacles = LabelObstacles { marks: Vec::new(), segments: vec![[[50.0, 50.0], [200.0, 50.0]]] };
         let found = placed(&[wish([50.0, 50.0], false)], &obstacles);
-        assert_eq!(found[0].as_ref().map(|placed| placed.text.anchor), Some(Anchor::End));
+        assert_eq!(found[0].as_ref().map(|placed| placed.text.anchor), Some(TextAnchor::End));
     }
 
     #[test]

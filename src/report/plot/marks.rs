@@ -8,7 +8,7 @@ use crate::technique::Technique;
 
 /// The shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum MarkShape {
     /// A disc.
     Circle,
     /// On its side.
@@ -35,24 +35,24 @@ pub enum Mark {
 
 /// How a technique looks in every plot.
 #[derive(Debug, PartialEq)]
-pub struct Style {
+pub struct TechniqueStyle {
     /// Name of the technique.
     pub technique: &'static str,
     /// Its shape.
-    pub mark: Mark,
+    pub mark: MarkShape,
     /// sRGB on white paper.
     pub paper: [u8; 3],
     /// sRGB on the inspector's panels.
     pub screen: [u8; 3],
 }
 
-const fn style(technique: &'static str, mark: Mark, paper: [u8; 3], screen: [u8; 3]) -> Style {
-    Style { technique, mark, paper, screen }
+const fn style(technique: &'static str, mark: MarkShape, paper: [u8; 3], screen: [u8; 3]) -> TechniqueStyle {
+    TechniqueStyle { technique, mark, paper, screen }
 }
 
 /// Techniques in teaching order.
-pub static STYLES: [Style; Technique::ALL.len()] = {
-    let mut styles = [const { style("", Mark::Hexagon, [0; 3], [0; 3]) }; Technique::ALL.len()];
+pub static STYLES: [TechniqueStyle; Technique::ALL.len()] = {
+    let mut styles = [const { style("", MarkShape::Hexagon, [0; 3], [0; 3]) }; Technique::ALL.len()];
     let mut index = 0;
     while index < styles.len() {
         styles[index] = look(Technique::ALL[index]);
@@ -61,31 +61,31 @@ pub static STYLES: [Style; Technique::ALL.len()] = {
     styles
 };
 
-const fn look(technique: Technique) -> Style {
+const fn look(technique: Technique) -> TechniqueStyle {
     let (mark, paper, screen) = match technique {
-        Technique::None => (Mark::Cross, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]),
-        Technique::Planar => (Mark::Square, [0x1b, 0x74, 0xa8], [0x56, 0xb4, 0xe9]),
-        Technique::PlanarTexture => (Mark::TriangleRight, [0x00, 0x55, 0xa0], [0x8f, 0xb8, 0xe8]),
-        Technique::ZPass => (Mark::TriangleUp, [0x7d, 0x72, 0x00], [0xf0, 0xe4, 0x42]),
-        Technique::ZPassPlus => (Mark::Plus, [0x94, 0x63, 0x00], [0xe6, 0x9f, 0x00]),
-        Technique::ZFail => (Mark::TriangleDown, [0x00, 0x7d, 0x5b], [0x2f, 0xb5, 0x8a]),
-        Technique::Auto => (Mark::Star, [0xa8, 0x4c, 0x80], [0xcc, 0x79, 0xa7]),
-        Technique::ShadowMap => (Mark::Diamond, [0xb8, 0x4f, 0x00], [0xe8, 0x7f, 0x3a]),
-        Technique::Projective => (Mark::TriangleLeft, [0x6c, 0x4b, 0xb8], [0xa8, 0x8e, 0xe6]),
-        Technique::RayTraced => (Mark::Circle, [0x1b, 0x1e, 0x25], [0xd9, 0xdc, 0xe3]),
+        Technique::None => (MarkShape::Cross, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]),
+        Technique::Planar => (MarkShape::Square, [0x1b, 0x74, 0xa8], [0x56, 0xb4, 0xe9]),
+        Technique::PlanarTexture => (MarkShape::TriangleRight, [0x00, 0x55, 0xa0], [0x8f, 0xb8, 0xe8]),
+        Technique::ZPass => (MarkShape::TriangleUp, [0x7d, 0x72, 0x00], [0xf0, 0xe4, 0x42]),
+        Technique::ZPassPlus => (MarkShape::Plus, [0x94, 0x63, 0x00], [0xe6, 0x9f, 0x00]),
+        Technique::ZFail => (MarkShape::TriangleDown, [0x00, 0x7d, 0x5b], [0x2f, 0xb5, 0x8a]),
+        Technique::Auto => (MarkShape::Star, [0xa8, 0x4c, 0x80], [0xcc, 0x79, 0xa7]),
+        Technique::ShadowMap => (MarkShape::Diamond, [0xb8, 0x4f, 0x00], [0xe8, 0x7f, 0x3a]),
+        Technique::Projective => (MarkShape::TriangleLeft, [0x6c, 0x4b, 0xb8], [0xa8, 0x8e, 0xe6]),
+        Technique::RayTraced => (MarkShape::Circle, [0x1b, 0x1e, 0x25], [0xd9, 0xdc, 0xe3]),
     };
     style(technique.name(), mark, paper, screen)
 }
 
 /// How a technique looks that is not in the table.
-pub static UNKNOWN: Style = style("", Mark::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
+pub static UNKNOWN: TechniqueStyle = style("", MarkShape::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
 
 /// The look of a technique; a neutral one for a name that is not known.
-pub fn style_of(technique: &str) -> &'static Style {
+pub fn style_of(technique: &str) -> &'static TechniqueStyle {
     STYLES.iter().find(|style| style.technique == technique).unwrap_or(&UNKNOWN)
 }
 
-impl Mark {
+impl MarkShape {
     /// Corners of the shape around the origin, y downwards; all shapes have about the area of a
     /// disc of this radius, and every corner is seen from the middle.
     pub fn outline(self, radius: f64) -> Vec<[f64; 2]> {
@@ -97,21 +97,21 @@ impl Mark {
             (0..corners).map(corner).collect::<Vec<_>>()
         };
         match self {
-            Mark::Circle => regular(24, 0.0, 1.0),
-            Mark::Square => regular(4, 0.125, 1.25),
-            Mark::Diamond => regular(4, 0.0, 1.25),
-            Mark::TriangleUp => regular(3, 0.0, 1.4),
-            Mark::TriangleRight => regular(3, 0.25, 1.4),
-            Mark::TriangleDown => regular(3, 0.5, 1.4),
-            Mark::TriangleLeft => regular(3, 0.75, 1.4),
-            Mark::Hexagon => regular(6, 0.0, 1.1),
-            Mark::Star => {
+            MarkShape::Circle => regular(24, 0.0, 1.0),
+            MarkShape::Square => regular(4, 0.125, 1.25),
+            MarkShape::Diamond => regular(4, 0.0, 1.25),
+            MarkShape::TriangleUp => regular(3, 0.0, 1.4),
+            MarkShape::TriangleRight => regular(3, 0.25, 1.4),
+            MarkShape::TriangleDown => regular(3, 0.5, 1.4),
+            MarkShape::TriangleLeft => regular(3, 0.75, 1.4),
+            MarkShape::Hexagon => regular(6, 0.0, 1.1),
+            MarkShape::Star => {
                 let outer = regular(5, 0.0, 1.5);
                 let inner = regular(5, 0.1, 0.65);
                 outer.into_iter().zip(inner).flat_map(|(outer, inner)| [outer, inner]).collect()
             }
-            Mark::Plus => bars(radius),
-            Mark::Cross => {
+            MarkShape::Plus => bars(radius),
+            MarkShape::Cross => {
                 bars(radius).into_iter().map(|[x, y]| [(x - y) * 0.5_f64.sqrt(), (x + y) * 0.5_f64.sqrt()]).collect()
             }
         }
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn an_unknown_technique_has_a_neutral_mark() {
-        assert_eq!(style_of("z-fail").mark, Mark::TriangleDown);
+        assert_eq!(style_of("z-fail").mark, MarkShape::TriangleDown);
         assert_eq!(style_of("of the future"), &UNKNOWN);
     }
 }

@@ -2,7 +2,7 @@
 
 /// Values from `low` to `high` on points from `start` to `end`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Log {
+pub struct LogScale {
     low: f64,
     high: f64,
     start: f64,
@@ -26,10 +26,10 @@ pub fn range(values: impl Iterator<Item = f64>, fallback: [f64; 2]) -> [f64; 2] 
     [(low / missing).max(f64::MIN_POSITIVE), (high * missing).min(f64::MAX)]
 }
 
-impl Log {
+impl LogScale {
     /// `range` from `start` to `end`, which may run backwards.
-    pub fn new([low, high]: [f64; 2], [start, end]: [f64; 2]) -> Log {
-        Log { low, high, start, end }
+    pub fn new([low, high]: [f64; 2], [start, end]: [f64; 2]) -> LogScale {
+        LogScale { low, high, start, end }
     }
 
     /// Where a value is; values beyond an end are at it.
@@ -63,22 +63,22 @@ mod tests {
 
     #[test]
     fn positions_are_logarithmic() {
-        let scale = Log::new([1.0, 100.0], [10.0, 210.0]);
+        let scale = LogScale::new([1.0, 100.0], [10.0, 210.0]);
         assert_eq!(scale.position(1.0), 10.0);
         assert_eq!(scale.position(10.0), 110.0);
         assert!((scale.position(20.0) - (110.0 + 100.0 * 2.0_f64.log10())).abs() < 1e-9);
         assert_eq!(scale.position(0.0), 10.0, "zero is at the left end");
         assert_eq!(scale.position(1e9), 210.0);
-        assert_eq!(Log::new([1.0, 100.0], [210.0, 10.0]).position(10.0), 110.0, "backwards");
+        assert_eq!(LogScale::new([1.0, 100.0], [210.0, 10.0]).position(10.0), 110.0, "backwards");
     }
 
     #[test]
     fn ticks_thin_out_when_there_is_no_room() {
-        let scale = |points: f64| Log::new([0.8, 150.0], [0.0, points]);
+        let scale = |points: f64| LogScale::new([0.8, 150.0], [0.0, points]);
         assert_eq!(scale(600.0).ticks(40.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
         assert_eq!(scale(200.0).ticks(40.0), [1.0, 10.0, 100.0]);
         assert_eq!(scale(60.0).ticks(40.0), [1.0, 100.0]);
-        assert_eq!(Log::new([0.0006, 0.06], [0.0, 600.0]).ticks(40.0), [0.001, 0.002, 0.005, 0.01, 0.02, 0.05]);
+        assert_eq!(LogScale::new([0.0006, 0.06], [0.0, 600.0]).ticks(40.0), [0.001, 0.002, 0.005, 0.01, 0.02, 0.05]);
     }
 
     #[test]
@@ -88,7 +88,7 @@ mod tests {
         for value in [0.003, 1.0, 4.9, 5.0, 77.0] {
             let [low, high] = range([value].into_iter(), [1.0, 10.0]);
             assert!(low < value && value < high);
-            assert!(Log::new([low, high], [0.0, 600.0]).ticks(40.0).len() >= 2, "{value}");
+            assert!(LogScale::new([low, high], [0.0, 600.0]).ticks(40.0).len() >= 2, "{value}");
         }
         assert!(range([f64::MIN_POSITIVE, f64::MAX].into_iter(), [1.0, 10.0]).iter().all(|end| end.is_finite()));
     }

@@ -1,9 +1,12 @@
 //! A sweep's page: the median time of a frame against the value that changes, one chart a scene, a line each technique with its
 //! settings. Hollow marks are values at which pixels are wrong.
 
-use super::scale::{self, Log};
-use super::{Anchor, Chart, Ink, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of};
-use crate::report::{Report, Row, Swept};
+use super::scale::{self, LogScale};
+use super::{
+    Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SMALL_SIZE, SceneChart, TEXT_SIZE, TITLE_SIZE, TextAnchor,
+    style_of,
+};
+use crate::report::{Report, ReportRow, SweepValue};
 
 /// Width of the page, unless names need more, and height of a chart, points.
 const WIDTH: f64 = 760.0;
@@ -31,9 +34,9 @@ pub fn sweep(report: &Report) -> Plot {
     plot.title = format!("Frame time against {name}");
     plot.summary =
         format!("{} charts: the median time of a frame against {name}, a line each technique.", scenes.len());
-    let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
+    let title = PlotText::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong();
     let facts = format!("{} · filled: right; hollow: pixels are wrong", report.adapter.name);
-    plot.texts = vec![title, Text::new([8.0, 38.0], facts, TEXT_SIZE, Ink::Dim)];
+    plot.texts = vec![title, PlotText::new([8.0, 38.0], facts, TEXT_SIZE, PlotInk::Dim)];
     let mut top = 56.0;
     for scene in scenes {
         plot.charts.push(chart(report, scene, &name).moved([0.0, top]));
@@ -60,30 +63,31 @@ fn lines_of(report: &Report, scene: &str) -> Vec<(String, Vec<usize>)> {
     lines
 }
 
-fn chart(report: &Report, scene: &str, name: &str) -> Chart {
+fn chart(report: &Report, scene: &str, name: &str) -> SceneChart {
     let lines_of = lines_of(report, scene);
     let rows = || lines_of.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
-    let area = Rect { min: [LEFT, TOP], max: [WIDTH - RIGHT, HEIGHT - BOTTOM] };
-    let values = |row: &Row| row.sweep.as_ref().map_or(1.0, |swept| swept.value);
-    let across = Log::new(scale::range(rows().map(values), [1.0, 10.0]), [area.min[0], area.max[0]]);
-    let up = Log::new(scale::range(rows().map(|row| row.frame_ms.median), NO_TIMES), [area.max[1], area.min[1]]);
-    let place = |row: &Row| [across.position(values(row)), up.position(row.frame_ms.median)];
+    let area = PlotRect { min: [LEFT, TOP], max: [WIDTH - RIGHT, HEIGHT - BOTTOM] };
+    let values = |row: &ReportRow| row.sweep.as_ref().map_or(1.0, |swept| swept.value);
+    let across = LogScale::new(scale::range(rows().map(values), [1.0, 10.0]), [area.min[0], area.max[0]]);
+    let up = LogScale::new(scale::range(rows().map(|row| row.frame_ms.median), NO_TIMES), [area.max[1], area.min[1]]);
+    let place = |row: &ReportRow| [across.position(values(row)), up.position(row.frame_ms.median)];
     let (mut lines, mut spots, mut names) = (Vec::new(), Vec::new(), Vec::new());
-    let mut values_shown: Vec<&Swept> = Vec::new();
-    let grid = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
+    let mut values_shown: Vec<&SweepValue> = Vec::new();
+    let grid =
+        |points: [[f64; 2]; 2]| PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false };
     let mut texts = vec![
-        Text::new([8.0, 10.0], scene, TITLE_SIZE, Ink::Text).strong(),
-        Text::new([8.0, 28.0], "frame time, median", SMALL_SIZE, Ink::Dim),
-        Text::new([area.max[0] + FPS, 28.0], "frames a second", SMALL_SIZE, Ink::Dim),
-        Text::new([area.max[0], area.max[1] + 32.0], name, SMALL_SIZE, Ink::Dim).anchored(Anchor::End),
+        PlotText::new([8.0, 10.0], scene, TITLE_SIZE, PlotInk::Text).strong(),
+        PlotText::new([8.0, 28.0], "frame time, median", SMALL_SIZE, PlotInk::Dim),
+        PlotText::new([area.max[0] + FPS, 28.0], "frames a second", SMALL_SIZE, PlotInk::Dim),
+        PlotText::new([area.max[0], area.max[1] + 32.0], name, SMALL_SIZE, PlotInk::Dim).anchored(TextAnchor::End),
     ];
     for tick in up.ticks(17.0) {
         let y = up.position(tick);
         lines.push(grid([[area.min[0], y], [area.max[0], y]]));
-        let ms = Text::new([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms"), SMALL_SIZE, Ink::Dim);
-        texts.push(ms.anchored(Anchor::End));
+        let ms = PlotText::new([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms"), SMALL_SIZE, PlotInk::Dim);
+        texts.push(ms.anchored(TextAnchor::End));
         let fps = (1000.0 / tick * 100.0).round() / 100.0;
-        texts.push(Text::new([area.max[0] + FPS, y], fps.to_string(), SMALL_SIZE, Ink::Dim));
+        texts.push(PlotText::new([area.max[0] + FPS, y], fps.to_string(), SMALL_SIZE, PlotInk::Dim));
     }
     for (caption, rows) in &lines_of {
         let style = style_of(&report.rows[rows[0]].technique);
@@ -95,13 +99,13 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
             let whisker = [at[0]; 2];
             let value = row.sweep.as_ref().map_or("", |swept| &swept.text);
             let name = format!("{} at {value}", row.summary());
-            spots.push(Spot { row: *index, at: *at, whisker, style, filled, name, details: row.details() });
+            spots.push(PlotPoint { row: *index, at: *at, whisker, style, filled, name, details: row.details() });
             if let Some(swept) = row.sweep.as_ref().filter(|swept| !values_shown.contains(swept)) {
                 values_shown.push(swept);
             }
         }
         if points.len() > 1 {
-            lines.push(Line { points, width: 1.3, ink: Ink::Technique(style), faint: false });
+            lines.push(PlotLine { points, width: 1.3, ink: PlotInk::Technique(style), faint: false });
         }
     }
     // Values that are measured, as far as their words have room.
@@ -110,8 +114,8 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
     for swept in values_shown {
         let x = across.position(swept.value);
         lines.insert(0, grid([[x, area.min[1]], [x, area.max[1]]]));
-        let text =
-            Text::new([x, area.max[1] + 13.0], swept.text.clone(), SMALL_SIZE, Ink::Dim).anchored(Anchor::Middle);
+        let text = PlotText::new([x, area.max[1] + 13.0], swept.text.clone(), SMALL_SIZE, PlotInk::Dim)
+            .anchored(TextAnchor::Middle);
         if text.rect().min[0] > free_from {
             free_from = text.rect().max[0] + 6.0;
             texts.push(text);
@@ -123,13 +127,13 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
     let room = area.max[1] + 4.0 - NAME_HEIGHT * names.len() as f64;
     let labels = names.into_iter().enumerate().map(|(index, (y, caption, style))| {
         low = y.min(room + NAME_HEIGHT * (index + 1) as f64).max(low + NAME_HEIGHT);
-        Text::new([area.max[0] + NAMES, low], caption, SMALL_SIZE, Ink::Technique(style))
+        PlotText::new([area.max[0] + NAMES, low], caption, SMALL_SIZE, PlotInk::Technique(style))
     });
     let labels = labels.collect();
-    Chart {
+    SceneChart {
         title: scene.to_owned(),
         area,
-        band: Rect { min: [area.min[0], area.max[1]], max: area.max },
+        band: PlotRect { min: [area.min[0], area.max[1]], max: area.max },
         lines,
         spots,
         texts,

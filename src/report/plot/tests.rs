@@ -2,16 +2,16 @@
 
 use super::*;
 use crate::report::tests::{adapter, row};
-use crate::report::{FrameTimes, Row, Swept};
+use crate::report::{FrameTimes, ReportRow, SweepValue};
 use std::collections::BTreeMap;
 
-const PAGE: Page = Page { width: 600.0, height: None, most_columns: 3, compact: false };
+const PAGE: PlotPage = PlotPage { width: 600.0, height: None, most_columns: 3, compact: false };
 
-fn report(rows: Vec<Row>) -> Report {
+fn report(rows: Vec<ReportRow>) -> Report {
     Report::new(adapter(), rows)
 }
 
-fn with_size(mut row: Row, size: u32, slope: &str) -> Row {
+fn with_size(mut row: ReportRow, size: u32, slope: &str) -> ReportRow {
     row.settings = BTreeMap::from([("size".to_owned(), size.to_string()), ("bias-slope".to_owned(), slope.to_owned())]);
     row
 }
@@ -29,19 +29,19 @@ fn crowd(count: usize) -> Report {
 
 /// What holds of every layout.
 fn check(plot: &Plot) {
-    let page = Rect { min: [0.0, 0.0], max: plot.size };
+    let page = PlotRect { min: [0.0, 0.0], max: plot.size };
     for text in &plot.texts {
         assert!(page.holds(&text.rect()), "{text:?} of {page:?}");
     }
     for chart in &plot.charts {
-        let rects: Vec<Rect> = chart.labels.iter().map(Text::rect).collect();
+        let rects: Vec<PlotRect> = chart.labels.iter().map(PlotText::rect).collect();
         for (index, rect) in rects.iter().enumerate() {
             assert!(rects[..index].iter().all(|other| !other.overlaps(rect)), "{:?}", chart.labels[index]);
             assert!(chart.area.holds(rect) || chart.band.holds(rect), "{:?}", chart.labels[index]);
         }
         for spot in &chart.spots {
             assert!(spot.at.iter().chain(&spot.whisker).all(|value| value.is_finite()));
-            let at = Rect { min: spot.at, max: spot.at };
+            let at = PlotRect { min: spot.at, max: spot.at };
             assert!(chart.area.holds(&at) || chart.band.holds(&at), "{spot:?}");
         }
         for text in &chart.texts {
@@ -51,7 +51,7 @@ fn check(plot: &Plot) {
 }
 
 /// The only chart.
-fn chart(plot: &Plot) -> &Chart {
+fn chart(plot: &Plot) -> &SceneChart {
     check(plot);
     assert_eq!(plot.charts.len(), 1);
     &plot.charts[0]
@@ -87,7 +87,7 @@ fn the_front_is_filled_and_joined_by_a_staircase() {
     let chart = chart(&plot);
     let filled: Vec<usize> = chart.spots.iter().filter(|spot| spot.filled).map(|spot| spot.row).collect();
     assert_eq!(filled, [0, 1]);
-    let front: Vec<&Line> = chart.lines.iter().filter(|line| line.ink == Ink::Front).collect();
+    let front: Vec<&PlotLine> = chart.lines.iter().filter(|line| line.ink == PlotInk::Front).collect();
     let [from, to] = [0, 1].map(|row| chart.spots.iter().find(|spot| spot.row == row).expect("a spot").at);
     assert_eq!(front.len(), 1);
     assert_eq!(front[0].points, [from, [to[0], from[1]], to]);
@@ -109,7 +109,7 @@ fn rows_that_differ_in_one_number_are_joined_in_its_order() {
     let plot = layout(&report(rows), &PAGE);
     let chart = chart(&plot);
     let at = |row: usize| chart.spots.iter().find(|spot| spot.row == row).expect("a spot").at;
-    let is_join = |line: &&Line| matches!(line.ink, Ink::Technique(_)) && line.width > 1.0;
+    let is_join = |line: &&PlotLine| matches!(line.ink, PlotInk::Technique(_)) && line.width > 1.0;
     let joins: Vec<Vec<[f64; 2]>> = chart.lines.iter().filter(is_join).map(|line| line.points.clone()).collect();
     assert_eq!(joins, [[at(3), at(4)], [at(1), at(2)], [at(2), at(0)]]);
     let words: Vec<&str> = chart.labels.iter().map(|label| label.text.as_str()).collect();
@@ -120,7 +120,7 @@ fn rows_that_differ_in_one_number_are_joined_in_its_order() {
 #[test]
 fn every_technique_is_named_in_a_crowd() {
     for count in [7, 16, 40] {
-        for page in [PAGE, Page { height: Some(200.0), compact: true, ..PAGE }, Page::PAPER] {
+        for page in [PAGE, PlotPage { height: Some(200.0), compact: true, ..PAGE }, PlotPage::PAPER] {
             let crowd = crowd(count);
             let plot = layout(&crowd, &page);
             let chart = chart(&plot);
@@ -139,13 +139,13 @@ fn every_technique_is_named_in_a_crowd() {
 #[test]
 fn a_sweep_s_page_holds_the_names_of_its_lines() {
     let swept = |label: &str, value: f64| {
-        let sweep = Some(Swept { name: "lights".to_owned(), value, text: value.to_string() });
-        Row { sweep, ..row("a", "shadow-map", label, 3, 4.0 + value) }
+        let sweep = Some(SweepValue { name: "lights".to_owned(), value, text: value.to_string() });
+        ReportRow { sweep, ..row("a", "shadow-map", label, 3, 4.0 + value) }
     };
     let page = |label: &str| sweep(&report(vec![swept(label, 1.0), swept(label, 2.0)]));
     let (short, long) = (page("pcf:3"), page("bias-slope 0, bias-constant 64, cull front, redraw changed"));
     for plot in [&short, &long] {
-        let page = Rect { min: [0.0, 0.0], max: plot.size };
+        let page = PlotRect { min: [0.0, 0.0], max: plot.size };
         let [chart] = &plot.charts[..] else { panic!("one chart") };
         assert_eq!(chart.labels.len(), 1);
         assert!(chart.labels.iter().all(|label| page.holds(&label.rect())), "{:?}", chart.labels);
@@ -157,23 +157,23 @@ fn a_sweep_s_page_holds_the_names_of_its_lines() {
 fn scenes_are_charts_side_by_side_on_the_same_axes() {
     let rows = |scene: &str, ms: f64| [row(scene, "none", "", 100, ms), row(scene, "z-fail", "", 0, ms * 3.0)];
     let rows = [rows("a", 1.0), rows("b", 10.0), rows("c", 30.0)].concat();
-    let plot = layout(&report(rows), &Page { width: 1000.0, ..PAGE });
+    let plot = layout(&report(rows), &PlotPage { width: 1000.0, ..PAGE });
     check(&plot);
     let titles: Vec<&str> = plot.charts.iter().map(|chart| chart.title.as_str()).collect();
     assert_eq!(titles, ["a", "b", "c"]);
     let tops: Vec<f64> = plot.charts.iter().map(|chart| chart.area.min[1]).collect();
     assert_eq!(tops, [tops[0]; 3]);
-    let words = |chart: &Chart| chart.texts.iter().skip(1).map(|text| text.text.clone()).collect::<Vec<_>>();
+    let words = |chart: &SceneChart| chart.texts.iter().skip(1).map(|text| text.text.clone()).collect::<Vec<_>>();
     assert_eq!(words(&plot.charts[0]), words(&plot.charts[2]));
     let narrow =
-        layout(&report(vec![row("a", "x", "", 1, 1.0), row("b", "x", "", 1, 1.0)]), &Page { width: 10.0, ..PAGE });
+        layout(&report(vec![row("a", "x", "", 1, 1.0), row("b", "x", "", 1, 1.0)]), &PlotPage { width: 10.0, ..PAGE });
     check(&narrow);
     assert!(narrow.charts[1].area.min[1] > narrow.charts[0].band.max[1], "below each other where there is no room");
 }
 
 #[test]
 fn a_given_height_is_filled() {
-    let page = Page { height: Some(400.0), compact: true, ..PAGE };
+    let page = PlotPage { height: Some(400.0), compact: true, ..PAGE };
     let plot = layout(&crowd(7), &page);
     check(&plot);
     assert!((380.0..=400.0).contains(&plot.size[1]), "{}", plot.size[1]);
@@ -182,7 +182,7 @@ fn a_given_height_is_filled() {
 #[test]
 fn degenerate_reports_have_a_layout() {
     let frame = |ms: f64| FrameTimes { median: ms, min: ms, max: ms, runs: 1 };
-    let timed = |ms: f64, wrong: u64| Row { frame_ms: frame(ms), ..row("a", "none", "", wrong, 1.0) };
+    let timed = |ms: f64, wrong: u64| ReportRow { frame_ms: frame(ms), ..row("a", "none", "", wrong, 1.0) };
     let cases = [
         Vec::new(),
         vec![timed(3.0, 0)],

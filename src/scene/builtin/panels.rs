@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// A corner, two edges; its lit side is where their cross product points.
-struct Parallelogram {
+struct Panel {
     name: &'static str,
     color: [f32; 3],
     corner: [f64; 3],
@@ -17,12 +17,12 @@ struct Parallelogram {
 }
 
 /// Nothing is behind the room's walls: as casters they could only shadow themselves.
-const fn wall(name: &'static str, color: [f32; 3], corner: [f64; 3], x: [f64; 3], y: [f64; 3]) -> Parallelogram {
-    Parallelogram { name, color, corner, edges: [x, y], casts: false }
+const fn wall(name: &'static str, color: [f32; 3], corner: [f64; 3], x: [f64; 3], y: [f64; 3]) -> Panel {
+    Panel { name, color, corner, edges: [x, y], casts: false }
 }
 
-const fn panel(name: &'static str, color: [f32; 3], corner: [f64; 3], x: [f64; 3], y: [f64; 3]) -> Parallelogram {
-    Parallelogram { name, color, corner, edges: [x, y], casts: true }
+const fn panel(name: &'static str, color: [f32; 3], corner: [f64; 3], x: [f64; 3], y: [f64; 3]) -> Panel {
+    Panel { name, color, corner, edges: [x, y], casts: true }
 }
 
 const PLASTER: [f32; 3] = [0.42, 0.44, 0.48];
@@ -30,7 +30,7 @@ const BACK: [f32; 3] = [0.50, 0.52, 0.56];
 const FLOOR: [f32; 3] = [0.46, 0.42, 0.37];
 
 /// x and y in ±100, z from −320 to −520.
-const PARALLELOGRAMS: [Parallelogram; 9] = [
+const PARALLELOGRAMS: [Panel; 9] = [
     wall("floor", FLOOR, [-100.0, -100.0, -320.0], [200.0, 0.0, 0.0], [0.0, 0.0, -200.0]),
     wall("ceiling", PLASTER, [-100.0, 100.0, -520.0], [200.0, 0.0, 0.0], [0.0, 0.0, 200.0]),
     wall("left wall", PLASTER, [-100.0, -100.0, -320.0], [0.0, 0.0, -200.0], [0.0, 200.0, 0.0]),
@@ -44,7 +44,7 @@ const PARALLELOGRAMS: [Parallelogram; 9] = [
 
 /// Figures of room and light from the source that founded the scene.
 pub fn build() -> Result<Scene, MeshError> {
-    let objects = PARALLELOGRAMS.iter().map(Parallelogram::object).collect::<Result<Vec<Object>, _>>()?;
+    let objects = PARALLELOGRAMS.iter().map(Panel::object).collect::<Result<Vec<Object>, _>>()?;
     Ok(SceneBuilder::new("panels")
         .ambient([0.12, 0.12, 0.13])
         .camera(Camera { near: 5.0, fov_y_degrees: 62.0, ..Camera::looking([0.0, 4.0, -250.0], [0.0, -6.0, -420.0]) })
@@ -53,7 +53,7 @@ pub fn build() -> Result<Scene, MeshError> {
         .build())
 }
 
-impl Parallelogram {
+impl Panel {
     fn object(&self) -> Result<Object, MeshError> {
         let mesh = shapes::parallelogram(DVec3::from_array(self.corner), self.edges.map(DVec3::from_array))?;
         Ok(Object { casts: self.casts, ..Object::new(self.name, Arc::new(mesh), Material::matte(self.color)) })

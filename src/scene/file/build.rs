@@ -1,18 +1,18 @@
 //! From the tables of a scene file to a scene, every value checked.
 
-use super::problem::Problem;
+use super::problem::SceneFileProblem;
 use super::shape;
 use super::tables::{
-    CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, SwingTable,
-    TechniqueTable, Text, Triple,
+    CameraTable, LightTable, MaterialTable, MeshSource, ObjectTable, OrbitTable, SceneTable, SpannedNumber,
+    SpannedText, SpannedTriple, SwingTable, TechniqueTable,
 };
-use crate::scene::model::{self, Models};
-use crate::scene::names::Names;
-use crate::scene::placement::Surroundings;
+use crate::scene::model::{self, ModelReader};
+use crate::scene::names::ObjectNames;
+use crate::scene::placement::SceneBounds;
 use crate::scene::suggestion;
 use crate::scene::{
-    Camera, Group, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing,
-    TechniqueRequest, Texture,
+    Camera, Light, Material, MaterialTexture, Mesh, MeshGroup, Motion, Object, Orbit, Pose, Projection, Scene, Shading,
+    Swing, TechniqueRequest,
     read_text::{quoted, stem},
 };
 use glam::DVec3;
@@ -32,25 +32,26 @@ const OF_OBLIQUE: [&str; 2] = [
 const DEFAULT_NEAR: f64 = 0.01;
 
 /// `name` is the scene's unless the table gives one; meshes are looked for in `folder`.
-pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Problem> {
+pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, SceneFileProblem> {
     let mut builder = ObjectBuilder {
         folder,
-        models: Models::default(),
+        models: ModelReader::default(),
         known: BTreeMap::new(),
         objects: Vec::new(),
-        names: Names::default(),
+        names: ObjectNames::default(),
     };
     for object in &table.objects {
         builder.add(object)?;
     }
     let objects = builder.objects;
     if objects.is_empty() {
-        return Err(Problem::new(0..0, "has no objects: add a table [[objects]] with a mesh"));
+        return Err(SceneFileProblem::new(0..0, "has no objects: add a table [[objects]] with a mesh"));
     }
     let lights = table.lights.iter().map(light).collect::<Result<Vec<_>, _>>()?;
     let points: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
     let surroundings = || {
-        Surroundings::of(&points).ok_or_else(|| Problem::new(0..0, "is too large to be looked at: scale objects down"))
+        SceneBounds::of(&points)
+            .ok_or_else(|| SceneFileProblem::new(0..0, "is too large to be looked at: scale objects down"))
     };
     Ok(Scene {
         name: table.name.unwrap_or_else(|| name.to_owned()),
@@ -66,9 +67,9 @@ pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Prob
     })
 }
 
-fn camera(table: &CameraTable) -> Result<Camera, Problem> {
+fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
     let [eye, target] = [finite(&table.eye)?, finite(&table.target)?];
-    let number = |value: &Option<Number>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
+    let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let fov_y_degrees = number(&table.fov_y_degrees, DEFAULT_FOV_Y_DEGREES)?;
     let camera = Camera {
         eye,
@@ -82,14 +83,14 @@ fn camera(table: &CameraTable) -> Result<Camera, Problem> {
     };
     camera.check().map_err(|reason| {
         let mends = if reason.contains(": ") { "" } else { ": correct it" };
-        Problem { at: culprit(table, &camera), reason: format!("{reason}{mends}") }
+        SceneFileProblem { at: culprit(table, &camera), reason: format!("{reason}{mends}") }
     })?;
     Ok(camera)
 }
 
 /// With `half_height` where the table gives none.
-fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Problem> {
-    let number = |value: &Option<Number>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
+fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, SceneFileProblem> {
+    let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let kind = table.projection.as_ref().map_or("perspective", |kind| kind.get_ref());
     let is_parallel = kind != "perspective";
     let unused = [
@@ -101,7 +102,7 @@ fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Probl
         return Err(unknown(kind, "projection", &Projection::NAMES));
     }
     if let Some((Some(value), _, reason)) = unused.into_iter().find(|(value, is_used, _)| value.is_some() && !is_used) {
-        return Err(Problem::new(value.span(), reason));
+        return Err(SceneFileProblem::new(value.span(), reason));
     }
     let half_height = number(&table.half_height, half_height)?;
     Ok(match kind {
@@ -117,7 +118,7 @@ fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Probl
 
 /// Where the value stands that makes the camera unusable.
 fn culprit(table: &CameraTable, camera: &Camera) -> usize {
-    let place = |value: &Option<Number>| value.as_ref().map(|value| value.span().start);
+    let place = |value: &Option<SpannedNumber>| value.as_ref().map(|value| value.span().start);
     let eye = table.eye.span().start;
     let with_defaults = Camera {
         projection: Projection::Perspective,
@@ -155,10 +156,10 @@ fn is_wrong_factor(projection: Projection) -> bool {
     matches!(projection, Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor))
 }
 
-fn light(table: &LightTable) -> Result<Light, Problem> {
-    let at_kind = |reason: &str| Problem::new(table.kind.span(), reason);
+fn light(table: &LightTable) -> Result<Light, SceneFileProblem> {
+    let at_kind = |reason: &str| SceneFileProblem::new(table.kind.span(), reason);
     let kind = table.kind.get_ref().as_str();
-    let (place, of_light): (&Triple, fn(DVec3) -> Light) = match (kind, &table.position, &table.towards) {
+    let (place, of_light): (&SpannedTriple, fn(DVec3) -> Light) = match (kind, &table.position, &table.towards) {
         ("point", Some(position), None) => (position, Light::point),
         ("directional", None, Some(towards)) => (towards, Light::directional),
         ("point", ..) => return Err(at_kind("a point light needs `position` and no `towards`: correct it")),
@@ -176,7 +177,7 @@ fn light(table: &LightTable) -> Result<Light, Problem> {
         motion: motion(DVec3::ZERO, table.orbit.as_ref(), table.swing.as_ref())?,
         ..default
     };
-    light.check().map_err(|reason| Problem::new(place.span(), format!("{reason}: correct it")))?;
+    light.check().map_err(|reason| SceneFileProblem::new(place.span(), format!("{reason}: correct it")))?;
     Ok(light)
 }
 
@@ -184,7 +185,7 @@ fn motion(
     spin_degrees_per_second: DVec3,
     orbit: Option<&OrbitTable>,
     swing: Option<&SwingTable>,
-) -> Result<Motion, Problem> {
+) -> Result<Motion, SceneFileProblem> {
     Ok(Motion {
         spin_degrees_per_second,
         orbit: orbit.map(self::orbit).transpose()?,
@@ -192,13 +193,13 @@ fn motion(
     })
 }
 
-fn orbit(table: &OrbitTable) -> Result<Orbit, Problem> {
+fn orbit(table: &OrbitTable) -> Result<Orbit, SceneFileProblem> {
     let axis = axis(&table.axis, "an orbit")?;
     let degrees_per_second = finite_number(&table.degrees_per_second)?;
     Ok(Orbit { center: finite(&table.center)?, axis, degrees_per_second })
 }
 
-fn swing(table: &SwingTable) -> Result<Swing, Problem> {
+fn swing(table: &SwingTable) -> Result<Swing, SceneFileProblem> {
     Ok(Swing {
         pivot: finite(&table.pivot)?,
         axis: axis(&table.axis, "a swing")?,
@@ -208,30 +209,30 @@ fn swing(table: &SwingTable) -> Result<Swing, Problem> {
 }
 
 /// At least a millisecond: moments counted in far shorter periods have no phase.
-fn period(value: &Number) -> Result<f64, Problem> {
+fn period(value: &SpannedNumber) -> Result<f64, SceneFileProblem> {
     let seconds = finite_number(value)?;
     if seconds >= 0.001 {
         return Ok(seconds);
     }
-    Err(Problem::new(value.span(), "a period is at least 0.001 seconds: correct it"))
+    Err(SceneFileProblem::new(value.span(), "a period is at least 0.001 seconds: correct it"))
 }
 
-fn axis(value: &Triple, of: &str) -> Result<DVec3, Problem> {
+fn axis(value: &SpannedTriple, of: &str) -> Result<DVec3, SceneFileProblem> {
     let axis = finite(value)?;
     match axis.try_normalize() {
         Some(_) => Ok(axis),
-        None => Err(Problem::new(value.span(), format!("the axis of {of} has no direction: correct it"))),
+        None => Err(SceneFileProblem::new(value.span(), format!("the axis of {of} has no direction: correct it"))),
     }
 }
 
-fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
+fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, SceneFileProblem> {
     let setting = |(key, value): (&String, &Spanned<toml::Value>)| {
         let text = match value.get_ref() {
             toml::Value::String(text) => text.clone(),
             toml::Value::Integer(number) => number.to_string(),
             toml::Value::Float(number) => number.to_string(),
             toml::Value::Boolean(is_on) => if *is_on { "on" } else { "off" }.to_owned(),
-            _ => return Err(Problem::new(value.span(), "a setting is a text or a number: correct it")),
+            _ => return Err(SceneFileProblem::new(value.span(), "a setting is a text or a number: correct it")),
         };
         Ok((key.clone(), text))
     };
@@ -242,19 +243,19 @@ fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
 /// Makes objects; models are loaded once.
 struct ObjectBuilder<'a> {
     folder: &'a Path,
-    models: Models,
+    models: ModelReader,
     /// By the name that the file gives them.
     known: BTreeMap<String, Arc<Mesh>>,
     objects: Vec<Object>,
-    names: Names,
+    names: ObjectNames,
 }
 
 impl ObjectBuilder<'_> {
-    fn add(&mut self, table: &ObjectTable) -> Result<(), Problem> {
+    fn add(&mut self, table: &ObjectTable) -> Result<(), SceneFileProblem> {
         let mesh = self.mesh(&table.mesh)?;
         let material = material(table.material.as_ref(), &mesh)?;
         let texture = table.material.as_ref().map_or(Ok(None), |table| self.texture(table, &mesh))?;
-        let triple = |value: &Option<Triple>, default: DVec3| value.as_ref().map_or(Ok(default), finite);
+        let triple = |value: &Option<SpannedTriple>, default: DVec3| value.as_ref().map_or(Ok(default), finite);
         let object = Object {
             pose: Pose {
                 translate: triple(&table.translate, DVec3::ZERO)?,
@@ -274,13 +275,13 @@ impl ObjectBuilder<'_> {
         };
         if !object.world_positions().iter().all(|position| position.is_finite()) {
             let reason = "the object's corners are not finite where it is placed: scale it down or move it nearer";
-            return Err(Problem::new(table.mesh.span(), reason));
+            return Err(SceneFileProblem::new(table.mesh.span(), reason));
         }
         self.objects.push(object);
         Ok(())
     }
 
-    fn mesh(&mut self, source: &Spanned<MeshSource>) -> Result<Arc<Mesh>, Problem> {
+    fn mesh(&mut self, source: &Spanned<MeshSource>) -> Result<Arc<Mesh>, SceneFileProblem> {
         let name = match source.get_ref() {
             MeshSource::Shape(table) => return shape::mesh(table).map(Arc::new),
             MeshSource::File(name) => name,
@@ -290,22 +291,22 @@ impl ObjectBuilder<'_> {
         }
         let (file, pointer) = model::split(name);
         let model = self.models.mesh(&self.folder.join(file), pointer);
-        let model = Arc::new(model.map_err(|error| Problem::new(source.span(), error.to_string()))?);
+        let model = Arc::new(model.map_err(|error| SceneFileProblem::new(source.span(), error.to_string()))?);
         self.known.insert(name.clone(), Arc::clone(&model));
         Ok(model)
     }
 
     /// The picture on those parts of a mesh that have no material of their own.
-    fn texture(&mut self, table: &MaterialTable, mesh: &Mesh) -> Result<Option<Texture>, Problem> {
+    fn texture(&mut self, table: &MaterialTable, mesh: &Mesh) -> Result<Option<MaterialTexture>, SceneFileProblem> {
         let Some(file) = &table.texture else {
             let side = table.texture_side.as_ref().map(|side| ("texture_side", side.span()));
             let clamps = table.texture_clamps.as_ref().map(|clamps| ("texture_clamps", clamps.span()));
             return side.or(clamps).map_or(Ok(None), |(key, span)| {
-                Err(Problem::new(span, format!("`{key}` is of a `texture`: give that too, or leave it out")))
+                Err(SceneFileProblem::new(span, format!("`{key}` is of a `texture`: give that too, or leave it out")))
             });
         };
-        let problem = |reason: String| Problem::new(file.span(), reason);
-        let own: Vec<&Group> = mesh.groups().iter().filter(|group| group.material.is_none()).collect();
+        let problem = |reason: String| SceneFileProblem::new(file.span(), reason);
+        let own: Vec<&MeshGroup> = mesh.groups().iter().filter(|group| group.material.is_none()).collect();
         if own.is_empty() {
             let reason = "every part of the model has a material of its own: name the picture in its library (map_Kd)";
             return Err(problem(reason.to_owned()));
@@ -319,7 +320,7 @@ impl ObjectBuilder<'_> {
         let path = self.folder.join(file.get_ref());
         let picture =
             self.models.pictures.load(&path).map_err(|error| problem(format!("{} {error}", quoted(file.get_ref()))))?;
-        Ok(Some(Texture {
+        Ok(Some(MaterialTexture {
             picture,
             side,
             clamps: table.texture_clamps.as_ref().is_some_and(|clamps| *clamps.get_ref()),
@@ -327,14 +328,14 @@ impl ObjectBuilder<'_> {
     }
 
     /// As given, else after the mesh, with a number where that is taken.
-    fn name(&mut self, table: &ObjectTable) -> Result<String, Problem> {
+    fn name(&mut self, table: &ObjectTable) -> Result<String, SceneFileProblem> {
         if let Some(name) = &table.name {
             if !self.names.take(name.get_ref()) {
                 let reason = format!(
                     "another object is called `{}` already: choose another name",
                     name.get_ref().escape_debug()
                 );
-                return Err(Problem::new(name.span(), reason));
+                return Err(SceneFileProblem::new(name.span(), reason));
             }
             return Ok(name.get_ref().clone());
         }
@@ -345,11 +346,12 @@ impl ObjectBuilder<'_> {
     }
 }
 
-fn material(table: Option<&MaterialTable>, mesh: &Mesh) -> Result<Material, Problem> {
+fn material(table: Option<&MaterialTable>, mesh: &Mesh) -> Result<Material, SceneFileProblem> {
     let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
     let default = Material { shading, ..Material::default() };
     let Some(table) = table else { return Ok(default) };
-    let fraction = |value: &Option<Number>, default: f32| value.as_ref().map_or(Ok(default), |v| within(v, 0.0, 1.0));
+    let fraction =
+        |value: &Option<SpannedNumber>, default: f32| value.as_ref().map_or(Ok(default), |v| within(v, 0.0, 1.0));
     Ok(Material {
         color: table.color.as_ref().map_or(Ok(default.color), |rgb| color(rgb, 1.0))?,
         specular: fraction(&table.specular, default.specular)?,
@@ -361,40 +363,47 @@ fn material(table: Option<&MaterialTable>, mesh: &Mesh) -> Result<Material, Prob
     })
 }
 
-fn shading_named(name: &Text) -> Result<Shading, Problem> {
+fn shading_named(name: &SpannedText) -> Result<Shading, SceneFileProblem> {
     let found = Shading::ALL.into_iter().find(|shading| shading.name() == name.get_ref());
     found.ok_or_else(|| unknown(name, "shading", &Shading::ALL.map(Shading::name)))
 }
 
-fn scale(value: Option<&Triple>) -> Result<DVec3, Problem> {
+fn scale(value: Option<&SpannedTriple>) -> Result<DVec3, SceneFileProblem> {
     let Some(value) = value else { return Ok(DVec3::ONE) };
     let scale = finite(value)?;
     if scale.to_array().contains(&0.0) {
-        return Err(Problem::new(value.span(), "a scale of zero flattens the object: give numbers other than 0"));
+        return Err(SceneFileProblem::new(
+            value.span(),
+            "a scale of zero flattens the object: give numbers other than 0",
+        ));
     }
     Ok(scale)
 }
 
-fn finite(value: &Triple) -> Result<DVec3, Problem> {
+fn finite(value: &SpannedTriple) -> Result<DVec3, SceneFileProblem> {
     let vector = DVec3::from_array(*value.get_ref());
     if vector.is_finite() { Ok(vector) } else { Err(not_finite(value)) }
 }
 
-fn finite_number(value: &Number) -> Result<f64, Problem> {
+fn finite_number(value: &SpannedNumber) -> Result<f64, SceneFileProblem> {
     let number = *value.get_ref();
     if number.is_finite() { Ok(number) } else { Err(not_finite(value)) }
 }
 
-fn not_finite<T>(value: &Spanned<T>) -> Problem {
-    Problem::new(value.span(), "NaN and infinity are no places or sizes: give finite numbers")
+fn not_finite<T>(value: &Spanned<T>) -> SceneFileProblem {
+    SceneFileProblem::new(value.span(), "NaN and infinity are no places or sizes: give finite numbers")
 }
 
-fn positive(value: &Number) -> Result<f64, Problem> {
+fn positive(value: &SpannedNumber) -> Result<f64, SceneFileProblem> {
     let number = finite_number(value)?;
-    if number > 0.0 { Ok(number) } else { Err(Problem::new(value.span(), "must be greater than 0: correct it")) }
+    if number > 0.0 {
+        Ok(number)
+    } else {
+        Err(SceneFileProblem::new(value.span(), "must be greater than 0: correct it"))
+    }
 }
 
-fn within(value: &Number, low: f64, high: f64) -> Result<f32, Problem> {
+fn within(value: &SpannedNumber, low: f64, high: f64) -> Result<f32, SceneFileProblem> {
     let number = finite_number(value)?;
     if (low..=high).contains(&number) {
         return Ok(number as f32);
@@ -404,20 +413,23 @@ fn within(value: &Number, low: f64, high: f64) -> Result<f32, Problem> {
     } else {
         format!("must be from {low} to {high}")
     };
-    Err(Problem::new(value.span(), format!("{range}: correct it")))
+    Err(SceneFileProblem::new(value.span(), format!("{range}: correct it")))
 }
 
 /// Linear RGB, each from 0 to `most`.
-fn color(value: &Triple, most: f64) -> Result<[f32; 3], Problem> {
+fn color(value: &SpannedTriple, most: f64) -> Result<[f32; 3], SceneFileProblem> {
     let rgb = finite(value)?.to_array();
     if rgb.iter().all(|part| (0.0..=most.min(f64::from(f32::MAX))).contains(part)) {
         return Ok(rgb.map(|part| part as f32));
     }
     let range = if most == 1.0 { "from 0 to 1" } else { "not negative" };
-    Err(Problem::new(value.span(), format!("a color has three parts, {range}: correct it")))
+    Err(SceneFileProblem::new(value.span(), format!("a color has three parts, {range}: correct it")))
 }
 
-fn unknown(name: &Text, what: &str, known: &[&str]) -> Problem {
+fn unknown(name: &SpannedText, what: &str, known: &[&str]) -> SceneFileProblem {
     let word = name.get_ref();
-    Problem::new(name.span(), format!("no {what} is called `{}`: {}", word.escape_debug(), suggestion(word, known)))
+    SceneFileProblem::new(
+        name.span(),
+        format!("no {what} is called `{}`: {}", word.escape_debug(), suggestion(word, known)),
+    )
 }

@@ -5,22 +5,22 @@ use std::ops::Range;
 
 /// Something wrong at a place of the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Problem {
+pub struct SceneFileProblem {
     /// Byte offset.
     pub at: usize,
     /// What is wrong and how to mend it, in one line.
     pub reason: String,
 }
 
-impl Problem {
+impl SceneFileProblem {
     /// `reason` holds for what stands at `span`.
-    pub fn new(span: Range<usize>, reason: impl Into<String>) -> Problem {
-        Problem { at: span.start, reason: reason.into() }
+    pub fn new(span: Range<usize>, reason: impl Into<String>) -> SceneFileProblem {
+        SceneFileProblem { at: span.start, reason: reason.into() }
     }
 
     /// What the TOML reader found.
-    pub fn of_toml(error: &toml::de::Error) -> Problem {
-        Problem { at: error.span().map_or(0, |span| span.start), reason: in_words(error.message()) }
+    pub fn of_toml(error: &toml::de::Error) -> SceneFileProblem {
+        SceneFileProblem { at: error.span().map_or(0, |span| span.start), reason: in_words(error.message()) }
     }
 
     /// Counted from 1.

@@ -3,7 +3,9 @@
 //! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
 //! read is the one that was written. Small meshes stand in the file itself; others become models.
 
-use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Picture, Projection, Scene, Texture};
+use crate::scene::{
+    Light, Material, MaterialTexture, Mesh, MeshGroup, Motion, Object, Projection, Scene, TextureImage,
+};
 use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -240,7 +242,7 @@ struct Beside<'a> {
     files: Vec<(String, Vec<u8>)>,
     /// Those that are files, known ones first.
     meshes: Vec<(Arc<Mesh>, String)>,
-    pictures: Vec<(Arc<Picture>, String)>,
+    pictures: Vec<(Arc<TextureImage>, String)>,
 }
 
 impl Beside<'_> {
@@ -257,7 +259,8 @@ impl Beside<'_> {
             return Ok(MeshSource::Triangles { shape: "triangles", points, indices: mesh.triangles().to_vec() });
         }
         let name = self.unused(&object.name, "obj");
-        let pictures = |group: &Group| group.texture.as_ref().map(|texture| self.picture(&texture.picture)).transpose();
+        let pictures =
+            |group: &MeshGroup| group.texture.as_ref().map(|texture| self.picture(&texture.picture)).transpose();
         let pictures = mesh.groups().iter().map(pictures).collect::<Result<Vec<_>, _>>()?;
         let library = library(mesh, &pictures);
         let of_library = (!library.is_empty()).then(|| format!("{name}.mtl"));
@@ -268,7 +271,7 @@ impl Beside<'_> {
     }
 
     /// The file of a picture, which is made unless it is there.
-    fn picture(&mut self, picture: &Arc<Picture>) -> Result<String, SaveError> {
+    fn picture(&mut self, picture: &Arc<TextureImage>) -> Result<String, SaveError> {
         if let Some((_, name)) = self.pictures.iter().find(|(other, _)| other == picture) {
             return Ok(name.clone());
         }
@@ -294,7 +297,7 @@ impl Beside<'_> {
     }
 }
 
-fn png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
+fn png(picture: &TextureImage) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let [width, height] = picture.size();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
@@ -327,7 +330,8 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     for Vec3 { x, y, z } in normals.into_iter().flatten().flatten() {
         line(format_args!("vn {x:?} {y:?} {z:?}"));
     }
-    let whole = [Group { name: String::new(), triangles: 0..mesh.triangles().len(), material: None, texture: None }];
+    let whole =
+        [MeshGroup { name: String::new(), triangles: 0..mesh.triangles().len(), material: None, texture: None }];
     let groups = if mesh.groups().is_empty() { &whole } else { mesh.groups() };
     let mut next_uv = 1;
     for (index, group) in groups.iter().enumerate() {
@@ -383,7 +387,7 @@ fn library(mesh: &Mesh, pictures: &[Option<String>]) -> String {
         {
             let _ = writeln!(out, "Ke {red} {green} {blue}");
         }
-        if let (Some(file), Some(Texture { clamps, .. })) = (picture, &group.texture) {
+        if let (Some(file), Some(MaterialTexture { clamps, .. })) = (picture, &group.texture) {
             let _ = writeln!(out, "map_Kd {}{file}", if *clamps { "-clamp on " } else { "" });
         }
     }

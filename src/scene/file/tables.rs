@@ -10,15 +10,15 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Spanned;
 
-pub type Number = Spanned<f64>;
-pub type Triple = Spanned<[f64; 3]>;
-pub type Text = Spanned<String>;
+pub type SpannedNumber = Spanned<f64>;
+pub type SpannedTriple = Spanned<[f64; 3]>;
+pub type SpannedText = Spanned<String>;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneTable {
     pub name: Option<String>,
-    pub ambient: Option<Triple>,
+    pub ambient: Option<SpannedTriple>,
     pub camera: Option<CameraTable>,
     #[serde(default)]
     pub lights: Vec<LightTable>,
@@ -30,28 +30,28 @@ pub struct SceneTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
-    pub eye: Triple,
-    pub target: Triple,
-    pub up: Option<Triple>,
-    pub projection: Option<Text>,
-    pub half_height: Option<Number>,
-    pub oblique_angle_degrees: Option<Number>,
-    pub oblique_factor: Option<Number>,
-    pub fov_y_degrees: Option<Number>,
-    pub near: Option<Number>,
-    pub far: Option<Number>,
+    pub eye: SpannedTriple,
+    pub target: SpannedTriple,
+    pub up: Option<SpannedTriple>,
+    pub projection: Option<SpannedText>,
+    pub half_height: Option<SpannedNumber>,
+    pub oblique_angle_degrees: Option<SpannedNumber>,
+    pub oblique_factor: Option<SpannedNumber>,
+    pub fov_y_degrees: Option<SpannedNumber>,
+    pub near: Option<SpannedNumber>,
+    pub far: Option<SpannedNumber>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LightTable {
-    pub kind: Text,
-    pub position: Option<Triple>,
-    pub towards: Option<Triple>,
-    pub color: Option<Triple>,
-    pub intensity: Option<Number>,
+    pub kind: SpannedText,
+    pub position: Option<SpannedTriple>,
+    pub towards: Option<SpannedTriple>,
+    pub color: Option<SpannedTriple>,
+    pub intensity: Option<SpannedNumber>,
     pub on: Option<bool>,
-    pub range: Option<Number>,
+    pub range: Option<SpannedNumber>,
     pub orbit: Option<OrbitTable>,
     pub swing: Option<SwingTable>,
 }
@@ -59,29 +59,29 @@ pub struct LightTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitTable {
-    pub center: Triple,
-    pub axis: Triple,
-    pub degrees_per_second: Number,
+    pub center: SpannedTriple,
+    pub axis: SpannedTriple,
+    pub degrees_per_second: SpannedNumber,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SwingTable {
-    pub pivot: Triple,
-    pub axis: Triple,
-    pub degrees: Number,
-    pub period_seconds: Number,
+    pub pivot: SpannedTriple,
+    pub axis: SpannedTriple,
+    pub degrees: SpannedNumber,
+    pub period_seconds: SpannedNumber,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectTable {
-    pub name: Option<Text>,
+    pub name: Option<SpannedText>,
     pub mesh: Spanned<MeshSource>,
-    pub translate: Option<Triple>,
-    pub rotate_degrees: Option<Triple>,
-    pub scale: Option<Triple>,
-    pub spin_degrees_per_second: Option<Triple>,
+    pub translate: Option<SpannedTriple>,
+    pub rotate_degrees: Option<SpannedTriple>,
+    pub scale: Option<SpannedTriple>,
+    pub spin_degrees_per_second: Option<SpannedTriple>,
     pub orbit: Option<OrbitTable>,
     pub swing: Option<SwingTable>,
     pub casts: Option<bool>,
@@ -93,15 +93,15 @@ pub struct ObjectTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialTable {
-    pub color: Option<Triple>,
-    pub specular: Option<Number>,
-    pub shininess: Option<Number>,
-    pub shading: Option<Text>,
-    pub opacity: Option<Number>,
-    pub emission: Option<Triple>,
-    pub checks: Option<Number>,
-    pub texture: Option<Text>,
-    pub texture_side: Option<Number>,
+    pub color: Option<SpannedTriple>,
+    pub specular: Option<SpannedNumber>,
+    pub shininess: Option<SpannedNumber>,
+    pub shading: Option<SpannedText>,
+    pub opacity: Option<SpannedNumber>,
+    pub emission: Option<SpannedTriple>,
+    pub checks: Option<SpannedNumber>,
+    pub texture: Option<SpannedText>,
+    pub texture_side: Option<SpannedNumber>,
     pub texture_clamps: Option<Spanned<bool>>,
 }
 
@@ -124,12 +124,12 @@ pub enum MeshSource {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeTable {
-    pub shape: Text,
+    pub shape: SpannedText,
     pub size: Option<Spanned<Vec<f64>>>,
-    pub radius: Option<Number>,
-    pub height: Option<Number>,
-    pub major: Option<Number>,
-    pub minor: Option<Number>,
+    pub radius: Option<SpannedNumber>,
+    pub height: Option<SpannedNumber>,
+    pub major: Option<SpannedNumber>,
+    pub minor: Option<SpannedNumber>,
     pub segments: Option<Spanned<Segments>>,
     pub profile: Option<Spanned<Vec<[f64; 2]>>>,
     pub closed: Option<Spanned<bool>>,

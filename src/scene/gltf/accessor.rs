@@ -1,18 +1,18 @@
 //! Numbers out of buffers. Nothing that a file says of them is believed: every byte is looked for.
 
-use super::document::{Document, Told};
+use super::document::{GltfDocument, GltfResult};
 use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, IndexComponentType};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
 use std::rc::Rc;
 
-impl Document {
+impl GltfDocument {
     /// The items of an accessor one after the other, `N` numbers each; normalized integers as fractions. Read once, however
     /// many ask for them.
     ///
     /// # Errors
     /// Another number of components; bytes beyond a buffer; more items than any model has.
-    pub fn numbers<const N: usize>(&self, index: Index<Accessor>) -> Told<Rc<Vec<f64>>> {
+    pub fn numbers<const N: usize>(&self, index: Index<Accessor>) -> GltfResult<Rc<Vec<f64>>> {
         let shape = self.root.get(index).map(|accessor| accessor.type_);
         if let Some(known) = self.numbers.borrow().get(&index.value())
             && matches!(shape, Some(Checked::Valid(shape)) if shape.multiplicity() == N)
@@ -24,7 +24,7 @@ impl Document {
         Ok(numbers)
     }
 
-    fn items<const N: usize>(&self, index: Index<Accessor>) -> Told<Vec<[f64; N]>> {
+    fn items<const N: usize>(&self, index: Index<Accessor>) -> GltfResult<Vec<[f64; N]>> {
         let broken = |why: &str| format!("accessor {} {why}: export the file again", index.value());
         let accessor = self.root.get(index).ok_or_else(|| broken("is missing"))?;
         let (Checked::Valid(GenericComponentType(kind)), Checked::Valid(shape)) =
@@ -65,7 +65,7 @@ impl Document {
     }
 
     /// The whole numbers of an accessor.
-    pub fn indices(&self, index: Index<Accessor>) -> Told<Vec<u32>> {
+    pub fn indices(&self, index: Index<Accessor>) -> GltfResult<Vec<u32>> {
         Ok(self.numbers::<1>(index)?.iter().map(|number| *number as u32).collect())
     }
 
@@ -76,7 +76,7 @@ impl Document {
         offset: u64,
         count: usize,
         size: usize,
-    ) -> Told<impl Iterator<Item = &[u8]>> {
+    ) -> GltfResult<impl Iterator<Item = &[u8]>> {
         let beyond = || format!("an accessor reaches beyond buffer view {}: export the file again", view.value());
         let stride = self.root.get(view).and_then(|view| view.byte_stride).map_or(size, |stride| stride.0);
         let start = usize::try_from(offset).map_err(|_| beyond())?;

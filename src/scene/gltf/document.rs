@@ -29,11 +29,11 @@ const KNOWN_EXTENSIONS: [&str; 5] = [
 ];
 
 /// Why a file can't be shown, with the mend; in one line, without its name.
-pub type Told<T> = Result<T, String>;
+pub type GltfResult<T> = Result<T, String>;
 
 /// A file that keeps the format's rules.
 #[derive(Debug)]
-pub struct Document {
+pub struct GltfDocument {
     /// Its JSON.
     pub root: Root,
     buffers: Vec<Vec<u8>>,
@@ -45,20 +45,20 @@ pub struct Document {
     left: Cell<u64>,
 }
 
-impl Document {
+impl GltfDocument {
     /// Reads a file and its buffers.
-    pub fn open(file: &Path) -> Result<Document, SceneError> {
+    pub fn open(file: &Path) -> Result<GltfDocument, SceneError> {
         let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
         let bytes = read_plain(file, MOST_BYTES).map_err(|error| told(error.to_string()))?;
         let (root, blob) = parse(&bytes, file)?;
         checked(&root).map_err(told)?;
         let (numbers, left) = (RefCell::default(), Cell::new(FREE_ITEMS));
-        let mut document = Document { root, buffers: Vec::new(), file: file.to_owned(), numbers, left };
+        let mut document = GltfDocument { root, buffers: Vec::new(), file: file.to_owned(), numbers, left };
         document.read_buffers(blob).map_err(told)?;
         Ok(document)
     }
 
-    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>) -> Told<()> {
+    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>) -> GltfResult<()> {
         let (mut total, mut read) = (0, 0);
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let mut bytes = match &buffer.uri {
@@ -87,7 +87,7 @@ impl Document {
     }
 
     /// The bytes of a buffer's or a picture's URI: a file beside this one, or data in the URI itself.
-    pub fn resource(&self, uri: &str, most: u64) -> Told<Vec<u8>> {
+    pub fn resource(&self, uri: &str, most: u64) -> GltfResult<Vec<u8>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let broken = || "a data URI can't be read: export the file again".to_owned();
             let (head, data) = data.split_once(',').ok_or_else(broken)?;
@@ -106,7 +106,7 @@ impl Document {
     }
 
     /// The bytes of a buffer's part.
-    pub fn view(&self, index: Index<buffer::View>) -> Told<&[u8]> {
+    pub fn view(&self, index: Index<buffer::View>) -> GltfResult<&[u8]> {
         let missing = || format!("buffer view {} is beyond its buffer: export the file again", index.value());
         let view = self.root.get(index).ok_or_else(missing)?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
@@ -118,7 +118,7 @@ impl Document {
     }
 
     /// Takes from the number of items that may still be read or made.
-    pub fn take(&self, items: u64) -> Told<()> {
+    pub fn take(&self, items: u64) -> GltfResult<()> {
         let left = self.left.get().checked_sub(items);
         self.left.set(left.ok_or("tells of more vertices and triangles than its buffers have bytes: split the model")?);
         Ok(())
@@ -174,7 +174,7 @@ fn in_a_line(words: &str) -> String {
 }
 
 /// Does the file keep the rules that reading relies on?
-fn checked(root: &Root) -> Told<()> {
+fn checked(root: &Root) -> GltfResult<()> {
     if root.asset.version.split('.').next() != Some("2") {
         let version = quoted(&root.asset.version);
         return Err(format!("is of glTF version {version}, and 2.0 is read: convert it"));

@@ -4,11 +4,11 @@
 //! what is seen is made 1, so that nothing is overexposed, and each keeps its share. Light does not fade here but towards its
 //! range.
 
-use super::document::Told;
+use super::document::GltfResult;
 use super::named;
-use super::nodes::Nodes;
-use crate::scene::not_taken::Refusals;
-use crate::scene::placement::Surroundings;
+use super::nodes::GltfNodes;
+use crate::scene::not_taken::UnsupportedList;
+use crate::scene::placement::SceneBounds;
 use crate::scene::read_text::quoted;
 use crate::scene::{Camera, Light, MOST_LIGHTS, Projection};
 use glam::DVec3;
@@ -22,13 +22,18 @@ const NEAREST: f64 = 1e-6;
 
 /// A light or a camera, and the node that it hangs on.
 #[derive(Debug, Clone)]
-pub struct Placed<T> {
+pub struct NodeItem<T> {
     pub node: usize,
     pub it: T,
 }
 
 /// The lights of the scene that is shown.
-pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut Refusals) -> Vec<Placed<Light>> {
+pub fn lights(
+    root: &Root,
+    nodes: &GltfNodes,
+    around: &SceneBounds,
+    refusals: &mut UnsupportedList,
+) -> Vec<NodeItem<Light>> {
     let mut found = Vec::new();
     for node in nodes.shown.iter().copied() {
         let extension = root.nodes[node].extensions.as_ref().and_then(|known| known.khr_lights_punctual.as_ref());
@@ -57,7 +62,7 @@ pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
         let bright = f64::from(given.intensity.max(0.0)) / (away * away);
         light.intensity = if bright.is_finite() { bright as f32 } else { 0.0 };
         match light.check() {
-            Ok(()) => found.push(Placed { node, it: light }),
+            Ok(()) => found.push(NodeItem { node, it: light }),
             Err(why) => refusals.refuse(format!("the light {}", quoted(&name)), why),
         }
     }
@@ -73,8 +78,13 @@ pub fn lights(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
 }
 
 /// The first camera of the scene that is shown.
-pub fn camera(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut Refusals) -> Option<Placed<Camera>> {
-    let mut seen: Option<Placed<Camera>> = None;
+pub fn camera(
+    root: &Root,
+    nodes: &GltfNodes,
+    around: &SceneBounds,
+    refusals: &mut UnsupportedList,
+) -> Option<NodeItem<Camera>> {
+    let mut seen: Option<NodeItem<Camera>> = None;
     for node in nodes.shown.iter().copied() {
         let Some(given) = root.nodes[node].camera.and_then(|camera| root.get(camera)) else { continue };
         let name = named(given.name.as_deref().or(root.nodes[node].name.as_deref()), || format!("node {node}"));
@@ -84,14 +94,14 @@ pub fn camera(root: &Root, nodes: &Nodes, around: &Surroundings, refusals: &mut 
             continue;
         }
         match placed(given, nodes, node, around) {
-            Ok(it) => seen = Some(Placed { node, it }),
+            Ok(it) => seen = Some(NodeItem { node, it }),
             Err(why) => refusals.refuse(what, why),
         }
     }
     seen
 }
 
-fn placed(given: &gltf::json::Camera, nodes: &Nodes, node: usize, around: &Surroundings) -> Told<Camera> {
+fn placed(given: &gltf::json::Camera, nodes: &GltfNodes, node: usize, around: &SceneBounds) -> GltfResult<Camera> {
     let world = &nodes.world[node];
     let eye = world.transform_point3(DVec3::ZERO);
     let ahead = world.transform_vector3(DVec3::NEG_Z).normalize_or_zero();

@@ -4,12 +4,12 @@
 //! that of the microfacets (2/α² − 2 with α = roughness², Walter et al. 2007), the strength the share of light that is
 //! reflected straight on (4 % of what is no metal, its colour of metal).
 
-use super::document::{Document, Told};
+use super::document::{GltfDocument, GltfResult};
 use super::named;
-use crate::scene::not_taken::Refusals;
-use crate::scene::picture::{MOST_FILE, Pictures};
+use crate::scene::not_taken::UnsupportedList;
+use crate::scene::picture::{ImageLoader, MOST_FILE};
 use crate::scene::read_text::quoted;
-use crate::scene::{Material, Texture};
+use crate::scene::{Material, MaterialTexture};
 use glam::{Vec2, Vec3};
 use gltf::json::material::AlphaMode;
 use gltf::json::texture::{Info, WrappingMode};
@@ -21,20 +21,20 @@ const PLAIN_REFLECTANCE: f32 = 0.04;
 
 /// What a primitive looks like.
 #[derive(Debug, Clone, Default)]
-pub struct Look {
+pub struct PrimitiveMaterial {
     /// The material's name, or what stands for it.
     pub name: String,
     /// But for its shading; `None` where the file names none.
     pub material: Option<Material>,
     /// What its colour is multiplied with.
-    pub map: Option<Map>,
+    pub map: Option<GltfTexture>,
 }
 
 /// A picture, and how it lies on the surface.
 #[derive(Debug, Clone)]
-pub struct Map {
+pub struct GltfTexture {
     /// What is shown.
-    pub texture: Texture,
+    pub texture: MaterialTexture,
     /// Which of the vertices' places counts.
     pub set: u32,
     scale: Vec2,
@@ -42,7 +42,7 @@ pub struct Map {
     offset: Vec2,
 }
 
-impl Map {
+impl GltfTexture {
     /// Where a place of a vertex, from the picture's upper left corner, lies from its lower left corner.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         let scaled = uv * self.scale;
@@ -55,34 +55,38 @@ impl Map {
 
 /// A file's materials, each read once.
 #[derive(Debug)]
-pub struct Materials<'a> {
-    document: &'a Document,
-    pictures: &'a mut Pictures,
-    known: Vec<Option<(Look, Refusals)>>,
+pub struct GltfMaterials<'a> {
+    document: &'a GltfDocument,
+    pictures: &'a mut ImageLoader,
+    known: Vec<Option<(PrimitiveMaterial, UnsupportedList)>>,
 }
 
-impl<'a> Materials<'a> {
+impl<'a> GltfMaterials<'a> {
     /// None is read yet.
-    pub fn new(document: &'a Document, pictures: &'a mut Pictures) -> Materials<'a> {
-        Materials { document, pictures, known: vec![None; document.root.materials.len()] }
+    pub fn new(document: &'a GltfDocument, pictures: &'a mut ImageLoader) -> GltfMaterials<'a> {
+        GltfMaterials { document, pictures, known: vec![None; document.root.materials.len()] }
     }
 
     /// What a material looks like, and what of it is not shown.
-    pub fn look(&mut self, index: Option<Index<material::Material>>, refusals: &mut Refusals) -> Look {
+    pub fn look(
+        &mut self,
+        index: Option<Index<material::Material>>,
+        refusals: &mut UnsupportedList,
+    ) -> PrimitiveMaterial {
         let Some((index, given)) = index.and_then(|index| Some((index.value(), self.document.root.get(index)?))) else {
-            return Look::default();
+            return PrimitiveMaterial::default();
         };
         if self.known[index].is_none() {
-            let mut own = Refusals::default();
+            let mut own = UnsupportedList::default();
             let look = self.read(index, given, &mut own);
             self.known[index] = Some((look, own));
         }
-        let Some((look, own)) = &self.known[index] else { return Look::default() };
+        let Some((look, own)) = &self.known[index] else { return PrimitiveMaterial::default() };
         refusals.add(own);
         look.clone()
     }
 
-    fn read(&mut self, index: usize, given: &material::Material, refusals: &mut Refusals) -> Look {
+    fn read(&mut self, index: usize, given: &material::Material, refusals: &mut UnsupportedList) -> PrimitiveMaterial {
         let name = named(given.name.as_deref(), || format!("material {}", index + 1));
         let of = |what: &str| format!("{what} of {}", quoted(&name));
         let base = &given.pbr_metallic_roughness;
@@ -125,10 +129,10 @@ impl<'a> Materials<'a> {
             emission: given.emissive_factor.0.map(|channel| within(0.0, channel * strength, 1000.0)),
             ..Material::default()
         };
-        Look { name, material: Some(material), map }
+        PrimitiveMaterial { name, material: Some(material), map }
     }
 
-    fn map(&mut self, info: &Info, refusals: &mut Refusals) -> Told<Map> {
+    fn map(&mut self, info: &Info, refusals: &mut UnsupportedList) -> GltfResult<GltfTexture> {
         let root = &self.document.root;
         let texture = root.get(info.index).ok_or("the texture is missing")?;
         let image = texture.source;
@@ -165,16 +169,16 @@ impl<'a> Materials<'a> {
             );
         }
         let transform = info.extensions.as_ref().and_then(|known| known.texture_transform.as_ref());
-        let texture = Texture { picture, side: None, clamps };
+        let texture = MaterialTexture { picture, side: None, clamps };
         Ok(match transform {
-            Some(given) => Map {
+            Some(given) => GltfTexture {
                 texture,
                 set: given.tex_coord.unwrap_or(info.tex_coord),
                 scale: Vec2::from_array(given.scale.0),
                 turn: given.rotation.0,
                 offset: Vec2::from_array(given.offset.0),
             },
-            None => Map { texture, set: info.tex_coord, scale: Vec2::ONE, turn: 0.0, offset: Vec2::ZERO },
+            None => GltfTexture { texture, set: info.tex_coord, scale: Vec2::ONE, turn: 0.0, offset: Vec2::ZERO },
         })
     }
 }

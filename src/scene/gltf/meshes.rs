@@ -1,13 +1,13 @@
 //! Meshes: the primitives of one become the parts of one, so that what is closed stays closed.
 
-use super::document::{Document, Told};
-use super::materials::{Look, Map, Materials};
+use super::document::{GltfDocument, GltfResult};
+use super::materials::{GltfMaterials, GltfTexture, PrimitiveMaterial};
 use super::named;
 use crate::scene::mesh::is_usable_uv;
-use crate::scene::not_taken::Refusals;
+use crate::scene::not_taken::UnsupportedList;
 use crate::scene::polygon;
 use crate::scene::read_text::quoted;
-use crate::scene::{Group, Mesh, MeshBuilder, Shading};
+use crate::scene::{Mesh, MeshBuilder, MeshGroup, Shading};
 use foldhash::fast::RandomState;
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -20,7 +20,7 @@ const MOST_JOINT_SETS: u32 = 4;
 
 /// Where the vertices of a mesh go.
 #[derive(Debug, Clone, Copy)]
-pub enum Form<'a> {
+pub enum VertexTransform<'a> {
     /// Nowhere: its object says where it is.
     AsFile,
     /// Into world space.
@@ -31,25 +31,25 @@ pub enum Form<'a> {
 
 /// Reads meshes of a file.
 #[derive(Debug)]
-pub struct Meshes<'a> {
-    document: &'a Document,
-    materials: Materials<'a>,
+pub struct GltfMeshes<'a> {
+    document: &'a GltfDocument,
+    materials: GltfMaterials<'a>,
 }
 
-impl<'a> Meshes<'a> {
+impl<'a> GltfMeshes<'a> {
     /// Of this file.
-    pub fn new(document: &'a Document, materials: Materials<'a>) -> Meshes<'a> {
-        Meshes { document, materials }
+    pub fn new(document: &'a GltfDocument, materials: GltfMaterials<'a>) -> GltfMeshes<'a> {
+        GltfMeshes { document, materials }
     }
 
     /// A mesh of the file, which may have no triangle.
     ///
     /// # Errors
     /// Accessors that don't fit; an index beyond the vertices; a place that is no number.
-    pub fn mesh(&mut self, index: Index<mesh::Mesh>, form: Form) -> Told<Mesh> {
+    pub fn mesh(&mut self, index: Index<mesh::Mesh>, form: VertexTransform) -> GltfResult<Mesh> {
         let given = self.document.root.get(index).ok_or_else(|| format!("mesh {} is missing", index.value()))?;
         let name = named(given.name.as_deref(), || format!("mesh {}", index.value()));
-        let mut refusals = Refusals::default();
+        let mut refusals = UnsupportedList::default();
         let mut parts = Vec::new();
         for (at, primitive) in given.primitives.iter().enumerate() {
             let of = format!("{} (primitive {at})", quoted(&name));
@@ -62,7 +62,7 @@ impl<'a> Meshes<'a> {
                 refusals.refuse(format!("morph targets of {of}"), "the base shape is shown");
             }
             let look = self.materials.look(primitive.material, &mut refusals);
-            let part = Part::read(self.document, primitive, mode, &look, form);
+            let part = PrimitiveVertices::read(self.document, primitive, mode, &look, form);
             parts.push((part.map_err(|why| format!("{of}: {why}"))?, look));
         }
         let mesh = assemble(&parts, &name, &mut refusals).build();
@@ -71,7 +71,7 @@ impl<'a> Meshes<'a> {
 }
 
 /// A primitive's vertices and triangles.
-struct Part {
+struct PrimitiveVertices {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// By vertex.
@@ -81,9 +81,15 @@ struct Part {
     has_colors: bool,
 }
 
-impl Part {
+impl PrimitiveVertices {
     /// Of the vertices that its triangles use; others of the same numbers may be another part's.
-    fn read(document: &Document, primitive: &Primitive, mode: Mode, look: &Look, form: Form) -> Told<Part> {
+    fn read(
+        document: &GltfDocument,
+        primitive: &Primitive,
+        mode: Mode,
+        look: &PrimitiveMaterial,
+        form: VertexTransform,
+    ) -> GltfResult<PrimitiveVertices> {
         let accessor = |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
         let vectors = |semantic: Semantic| accessor(semantic).map(|index| document.numbers::<3>(index)).transpose();
         let all = vectors(Semantic::Positions)?.ok_or("has no positions: export the file again")?;
@@ -98,7 +104,7 @@ impl Part {
             None => (0..u32::try_from(all.len()).map_err(|_| "has too many vertices: split it")?).collect(),
         };
         // What is placed in world space counts as a part of the scene.
-        if matches!(form, Form::AsFile) {
+        if matches!(form, VertexTransform::AsFile) {
             document.take(indices.len() as u64)?;
         }
         let mut triangles = triangles(mode, &indices);
@@ -111,15 +117,15 @@ impl Part {
         let mut normals: Option<Vec<DVec3>> =
             all_normals.map(|normals| used.iter().map(|index| vector(normals, index)).collect());
         let is_mirrored = match form {
-            Form::AsFile => false,
-            Form::Placed(world) => {
+            VertexTransform::AsFile => false,
+            VertexTransform::Placed(world) => {
                 let turn = DMat3::from_mat4(*world);
                 let of_normals = turn.inverse().transpose();
                 positions.iter_mut().for_each(|position| *position = world.transform_point3(*position));
                 normals.iter_mut().flatten().for_each(|normal| *normal = (of_normals * *normal).normalize_or_zero());
                 turn.determinant() < 0.0
             }
-            Form::Skinned(joints) => {
+            VertexTransform::Skinned(joints) => {
                 let matrices = skin(document, &accessor, joints, &used, all.len())?;
                 for (position, matrix) in positions.iter_mut().zip(&matrices) {
                     *position = matrix.transform_point3(*position);
@@ -139,7 +145,7 @@ impl Part {
         let uvs = map.and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, &used));
         // A normal that is none is the triangle's own.
         let told = |normal: &DVec3| if normal.is_finite() { normal.as_vec3() } else { Vec3::ZERO };
-        Ok(Part {
+        Ok(PrimitiveVertices {
             positions,
             triangles,
             normals: normals.map(|normals| normals.iter().map(told).collect()),
@@ -165,7 +171,7 @@ fn used(triangles: &mut [[u32; 3]]) -> Vec<usize> {
 }
 
 /// Where vertices lie in a picture; `None` where they can't be placed.
-fn uvs(document: &Document, index: Index<Accessor>, map: &Map, used: &[usize]) -> Option<Vec<Vec2>> {
+fn uvs(document: &GltfDocument, index: Index<Accessor>, map: &GltfTexture, used: &[usize]) -> Option<Vec<Vec2>> {
     let numbers = document.numbers::<2>(index).ok()?;
     let all = numbers.as_chunks::<2>().0;
     let placed = |index: &usize| all.get(*index).map(|[u, v]| map.place(Vec2::new(*u as f32, *v as f32)));
@@ -175,12 +181,12 @@ fn uvs(document: &Document, index: Index<Accessor>, map: &Map, used: &[usize]) -
 
 /// Of each vertex that is used, the matrix that its joints move it by.
 fn skin(
-    document: &Document,
+    document: &GltfDocument,
     accessor: &dyn Fn(Semantic) -> Option<Index<Accessor>>,
     joints: &[DMat4],
     used: &[usize],
     count: usize,
-) -> Told<Vec<DMat4>> {
+) -> GltfResult<Vec<DMat4>> {
     let mut matrices = vec![DMat4::ZERO; used.len()];
     let mut sums = vec![0.0; used.len()];
     for set in 0..MOST_JOINT_SETS {
@@ -222,7 +228,11 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
 }
 
 /// One mesh of all parts.
-fn assemble(parts: &[(Part, Look)], name: &str, refusals: &mut Refusals) -> MeshBuilder {
+fn assemble(
+    parts: &[(PrimitiveVertices, PrimitiveMaterial)],
+    name: &str,
+    refusals: &mut UnsupportedList,
+) -> MeshBuilder {
     let is_smooth = parts.iter().any(|(part, _)| part.normals.is_some());
     let has_uvs = parts.iter().any(|(part, _)| part.uvs.is_some());
     let mut builder = MeshBuilder::default();
@@ -250,7 +260,7 @@ fn assemble(parts: &[(Part, Look)], name: &str, refusals: &mut Refusals) -> Mesh
             refusals.refuse(what, "vertices have no texture coordinates that can be used: export them too");
         }
         let shading = if part.normals.is_some() { Shading::Phong } else { Shading::Flat };
-        builder.groups.push(Group {
+        builder.groups.push(MeshGroup {
             name: look.name.clone(),
             triangles: start..builder.triangles.len(),
             material: look.material.map(|material| crate::scene::Material { shading, ..material }),

@@ -3,10 +3,10 @@
 //! What fits is a node that turns at one speed, whole turns, about one axis, alone among the nodes that its children
 //! hang on: what hangs on it runs along a circle and turns with it. Everything else is named and stands still.
 
-use super::document::{Document, Told};
+use super::document::{GltfDocument, GltfResult};
 use super::named;
-use super::nodes::{Nodes, pose_of, unit};
-use crate::scene::not_taken::Refusals;
+use super::nodes::{GltfNodes, pose_of, unit};
+use crate::scene::not_taken::UnsupportedList;
 use crate::scene::read_text::quoted;
 use crate::scene::{Motion, Orbit, Pose};
 use glam::{DQuat, DVec3};
@@ -20,7 +20,7 @@ const MOMENTS: usize = 7;
 
 /// How a node turns, and what hangs on it with it.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn {
+pub struct NodeRotation {
     pivot: DVec3,
     /// World space, of length 1.
     axis: DVec3,
@@ -29,24 +29,24 @@ pub struct Turn {
 
 /// The turns of a file's first animation.
 #[derive(Debug)]
-pub struct Turns {
+pub struct NodeRotations {
     /// By node: what moves it.
-    above: Vec<Above>,
+    above: Vec<MovingAncestor>,
 }
 
 /// What moves a node.
 #[derive(Debug, Clone, Copy)]
-enum Above {
+enum MovingAncestor {
     Nothing,
-    One(Turn),
+    One(NodeRotation),
     /// One that hangs on another.
     Several,
 }
 
-impl Turns {
+impl NodeRotations {
     /// Names what they leave out.
-    pub fn new(document: &Document, nodes: &Nodes, refusals: &mut Refusals) -> Turns {
-        let mut own: Vec<Option<Turn>> = vec![None; document.root.nodes.len()];
+    pub fn new(document: &GltfDocument, nodes: &GltfNodes, refusals: &mut UnsupportedList) -> NodeRotations {
+        let mut own: Vec<Option<NodeRotation>> = vec![None; document.root.nodes.len()];
         for (index, animation) in document.root.animations.iter().enumerate() {
             let name = named(animation.name.as_deref(), || format!("animation {index}"));
             if index > 0 {
@@ -64,28 +64,28 @@ impl Turns {
                 }
             }
         }
-        let mut above = vec![Above::Nothing; own.len()];
+        let mut above = vec![MovingAncestor::Nothing; own.len()];
         for node in nodes.all.iter().copied() {
-            let inherited = nodes.parents[node].map_or(Above::Nothing, |parent| above[parent]);
+            let inherited = nodes.parents[node].map_or(MovingAncestor::Nothing, |parent| above[parent]);
             above[node] = match (inherited, own[node]) {
                 (inherited, None) => inherited,
-                (Above::Nothing, Some(turn)) => Above::One(turn),
-                (Above::One(_) | Above::Several, Some(_)) => Above::Several,
+                (MovingAncestor::Nothing, Some(turn)) => MovingAncestor::One(turn),
+                (MovingAncestor::One(_) | MovingAncestor::Several, Some(_)) => MovingAncestor::Several,
             };
         }
-        Turns { above }
+        NodeRotations { above }
     }
 
     /// Does anything move a node?
     pub fn moves(&self, node: usize) -> bool {
-        !matches!(self.above[node], Above::Nothing)
+        !matches!(self.above[node], MovingAncestor::Nothing)
     }
 
     /// How what hangs on a node moves, and turns, as an object of this pose.
     ///
     /// # Errors
     /// A turn that no motion of ours is.
-    pub fn of_object(&self, nodes: &Nodes, node: usize, pose: &Pose) -> Told<Motion> {
+    pub fn of_object(&self, nodes: &GltfNodes, node: usize, pose: &Pose) -> GltfResult<Motion> {
         let Some(turn) = self.of(node)? else { return Ok(Motion::default()) };
         let at = nodes.world[node].transform_point3(DVec3::ZERO);
         let is_on_axis = (at - turn.pivot).cross(turn.axis).length() <= 1e-9 * at.distance(turn.pivot);
@@ -110,20 +110,20 @@ impl Turns {
     }
 
     /// How a light that hangs on a node moves; one that is nowhere turns too.
-    pub fn of_light(&self, node: usize) -> Told<Motion> {
+    pub fn of_light(&self, node: usize) -> GltfResult<Motion> {
         Ok(Motion { orbit: self.of(node)?.map(|turn| turn.orbit()), ..Motion::default() })
     }
 
-    fn of(&self, node: usize) -> Told<Option<Turn>> {
+    fn of(&self, node: usize) -> GltfResult<Option<NodeRotation>> {
         match self.above[node] {
-            Above::Nothing => Ok(None),
-            Above::One(turn) => Ok(Some(turn)),
-            Above::Several => Err("it hangs on two nodes that turn: it stands as at the start".to_owned()),
+            MovingAncestor::Nothing => Ok(None),
+            MovingAncestor::One(turn) => Ok(Some(turn)),
+            MovingAncestor::Several => Err("it hangs on two nodes that turn: it stands as at the start".to_owned()),
         }
     }
 }
 
-impl Turn {
+impl NodeRotation {
     fn orbit(&self) -> Orbit {
         Orbit { center: self.pivot, axis: self.axis, degrees_per_second: self.degrees_per_second }
     }
@@ -138,7 +138,12 @@ fn property(channel: &Channel) -> &'static str {
     }
 }
 
-fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Channel) -> Told<Turn> {
+fn turn(
+    document: &GltfDocument,
+    nodes: &GltfNodes,
+    animation: &Animation,
+    channel: &Channel,
+) -> GltfResult<NodeRotation> {
     const ONLY: &str = "only whole turns at one speed about one axis are shown: it stands as at the start";
     let only = || ONLY.to_owned();
     let node = channel.target.node.value();
@@ -188,7 +193,7 @@ fn turn(document: &Document, nodes: &Nodes, animation: &Animation, channel: &Cha
         return Err("what it hangs on is mirrored or stretched unevenly: it stands as at the start".to_owned());
     }
     let pivot = nodes.world[node].transform_point3(DVec3::ZERO);
-    Ok(Turn { pivot, axis, degrees_per_second: speed.length().to_degrees() })
+    Ok(NodeRotation { pivot, axis, degrees_per_second: speed.length().to_degrees() })
 }
 
 /// Stretched more along one axis than along another?

@@ -1,6 +1,6 @@
 //! The tree of a file's nodes, and where each of them is.
 
-use super::document::Told;
+use super::document::GltfResult;
 use crate::scene::Pose;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::{Index, Root, scene};
@@ -11,7 +11,7 @@ const BESIDE: f64 = 1e-6;
 
 /// All nodes of a file.
 #[derive(Debug)]
-pub struct Nodes {
+pub struct GltfNodes {
     /// World space from the node's own, by node.
     pub world: Vec<DMat4>,
     /// By node.
@@ -22,12 +22,12 @@ pub struct Nodes {
     pub shown: Vec<usize>,
 }
 
-impl Nodes {
+impl GltfNodes {
     /// Of the file's scene: the one it says is to be shown, the first, or all there is.
     ///
     /// # Errors
     /// Nodes that form no tree; numbers that are none.
-    pub fn new(root: &Root) -> Told<Nodes> {
+    pub fn new(root: &Root) -> GltfResult<GltfNodes> {
         let count = root.nodes.len();
         let mut parents = vec![None; count];
         for (parent, node) in root.nodes.iter().enumerate() {
@@ -58,7 +58,7 @@ impl Nodes {
             Some(scene) => below(root, &scene.nodes.iter().map(Index::value).collect::<Vec<_>>()),
             None => all.clone(),
         };
-        Ok(Nodes { world, parents, all, shown })
+        Ok(GltfNodes { world, parents, all, shown })
     }
 }
 

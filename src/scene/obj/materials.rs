@@ -2,13 +2,13 @@
 //!
 //! Only the lines that a [`Material`] can hold are read, and broken ones are passed over: a model
 //! is worth seeing without its colours. Of pictures, `map_Kd` is shown; what else the library asks for is named
-//! ([`Refusals`]).
+//! ([`UnsupportedList`]).
 
 use crate::files::read_plain;
-use crate::scene::not_taken::Refusals;
-use crate::scene::picture::Pictures;
+use crate::scene::not_taken::UnsupportedList;
+use crate::scene::picture::ImageLoader;
 use crate::scene::read_text::{decoded, quoted};
-use crate::scene::{Material, Shading, Texture};
+use crate::scene::{Material, MaterialTexture, Shading};
 use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -18,44 +18,44 @@ const MOST_BYTES: u64 = 64 << 20;
 
 /// What a model's libraries say.
 #[derive(Debug)]
-pub struct Libraries<'a> {
+pub struct MaterialLibraries<'a> {
     materials: Vec<tobj::Material>,
     /// Places in the list; of two with one name, the later holds.
     by_name: BTreeMap<String, usize>,
     /// Names of those that were read.
     read: BTreeSet<String>,
     /// By the material's name.
-    maps: BTreeMap<String, Map>,
+    maps: BTreeMap<String, ObjTexture>,
     /// What is asked for and not done.
-    pub refusals: Refusals,
-    pictures: &'a mut Pictures,
+    pub refusals: UnsupportedList,
+    pictures: &'a mut ImageLoader,
 }
 
 /// A picture of a material, and how it lies on the surface.
 #[derive(Debug, Clone)]
-pub struct Map {
+pub struct ObjTexture {
     /// What is shown.
-    pub texture: Texture,
+    pub texture: MaterialTexture,
     scale: Vec2,
     offset: Vec2,
 }
 
-impl Map {
+impl ObjTexture {
     /// Where a place of the surface lies in the picture.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         uv * self.scale + self.offset
     }
 }
 
-impl<'a> Libraries<'a> {
+impl<'a> MaterialLibraries<'a> {
     /// Nothing yet.
-    pub fn new(pictures: &'a mut Pictures) -> Libraries<'a> {
-        Libraries {
+    pub fn new(pictures: &'a mut ImageLoader) -> MaterialLibraries<'a> {
+        MaterialLibraries {
             materials: Vec::new(),
             by_name: BTreeMap::new(),
             read: BTreeSet::new(),
             maps: BTreeMap::new(),
-            refusals: Refusals::default(),
+            refusals: UnsupportedList::default(),
             pictures,
         }
     }
@@ -71,7 +71,7 @@ impl<'a> Libraries<'a> {
     }
 
     /// The picture of a material.
-    pub fn map(&self, material: &str) -> Option<&Map> {
+    pub fn map(&self, material: &str) -> Option<&ObjTexture> {
         self.maps.get(material)
     }
 
@@ -114,7 +114,7 @@ impl<'a> Libraries<'a> {
 
     fn add_map(&mut self, material: &str, rest: &str, folder: &Path) {
         let what = format!("map_Kd of {}", quoted(material));
-        let line = MapLine::parse(rest);
+        let line = ObjTextureLine::parse(rest);
         for option in &line.passed_over {
             self.refusals.refuse(format!("{option} of map_Kd of {}", quoted(material)), "nothing here does it");
         }
@@ -127,8 +127,8 @@ impl<'a> Libraries<'a> {
                 if picture.has_alpha() {
                     self.refusals.refuse(format!("the alpha of {}", quoted(&name)), "opacity is the material's (d)");
                 }
-                let texture = Texture { picture, side: None, clamps: line.clamps };
-                self.maps.insert(material.to_owned(), Map { texture, scale: line.scale, offset: line.offset });
+                let texture = MaterialTexture { picture, side: None, clamps: line.clamps };
+                self.maps.insert(material.to_owned(), ObjTexture { texture, scale: line.scale, offset: line.offset });
             }
             Err(error) => self.refusals.refuse(what, format!("{} {error}", quoted(&name))),
         }
@@ -140,7 +140,7 @@ pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = read_plain(library, MOST_BYTES) else { return Vec::new() };
     let text = decoded(bytes);
     let maps = text.lines().filter_map(|line| line.trim().strip_prefix("map_Kd"));
-    maps.map(|rest| library.with_file_name(MapLine::parse(rest).path())).collect()
+    maps.map(|rest| library.with_file_name(ObjTextureLine::parse(rest).path())).collect()
 }
 
 /// A picture other than that of the diffuse colour.
@@ -164,7 +164,7 @@ const OTHER_OPTIONS: [(&str, usize, Option<&str>); 9] = [
 
 /// The arguments of `map_Kd`.
 #[derive(Debug, PartialEq)]
-struct MapLine<'a> {
+struct ObjTextureLine<'a> {
     file: &'a str,
     scale: Vec2,
     offset: Vec2,
@@ -173,17 +173,22 @@ struct MapLine<'a> {
     passed_over: Vec<&'static str>,
 }
 
-impl<'a> MapLine<'a> {
+impl<'a> ObjTextureLine<'a> {
     /// The file's path, which may have been written on another system.
     fn path(&self) -> String {
         self.file.replace('\\', "/")
     }
 
     /// Options come first; what follows is the file, whose name may have spaces.
-    fn parse(rest: &'a str) -> MapLine<'a> {
+    fn parse(rest: &'a str) -> ObjTextureLine<'a> {
         let mut unused = Vec2::ZERO;
-        let mut line =
-            MapLine { file: rest.trim(), scale: Vec2::ONE, offset: Vec2::ZERO, clamps: false, passed_over: Vec::new() };
+        let mut line = ObjTextureLine {
+            file: rest.trim(),
+            scale: Vec2::ONE,
+            offset: Vec2::ZERO,
+            clamps: false,
+            passed_over: Vec::new(),
+        };
         while let Some((option, after)) = next_word(line.file).filter(|(word, _)| word.starts_with('-')) {
             line.file = match option {
                 "-s" => numbers(after, &mut line.scale),
@@ -277,14 +282,19 @@ mod tests {
 
     #[test]
     fn options_of_a_map_come_before_its_file_whose_name_may_have_spaces() {
-        let plain =
-            MapLine { file: "a b.png", scale: Vec2::ONE, offset: Vec2::ZERO, clamps: false, passed_over: Vec::new() };
+        let plain = ObjTextureLine {
+            file: "a b.png",
+            scale: Vec2::ONE,
+            offset: Vec2::ZERO,
+            clamps: false,
+            passed_over: Vec::new(),
+        };
         let cases = [
             ("a b.png", plain),
-            ("-s 2 a.png", MapLine { file: "a.png", scale: Vec2::new(2.0, 1.0), ..MapLine::parse("") }),
+            ("-s 2 a.png", ObjTextureLine { file: "a.png", scale: Vec2::new(2.0, 1.0), ..ObjTextureLine::parse("") }),
             (
                 "-s 2 3 1 -o 0.5 -clamp on 7.png",
-                MapLine {
+                ObjTextureLine {
                     file: "7.png",
                     scale: Vec2::new(2.0, 3.0),
                     offset: Vec2::new(0.5, 0.0),
@@ -292,15 +302,18 @@ mod tests {
                     passed_over: Vec::new(),
                 },
             ),
-            ("-o 1 2", MapLine { file: "2", offset: Vec2::new(1.0, 0.0), ..MapLine::parse("") }),
-            ("-mm 0 1 -bm 2 x", MapLine { file: "x", ..MapLine::parse("") }),
-            ("-mm 0 2 -cc on x", MapLine { file: "x", passed_over: vec!["-mm", "-cc"], ..MapLine::parse("") }),
-            ("-t 1 1 1 x", MapLine { file: "x", passed_over: vec!["-t"], ..MapLine::parse("") }),
-            ("-odd.png", MapLine { file: "-odd.png", ..MapLine::parse("") }),
-            ("-clamp", MapLine::parse("")),
+            ("-o 1 2", ObjTextureLine { file: "2", offset: Vec2::new(1.0, 0.0), ..ObjTextureLine::parse("") }),
+            ("-mm 0 1 -bm 2 x", ObjTextureLine { file: "x", ..ObjTextureLine::parse("") }),
+            (
+                "-mm 0 2 -cc on x",
+                ObjTextureLine { file: "x", passed_over: vec!["-mm", "-cc"], ..ObjTextureLine::parse("") },
+            ),
+            ("-t 1 1 1 x", ObjTextureLine { file: "x", passed_over: vec!["-t"], ..ObjTextureLine::parse("") }),
+            ("-odd.png", ObjTextureLine { file: "-odd.png", ..ObjTextureLine::parse("") }),
+            ("-clamp", ObjTextureLine::parse("")),
         ];
         for (text, expected) in cases {
-            assert_eq!(MapLine::parse(text), expected, "{text}");
+            assert_eq!(ObjTextureLine::parse(text), expected, "{text}");
         }
     }
 }

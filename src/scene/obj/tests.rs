@@ -2,7 +2,7 @@ use super::*;
 use glam::{DVec3, Vec3};
 
 fn parsed(text: &str) -> Result<Mesh, String> {
-    parse(text, Path::new(""), &mut Pictures::default()).map_err(|problem| match problem {
+    parse(text, Path::new(""), &mut ImageLoader::default()).map_err(|problem| match problem {
         FileProblem::Line(line, reason) => format!("{line}: {reason}"),
         FileProblem::File(reason) => reason,
     })
@@ -79,7 +79,7 @@ fn a_material_library_gives_groups_their_colours_and_a_broken_one_is_passed_over
     let library = "newmtl broken\nKd 1 2\nmap_Kd\nillum x\nnewmtl red\nKd 1 0 0.5\nNs 20\nd 0.5\nKs 0.2 0.4 0.6\n";
     std::fs::write(folder.path().join("a b.mtl"), library).expect("written");
     let text = format!("mtllib a b.mtl\n{SQUARE}usemtl red\nf 1 2 3\nusemtl broken\nf 1 3 4\n");
-    let mesh = parse(&text, folder.path(), &mut Pictures::default()).expect("a mesh");
+    let mesh = parse(&text, folder.path(), &mut ImageLoader::default()).expect("a mesh");
     let red = mesh.groups()[0].material.expect("red");
     assert_eq!((red.color, red.shininess, red.opacity), ([1.0, 0.0, 0.5], 20.0, 0.5));
     assert!((red.specular - 0.4).abs() < 1e-6);

@@ -12,7 +12,7 @@ use std::ops::AddAssign;
 
 /// What an OBJ file says; indices count from 0 and are in range.
 #[derive(Debug, Default, PartialEq)]
-pub struct Contents {
+pub struct ObjContents {
     /// Finite.
     pub positions: Vec<DVec3>,
     /// Finite in single precision, too.
@@ -20,16 +20,16 @@ pub struct Contents {
     /// Places in a picture; `None` where one can't be used.
     pub places: Vec<Option<Vec2>>,
     /// Of all faces, one after the other.
-    pub corners: Vec<Corner>,
+    pub corners: Vec<ObjCorner>,
     /// How many corners each face has: three or more.
     pub arities: Vec<u32>,
     /// Between faces: behind how many of them, and what.
-    pub statements: Vec<(usize, Statement)>,
+    pub statements: Vec<(usize, ObjStatement)>,
 }
 
 /// A corner of a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Corner {
+pub struct ObjCorner {
     pub vertex: u32,
     pub place: Option<u32>,
     pub normal: Option<u32>,
@@ -37,7 +37,7 @@ pub struct Corner {
 
 /// What holds for the faces that follow.
 #[derive(Debug, PartialEq)]
-pub enum Statement {
+pub enum ObjStatement {
     /// `o` or `g`; empty where it gives no name.
     Name(String),
     /// `usemtl`.
@@ -48,7 +48,7 @@ pub enum Statement {
 
 /// What is wrong with a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LineProblem {
+pub struct ObjLineProblem {
     /// Counted from 1.
     pub line: usize,
     /// What is wrong and how to mend it.
@@ -59,26 +59,27 @@ pub struct LineProblem {
 const PART: usize = 1 << 18;
 
 /// Reads and checks a file.
-pub fn read(raw: &str) -> Result<Contents, LineProblem> {
+pub fn read(raw: &str) -> Result<ObjContents, ObjLineProblem> {
     read_in_parts(raw, PART)
 }
 
-fn read_in_parts(raw: &str, size: usize) -> Result<Contents, LineProblem> {
+fn read_in_parts(raw: &str, size: usize) -> Result<ObjContents, ObjLineProblem> {
     let parts = parts(raw, size);
-    let counts: Vec<Counts> = parts.par_iter().map(|part| Counts::of(part)).collect();
-    let mut all = Counts::default();
+    let counts: Vec<ObjCounts> = parts.par_iter().map(|part| ObjCounts::of(part)).collect();
+    let mut all = ObjCounts::default();
     let mut before = Vec::with_capacity(parts.len());
     for count in counts {
         before.push(all);
         all += count;
     }
-    let read: Vec<Part> = parts.par_iter().zip(before).map(|(text, before)| Part::read(text, before, all)).collect();
+    let read: Vec<ObjChunk> =
+        parts.par_iter().zip(before).map(|(text, before)| ObjChunk::read(text, before, all)).collect();
     // The first error in the file's order, whichever thread was first.
     let of_vectors = read.iter().find_map(|part| part.of_vectors.clone());
     if let Some(problem) = of_vectors.or_else(|| read.iter().find_map(|part| part.of_faces.clone())) {
         return Err(problem);
     }
-    let mut joined = Contents {
+    let mut joined = ObjContents {
         positions: Vec::with_capacity(all.vertices),
         normals: Vec::with_capacity(all.normals),
         places: Vec::with_capacity(all.places),
@@ -86,7 +87,7 @@ fn read_in_parts(raw: &str, size: usize) -> Result<Contents, LineProblem> {
         arities: Vec::with_capacity(read.iter().map(|part| part.contents.arities.len()).sum()),
         statements: Vec::new(),
     };
-    for Part { contents, .. } in read {
+    for ObjChunk { contents, .. } in read {
         let faces = joined.arities.len();
         joined.positions.extend(contents.positions);
         joined.normals.extend(contents.normals);
@@ -116,15 +117,15 @@ fn parts(raw: &str, size: usize) -> Vec<&str> {
 
 /// How many lines, vertices, normals and places in a picture there are.
 #[derive(Debug, Clone, Copy, Default)]
-struct Counts {
+struct ObjCounts {
     lines: usize,
     vertices: usize,
     normals: usize,
     places: usize,
 }
 
-impl AddAssign for Counts {
-    fn add_assign(&mut self, more: Counts) {
+impl AddAssign for ObjCounts {
+    fn add_assign(&mut self, more: ObjCounts) {
         self.lines += more.lines;
         self.vertices += more.vertices;
         self.normals += more.normals;
@@ -132,9 +133,10 @@ impl AddAssign for Counts {
     }
 }
 
-impl Counts {
-    fn of(part: &str) -> Counts {
-        let mut counts = Counts { lines: part.bytes().filter(|byte| *byte == b'\n').count(), ..Counts::default() };
+impl ObjCounts {
+    fn of(part: &str) -> ObjCounts {
+        let mut counts =
+            ObjCounts { lines: part.bytes().filter(|byte| *byte == b'\n').count(), ..ObjCounts::default() };
         for (_, line) in lines(part) {
             match split_keyword(&line).0 {
                 "v" => counts.vertices += 1,
@@ -186,19 +188,19 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 
 /// Some lines of a file, and what is first wrong with them.
 #[derive(Debug, Default)]
-struct Part {
-    contents: Contents,
-    of_vectors: Option<LineProblem>,
-    of_faces: Option<LineProblem>,
+struct ObjChunk {
+    contents: ObjContents,
+    of_vectors: Option<ObjLineProblem>,
+    of_faces: Option<ObjLineProblem>,
 }
 
-impl Part {
-    fn read(text: &str, before: Counts, all: Counts) -> Part {
-        let mut part = Part::default();
+impl ObjChunk {
+    fn read(text: &str, before: ObjCounts, all: ObjCounts) -> ObjChunk {
+        let mut part = ObjChunk::default();
         for (at, line) in lines(text) {
             let (keyword, rest) = split_keyword(&line);
             let contents = &mut part.contents;
-            let told = |reason| LineProblem { line: before.lines + at + 1, reason };
+            let told = |reason| ObjLineProblem { line: before.lines + at + 1, reason };
             let mut state = |statement| contents.statements.push((contents.arities.len(), statement));
             match keyword {
                 "v" | "vn" => match vector(keyword, rest) {
@@ -213,9 +215,9 @@ impl Part {
                 "f" if part.of_faces.is_none() => {
                     part.of_faces = contents.add_face(rest, before, all).err().map(told);
                 }
-                "o" | "g" => state(Statement::Name(rest.to_owned())),
-                "usemtl" if !rest.is_empty() => state(Statement::Material(rest.to_owned())),
-                "mtllib" if !rest.is_empty() => state(Statement::Library(rest.to_owned())),
+                "o" | "g" => state(ObjStatement::Name(rest.to_owned())),
+                "usemtl" if !rest.is_empty() => state(ObjStatement::Material(rest.to_owned())),
+                "mtllib" if !rest.is_empty() => state(ObjStatement::Library(rest.to_owned())),
                 _ => {}
             }
         }
@@ -223,15 +225,15 @@ impl Part {
     }
 }
 
-impl Contents {
+impl ObjContents {
     /// Where a corner lies in a picture, if that can be used.
-    pub fn place_of(&self, corner: &Corner) -> Option<Vec2> {
+    pub fn place_of(&self, corner: &ObjCorner) -> Option<Vec2> {
         self.places[corner.place? as usize]
     }
 
     /// Adds a face of a part of a file that has so much before it and in all.
-    fn add_face(&mut self, rest: &str, before: Counts, all: Counts) -> Result<(), String> {
-        let here = Counts {
+    fn add_face(&mut self, rest: &str, before: ObjCounts, all: ObjCounts) -> Result<(), String> {
+        let here = ObjCounts {
             vertices: before.vertices + self.positions.len(),
             normals: before.normals + self.normals.len(),
             places: before.places + self.places.len(),
@@ -279,7 +281,7 @@ fn place(rest: &str) -> Option<Vec2> {
 }
 
 /// A corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-fn corner(word: &str, before: Counts, all: Counts) -> Result<Corner, String> {
+fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, String> {
     let mut parts = word.split('/');
     let (vertex, place, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
         [Some(vertex), place, normal, None] => (vertex, place.unwrap_or_default(), normal.unwrap_or_default()),
@@ -295,7 +297,7 @@ fn corner(word: &str, before: Counts, all: Counts) -> Result<Corner, String> {
         "" => None,
         place => index("place", "places", place, before.places, all.places).ok(),
     };
-    Ok(Corner { vertex, place, normal })
+    Ok(ObjCorner { vertex, place, normal })
 }
 
 /// An index, counted from 0; in the file from 1, and negative ones count back from the line.
@@ -326,7 +328,7 @@ mod tests {
         assert_eq!((whole.positions.len(), whole.normals.len(), whole.places.len()), (4, 2, 2));
         assert_eq!((&whole.arities[..], whole.statements.len()), ([3, 4, 3, 3].as_slice(), 4));
         assert_eq!(whole.corners[3..7].iter().map(|corner| corner.vertex).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        assert_eq!(whole.corners[9], Corner { vertex: 3, place: Some(0), normal: Some(0) });
+        assert_eq!(whole.corners[9], ObjCorner { vertex: 3, place: Some(0), normal: Some(0) });
         for size in 1..text.len() {
             assert_eq!(parts(text, size).concat(), text, "{size}");
             assert_eq!(read_in_parts(text, size).as_ref(), Ok(&whole), "{size}");

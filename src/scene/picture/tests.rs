@@ -1,8 +1,8 @@
 use super::*;
 
-fn board(size: [u32; 2], of: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
+fn board(size: [u32; 2], of: impl Fn(u32, u32) -> [u8; 4]) -> TextureImage {
     let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| of(x, y)).collect();
-    Picture::new("board", size, texels).expect("a picture")
+    TextureImage::new("board", size, texels).expect("a picture")
 }
 
 fn encode(color: png::ColorType, depth: png::BitDepth, size: [u32; 2], data: &[u8]) -> Vec<u8> {
@@ -17,11 +17,11 @@ fn encode(color: png::ColorType, depth: png::BitDepth, size: [u32; 2], data: &[u
     bytes
 }
 
-fn load(bytes: &[u8]) -> Result<Picture, PictureError> {
+fn load(bytes: &[u8]) -> Result<TextureImage, ImageError> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a picture");
     std::fs::write(&path, bytes).expect("written");
-    Picture::load(&path)
+    TextureImage::load(&path)
 }
 
 #[test]
@@ -118,10 +118,10 @@ fn together_they_have_a_limit() {
         std::fs::write(place(name), encode(png::ColorType::Grayscale, png::BitDepth::Eight, [4, 4], &[9; 16]))
             .expect("written");
     }
-    let mut pictures = Pictures { left: 20, ..Pictures::default() };
+    let mut pictures = ImageLoader { left: 20, ..ImageLoader::default() };
     let first = pictures.load(&place("a")).expect("16 texels");
     assert!(Arc::ptr_eq(&first, &pictures.load(&place("a")).expect("the same")));
-    assert!(matches!(pictures.load(&place("b")), Err(PictureError::TooMany)));
+    assert!(matches!(pictures.load(&place("b")), Err(ImageError::TooMany)));
 }
 
 #[test]

@@ -8,10 +8,10 @@ mod wrong_forms;
 
 pub use eyes::under_a_roof;
 
-use crate::stress::Case;
+use crate::stress::StressCase;
 
 /// All of them.
-pub fn all() -> impl Iterator<Item = &'static Case> {
+pub fn all() -> impl Iterator<Item = &'static StressCase> {
     [eyes::ALL, lights::ALL, meshes::ALL, receivers::ALL, wrong_forms::ALL].into_iter().flatten()
 }
 

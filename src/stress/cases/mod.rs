@@ -11,9 +11,9 @@ mod stage;
 mod sweeps;
 mod who;
 
-use super::Case;
+use super::StressCase;
 
 /// Every case: sweeps, then random scenes, then single extremes.
-pub fn all() -> impl Iterator<Item = &'static Case> {
+pub fn all() -> impl Iterator<Item = &'static StressCase> {
     sweeps::ALL.iter().chain([&random::RANDOM]).chain(extremes::all())
 }

@@ -3,19 +3,19 @@
 
 use super::who::{BY_VERTEX_SHADER, PLAIN, TOLD_IN_F32};
 use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene, shapes};
-use crate::stress::{Case, Drives, Least};
+use crate::stress::{CaseNumber, LeastShares, StressCase};
 use crate::technique::Technique;
 use glam::DVec3;
 
 const OTHERS: &str = "eyes and near planes are anywhere, and receivers are no planes: not promised";
 
 /// Only z-fail is promised right wherever eye, light and near plane are.
-pub const RANDOM: Case = Case {
+pub const RANDOM: StressCase = StressCase {
     name: "random",
     lesson: "soups of 1 to 200 triangles, any eye, any light, any near plane: z-fail asks nothing of a scene",
     parameter: "seed",
     values: &SEEDS,
-    drives: Drives::Scene(scene),
+    drives: CaseNumber::Scene(scene),
     without: &[
         (Technique::ZPass, OTHERS),
         (Technique::ZPassPlus, OTHERS),
@@ -26,7 +26,7 @@ pub const RANDOM: Case = Case {
     ],
     also: &[BY_VERTEX_SHADER],
     failures: &[TOLD_IN_F32.at_most(1e-4).perhaps()],
-    least: |_| Least::nothing("many eyes look past all there is, and many soups lie wholly in light or shadow"),
+    least: |_| LeastShares::nothing("many eyes look past all there is, and many soups lie wholly in light or shadow"),
     ..PLAIN
 };
 

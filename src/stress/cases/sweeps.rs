@@ -7,12 +7,12 @@ mod rounding;
 use super::stage::{carried, enlarged, floor, scene, still_life};
 use super::who::*;
 use crate::scene::{Light, MeshError, Object, shapes};
-use crate::stress::{Case, Drives, Failure, Kind, Least, Symptom, Trend};
+use crate::stress::{CaseNumber, ExpectedTrend, FailureSymptom, KnownFailure, LeastShares, StressCase, WrongPixelKind};
 use crate::technique::Technique;
 use glam::DVec3;
 
 /// All of them.
-pub const ALL: &[Case] = &[
+pub const ALL: &[StressCase] = &[
     NEAR_FAR,
     WORLD_OFFSET,
     WORLD_SCALE,
@@ -43,12 +43,12 @@ pub const ALL: &[Case] = &[
 // and what differs there lies in the edge band: too much of it. `edge-order` has no case, since no
 // setting makes it.
 
-const NEAR_FAR: Case = Case {
+const NEAR_FAR: StressCase = StressCase {
     name: "near-far",
     lesson: "the near plane comes to the eye while far stays: depth that is not reversed runs out of bits",
     parameter: "far / near",
     values: &[1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9],
-    drives: Drives::Scene(|ratio| {
+    drives: CaseNumber::Scene(|ratio| {
         let mut scene = still_life()?;
         scene.camera.far = Some(20.0);
         scene.camera.near = 20.0 / ratio;
@@ -78,51 +78,51 @@ const NEAR_FAR: Case = Case {
     ..PLAIN
 };
 
-const ROUNDED: Failure =
+const ROUNDED: KnownFailure =
     fails(TO_INFINITY, "depth-bits", "near 1 a float has 24 bits: surfaces and what is behind them round to one depth")
         .at(|ratio| ratio >= 1e6)
         .is_mixed()
         .at_most(0.33);
 
 /// Single pixels at first.
-const ROUNDING: Failure = Failure {
-    symptom: Symptom { kind: Kind::Either, most: 0.001, ..ROUNDED.symptom },
+const ROUNDING: KnownFailure = KnownFailure {
+    symptom: FailureSymptom { kind: WrongPixelKind::Either, most: 0.001, ..ROUNDED.symptom },
     at: |ratio| ratio >= 1e5,
     ..ROUNDED
 };
 
-const WORLD_OFFSET: Case = Case {
+const WORLD_OFFSET: StressCase = StressCase {
     name: "world-offset",
     lesson: "the whole scene far from the origin: who rounds before the eye is subtracted loses it",
     parameter: "offset in metres",
     values: &[0.0, 1e2, 1e4, 1e5, 1e6, 1e7, 1e8],
-    drives: Drives::Scene(|offset| Ok(carried(still_life()?, DVec3::new(1.0, 0.5, -0.25) * offset))),
+    drives: CaseNumber::Scene(|offset| Ok(carried(still_life()?, DVec3::new(1.0, 0.5, -0.25) * offset))),
     ..PLAIN
 };
 
-const WORLD_SCALE: Case = Case {
+const WORLD_SCALE: StressCase = StressCase {
     name: "world-scale",
     lesson: "the same scene as a grain of sand and as a continent: absolute tolerances show",
     parameter: "scale",
     values: &[1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6],
-    drives: Drives::Scene(|factor| Ok(enlarged(still_life()?, factor))),
+    drives: CaseNumber::Scene(|factor| Ok(enlarged(still_life()?, factor))),
     ..PLAIN
 };
 
-const LIGHT_CLOSE: Case = Case {
+const LIGHT_CLOSE: StressCase = StressCase {
     name: "light-close",
     lesson: "the light comes to the caster's face: its volume opens to a half-space",
     parameter: "distance in caster's sizes",
     values: &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
-    drives: Drives::Scene(|distance| {
+    drives: CaseNumber::Scene(|distance| {
         let mut scene = still_life()?;
         scene.lights = vec![Light::point([0.1, 1.1 + 0.8 * distance, 0.15])];
         Ok(scene)
     }),
     also: &[FINITE],
     least: |distance| match distance {
-        1.0 => Least::USUAL,
-        _ => Least { lit: 0.005, because: "only the box's top is lit", ..Least::USUAL },
+        1.0 => LeastShares::USUAL,
+        _ => LeastShares { lit: 0.005, because: "only the box's top is lit", ..LeastShares::USUAL },
     },
     failures: &[
         fails(FINITE, "finite-extrusion", "a vertex is carried by its distance to the light, which is next to nothing")
@@ -138,12 +138,12 @@ const LIGHT_CLOSE: Case = Case {
 /// Where the lamp of `light-far` goes.
 const FAR_AWAY: DVec3 = DVec3::new(0.2, 1.0, 0.4);
 
-const LIGHT_FAR: Case = Case {
+const LIGHT_FAR: StressCase = StressCase {
     name: "light-far",
     lesson: "a lamp goes away until it is a sun: one formula serves both",
     parameter: "distance in scene's sizes",
     values: &[1e1, 1e2, 1e3, 1e5, 1e7, 1e9],
-    drives: Drives::Scene(|distance| {
+    drives: CaseNumber::Scene(|distance| {
         let mut scene = still_life()?;
         scene.lights = vec![Light::point(FAR_AWAY.normalize() * (6.0 * distance))];
         Ok(scene)
@@ -162,7 +162,7 @@ const LIGHT_FAR: Case = Case {
             .is_missing()
             .at_most(0.001),
     ],
-    trend: Some(Trend::ConvergesTo(|| {
+    trend: Some(ExpectedTrend::ConvergesTo(|| {
         let mut scene = still_life()?;
         scene.lights = vec![Light::directional(FAR_AWAY)];
         Ok(scene)
@@ -170,12 +170,12 @@ const LIGHT_FAR: Case = Case {
     ..PLAIN
 };
 
-const SLIVER: Case = Case {
+const SLIVER: StressCase = StressCase {
     name: "sliver",
     lesson: "a triangle a metre wide, longer and longer: exact signs do not care, a threshold of shape drops it",
     parameter: "aspect ratio",
     values: &[1.0, 1e1, 1e2, 1e4, 1e6, 1e8],
-    drives: Drives::Scene(|aspect| {
+    drives: CaseNumber::Scene(|aspect| {
         let caster = Object::of("sliver", shapes::triangles(&sliver(aspect), &[[0, 1, 2]])?).at([0.0, 1.0, 0.0]);
         Ok(scene([0.5, 3.5, 4.5], [0.0, 0.3, 0.0], Light::point([0.3, 4.0, 0.8]), vec![floor(3.0)?, caster]))
     }),
@@ -196,19 +196,19 @@ fn sliver(aspect: f64) -> [[f64; 3]; 3] {
 }
 
 /// A count of 256 or 512 over a pixel.
-const WRAPS: Failure = fails(Z_FAIL, "wrap-256", "a count of 256 reads 0 in eight bits")
+const WRAPS: KnownFailure = fails(Z_FAIL, "wrap-256", "a count of 256 reads 0 in eight bits")
     .at(|count| count % 256.0 == 0.0)
     .is_missing()
     .at_most(0.05);
 
 // Clamped with all additions first, it is right: no pixel is in some of the volumes and in front of 255
 // others.
-const NESTED: Case = Case {
+const NESTED: StressCase = StressCase {
     name: "nested",
     lesson: "more and more volumes over the same pixels: eight bits read 256 as none",
     parameter: "volumes",
     values: &[1.0, 2.0, 16.0, 100.0, 255.0, 256.0, 257.0, 512.0, 600.0],
-    drives: Drives::Scene(|count| {
+    drives: CaseNumber::Scene(|count| {
         // Panes between lamp and floor that all throw the same shadow: a rim has all of them, or none.
         let light = DVec3::new(0.1, 8.0, 0.2);
         let panes = (0..count as u32).map(|index| {
@@ -253,12 +253,12 @@ const NESTED: Case = Case {
     ..PLAIN
 };
 
-const THIN_GAP: Case = Case {
+const THIN_GAP: StressCase = StressCase {
     name: "thin-gap",
     lesson: "a slit of light between two halves of a mesh closes: tolerant welding would close it first",
     parameter: "width in metres",
     values: &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
-    drives: Drives::Scene(|width| {
+    drives: CaseNumber::Scene(|width| {
         let halves =
             Object::of("halves", shapes::triangles(&slit(width), &SLIT_TRIANGLES)?).at([0.0, 1.0, 0.0]).unseen();
         // From ten widths above, the slit's image on the floor stays a tenth of a metre wide.
@@ -292,24 +292,24 @@ fn slit(width: f64) -> [[f64; 3]; 8] {
 
 const SLIT_TRIANGLES: [[u32; 3]; 4] = [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
 
-const THINNER_THAN_TEXELS: Failure =
+const THINNER_THAN_TEXELS: KnownFailure =
     fails(COARSE, "aliasing", "a bar is thinner than a texel: the map or texture has it, or has not")
         .at(|pixels| pixels > 0.3)
         .is_mixed()
         .at_most(0.07);
 
 /// Nearly every pixel that differs is near an edge: it shows by how many are excused.
-const THINNER_THAN_EDGES: Failure =
+const THINNER_THAN_EDGES: KnownFailure =
     fails(COARSE, "aliasing", "a bar is thinner than a texel, and all that differs lies along edges")
         .at(|pixels| pixels < 0.3)
         .at_most(0.001);
 
-const FINE_GRID: Case = Case {
+const FINE_GRID: StressCase = StressCase {
     name: "fine-grid",
     lesson: "bars thinner than pixels: each technique samples the same points, but a map samples its own",
     parameter: "bar in pixels",
     values: &[10.0, 5.0, 2.0, 1.0, 0.5, 0.1],
-    drives: Drives::Scene(|pixels| {
+    drives: CaseNumber::Scene(|pixels| {
         // A pixel of 240 rows is about 0.02 m of the floor. A map of 1024 texels is finer than
         // that, and what it blurs lies within the edge band: the coarse one shows what maps do.
         let pitch = 0.04 * pixels;
@@ -341,7 +341,7 @@ const FINE_GRID: Case = Case {
 };
 
 /// A pixel or two of a picture, in one view of hundreds.
-const SNAPPED: Failure = fails(
+const SNAPPED: KnownFailure = fails(
     Z_FAIL,
     "subpixel-edges",
     "corners snap to 1/256 of a pixel: a side of the volume that is hardly wider tilts, and meets the floor beside its place",
@@ -349,13 +349,13 @@ const SNAPPED: Failure = fails(
 .at_most(0.0001)
 .perhaps();
 
-const SUBPIXEL_EDGES: Case = Case {
+const SUBPIXEL_EDGES: StressCase = StressCase {
     name: "subpixel-edges",
     lesson: "a mesh of 48 000 triangles goes away from the eye until its edges are fractions of a pixel: parts of a pixel, \
              to which corners snap, are all that its volume's sides are wide",
     parameter: "pixels across",
     values: &[240.0, 120.0, 60.0, 30.0, 15.0],
-    drives: Drives::Scene(|pixels| {
+    drives: CaseNumber::Scene(|pixels| {
         let smooth = shapes::sphere(1.0, 220, 110)?;
         let bump = |p: &DVec3| {
             (*p * (1.0 + 0.35 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).sin() * (6.0 * p.z).cos())).to_array()
@@ -386,12 +386,12 @@ const SUBPIXEL_EDGES: Case = Case {
     ..PLAIN
 };
 
-const TRIANGLE_COUNT: Case = Case {
+const TRIANGLE_COUNT: StressCase = StressCase {
     name: "triangle-count",
     lesson: "the caster gets a million triangles: what grows, and how fast",
     parameter: "triangles",
     values: &[1e2, 1e3, 1e4, 1e5, 3e5, 1e6],
-    drives: Drives::Scene(|triangles| {
+    drives: CaseNumber::Scene(|triangles| {
         let rings = (triangles / 4.0).sqrt().round() as u32;
         let ball = Object::of("ball", shapes::sphere(0.6, 2 * rings, rings)?).at([0.0, 1.0, 0.0]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), vec![floor(3.0)?, ball]))
@@ -405,20 +405,20 @@ const TRIANGLE_COUNT: Case = Case {
     // A hundred thousand, flattened onto as many planes as have shadows, are a gigabyte.
     heavy_above: Some(1e4),
     // For ten times as many, n log n is a factor of twelve to fourteen, and n squared one of a hundred.
-    trend: Some(Trend::Grows(32.0)),
+    trend: Some(ExpectedTrend::Grows(32.0)),
     ..PLAIN
 };
 
 /// The coarsest maps.
-const COARSE_TEXELS: Failure =
+const COARSE_TEXELS: KnownFailure =
     fails(MAP, "aliasing", "each texel is many pixels of the floor").at(|size| size <= 64.0).at_most(0.005);
 
-const MAP_SIZE: Case = Case {
+const MAP_SIZE: StressCase = StressCase {
     name: "map-size",
     lesson: "more texels: the error falls, and never to nothing",
     parameter: "texels a side",
     values: &[64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0, 4096.0],
-    drives: Drives::Setting("size", || {
+    drives: CaseNumber::Setting("size", || {
         // A ring near a low lamp: the shadow's edge is long, and its texels are spread.
         let ring = Object::of("ring", shapes::torus(0.35, 0.12, 32, 16)?).at([0.0, 0.8, 0.0]);
         // Only the flat floor is asked.
@@ -433,7 +433,7 @@ const MAP_SIZE: Case = Case {
         (Technique::Planar, "it has no map"),
     ],
     failures: &[COARSE_TEXELS, COARSE_TEXELS.of(TEXTURE), COARSE_TEXELS.of(SILHOUETTE)],
-    trend: Some(Trend::Falls),
+    trend: Some(ExpectedTrend::Falls),
     ..PLAIN
 };
 
@@ -448,12 +448,12 @@ const ORBIT_STEPS: [f64; 1000] = {
     steps
 };
 
-const LIGHT_ORBIT: Case = Case {
+const LIGHT_ORBIT: StressCase = StressCase {
     name: "light-orbit",
     lesson: "the light turns by fiftieths of a degree: no pixel may flicker that does not in truth",
     parameter: "degrees",
     values: &ORBIT_STEPS,
-    drives: Drives::Motion(|degrees| {
+    drives: CaseNumber::Motion(|degrees| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let torus = Object::of("torus", shapes::torus(0.5, 0.2, 24, 12)?).at([0.0, 0.9, 0.0]);
         let light = Light::point([1.5 * cos, 3.5, 1.5 * sin]);

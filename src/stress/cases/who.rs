@@ -1,6 +1,6 @@
 //! Who runs beside the usual forms, what their failures are called, and the words that many cases share.
 
-use crate::stress::{Case, Drives, Entrant, Failure, Least};
+use crate::stress::{CaseNumber, Entrant, KnownFailure, LeastShares, StressCase};
 use crate::technique::Technique;
 
 pub const AUTO: Entrant = Entrant::of(Technique::Auto);
@@ -36,51 +36,51 @@ pub const UNCLIPPED: Entrant = Entrant::with(Technique::Planar, &[("clip", "off"
 pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse", "on")]);
 
 /// A known failure.
-pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> Failure {
-    Failure::new(of, name, because)
+pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> KnownFailure {
+    KnownFailure::new(of, name, because)
 }
 
 /// What tells facing and far vertices in 24 bits.
-pub const TOLD_IN_F32: Failure = fails(
+pub const TOLD_IN_F32: KnownFailure = fails(
     BY_VERTEX_SHADER,
     "f32-limit",
     "a vertex shader tells in 24 bits which way a triangle faces and its vertices go, and the light is too near its plane",
 );
 
-pub const NOT_PLANAR: Failure =
+pub const NOT_PLANAR: KnownFailure =
     fails(PLANAR, "not-planar", "a receiver that is not flat gets no shadow").is_missing().at_most(0.007);
-pub const NOT_PLANAR_TEXTURE: Failure =
+pub const NOT_PLANAR_TEXTURE: KnownFailure =
     fails(TEXTURE, "not-planar", "a receiver that is not flat has no texture, so it gets no shadow")
         .is_missing()
         .at_most(0.008);
-pub const NO_SELF_SHADOW: Failure =
+pub const NO_SELF_SHADOW: KnownFailure =
     fails(SILHOUETTE, "self-shadow", "a silhouette is not thrown on the object that it is of")
         .is_missing()
         .at_most(0.005);
-pub const BETWEEN: Failure = fails(
+pub const BETWEEN: KnownFailure = fails(
     SILHOUETTE,
     "between",
     "no depth is compared: what stands between light and caster is darkened like what lies behind",
 )
 .is_false()
 .at_most(0.02);
-pub const NO_FIT: Failure = fails(
+pub const NO_FIT: KnownFailure = fails(
     SILHOUETTE,
     "no-fit",
     "no picture holds a caster that reaches behind the light, so it casts nothing and the plan says so",
 )
 .is_missing();
 /// Each case has its own share of it.
-pub const CUT_BY_NEAR: Failure =
+pub const CUT_BY_NEAR: KnownFailure =
     fails(Z_PASS, "near-plane", "faces that the near plane cuts away, or that are behind the eye, are not counted");
 
 /// What is not said of a case: one value of the easiest scene.
-pub const PLAIN: Case = Case {
+pub const PLAIN: StressCase = StressCase {
     name: "",
     lesson: "",
     parameter: "form",
     values: &[0.0],
-    drives: Drives::Scene(|_| super::stage::still_life()),
+    drives: CaseNumber::Scene(|_| super::stage::still_life()),
     size: None,
     timed: false,
     also: &[],
@@ -88,6 +88,6 @@ pub const PLAIN: Case = Case {
     up_to: &[],
     heavy_above: None,
     failures: &[],
-    least: |_| Least::USUAL,
+    least: |_| LeastShares::USUAL,
     trend: None,
 };

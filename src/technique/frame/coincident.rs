@@ -4,7 +4,7 @@
 //! Whether a mesh has two of its own is found out once a place. Of different objects, all triangles of small ones are held
 //! against each other; those of large ones only where the boxes around two objects meet.
 
-use super::Placed;
+use super::FrameObject;
 use crate::geometry::{Caster, GeometryCache};
 use crate::math::AxisBox;
 use foldhash::fast::RandomState;
@@ -19,15 +19,15 @@ const MOST_OF_SMALL: usize = 256;
 const MOST_LOOKS: usize = 4;
 
 /// A triangle's corners, in an order that does not depend on where it begins or which way it runs.
-type Key = [[u64; 3]; 3];
+type CornersKey = [[u64; 3]; 3];
 
-type Keys = HashSet<Key, RandomState>;
+type CornersKeys = HashSet<CornersKey, RandomState>;
 
 /// Of all drawn triangles.
-pub(super) fn coincide(placed: &[Placed], cache: &mut GeometryCache) -> bool {
-    let drawn: Vec<&Placed> = placed.iter().filter(|placed| placed.surface.is_some()).collect();
-    let is_small = |placed: &Placed| placed.object.mesh.triangles().len() <= MOST_OF_SMALL;
-    let mut keys = Keys::default();
+pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> bool {
+    let drawn: Vec<&FrameObject> = placed.iter().filter(|placed| placed.surface.is_some()).collect();
+    let is_small = |placed: &FrameObject| placed.object.mesh.triangles().len() <= MOST_OF_SMALL;
+    let mut keys = CornersKeys::default();
     for placed in drawn.iter().filter(|placed| is_small(placed)) {
         if has_doubles(placed, &mut keys) {
             return true;
@@ -35,7 +35,7 @@ pub(super) fn coincide(placed: &[Placed], cache: &mut GeometryCache) -> bool {
     }
     for large in drawn.iter().filter(|placed| !is_small(placed)) {
         let caster = Caster { mesh: &large.object.mesh, pose: &large.object.pose, world: &large.world };
-        if cache.has_doubles(caster, || may_have_doubles(large) && has_doubles(large, &mut Keys::default())) {
+        if cache.has_doubles(caster, || may_have_doubles(large) && has_doubles(large, &mut CornersKeys::default())) {
             return true;
         }
     }
@@ -54,25 +54,25 @@ pub(super) fn coincide(placed: &[Placed], cache: &mut GeometryCache) -> bool {
             }
         }
         if work > most_work {
-            let mut keys = Keys::default();
+            let mut keys = CornersKeys::default();
             return drawn.iter().any(|placed| has_doubles(placed, &mut keys));
         }
     }
     pairs.into_iter().any(|([one, other], shared)| {
-        let keys: Keys = keys_within(drawn[other], shared).collect();
+        let keys: CornersKeys = keys_within(drawn[other], shared).collect();
         !keys.is_empty() && keys_within(drawn[one], shared).any(|key| keys.contains(&key))
     })
 }
 
 /// Adds an object's triangles; is one of them there already?
-fn has_doubles(placed: &Placed, keys: &mut Keys) -> bool {
+fn has_doubles(placed: &FrameObject, keys: &mut CornersKeys) -> bool {
     let triangles = placed.object.mesh.triangles();
     keys.reserve(triangles.len());
     triangles.iter().any(|corners| !keys.insert(key(placed, corners)))
 }
 
 /// Have two triangles of an object the same hash? Takes a tenth of the memory.
-fn may_have_doubles(placed: &Placed) -> bool {
+fn may_have_doubles(placed: &FrameObject) -> bool {
     let state = RandomState::default();
     let hash = |corners: &[u32; 3]| state.hash_one(key(placed, corners));
     let mut hashes: Vec<u64> = placed.object.mesh.triangles().par_iter().map(hash).collect();
@@ -81,13 +81,13 @@ fn may_have_doubles(placed: &Placed) -> bool {
 }
 
 /// The triangles of an object that lie wholly in a box.
-fn keys_within(placed: &Placed, within: AxisBox) -> impl Iterator<Item = Key> {
+fn keys_within(placed: &FrameObject, within: AxisBox) -> impl Iterator<Item = CornersKey> {
     let holds = move |vertex: &u32| within.holds(placed.world[*vertex as usize]);
     let inner = placed.object.mesh.triangles().iter().filter(move |corners| corners.iter().all(holds));
     inner.map(|corners| key(placed, corners))
 }
 
-fn key(placed: &Placed, corners: &[u32; 3]) -> Key {
+fn key(placed: &FrameObject, corners: &[u32; 3]) -> CornersKey {
     // −0 and 0 are one place.
     let mut key = corners.map(|vertex| (placed.world[vertex as usize] + 0.0).to_array().map(f64::to_bits));
     key.sort_unstable();
@@ -101,7 +101,7 @@ mod tests {
     use crate::scene::{Object, shapes};
 
     fn together(objects: &[Object]) -> bool {
-        let placed = |object| Placed { object, world: object.world_positions(), surface: Some(MeshId(0)) };
+        let placed = |object| FrameObject { object, world: object.world_positions(), surface: Some(MeshId(0)) };
         coincide(&objects.iter().map(placed).collect::<Vec<_>>(), &mut GeometryCache::default())
     }
 

@@ -6,36 +6,36 @@ use wgpu::{CompareFunction, StencilOperation};
 
 /// How surfaces are drawn in a pass.
 #[derive(Debug, Clone)]
-pub struct Drawn {
+pub struct SurfaceDrawing {
     pub(super) program: Program,
     pub(super) raster: RasterState,
     /// What a label program writes.
     pub(super) label: u32,
 }
 
-impl Drawn {
+impl SurfaceDrawing {
     /// Writes "lit" everywhere, or what a later layer says.
-    pub fn lit() -> Drawn {
-        Drawn::label(LIT.into())
+    pub fn lit() -> SurfaceDrawing {
+        SurfaceDrawing::label(LIT.into())
     }
 
     /// Writes "in shadow" everywhere.
-    pub fn shadow() -> Drawn {
-        Drawn::label(SHADOW.into())
+    pub fn shadow() -> SurfaceDrawing {
+        SurfaceDrawing::label(SHADOW.into())
     }
 
     /// Writes "in shadow" where less than half of the light arrives.
-    pub fn lit_by(how: Visibility) -> Drawn {
-        Drawn { program: Program::Label(how), ..Drawn::label(LIT.into()) }
+    pub fn lit_by(how: Visibility) -> SurfaceDrawing {
+        SurfaceDrawing { program: Program::Label(how), ..SurfaceDrawing::label(LIT.into()) }
     }
 
-    fn label(label: u32) -> Drawn {
+    fn label(label: u32) -> SurfaceDrawing {
         let raster = RasterState::visible_surface(ColorWrite::Replace);
-        Drawn { program: Program::Label(Visibility::Everywhere), raster, label }
+        SurfaceDrawing { program: Program::Label(Visibility::Everywhere), raster, label }
     }
 
     /// Only where the masked stencil equals `reference`.
-    pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> Drawn {
+    pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> SurfaceDrawing {
         let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
         self.raster = self.raster.with_stencil(equal, reference);
         self.raster.stencil.read_mask = read_mask;
@@ -45,7 +45,7 @@ impl Drawn {
 
     /// Adds light where the masked stencil is zero, and raises it there, so that of surfaces at one
     /// depth only the first is lit.
-    pub fn light_once_where_zero(read_mask: u32) -> Drawn {
+    pub fn light_once_where_zero(read_mask: u32) -> SurfaceDrawing {
         let once = StencilFace {
             compare: CompareFunction::Equal,
             pass_op: StencilOperation::IncrementClamp,
@@ -53,6 +53,6 @@ impl Drawn {
         };
         let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
         raster.stencil.read_mask = read_mask;
-        Drawn { program: Program::Light(Visibility::Everywhere), raster, label: LIT.into() }
+        SurfaceDrawing { program: Program::Light(Visibility::Everywhere), raster, label: LIT.into() }
     }
 }

@@ -1,11 +1,11 @@
 //! The passes that techniques share: ambient, light and mask, and what techniques add between them.
 
-use super::{Drawn, Frame, Piece};
+use super::{FrameBuilder, SurfaceDrawing, SurfacePiece};
 use crate::geometry::{self, RangeInView};
 use crate::numbers;
 use crate::plan::{
-    Attachment, AttachmentRole, ColorTarget, ColorWrite, Decision, DepthStencilTarget, Draw, DrawConstants, LightId,
-    Part, Pass, Program, RasterState, ViewId, Visibility,
+    Attachment, AttachmentRole, ColorTarget, ColorWrite, Decision, DepthStencilTarget, Draw, DrawConstants, DrawPart,
+    LightId, Pass, Program, RasterState, ViewId, Visibility,
 };
 use crate::scene::Object;
 use crate::truth::{BACKGROUND as BACKGROUND_LABEL, LIT};
@@ -15,22 +15,26 @@ use wgpu::TextureFormat;
 /// Linear colour of pixels that show no surface.
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
 
-impl Frame<'_> {
+impl FrameBuilder<'_> {
     /// Light added everywhere, or only once to each pixel where surfaces coincide.
-    pub fn light_everywhere(&self) -> Drawn {
-        let once = Drawn::light_once_where_zero(0xff);
-        if self.has_stencil { once } else { Drawn { raster: RasterState::visible_surface(ColorWrite::Add), ..once } }
+    pub fn light_everywhere(&self) -> SurfaceDrawing {
+        let once = SurfaceDrawing::light_once_where_zero(0xff);
+        if self.has_stencil {
+            once
+        } else {
+            SurfaceDrawing { raster: RasterState::visible_surface(ColorWrite::Add), ..once }
+        }
     }
 
     /// The same, as far as it arrives.
-    pub fn light_by(&self, how: Visibility) -> Drawn {
-        Drawn { program: Program::Light(how), ..self.light_everywhere() }
+    pub fn light_by(&self, how: Visibility) -> SurfaceDrawing {
+        SurfaceDrawing { program: Program::Light(how), ..self.light_everywhere() }
     }
 
     /// Darkens what is visible by one layer of a light's map.
-    pub fn darken_through(&self) -> Drawn {
+    pub fn darken_through(&self) -> SurfaceDrawing {
         let raster = RasterState::visible_surface(ColorWrite::Multiply);
-        Drawn { program: Program::Through, raster, label: LIT.into() }
+        SurfaceDrawing { program: Program::Through, raster, label: LIT.into() }
     }
 
     /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
@@ -103,8 +107,11 @@ impl Frame<'_> {
     pub fn ambient_pass(&mut self) {
         // Depth that is clamped lets through what lies between eye and near plane.
         let from_near = self.common.depth.clamps();
-        let drawn =
-            Drawn { program: Program::Ambient { from_near }, raster: RasterState::surface(), label: LIT.into() };
+        let drawn = SurfaceDrawing {
+            program: Program::Ambient { from_near },
+            raster: RasterState::surface(),
+            label: LIT.into(),
+        };
         let draws = self.surface_draws(|_| Some(&drawn));
         let purpose = "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest \
                        one is: all later passes ask about that surface.";
@@ -130,8 +137,8 @@ impl Frame<'_> {
 
     /// Adds a light's diffuse and highlight to the surfaces already visible; `shadowed` says how on
     /// objects that receive shadows. The others are lit as if nothing stood between.
-    pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &Drawn) {
-        let unshadowed = Drawn {
+    pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &SurfaceDrawing) {
+        let unshadowed = SurfaceDrawing {
             program: Program::Light(Visibility::Everywhere),
             raster: RasterState::visible_surface(ColorWrite::Add),
             label: LIT.into(),
@@ -151,14 +158,14 @@ impl Frame<'_> {
 
     /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in
     /// reverse, so that of surfaces at one depth the first drawn decides here too.
-    pub fn mask_pass(&mut self, light: LightId, layers: &[Drawn]) {
+    pub fn mask_pass(&mut self, light: LightId, layers: &[SurfaceDrawing]) {
         self.mask_pass_with(light, layers, Vec::new());
     }
 
     /// The same, and after the surfaces `over` them.
-    pub fn mask_pass_with(&mut self, light: LightId, layers: &[Drawn], over: Vec<Draw>) {
+    pub fn mask_pass_with(&mut self, light: LightId, layers: &[SurfaceDrawing], over: Vec<Draw>) {
         let mut draws = Vec::new();
-        let unshadowed = Drawn::lit();
+        let unshadowed = SurfaceDrawing::lit();
         for (index, layer) in layers.iter().enumerate() {
             let mut of_layer = self.surface_draws(|object| match (object.receives, index) {
                 (true, _) => Some(layer),
@@ -200,19 +207,19 @@ impl Frame<'_> {
     }
 
     /// One draw a piece of every visible object, as `look` says for the object.
-    fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
+    fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d SurfaceDrawing>) -> Vec<Draw> {
         self.draws_of(&self.pieces, look)
     }
 
-    fn draws_of<'d>(&self, pieces: &[Piece], look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
-        let draw = |piece: &Piece| {
+    fn draws_of<'d>(&self, pieces: &[SurfacePiece], look: impl Fn(&Object) -> Option<&'d SurfaceDrawing>) -> Vec<Draw> {
+        let draw = |piece: &SurfacePiece| {
             let object = self.placed[piece.object].object;
             let drawn = look(object)?;
             let (material, layer) = (piece.material, piece.layer);
             Some(Draw {
                 name: piece.name.clone(),
                 caster: Some(object.name.clone()),
-                part: Part::Surface,
+                part: DrawPart::Surface,
                 program: drawn.program,
                 raster: drawn.raster.clone(),
                 mesh: piece.mesh,

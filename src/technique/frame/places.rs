@@ -1,10 +1,10 @@
 //! Places a frame: objects in world space, lights, the camera, and the pictures that passes draw into.
 
-use super::{Frame, Piece, Placed};
+use super::{FrameBuilder, FrameObject, SurfacePiece};
 use crate::geometry::{ViewVolume, relative};
 use crate::math::depth::DepthCurve;
 use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, MeshId, PlanLight, PlanView};
-use crate::scene::{Group, Material, NotTaken, Object, Scene};
+use crate::scene::{Material, MeshGroup, Object, Scene, Unsupported};
 use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec3, DVec4};
 use wgpu::TextureFormat;
@@ -14,7 +14,7 @@ const MOST_DISTANCE: f64 = 1e18;
 /// Room behind the farthest surface for a far plane that the scene does not give.
 const FAR_MARGIN: f64 = 1.01;
 
-impl Frame<'_> {
+impl FrameBuilder<'_> {
     pub(super) fn add_attachments(&mut self) {
         let size = self.job.size;
         self.color = self.add_attachment(Attachment {
@@ -86,21 +86,21 @@ impl Frame<'_> {
                 let pieces = self.pieces_of(object, mesh);
                 self.pieces.extend(pieces);
             }
-            self.placed.push(Placed { object, world, surface });
+            self.placed.push(FrameObject { object, world, surface });
         }
         Ok(())
     }
 
     /// What a file of this name holds and nothing here shows.
-    fn name_not_taken(&mut self, decision: Decision, name: &str, list: &[NotTaken]) {
-        let named = |one: &NotTaken| LeftOut::named(decision, &one.what, name, one.because.as_str());
+    fn name_not_taken(&mut self, decision: Decision, name: &str, list: &[Unsupported]) {
+        let named = |one: &Unsupported| LeftOut::named(decision, &one.what, name, one.because.as_str());
         self.plan.left_out.extend(list.iter().map(named));
     }
 
     /// One piece a group of the object that is placed next.
-    fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<Piece> {
+    fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<SurfacePiece> {
         let (shading, index) = (self.common.shading, self.placed.len());
-        let piece = |group: &Group| Piece {
+        let piece = |group: &MeshGroup| SurfacePiece {
             name: match group.name.as_str() {
                 "" => object.name.clone(),
                 group => format!("{} · {group}", object.name),
@@ -140,7 +140,7 @@ impl Frame<'_> {
     }
 
     /// What is drawn or casts, and lies within the sides of the view or in front of it.
-    fn in_view(&self) -> impl Iterator<Item = &Placed<'_>> {
+    fn in_view(&self) -> impl Iterator<Item = &FrameObject<'_>> {
         let [width, height] = self.job.size.map(f64::from);
         let view = ViewVolume::new(&self.job.scene.camera, width / height);
         self.placed.iter().filter(move |placed| {

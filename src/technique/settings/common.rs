@@ -1,12 +1,12 @@
 //! The settings that every technique has.
 
 use super::super::lesson::{Lesson, cited};
-use super::face::{Number, SettingSpec, SettingValues, Values, Words, number, words};
+use super::face::{NumberSetting, SettingMap, SettingSpec, SettingValues, WordSetting, number, words};
 use crate::math::depth::DepthMapping;
 use crate::plan::Decision;
 use crate::scene::Shading;
 
-const DEPTH: Words<DepthMapping> = words(
+const DEPTH: WordSetting<DepthMapping> = words(
     "depth",
     &DEPTH_NAMES,
     &DepthMapping::ALL,
@@ -30,7 +30,7 @@ const DEPTH_NAMES: [&str; 5] = {
     [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
 // Two to the power of −22.
-const EPSILON: Number = number(
+const EPSILON: NumberSetting = number(
     "epsilon",
     [0.0, 0.1],
     "2.4e-7",
@@ -42,7 +42,7 @@ const EPSILON: Number = number(
         sources: &[cited::LENGYEL],
     },
 );
-const DIFFUSE: Words<bool> = words(
+const DIFFUSE: WordSetting<bool> = words(
     "diffuse",
     &["lambert", "wrapped"],
     &[false, true],
@@ -55,7 +55,7 @@ const DIFFUSE: Words<bool> = words(
         sources: &[cited::LAMBERT, cited::GREEN],
     },
 );
-const SHADING: Words<Option<Shading>> = words(
+const SHADING: WordSetting<Option<Shading>> = words(
     "shading",
     &["as-given", "flat", "gouraud", "phong"],
     &[None, Some(Shading::Flat), Some(Shading::Gouraud), Some(Shading::Phong)],
@@ -109,7 +109,7 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
         sources: &[cited::LENGYEL, cited::MCGUIRE, cited::LLOYD],
     },
 };
-const OCCLUSION: Words<bool> = words(
+const OCCLUSION: WordSetting<bool> = words(
     "occlusion",
     &["off", "queries"],
     &[false, true],
@@ -159,7 +159,7 @@ pub struct CommonSettings {
 }
 
 impl CommonSettings {
-    pub(in crate::technique) fn read(values: &Values) -> CommonSettings {
+    pub(in crate::technique) fn read(values: &SettingMap) -> CommonSettings {
         let allowed = match LEAVE_OUT.of(values) {
             "none" => [false; Decision::NAMES.len()],
             "all" => [true; Decision::NAMES.len()],
@@ -176,7 +176,7 @@ impl CommonSettings {
     }
 
     /// Why a setting does nothing as the others are; `None` where it does something.
-    pub(in crate::technique) fn without_effect(values: &Values, key: &str) -> Option<&'static str> {
+    pub(in crate::technique) fn without_effect(values: &SettingMap, key: &str) -> Option<&'static str> {
         let is_off = key == EPSILON.spec.key && DEPTH.read(values) != DepthMapping::StandardInfiniteEpsilon;
         is_off.then_some("No effect: only depth = standard-infinite-epsilon pulls infinity in")
     }

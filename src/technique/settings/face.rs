@@ -1,13 +1,13 @@
 //! A setting's face: its key, what it may be, and what each value becomes.
 //!
-//! A setting is a constant of the technique that has it: [`Words`], [`Number`] or [`NumberOr`]. Its values are
+//! A setting is a constant of the technique that has it: [`WordSetting`], [`NumberSetting`] or [`NumberOrWordSetting`]. Its values are
 //! written once, each word beside what it stands for, so that nothing else compares words.
 
 use super::super::lesson::Lesson;
 use std::collections::BTreeMap;
 
 /// Key and value of settings, as on the command line, in files and in a capture.
-pub type Values = BTreeMap<String, String>;
+pub type SettingMap = BTreeMap<String, String>;
 
 /// One setting of a technique.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,14 +52,14 @@ pub enum SettingValues {
 
 impl SettingSpec {
     /// What is set, or the default: also where what is set is not offered, as a folder may tell anything.
-    pub(in crate::technique) fn of(self, values: &Values) -> &str {
+    pub(in crate::technique) fn of(self, values: &SettingMap) -> &str {
         let set = values.get(self.key).map(String::as_str);
         set.filter(|value| self.values.check(value).is_ok()).unwrap_or(self.default)
     }
 }
 
 /// A setting that is one of some words, the first unless set.
-pub(in crate::technique) struct Words<T: 'static> {
+pub(in crate::technique) struct WordSetting<T: 'static> {
     pub spec: SettingSpec,
     values: &'static [T],
 }
@@ -71,12 +71,15 @@ pub(in crate::technique) const fn words<T>(
     values: &'static [T],
     meaning: &'static str,
     lesson: Lesson,
-) -> Words<T> {
+) -> WordSetting<T> {
     assert!(words.len() == values.len(), "each word stands for something");
-    Words { spec: SettingSpec { key, values: SettingValues::OneOf(words), default: words[0], meaning, lesson }, values }
+    WordSetting {
+        spec: SettingSpec { key, values: SettingValues::OneOf(words), default: words[0], meaning, lesson },
+        values,
+    }
 }
 
-impl<T: Copy + PartialEq> Words<T> {
+impl<T: Copy + PartialEq> WordSetting<T> {
     /// The word for a value.
     pub fn word(&self, value: T) -> &'static str {
         let SettingValues::OneOf(words) = self.spec.values else { return self.spec.default };
@@ -84,7 +87,7 @@ impl<T: Copy + PartialEq> Words<T> {
     }
 
     /// What is set stands for.
-    pub fn read(&self, values: &Values) -> T {
+    pub fn read(&self, values: &SettingMap) -> T {
         let SettingValues::OneOf(words) = self.spec.values else { return self.values[0] };
         let set = self.spec.of(values);
         self.values[words.iter().position(|word| *word == set).unwrap_or(0)]
@@ -92,7 +95,7 @@ impl<T: Copy + PartialEq> Words<T> {
 }
 
 /// A setting that is a number.
-pub(in crate::technique) struct Number {
+pub(in crate::technique) struct NumberSetting {
     pub spec: SettingSpec,
 }
 
@@ -103,8 +106,8 @@ pub(in crate::technique) const fn whole(
     default: &'static str,
     meaning: &'static str,
     lesson: Lesson,
-) -> Number {
-    Number { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning, lesson } }
+) -> NumberSetting {
+    NumberSetting { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning, lesson } }
 }
 
 /// A number with or without a fraction.
@@ -114,18 +117,18 @@ pub(in crate::technique) const fn number(
     default: &'static str,
     meaning: &'static str,
     lesson: Lesson,
-) -> Number {
-    Number { spec: SettingSpec { key, values: SettingValues::Number(low, high), default, meaning, lesson } }
+) -> NumberSetting {
+    NumberSetting { spec: SettingSpec { key, values: SettingValues::Number(low, high), default, meaning, lesson } }
 }
 
-impl Number {
-    pub fn read(&self, values: &Values) -> f64 {
+impl NumberSetting {
+    pub fn read(&self, values: &SettingMap) -> f64 {
         self.spec.of(values).parse().unwrap_or(0.0)
     }
 }
 
 /// A setting that is one word, or a number behind a prefix.
-pub(in crate::technique) struct NumberOr {
+pub(in crate::technique) struct NumberOrWordSetting {
     pub spec: SettingSpec,
 }
 
@@ -136,14 +139,14 @@ pub(in crate::technique) const fn number_or(
     (prefix, [low, high], whole): (&'static str, [f64; 2], bool),
     meaning: &'static str,
     lesson: Lesson,
-) -> NumberOr {
+) -> NumberOrWordSetting {
     let values = SettingValues::WordOr { words, prefix, low, high, whole };
-    NumberOr { spec: SettingSpec { key, values, default: words[0], meaning, lesson } }
+    NumberOrWordSetting { spec: SettingSpec { key, values, default: words[0], meaning, lesson } }
 }
 
-impl NumberOr {
+impl NumberOrWordSetting {
     /// The number; `None` where the word is set.
-    pub fn read(&self, values: &Values) -> Option<f64> {
+    pub fn read(&self, values: &SettingMap) -> Option<f64> {
         let SettingValues::WordOr { prefix, .. } = self.spec.values else { return None };
         self.spec.of(values).strip_prefix(prefix)?.parse().ok()
     }

@@ -2,13 +2,15 @@
 
 use super::super::lesson::{Lesson, cited};
 use super::common::with_own;
-use super::face::{Number, NumberOr, SettingSpec, Values, Words, number, number_or, whole, words};
+use super::face::{
+    NumberOrWordSetting, NumberSetting, SettingMap, SettingSpec, WordSetting, number, number_or, whole, words,
+};
 use wgpu::Face;
 
 /// The key of the texels along each side.
 pub(in crate::technique) const SIZE: &str = "size";
 
-const fn size(default: &'static str, most: i64, meaning: &'static str) -> Number {
+const fn size(default: &'static str, most: i64, meaning: &'static str) -> NumberSetting {
     const LESSON: Lesson = Lesson {
         text: "Texels along each side. Too few, and edges are stairs; twice as many cost four times the memory.",
         formula: "t = 2 d tan(v/2) / N, the side of a texel at the distance d under the field of view v, with N texels \
@@ -18,7 +20,7 @@ const fn size(default: &'static str, most: i64, meaning: &'static str) -> Number
     whole(SIZE, [1, most], default, meaning, LESSON)
 }
 
-const REDRAW: Words<bool> = words(
+const REDRAW: WordSetting<bool> = words(
     "redraw",
     &["always", "changed"],
     &[false, true],
@@ -31,9 +33,9 @@ const REDRAW: Words<bool> = words(
         sources: &[cited::WILLIAMS],
     },
 );
-const MAP_SIZE: Number = size("1024", 8192, "texels along each side of the map");
+const MAP_SIZE: NumberSetting = size("1024", 8192, "texels along each side of the map");
 // Rounding of positions to f32 differs by a few steps between the camera's and the light's view.
-const CONSTANT: Number = whole(
+const CONSTANT: NumberSetting = whole(
     "bias-constant",
     [-1_000_000, 1_000_000],
     "16",
@@ -44,7 +46,7 @@ const CONSTANT: Number = whole(
         sources: &[cited::REEVES, cited::SEGAL_AKELEY],
     },
 );
-const SLOPE: Number = number(
+const SLOPE: NumberSetting = number(
     "bias-slope",
     [-1000.0, 1000.0],
     "2.0",
@@ -58,7 +60,7 @@ const SLOPE: Number = number(
         sources: &[cited::WILLIAMS, cited::SEGAL_AKELEY],
     },
 );
-const NORMAL: Number = number(
+const NORMAL: NumberSetting = number(
     "bias-normal",
     [-100.0, 100.0],
     "0",
@@ -70,7 +72,7 @@ const NORMAL: Number = number(
         sources: &[cited::HOLBERT],
     },
 );
-const RECEIVER_PLANE: Words<bool> = words(
+const RECEIVER_PLANE: WordSetting<bool> = words(
     "bias-receiver-plane",
     &["off", "on"],
     &[false, true],
@@ -84,7 +86,7 @@ const RECEIVER_PLANE: Words<bool> = words(
         sources: &[cited::ISIDORO],
     },
 );
-const CULL: Words<Option<Face>> = words(
+const CULL: WordSetting<Option<Face>> = words(
     "cull",
     &["none", "back", "front"],
     &[None, Some(Face::Back), Some(Face::Front)],
@@ -96,7 +98,7 @@ const CULL: Words<Option<Face>> = words(
         sources: &[cited::WANG_MOLNAR],
     },
 );
-const FILTER: NumberOr = number_or(
+const FILTER: NumberOrWordSetting = number_or(
     "filter",
     &["none"],
     ("pcf:", [1.0, 15.0], true),
@@ -144,7 +146,7 @@ pub struct MapSettings {
 
 impl MapSettings {
     /// As they are set: of a choice, or in a capture.
-    pub fn read(values: &Values) -> MapSettings {
+    pub fn read(values: &SettingMap) -> MapSettings {
         MapSettings {
             size: MAP_SIZE.read(values) as u32,
             bias_constant: CONSTANT.read(values) as i32,
@@ -158,9 +160,9 @@ impl MapSettings {
     }
 }
 
-const TEXTURE_SIZE: Number = size("256", 4096, "texels along each side of a receiver's texture");
-const SILHOUETTE_SIZE: Number = size("512", 4096, "texels along each side of a silhouette's picture");
-const PASSES: Words<bool> = words(
+const TEXTURE_SIZE: NumberSetting = size("256", 4096, "texels along each side of a receiver's texture");
+const SILHOUETTE_SIZE: NumberSetting = size("512", 4096, "texels along each side of a silhouette's picture");
+const PASSES: WordSetting<bool> = words(
     "passes",
     &["single", "multi"],
     &[true, false],
@@ -174,7 +176,7 @@ const PASSES: Words<bool> = words(
         sources: &[cited::SEGAL],
     },
 );
-const REVERSE: Words<bool> = words(
+const REVERSE: WordSetting<bool> = words(
     "reverse",
     &["off", "on"],
     &[false, true],
@@ -187,7 +189,7 @@ const REVERSE: Words<bool> = words(
     },
 );
 
-const FIT: Words<bool> = words(
+const FIT: WordSetting<bool> = words(
     "fit",
     &["on", "off"],
     &[true, false],
@@ -200,7 +202,7 @@ const FIT: Words<bool> = words(
         sources: &[cited::SEGAL],
     },
 );
-const BORDER: Words<bool> = words(
+const BORDER: WordSetting<bool> = words(
     "border",
     &["on", "off"],
     &[true, false],
@@ -239,7 +241,7 @@ pub struct TextureSettings {
 
 impl TextureSettings {
     /// Of receivers' textures.
-    pub fn of_receivers(values: &Values) -> TextureSettings {
+    pub fn of_receivers(values: &SettingMap) -> TextureSettings {
         let (is_single_pass, projects_backwards) = (true, false);
         TextureSettings {
             size: TEXTURE_SIZE.read(values) as u32,
@@ -252,7 +254,7 @@ impl TextureSettings {
     }
 
     /// Of casters' silhouettes.
-    pub fn of_silhouettes(values: &Values) -> TextureSettings {
+    pub fn of_silhouettes(values: &SettingMap) -> TextureSettings {
         TextureSettings {
             size: SILHOUETTE_SIZE.read(values) as u32,
             keeps: REDRAW.read(values),

@@ -2,8 +2,8 @@
 
 use super::super::lesson::{Lesson, cited};
 use super::common::with_own;
-use super::face::{SettingSpec, Values, Words, words};
-use crate::geometry::planar::Clip;
+use super::face::{SettingMap, SettingSpec, WordSetting, words};
+use crate::geometry::planar::FlattenClip;
 use wgpu::{CompareFunction, DepthBiasState};
 
 const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0, clamp: 0.0 };
@@ -11,7 +11,7 @@ const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0
 /// projected apart from the surface that lies in it.
 const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
 
-const STENCIL: Words<bool> = words(
+const STENCIL: WordSetting<bool> = words(
     "stencil",
     &["on", "off"],
     &[true, false],
@@ -24,7 +24,7 @@ const STENCIL: Words<bool> = words(
         sources: &[cited::KILGARD],
     },
 );
-const BLEND: Words<bool> = words(
+const BLEND: WordSetting<bool> = words(
     "blend",
     &["once", "twice"],
     &[true, false],
@@ -36,10 +36,10 @@ const BLEND: Words<bool> = words(
         sources: &[cited::KILGARD],
     },
 );
-const CLIP: Words<Clip> = words(
+const CLIP: WordSetting<FlattenClip> = words(
     "clip",
     &["on", "off"],
-    &[Clip::BetweenPlaneAndLight, Clip::Off],
+    &[FlattenClip::BetweenPlaneAndLight, FlattenClip::Off],
     "drops what is beyond the light or below the receiver",
     Lesson {
         text: "With `off`, what is beyond the light or below the receiver throws a shadow too: the anti-shadow and \
@@ -48,7 +48,7 @@ const CLIP: Words<Clip> = words(
         sources: &[cited::BLINN],
     },
 );
-const Z_FIGHTING: Words<(CompareFunction, DepthBiasState)> = words(
+const Z_FIGHTING: WordSetting<(CompareFunction, DepthBiasState)> = words(
     "z-fighting",
     &["depth-off", "polygon-offset", "none"],
     &[
@@ -66,7 +66,7 @@ const Z_FIGHTING: Words<(CompareFunction, DepthBiasState)> = words(
         sources: &[cited::BLINN, cited::SEGAL_AKELEY],
     },
 );
-const CACHE: Words<bool> = words(
+const CACHE: WordSetting<bool> = words(
     "cache",
     &["on", "off"],
     &[true, false],
@@ -92,7 +92,7 @@ pub struct PlanarSettings {
     /// The stencil keeps pixels from being darkened twice.
     pub blends_once: bool,
     /// What is kept of a caster.
-    pub clip: Clip,
+    pub clip: FlattenClip,
     /// By which test a shadow wins over the surface it lies on.
     pub depth_compare: CompareFunction,
     /// And by how much.
@@ -103,7 +103,7 @@ pub struct PlanarSettings {
 
 impl PlanarSettings {
     /// As they are set.
-    pub fn read(values: &Values) -> PlanarSettings {
+    pub fn read(values: &SettingMap) -> PlanarSettings {
         let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
         PlanarSettings {
             marks: STENCIL.read(values),

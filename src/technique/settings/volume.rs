@@ -2,18 +2,18 @@
 
 use super::super::lesson::{Lesson, cited};
 use super::common::{CommonSettings, with_own};
-use super::face::{NumberOr, SettingSpec, Values, Words, number_or, words};
+use super::face::{NumberOrWordSetting, SettingMap, SettingSpec, WordSetting, number_or, words};
 use crate::geometry::{Casters, Extrusion, SilhouetteBy};
 use crate::plan::Decision;
 
-const CASTERS: Words<WhoCasts> = words(
+const CASTERS: WordSetting<CasterRule> = words(
     "casters",
     &["by-topology", "all", "light-facing", "light-back-facing"],
     &[
-        WhoCasts::ByTopology,
-        WhoCasts::Always(Casters::All),
-        WhoCasts::Always(Casters::LightFacing),
-        WhoCasts::Always(Casters::LightBackFacing),
+        CasterRule::ByTopology,
+        CasterRule::Always(Casters::All),
+        CasterRule::Always(Casters::LightFacing),
+        CasterRule::Always(Casters::LightBackFacing),
     ],
     "which triangles cast",
     Lesson {
@@ -28,7 +28,7 @@ const CASTERS: Words<WhoCasts> = words(
     },
 );
 // Farther, single precision loses the silhouette; nearer than not at all makes no sense.
-const EXTRUSION: NumberOr = number_or(
+const EXTRUSION: NumberOrWordSetting = number_or(
     "extrusion",
     &["infinite"],
     ("finite:", [0.0, 1e6], false),
@@ -41,7 +41,7 @@ const EXTRUSION: NumberOr = number_or(
         sources: &[cited::CROW, cited::EVERITT_KILGARD],
     },
 );
-const FACES: Words<bool> = words(
+const FACES: WordSetting<bool> = words(
     "faces",
     &["two-sided", "two-pass"],
     &[false, true],
@@ -53,10 +53,10 @@ const FACES: Words<bool> = words(
         sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
     },
 );
-const OPERATIONS: Words<CountsBy> = words(
+const OPERATIONS: WordSetting<CountOperations> = words(
     "operations",
     &["wrap", "clamp", "invert"],
-    &[CountsBy::Wrapping, CountsBy::Clamping, CountsBy::Inverting],
+    &[CountOperations::Wrapping, CountOperations::Clamping, CountOperations::Inverting],
     "what a face does: steps that wrap round the ends of the count or stop there, or one bit turned over (parity)",
     Lesson {
         text: "With `wrap`, 255 and one more are 0, and 0 less one is 255: the order of faces makes no difference, and \
@@ -67,7 +67,7 @@ const OPERATIONS: Words<CountsBy> = words(
         sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
     },
 );
-const ORDER: Words<bool> = words(
+const ORDER: WordSetting<bool> = words(
     "order",
     &["add-first", "subtract-first"],
     &[false, true],
@@ -80,7 +80,7 @@ const ORDER: Words<bool> = words(
         sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
     },
 );
-const BITS: Words<u8> = words(
+const BITS: WordSetting<u8> = words(
     "stencil-bits",
     &["8", "4", "2", "1"],
     &[0xff, 0xf, 0x3, 0x1],
@@ -92,7 +92,7 @@ const BITS: Words<u8> = words(
         sources: &[cited::SEGAL_AKELEY],
     },
 );
-const CAPS: Words<[bool; 2]> = words(
+const CAPS: WordSetting<[bool; 2]> = words(
     "caps",
     &["both", "light", "dark", "none"],
     &[[true, true], [true, false], [false, true], [false, false]],
@@ -106,7 +106,7 @@ const CAPS: Words<[bool; 2]> = words(
         sources: &[cited::CARMACK, cited::BILODEAU, cited::EVERITT_KILGARD],
     },
 );
-const START: Words<bool> = words(
+const START: WordSetting<bool> = words(
     "start",
     &["zero", "eye-count"],
     &[false, true],
@@ -120,7 +120,7 @@ const START: Words<bool> = words(
         sources: &[cited::CROW, cited::EVERITT_KILGARD],
     },
 );
-const FAR_VERTICES: Words<bool> = words(
+const FAR_VERTICES: WordSetting<bool> = words(
     "far-vertices",
     &["from-light", "from-origin"],
     &[false, true],
@@ -134,7 +134,7 @@ const FAR_VERTICES: Words<bool> = words(
         sources: &[],
     },
 );
-const COUNTER: Words<bool> = words(
+const COUNTER: WordSetting<bool> = words(
     "counter",
     &["stencil", "float"],
     &[false, true],
@@ -146,7 +146,7 @@ const COUNTER: Words<bool> = words(
         sources: &[],
     },
 );
-const LIGHT_CAPS: Words<bool> = words(
+const LIGHT_CAPS: WordSetting<bool> = words(
     "light-caps",
     &["tested", "never"],
     &[false, true],
@@ -160,7 +160,7 @@ const LIGHT_CAPS: Words<bool> = words(
         sources: &[cited::EVERITT_KILGARD],
     },
 );
-const SILHOUETTE: Words<SilhouetteBy> = words(
+const SILHOUETTE: WordSetting<SilhouetteBy> = words(
     "silhouette",
     &["adjacency", "edge-list"],
     &[SilhouetteBy::Adjacency, SilhouetteBy::Search],
@@ -173,7 +173,7 @@ const SILHOUETTE: Words<SilhouetteBy> = words(
     },
 );
 
-const EXTRUDED_BY: Words<bool> = words(
+const EXTRUDED_BY: WordSetting<bool> = words(
     "extruded-by",
     &["cpu", "vertex-shader"],
     &[false, true],
@@ -225,7 +225,7 @@ pub(super) const Z_PASS_PLUS: [SettingSpec; 17] = with_own({
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeSettings {
     /// Which triangles cast.
-    pub casters: WhoCasts,
+    pub casters: CasterRule,
     /// How far volumes reach.
     pub extrusion: Extrusion,
     /// Front and back faces in passes of their own.
@@ -233,7 +233,7 @@ pub struct VolumeSettings {
     /// What takes away comes before what adds, where they are passes of their own.
     pub takes_away_first: bool,
     /// What a face does to the stencil.
-    pub operations: CountsBy,
+    pub operations: CountOperations,
     /// The bits of the stencil that are counted in.
     pub bits: u8,
     /// Of the caps that are needed, light caps and dark caps are drawn.
@@ -252,7 +252,7 @@ pub struct VolumeSettings {
 
 /// What a volume's face does to the stencil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CountsBy {
+pub enum CountOperations {
     /// One up or down, round the ends.
     Wrapping,
     /// One up or down, not beyond 0 and 255.
@@ -263,7 +263,7 @@ pub enum CountsBy {
 
 /// Which triangles cast, or what decides it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WhoCasts {
+pub enum CasterRule {
     /// The same of every caster.
     Always(Casters),
     /// Those that face the light where that is proven to be enough, else all.
@@ -274,19 +274,19 @@ impl VolumeSettings {
     /// Are volumes closed and where they should be, and does every face count? Then a surface that none holds reads 0 of it.
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
-        let loses_steps = self.operations == CountsBy::Clamping && !self.counts_in_float;
+        let loses_steps = self.operations == CountOperations::Clamping && !self.counts_in_float;
         self.caps == [true; 2] && !self.light_caps_never_pass && !is_misplaced && !loses_steps
     }
 
     /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
     pub fn of_auto(common: &CommonSettings) -> VolumeSettings {
         let by_topology = common.allows(Decision::AwayTriangles);
-        let casters = if by_topology { WhoCasts::ByTopology } else { WhoCasts::Always(Casters::All) };
-        VolumeSettings { casters, ..VolumeSettings::read(&Values::new()) }
+        let casters = if by_topology { CasterRule::ByTopology } else { CasterRule::Always(Casters::All) };
+        VolumeSettings { casters, ..VolumeSettings::read(&SettingMap::new()) }
     }
 
     /// As they are set.
-    pub fn read(values: &Values) -> VolumeSettings {
+    pub fn read(values: &SettingMap) -> VolumeSettings {
         VolumeSettings {
             casters: CASTERS.read(values),
             extrusion: match (EXTRUSION.read(values), FAR_VERTICES.read(values)) {
@@ -309,7 +309,7 @@ impl VolumeSettings {
 
     /// The bits that faces write and the light pass reads: parity is in one.
     pub fn mask(&self) -> u8 {
-        if self.operations == CountsBy::Inverting { 1 } else { self.bits }
+        if self.operations == CountOperations::Inverting { 1 } else { self.bits }
     }
 
     /// Why a setting does nothing as the others are.
@@ -340,7 +340,7 @@ impl VolumeSettings {
         }
         match key {
             _ if is(ORDER.spec) && !self.two_pass => Some("No effect: faces = two-sided draws both in one pass"),
-            _ if is(BITS.spec) && self.operations == CountsBy::Inverting => {
+            _ if is(BITS.spec) && self.operations == CountOperations::Inverting => {
                 Some("No effect: parity is kept in one bit")
             }
             _ => None,

@@ -1,9 +1,9 @@
 //! Where volume faces count, and the raster state that makes them.
 
 use crate::geometry::Extrusion;
-use crate::plan::{ColorWrite, Part, RasterState, Side, StencilFace};
+use crate::plan::{ColorWrite, CountedSide, DrawPart, RasterState, StencilFace};
 use crate::technique::Technique;
-use crate::technique::settings::{CountsBy, VolumeSettings};
+use crate::technique::settings::{CountOperations, VolumeSettings};
 use std::ops::Range;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
@@ -20,8 +20,8 @@ const HUGGING_BIAS: i32 = -4;
 
 /// A run of a volume's triangles that counts.
 #[derive(Debug, Clone)]
-pub struct NeededPart {
-    pub part: Part,
+pub struct CountedPart {
+    pub part: DrawPart,
     /// Its triangles face inwards: operations are swapped.
     pub turned: bool,
     /// Sides that the surface they are thrown by is too near to.
@@ -31,15 +31,15 @@ pub struct NeededPart {
     pub triangles: Range<usize>,
 }
 
-impl NeededPart {
-    pub fn new(part: Part, turned: bool, triangles: &Range<usize>) -> NeededPart {
-        NeededPart { part, turned, hugs: false, base_vertex: 0, triangles: triangles.clone() }
+impl CountedPart {
+    pub fn new(part: DrawPart, turned: bool, triangles: &Range<usize>) -> CountedPart {
+        CountedPart { part, turned, hugs: false, base_vertex: 0, triangles: triangles.clone() }
     }
 }
 
 /// Where a volume face counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Counting {
+pub enum CountingMode {
     /// In front of the surface.
     InFront,
     /// In front of the surface, on top of what the near plane's count began with.
@@ -50,14 +50,14 @@ pub enum Counting {
 
 /// How a volume is counted, how far it reaches, and which caps that takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Form {
-    pub counting: Counting,
+pub struct VolumeSpec {
+    pub counting: CountingMode,
     pub extrusion: Extrusion,
     pub light_cap: bool,
     pub dark_cap: bool,
 }
 
-impl Form {
+impl VolumeSpec {
     /// Onto a plane no vertex shader carries it.
     pub fn ends_on_plane(&self) -> bool {
         matches!(self.extrusion, Extrusion::Clamped(_))
@@ -66,7 +66,7 @@ impl Form {
 
 /// Which faces one pass draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Step {
+pub enum FaceSelection {
     /// All, with an operation each.
     BothFaces,
     /// Those that add.
@@ -75,63 +75,63 @@ pub enum Step {
     TakingAway,
 }
 
-impl Step {
+impl FaceSelection {
     /// The passes of one light, in order. What adds comes first, unless the other order is asked for: a clamped
     /// count then only fails beyond 255.
-    pub fn all(options: &VolumeSettings) -> &'static [Step] {
+    pub fn all(options: &VolumeSettings) -> &'static [FaceSelection] {
         match (options.two_pass, options.takes_away_first) {
-            (false, _) => &[Step::BothFaces],
-            (true, false) => &[Step::Adding, Step::TakingAway],
-            (true, true) => &[Step::TakingAway, Step::Adding],
+            (false, _) => &[FaceSelection::BothFaces],
+            (true, false) => &[FaceSelection::Adding, FaceSelection::TakingAway],
+            (true, true) => &[FaceSelection::TakingAway, FaceSelection::Adding],
         }
     }
 
     pub fn name(self) -> &'static str {
         match self {
-            Step::BothFaces => "volumes",
-            Step::Adding => "volumes, adding",
-            Step::TakingAway => "volumes, taking away",
+            FaceSelection::BothFaces => "volumes",
+            FaceSelection::Adding => "volumes, adding",
+            FaceSelection::TakingAway => "volumes, taking away",
         }
     }
 }
 
-impl Counting {
-    pub fn of(technique: Technique) -> Counting {
+impl CountingMode {
+    pub fn of(technique: Technique) -> CountingMode {
         match technique {
-            Technique::ZPass => Counting::InFront,
-            Technique::ZPassPlus => Counting::InFrontPlus,
-            _ => Counting::Behind,
+            Technique::ZPass => CountingMode::InFront,
+            Technique::ZPassPlus => CountingMode::InFrontPlus,
+            _ => CountingMode::Behind,
         }
     }
 
     /// On which side of the surface its faces count.
-    pub fn side(self) -> Side {
+    pub fn side(self) -> CountedSide {
         match self {
-            Counting::InFront | Counting::InFrontPlus => Side::InFront,
-            Counting::Behind => Side::Behind,
+            CountingMode::InFront | CountingMode::InFrontPlus => CountedSide::InFront,
+            CountingMode::Behind => CountedSide::Behind,
         }
     }
 
     /// The state that a part counts with. What counts behind surfaces asks not to be clipped, as far as the frame
     /// can do without ([`Frame::finish`](crate::technique::frame::Frame::finish)).
-    pub(super) fn raster(self, part: &NeededPart, options: &VolumeSettings, step: Step) -> RasterState {
+    pub(super) fn raster(self, part: &CountedPart, options: &VolumeSettings, step: FaceSelection) -> RasterState {
         let (add, take) = operations(options);
-        let adds_in_front = (self != Counting::Behind) != part.turned;
+        let adds_in_front = (self != CountingMode::Behind) != part.turned;
         let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
         let surface = RasterState::surface();
-        let is_never = options.light_caps_never_pass && part.part == Part::LightCap;
+        let is_never = options.light_caps_never_pass && part.part == DrawPart::LightCap;
         let depth_compare = if is_never { CompareFunction::Never } else { surface.depth_compare };
         let depth_bias = depth_bias(part);
-        let unclipped_depth = self == Counting::Behind;
+        let unclipped_depth = self == CountingMode::Behind;
         let color = ColorWrite::None;
         let state = RasterState { unclipped_depth, depth_compare, depth_bias, depth_write: false, color, ..surface };
         // Not by culling, as textbooks have it: on Mesa's software driver, culling one face changes
         // a few counts (2 and 16 of 40 000 pixels on a torn torus), with the operations as they are
         // here or not. Why is not known; without culling both ways leave the same counts.
         let (front_counts, back_counts) = match step {
-            Step::BothFaces => (true, true),
-            Step::Adding => (adds_in_front, !adds_in_front),
-            Step::TakingAway => (!adds_in_front, adds_in_front),
+            FaceSelection::BothFaces => (true, true),
+            FaceSelection::Adding => (adds_in_front, !adds_in_front),
+            FaceSelection::TakingAway => (!adds_in_front, adds_in_front),
         };
         let keep = |counts: bool, operation| if counts { operation } else { StencilOperation::Keep };
         let (front, back) = (self.face(keep(front_counts, front)), self.face(keep(back_counts, back)));
@@ -141,18 +141,18 @@ impl Counting {
     /// The state for counting in a float target, and what a front face adds there (of a turned part: a
     /// back face that counts as one). What fails the depth test writes nothing, so counting behind
     /// the surface tests the other way round.
-    pub(super) fn float_raster(self, part: &NeededPart, options: &VolumeSettings) -> (RasterState, f32) {
+    pub(super) fn float_raster(self, part: &CountedPart, options: &VolumeSettings) -> (RasterState, f32) {
         let surface = RasterState::surface();
-        let never_passes = options.light_caps_never_pass && part.part == Part::LightCap;
+        let never_passes = options.light_caps_never_pass && part.part == DrawPart::LightCap;
         let depth_compare = match (self, never_passes) {
-            (Counting::Behind, true) => CompareFunction::Always,
-            (Counting::Behind, false) => CompareFunction::LessEqual,
+            (CountingMode::Behind, true) => CompareFunction::Always,
+            (CountingMode::Behind, false) => CompareFunction::LessEqual,
             (_, true) => CompareFunction::Never,
             (_, false) => surface.depth_compare,
         };
-        let adds_in_front = (self != Counting::Behind) != part.turned;
+        let adds_in_front = (self != CountingMode::Behind) != part.turned;
         let depth_bias = depth_bias(part);
-        let unclipped_depth = self == Counting::Behind;
+        let unclipped_depth = self == CountingMode::Behind;
         let color = ColorWrite::Add;
         let state = RasterState { unclipped_depth, depth_compare, depth_bias, depth_write: false, color, ..surface };
         (state, if adds_in_front { 1.0 } else { -1.0 })
@@ -161,13 +161,13 @@ impl Counting {
     fn face(self, operation: StencilOperation) -> StencilFace {
         let keep = StencilFace { compare: CompareFunction::Always, ..StencilFace::IGNORE };
         match self {
-            Counting::InFront | Counting::InFrontPlus => StencilFace { pass_op: operation, ..keep },
-            Counting::Behind => StencilFace { depth_fail_op: operation, ..keep },
+            CountingMode::InFront | CountingMode::InFrontPlus => StencilFace { pass_op: operation, ..keep },
+            CountingMode::Behind => StencilFace { depth_fail_op: operation, ..keep },
         }
     }
 }
 
-fn depth_bias(part: &NeededPart) -> DepthBiasState {
+fn depth_bias(part: &CountedPart) -> DepthBiasState {
     let constant = if part.hugs { HUGGING_BIAS } else { 0 };
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
@@ -175,8 +175,8 @@ fn depth_bias(part: &NeededPart) -> DepthBiasState {
 /// What adds 1 and what takes 1 away.
 pub fn operations(options: &VolumeSettings) -> (StencilOperation, StencilOperation) {
     match options.operations {
-        CountsBy::Wrapping => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),
-        CountsBy::Clamping => (StencilOperation::IncrementClamp, StencilOperation::DecrementClamp),
-        CountsBy::Inverting => (StencilOperation::Invert, StencilOperation::Invert),
+        CountOperations::Wrapping => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),
+        CountOperations::Clamping => (StencilOperation::IncrementClamp, StencilOperation::DecrementClamp),
+        CountOperations::Inverting => (StencilOperation::Invert, StencilOperation::Invert),
     }
 }

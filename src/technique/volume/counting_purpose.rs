@@ -1,12 +1,12 @@
 //! What a pass that counts shadow volumes is for, in sentences.
 
-use super::counting::{Counting, Step};
+use super::counting::{CountingMode, FaceSelection};
 use crate::plan::{CountBits, LightId};
-use crate::technique::settings::{CountsBy, VolumeSettings};
+use crate::technique::settings::{CountOperations, VolumeSettings};
 
 /// What a count begins at, and for what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum CountStart {
     /// The volumes around the eye.
     Eye(u32),
     /// The volumes that parallel lines of sight end in.
@@ -14,16 +14,16 @@ pub enum Start {
 }
 
 /// How a light's volumes are counted, to be told.
-pub struct Counts<'a> {
+pub struct CountingPurpose<'a> {
     /// `None` counts each volume in its own way.
-    pub by: Option<Counting>,
+    pub by: Option<CountingMode>,
     pub light: LightId,
     pub options: &'a VolumeSettings,
     /// What the count begins with, if anything.
-    pub start: Option<Start>,
+    pub start: Option<CountStart>,
     /// Volumes are only counted in front of the surface where neither the eye nor the near plane is in them.
     pub chooses_side: bool,
-    /// What [`Start::Eye`] is counted around.
+    /// What [`CountStart::Eye`] is counted around.
     pub place: &'static str,
     /// Lines of sight are parallel: they begin at the near plane, and no eye is where they meet.
     pub is_parallel: bool,
@@ -31,14 +31,14 @@ pub struct Counts<'a> {
     pub lacks: [bool; 2],
 }
 
-impl Counts<'_> {
+impl CountingPurpose<'_> {
     /// What a pass is for.
-    pub fn purpose(&self, step: Step) -> String {
+    pub fn purpose(&self, step: FaceSelection) -> String {
         let what = self.what();
-        let is_inverting = self.options.operations == CountsBy::Inverting && !self.options.counts_in_float;
+        let is_inverting = self.options.operations == CountOperations::Inverting && !self.options.counts_in_float;
         if is_inverting {
-            let counts = if self.by == Some(Counting::Behind) { "hidden by the surface" } else { "nearer than it" };
-            let own = if step == Step::BothFaces { "" } else { ", those of one side in this pass" };
+            let counts = if self.by == Some(CountingMode::Behind) { "hidden by the surface" } else { "nearer than it" };
+            let own = if step == FaceSelection::BothFaces { "" } else { ", those of one side in this pass" };
             return format!(
                 "Counts {what}, odd or even: every face {counts} turns one bit over{own}. {}1 is left where an odd \
                  number of volumes contains the surface, and an even one reads as none{}.",
@@ -47,18 +47,20 @@ impl Counts<'_> {
             );
         }
         let [adds, takes] = match self.by {
-            Some(Counting::InFront | Counting::InFrontPlus) => {
+            Some(CountingMode::InFront | CountingMode::InFrontPlus) => {
                 ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"]
             }
-            Some(Counting::Behind) => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
+            Some(CountingMode::Behind) => {
+                ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"]
+            }
             None => ["in front, a front face adds 1 and a back face takes 1 away", "behind, it is the other way round"],
         };
         let is_last = match step {
-            Step::BothFaces => return format!("Counts {what}: {adds}, {takes}. {}", self.left()),
-            Step::Adding => self.options.takes_away_first,
-            Step::TakingAway => !self.options.takes_away_first,
+            FaceSelection::BothFaces => return format!("Counts {what}: {adds}, {takes}. {}", self.left()),
+            FaceSelection::Adding => self.options.takes_away_first,
+            FaceSelection::TakingAway => !self.options.takes_away_first,
         };
-        let does = if step == Step::Adding { adds } else { takes };
+        let does = if step == FaceSelection::Adding { adds } else { takes };
         match is_last {
             false => format!("Counts {what}, first half: {does}. The other faces follow in a pass of their own."),
             true => format!("Counts {what}, second half: {does}. {}", self.left()),
@@ -68,10 +70,10 @@ impl Counts<'_> {
     fn what(&self) -> String {
         let light = self.light.name();
         match self.by {
-            Some(Counting::InFront | Counting::InFrontPlus) => {
+            Some(CountingMode::InFront | CountingMode::InFrontPlus) => {
                 format!("the shadow volumes of {light} in front of each surface")
             }
-            Some(Counting::Behind) => format!("the shadow volumes of {light} behind each surface"),
+            Some(CountingMode::Behind) => format!("the shadow volumes of {light} behind each surface"),
             None => format!(
                 "the shadow volumes of {light}, behind each surface where they may hold {}, else in front of it",
                 if self.is_parallel { "the near plane" } else { "the eye" }
@@ -83,7 +85,9 @@ impl Counts<'_> {
     fn left(&self) -> String {
         let begins = self.begins();
         let what = match self.by {
-            Some(Counting::InFrontPlus) => "With what the near plane began with, if anything, what is left contains",
+            Some(CountingMode::InFrontPlus) => {
+                "With what the near plane began with, if anything, what is left contains"
+            }
             None => "Either way, what is left contains",
             Some(_) => "What is left contains",
         };
@@ -98,8 +102,8 @@ impl Counts<'_> {
     fn begins(&self) -> String {
         match self.start {
             None => String::new(),
-            Some(Start::Eye(start)) => format!("It begins at {start}, for the volumes around {}. ", self.place),
-            Some(Start::FarEnd(start)) => format!(
+            Some(CountStart::Eye(start)) => format!("It begins at {start}, for the volumes around {}. ", self.place),
+            Some(CountStart::FarEnd(start)) => format!(
                 "It begins at {start}{}: parallel lines of sight all end at one point at infinity, in the volumes of \
                  so many casting triangles, those that a ray from {} along them meets. ",
                 match self.bits() {
@@ -114,13 +118,17 @@ impl Counts<'_> {
     /// Where that is so.
     fn condition(&self) -> String {
         let eye = match (self.by, self.start) {
-            (Some(Counting::InFront), _) if self.chooses_side && self.is_parallel => ", as the near plane is in none",
-            (Some(Counting::InFront), _) if self.chooses_side => ", as neither the eye nor the near plane is in any",
-            (Some(Counting::InFront), None | Some(Start::FarEnd(_))) if self.is_parallel => {
+            (Some(CountingMode::InFront), _) if self.chooses_side && self.is_parallel => {
+                ", as the near plane is in none"
+            }
+            (Some(CountingMode::InFront), _) if self.chooses_side => {
+                ", as neither the eye nor the near plane is in any"
+            }
+            (Some(CountingMode::InFront), None | Some(CountStart::FarEnd(_))) if self.is_parallel => {
                 ", if the near plane is in none"
             }
-            (Some(Counting::InFront), None | Some(Start::FarEnd(_))) => ", if the eye itself is in none",
-            (Some(Counting::InFront), Some(Start::Eye(_))) => ", if the near plane cuts none",
+            (Some(CountingMode::InFront), None | Some(CountStart::FarEnd(_))) => ", if the eye itself is in none",
+            (Some(CountingMode::InFront), Some(CountStart::Eye(_))) => ", if the near plane cuts none",
             _ => ", wherever the eye is",
         };
         let caps = match self.lacks {

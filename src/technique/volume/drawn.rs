@@ -1,20 +1,20 @@
 //! A caster's volume as a mesh and draws: sides, light cap and dark cap, each triangle run with its own operations.
 
-use super::counting::{Counting, Form, NeededPart, Step};
+use super::counting::{CountedPart, CountingMode, FaceSelection, VolumeSpec};
 use super::far_count::FarPoint;
-use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, Fan, VolumeOf, VolumeParts, relative};
+use crate::geometry::{CapFan, Caster, Casters, DarkCap, Extruder, Extrusion, VolumeParts, VolumeRequest, relative};
 use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState};
-use crate::technique::casters::{self, Darkened};
-use crate::technique::frame::Frame;
+use crate::plan::{Decision, Draw, DrawConstants, DrawMesh, DrawPart, LeftOut, LightId, MeshId, Program, RasterState};
+use crate::technique::casters::{self, DarkenedObjects};
+use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
 /// What a volume's far end takes where lines of sight are parallel.
 #[derive(Debug, Clone, Copy)]
-pub struct FarEnd {
+pub struct ParallelFarEnd {
     /// Casting triangles that the light's ray along the view meets: how many of its volumes hold that end.
     pub met: u32,
     /// How far beside the light its far vertices are carried from, metres; of a directional one, radians off its way.
@@ -24,19 +24,19 @@ pub struct FarEnd {
 }
 
 /// A caster's volume, ready to be drawn.
-pub struct Volume {
+pub struct VolumePlan {
     /// Its caster's index among what is placed, and its name.
     pub object: usize,
     pub caster: String,
-    pub counting: Counting,
+    pub counting: CountingMode,
     /// A body that is proven closed, of which one side casts.
     pub is_body: bool,
     /// No surface is behind it: at each its count is 0.
     pub darkens_nothing: bool,
     pub mesh: MeshId,
-    pub casting: Casting,
+    pub casting: CastingTriangles,
     /// Which of its parts count in the volume pass.
-    pub needed: Vec<NeededPart>,
+    pub needed: Vec<CountedPart>,
     /// Light cap and dark cap: it has one that would count, and it is not to be drawn.
     pub lacks_caps: [bool; 2],
     /// How many of the count begin at the far end, where no dark cap is drawn for it.
@@ -45,7 +45,7 @@ pub struct Volume {
 
 /// The casting triangles of a volume.
 #[derive(Debug, Clone)]
-pub enum Casting {
+pub enum CastingTriangles {
     /// Runs of its mesh: those that face the light, and those that are turned.
     Runs([Range<usize>; 2]),
     /// Those of its caster, of which its vertex shader picks.
@@ -53,10 +53,10 @@ pub enum Casting {
 }
 
 /// A volume's mesh, and what of it counts.
-pub struct Made {
+pub struct VolumeMesh {
     pub mesh: DrawMesh,
-    pub casting: Casting,
-    pub needed: Vec<NeededPart>,
+    pub casting: CastingTriangles,
+    pub needed: Vec<CountedPart>,
     /// How many of the count begin at the far end, where no dark cap is drawn for it.
     pub begins_with: u32,
     /// What it does not need.
@@ -67,35 +67,35 @@ pub struct Made {
 #[derive(Debug, Clone, Copy)]
 pub struct CasterVolume<'a> {
     pub light: LightId,
-    /// Its caster, an index into [`Frame::placed`].
+    /// Its caster, an index into [`FrameBuilder::placed`].
     pub index: usize,
     /// Which of the caster's triangles cast.
     pub casters: Casters,
     /// By triangle: another part of the caster holds its part in the umbra. Empty: none.
     pub hidden: &'a [bool],
-    pub form: Form,
+    pub form: VolumeSpec,
 }
 
-impl Volume {
+impl VolumePlan {
     /// The casting triangles themselves, where it is known which they are.
-    pub fn casting(&self) -> impl Iterator<Item = NeededPart> {
+    pub fn casting(&self) -> impl Iterator<Item = CountedPart> {
         let runs = match &self.casting {
-            Casting::Runs([light_cap, turned]) => vec![(false, light_cap), (true, turned)],
-            Casting::Picked(_) => Vec::new(),
+            CastingTriangles::Runs([light_cap, turned]) => vec![(false, light_cap), (true, turned)],
+            CastingTriangles::Picked(_) => Vec::new(),
         };
-        let parts = runs.into_iter().map(|(turned, triangles)| NeededPart::new(Part::LightCap, turned, triangles));
+        let parts = runs.into_iter().map(|(turned, triangles)| CountedPart::new(DrawPart::LightCap, turned, triangles));
         parts.filter(|part| !part.triangles.is_empty())
     }
 
     /// The casting triangles in world space.
-    pub fn casting_triangles(&self, frame: &Frame, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
+    pub fn casting_triangles(&self, frame: &FrameBuilder, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
         let placed = &frame.placed[self.object];
         let (corners, casters) = match &self.casting {
-            Casting::Runs([light_cap, turned]) => {
+            CastingTriangles::Runs([light_cap, turned]) => {
                 let indices = frame.plan.meshes[self.mesh.0].indices.data();
                 (&indices[light_cap.start * 3..turned.end * 3], Casters::All)
             }
-            Casting::Picked(casters) => (placed.object.mesh.triangles().as_flattened(), *casters),
+            CastingTriangles::Picked(casters) => (placed.object.mesh.triangles().as_flattened(), *casters),
         };
         let triangles = corners.chunks_exact(3);
         let places = triangles.map(|corners| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]));
@@ -106,12 +106,12 @@ impl Volume {
         })
     }
 
-    pub fn draws(&self, options: &VolumeSettings, step: Step) -> Vec<Draw> {
+    pub fn draws(&self, options: &VolumeSettings, step: FaceSelection) -> Vec<Draw> {
         self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
     }
 
     pub fn float_draws(&self, options: &VolumeSettings) -> Vec<Draw> {
-        let draw = |part: &NeededPart| {
+        let draw = |part: &CountedPart| {
             let (raster, count) = self.counting.float_raster(part, options);
             let constants = DrawConstants { count, ..DrawConstants::default() };
             Draw { program: Program::Count, constants, ..self.draw(part, raster) }
@@ -119,14 +119,14 @@ impl Volume {
         self.needed.iter().map(draw).collect()
     }
 
-    pub fn draw(&self, part: &NeededPart, raster: RasterState) -> Draw {
+    pub fn draw(&self, part: &CountedPart, raster: RasterState) -> Draw {
         let what = match (part.part, part.turned) {
-            (Part::Side, _) if part.hugs => "grazing sides",
-            (Part::Side, _) => "sides",
-            (Part::LightCap, false) => "light cap",
-            (Part::LightCap, true) => "turned light cap",
-            (Part::Caps, false) => "caps",
-            (Part::Caps, true) => "turned caps",
+            (DrawPart::Side, _) if part.hugs => "grazing sides",
+            (DrawPart::Side, _) => "sides",
+            (DrawPart::LightCap, false) => "light cap",
+            (DrawPart::LightCap, true) => "turned light cap",
+            (DrawPart::Caps, false) => "caps",
+            (DrawPart::Caps, true) => "turned caps",
             // What faces the light faces inwards at the far end.
             (_, false) if part.base_vertex != 0 => "turned dark cap",
             (_, _) => "dark cap",
@@ -150,7 +150,7 @@ impl Volume {
 ///
 /// # Errors
 /// Why there is none.
-pub fn make(frame: &mut Frame, of: &CasterVolume, options: &VolumeSettings) -> Result<Made, LeftOut> {
+pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSettings) -> Result<VolumeMesh, LeftOut> {
     let (mesh, parts, far_end) = outlined(frame, of, options);
     let object = frame.placed[of.index].object;
     if parts.light_cap_turned.end == 0 {
@@ -162,26 +162,30 @@ pub fn make(frame: &mut Frame, of: &CasterVolume, options: &VolumeSettings) -> R
         return Err(LeftOut::new(Decision::NothingCasts, &object.name, because));
     }
     // A bias of sides that hug it is a few steps, and rounding may be more.
-    if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, of.index, of.light, Darkened::All) {
+    if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, of.index, of.light, DarkenedObjects::All) {
         let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
         return Err(LeftOut::new(Decision::Caster, &object.name, because));
     }
-    let casting = Casting::Runs([parts.light_cap.clone(), parts.light_cap_turned.clone()]);
-    let mut made = Made { mesh, casting, needed: Vec::new(), begins_with: 0, left_out: Vec::new() };
+    let casting = CastingTriangles::Runs([parts.light_cap.clone(), parts.light_cap_turned.clone()]);
+    let mut made = VolumeMesh { mesh, casting, needed: Vec::new(), begins_with: 0, left_out: Vec::new() };
     made.add_parts(of.form, &parts, far_end, options.caps[1], &object.name);
     Ok(made)
 }
 
 /// The mesh of a volume, and which of its triangles are what.
-fn outlined(frame: &mut Frame, of: &CasterVolume, options: &VolumeSettings) -> (DrawMesh, VolumeParts, Option<FarEnd>) {
-    let CasterVolume { light, index, casters, hidden: held, form: Form { extrusion, .. } } = *of;
+fn outlined(
+    frame: &mut FrameBuilder,
+    of: &CasterVolume,
+    options: &VolumeSettings,
+) -> (DrawMesh, VolumeParts, Option<ParallelFarEnd>) {
+    let CasterVolume { light, index, casters, hidden: held, form: VolumeSpec { extrusion, .. } } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
     let extruder = Extruder::new(&placed.world, position, extrusion);
     let mut indices = Vec::new();
     let (is_drawn, by) = (placed.object.visible, options.silhouette);
-    let volume = VolumeOf { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
+    let volume = VolumeRequest { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
     let parts = frame.job.cache.volume_indices(&volume, &mut indices);
     let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
     let far_point = FarPoint::of(&frame.job.scene.camera).filter(|_| extrusion == Extrusion::Infinite);
@@ -200,31 +204,31 @@ fn outlined(frame: &mut Frame, of: &CasterVolume, options: &VolumeSettings) -> (
         let is_point = position.w != 0.0;
         let scale = if is_point { position.w } else { position.truncate().length() };
         let beside = (from - position).length() / scale;
-        (from, FarEnd { met: far_point.count(from, casting), beside, is_point })
+        (from, ParallelFarEnd { met: far_point.count(from, casting), beside, is_point })
     });
     let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, extrusion));
-    let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
+    let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(CapFan::vertices));
     let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
     let mesh = DrawMesh::of_positions(format!("volume of {}", placed.object.name), vertices, indices);
     (mesh, parts, far_end.map(|(_, far_end)| far_end))
 }
 
-impl Made {
+impl VolumeMesh {
     /// Adds the parts that count in a form. What is left out is said, but of dark caps that are not drawn anyway.
     fn add_parts(
         &mut self,
-        form: Form,
+        form: VolumeSpec,
         parts: &VolumeParts,
-        far_end: Option<FarEnd>,
+        far_end: Option<ParallelFarEnd>,
         draws_dark_caps: bool,
         caster: &str,
     ) {
-        let run = NeededPart::new;
-        let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
-        self.needed.extend([run(Part::Side, false, &parts.sides), hugging]);
+        let run = CountedPart::new;
+        let hugging = CountedPart { hugs: true, ..run(DrawPart::Side, false, &parts.hugging_sides) };
+        self.needed.extend([run(DrawPart::Side, false, &parts.sides), hugging]);
         if form.light_cap {
-            self.needed.push(run(Part::LightCap, false, &parts.light_cap));
-            self.needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
+            self.needed.push(run(DrawPart::LightCap, false, &parts.light_cap));
+            self.needed.push(run(DrawPart::LightCap, true, &parts.light_cap_turned));
         }
         if !form.dark_cap {
             return;
@@ -235,12 +239,12 @@ impl Made {
                 self.begins_with = far_end.met;
             }
             (DarkCap::None, far_end) => {
-                let beside = far_end.map_or_else(String::new, FarEnd::beside);
+                let beside = far_end.map_or_else(String::new, ParallelFarEnd::beside);
                 let because = format!("a directional light's volume closes in one point at infinity{beside}");
                 self.left_out.push(LeftOut::new(Decision::DarkCap, caster, because));
             }
             (DarkCap::Fan(triangles, _), _) => {
-                self.needed.push(run(Part::DarkCap, false, triangles));
+                self.needed.push(run(DrawPart::DarkCap, false, triangles));
                 let cap = parts.light_cap.len() + parts.light_cap_turned.len();
                 if triangles.len() < cap && draws_dark_caps {
                     let because = format!(
@@ -252,15 +256,15 @@ impl Made {
                 }
             }
             (DarkCap::Carried(base), _) => {
-                let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
-                self.needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
-                self.needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
+                let carried = |part: CountedPart| CountedPart { base_vertex: *base, ..part };
+                self.needed.push(carried(run(DrawPart::DarkCap, true, &parts.light_cap)));
+                self.needed.push(carried(run(DrawPart::DarkCap, false, &parts.light_cap_turned)));
             }
         }
     }
 }
 
-impl FarEnd {
+impl ParallelFarEnd {
     /// From where its sides lead, if not from the light itself.
     fn beside(self) -> String {
         match self.beside > 0.0 {

@@ -9,12 +9,12 @@
 //! closes all the same, and the error is that of an edge beside its place. Sides that hug their surface are no run of
 //! their own here, so nothing keeps their depths apart from it.
 
-use super::counting::NeededPart;
-use super::drawn::{CasterVolume, Casting, Made};
+use super::counting::CountedPart;
+use super::drawn::{CasterVolume, CastingTriangles, VolumeMesh};
 use crate::geometry::{Caster, Casters, Extruded, ExtrudedForm, ExtrudedVolume, Extruder, Extrusion};
-use crate::plan::{Decision, DrawMesh, LeftOut, LightId, Part};
+use crate::plan::{Decision, DrawMesh, DrawPart, LeftOut, LightId};
 use crate::scene::Scene;
-use crate::technique::frame::Frame;
+use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 
 /// Does a vertex shader carry volumes, if it is to?
@@ -24,7 +24,7 @@ pub fn can_serve(options: &VolumeSettings, scene: &Scene) -> bool {
 }
 
 /// The same for a light, with the reason where it was asked for and can't.
-pub fn serves(frame: &Frame, light: LightId, options: &VolumeSettings) -> (bool, Option<LeftOut>) {
+pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) -> (bool, Option<LeftOut>) {
     let can = can_serve(options, frame.job.scene);
     let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
                    and that no side is seen edge-on, is found on the CPU";
@@ -33,7 +33,7 @@ pub fn serves(frame: &Frame, light: LightId, options: &VolumeSettings) -> (bool,
 }
 
 /// The volume of one caster.
-pub fn make(frame: &mut Frame, of: &CasterVolume) -> Made {
+pub fn make(frame: &mut FrameBuilder, of: &CasterVolume) -> VolumeMesh {
     let CasterVolume { light, index, casters, form, .. } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
@@ -45,14 +45,14 @@ pub fn make(frame: &mut Frame, of: &CasterVolume) -> Made {
     let ExtrudedVolume { corners, indices, sides, caps, turned_caps } = cache.extruded(caster, eye, of);
     let carry = Extruder::new(&placed.world, position, form.extrusion).carry_from(eye);
     let name = format!("volume of {}", placed.object.name);
-    let mut needed = vec![NeededPart::new(Part::Side, false, &sides)];
+    let mut needed = vec![CountedPart::new(DrawPart::Side, false, &sides)];
     if form.light_cap || form.dark_cap {
         let runs = [(false, &caps), (true, &turned_caps)];
-        needed.extend(runs.map(|(turned, triangles)| NeededPart::new(Part::Caps, turned, triangles)));
+        needed.extend(runs.map(|(turned, triangles)| CountedPart::new(DrawPart::Caps, turned, triangles)));
     }
-    Made {
+    VolumeMesh {
         mesh: DrawMesh::of_extruded(name, Extruded { corners, carry }, indices),
-        casting: Casting::Picked(casters),
+        casting: CastingTriangles::Picked(casters),
         needed,
         begins_with: 0,
         left_out: Vec::new(),

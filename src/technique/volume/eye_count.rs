@@ -4,15 +4,15 @@
 //! "Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering", on what came before z-fail).
 //! Exact for the eye, but pixels begin at the near plane: where that lies partly in a volume, no one number is right.
 
-use super::drawn::Volume;
+use super::drawn::VolumePlan;
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::LightId;
-use crate::technique::frame::Frame;
+use crate::technique::frame::FrameBuilder;
 use glam::{DVec3, DVec4};
 
 /// How many of a light's volumes hold the eye, or where lines of sight are parallel the middle of the near plane; a
 /// volume's far end is not asked about.
-pub fn at(frame: &Frame, light: LightId, volumes: &[Volume]) -> u32 {
+pub fn at(frame: &FrameBuilder, light: LightId, volumes: &[VolumePlan]) -> u32 {
     let (place, light) = (frame.job.scene.camera.counting_place(), frame.light_position(light));
     let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame, light));
     casting.filter(|corners| holds(*corners, light, place)).count() as u32

@@ -12,17 +12,17 @@
 //! extrusion is not asked about: a near-plane point beyond a volume's end counts as inside.
 
 use super::counting::operations;
-use super::drawn::Volume;
+use super::drawn::VolumePlan;
 use crate::geometry::near_view;
 use crate::plan::{
     ColorWrite, Decision, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId,
 };
-use crate::technique::frame::Frame;
-use crate::technique::settings::{CountsBy, VolumeSettings};
+use crate::technique::frame::FrameBuilder;
+use crate::technique::settings::{CountOperations, VolumeSettings};
 use wgpu::CompareFunction;
 
 /// Adds the light's view and the pass; none where nothing can count.
-pub fn pass(frame: &mut Frame, light: LightId, options: &VolumeSettings, volumes: &[Volume]) {
+pub fn pass(frame: &mut FrameBuilder, light: LightId, options: &VolumeSettings, volumes: &[VolumePlan]) {
     let name = light.name();
     let position = frame.light_position(light);
     let points = frame.placed.iter().filter(|placed| placed.object.casts).flat_map(|placed| &placed.world);
@@ -51,7 +51,7 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &VolumeSettings, volumes
     });
     let view = ViewId(frame.plan.views.len() - 1);
     let does = match options.operations {
-        CountsBy::Inverting if !options.counts_in_float => "turns the bit over",
+        CountOperations::Inverting if !options.counts_in_float => "turns the bit over",
         _ => "adds 1",
     };
     let purpose = format!(

@@ -19,18 +19,18 @@ pub const FORMULAS: &[(&str, Check)] = &[
         is_linear && camera.projection != Projection::Perspective
     }),
     ("count = front faces before the surface − back faces before it, seen from the eye", |here, _| {
-        here.counts(Side::InFront)
+        here.counts(CountedSide::InFront)
     }),
     ("count = back faces behind the surface − front faces behind it, seen from the eye", |here, _| {
-        here.counts(Side::Behind)
+        here.counts(CountedSide::Behind)
     }),
     ("count = volumes that contain the surface: each face the ray crosses adds or takes 1", |here, _| {
-        here.decided_by().counted_side() == Some(Side::AsNeeded)
+        here.decided_by().counted_side() == Some(CountedSide::AsNeeded)
     }),
     ("count at the near plane = casting triangles between the light and the pixel's point of that plane", |here, _| {
         here.frame.step(here.step).1.counts_at_near_plane()
     }),
-    ("a closed volume = sides + light cap + dark cap", |here, _| here.draws(Part::Side).next().is_some()),
+    ("a closed volume = sides + light cap + dark cap", |here, _| here.draws(DrawPart::Side).next().is_some()),
     ("light is added where count = 0", |here, _| asks_stencil(here, 0xff)),
     ("light is added where count = 0, kept in {}", |here, told| asks_stencil(here, mask_of(told[0]))),
     ("light is added where the stencil is even: a shadow adds 1 to its receiver's even mark", |here, _| {
@@ -48,7 +48,7 @@ pub const FORMULAS: &[(&str, Check)] = &[
         let lights = |program| {
             [Program::Light(how), Program::Light(Visibility::Everywhere), Program::Through].contains(&program)
         };
-        let rest = |part| [Part::Surface, Part::PlanarShadow].contains(&part);
+        let rest = |part| [DrawPart::Surface, DrawPart::PlanarShadow].contains(&part);
         here.frame.step(here.step).1.draws.iter().all(|draw| lights(draw.program) && rest(draw.part))
     }),
     (
@@ -70,9 +70,9 @@ pub const FORMULAS: &[(&str, Check)] = &[
         here.frame.plan.technique == "projective" && here.frame.step(here.step).1.color.is_some()
     }),
     ("shadow matrix = (P·L) I − L Pt, with the plane P = (n, d) and the light L = (x, y, z, w)", |here, _| {
-        here.draws(Part::PlanarShadow).next().is_some()
+        here.draws(DrawPart::PlanarShadow).next().is_some()
     }),
     ("shadow may fall only where the receiver itself is seen: it is marked in the stencil first", |here, _| {
-        here.draws(Part::Receiver).next().is_some()
+        here.draws(DrawPart::Receiver).next().is_some()
     }),
 ];

@@ -91,43 +91,48 @@ pub const LINES: &[(&str, Check)] = &[
         number(told[0]) == f64::from(most) && number(told[1]) == beyond as f64 && beyond > 0
     }),
     ("sides, between each silhouette edge and the same edge at the far end: {}", |here, told| {
-        number(told[0]) == here.triangles(Part::Side)
+        number(told[0]) == here.triangles(DrawPart::Side)
     }),
     (
         "sides, two triangles at every edge of what is one closed volume, and at those of each triangle of what is not: {}",
-        |here, told| number(told[0]) == here.triangles(Part::Side) && here.copies_and_sides().all(is_closed_or_prism),
+        |here, told| {
+            number(told[0]) == here.triangles(DrawPart::Side) && here.copies_and_sides().all(is_closed_or_prism)
+        },
     ),
     (
         "caps, every triangle of the former once and of the latter twice, in its place or at the far end: {}",
         |here, told| {
             let caps: usize = here.copies_and_sides().map(|(triangles, copies, _)| triangles * copies).sum();
-            let drawn = here.triangles(Part::Caps);
+            let drawn = here.triangles(DrawPart::Caps);
             number(told[0]) == drawn && (drawn == 0.0 || drawn == caps as f64)
         },
     ),
     ("light caps, the casting triangles themselves: {}", |here, told| {
-        number(told[0]) == here.triangles(Part::LightCap)
+        number(told[0]) == here.triangles(DrawPart::LightCap)
     }),
     ("dark caps, the casting triangles carried to the far end: {}", |here, told| {
         let finite = here.frame.capture.settings["extrusion"].starts_with("finite");
-        finite && number(told[0]) == here.triangles(Part::DarkCap)
+        finite && number(told[0]) == here.triangles(DrawPart::DarkCap)
     }),
     ("dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none{}: {}", |here, told| {
-        here.is_of_sun() && here.ends_as_told(told[0]) && told[1] == "0" && here.triangles(Part::DarkCap) == 0.0
+        here.is_of_sun() && here.ends_as_told(told[0]) && told[1] == "0" && here.triangles(DrawPart::DarkCap) == 0.0
     }),
     (
         "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there{}: {}",
         |here, told| {
-            let is_behind = here.decided_by().counted_side() != Some(Side::InFront);
+            let is_behind = here.decided_by().counted_side() != Some(CountedSide::InFront);
             let is_there = here.frame.capture.camera.is_parallel() && is_behind && !here.is_of_sun();
-            is_there && here.ends_as_told(told[0]) && told[1] == "0" && here.triangles(Part::DarkCap) == 0.0
+            is_there && here.ends_as_told(told[0]) && told[1] == "0" && here.triangles(DrawPart::DarkCap) == 0.0
         },
     ),
     ("dark caps, fans over the silhouettes at infinity{}: {}", |here, told| {
         let is_there = here.frame.capture.camera.is_parallel()
-            && here.decided_by().counted_side() != Some(Side::InFront)
+            && here.decided_by().counted_side() != Some(CountedSide::InFront)
             && here.volumes().caps[1];
-        !here.is_of_sun() && !is_there && here.ends_as_told(told[0]) && number(told[1]) == here.triangles(Part::DarkCap)
+        !here.is_of_sun()
+            && !is_there
+            && here.ends_as_told(told[0])
+            && number(told[1]) == here.triangles(DrawPart::DarkCap)
     }),
     ("{} adds ({}, {}, {}) × (material × {} + highlight){}", |here, told| {
         let index = here.light();
@@ -267,7 +272,8 @@ pub const LINES: &[(&str, Check)] = &[
         is_told && told[4] == if light[3] == 0.0 { ": a direction, as w = 0" } else { "" }
     }),
     ("{} flattened in {}, one for each receiver behind it", |here, told| {
-        let mut casters: Vec<&str> = here.draws(Part::PlanarShadow).filter_map(|draw| draw.caster.as_deref()).collect();
+        let mut casters: Vec<&str> =
+            here.draws(DrawPart::PlanarShadow).filter_map(|draw| draw.caster.as_deref()).collect();
         let draws = casters.len();
         casters.sort_unstable();
         casters.dedup();

@@ -1,8 +1,8 @@
 //! The selected region of the Diagnosis tab: its causes with evidence, mends and proofs; below them what is to be
 //! known of meshes and flags.
 
-use super::fields::{Applied, DiagnosisPanel};
-use crate::diagnosis::{CauseFound, Diagnosis, Mend, Proof, RegionFound, Staying};
+use super::fields::{AppliedFix, DiagnosisPanel};
+use crate::diagnosis::{CauseFound, Diagnosis, Fix, FixWithinTechnique, Proof, RegionFound};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -81,7 +81,7 @@ fn cause(
         wrapped(ui, theme::note(found.cause.meaning()));
     }
     // Who has chosen this technique is offered first what keeps it.
-    if let Some(Staying { mend, pixels_left }) = &found.staying {
+    if let Some(FixWithinTechnique { mend, pixels_left }) = &found.staying {
         let left = format::counted(*pixels_left, "pixel");
         let words = format!("Stay with {}, {left} left", diagnosis.technique.name());
         apply_button(ui, own, model, mend, &words, actions);
@@ -96,7 +96,7 @@ fn apply_button(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
     model: &mut Model,
-    mend: &Mend,
+    mend: &Fix,
     words: &str,
     actions: &mut Vec<Action>,
 ) {
@@ -113,7 +113,7 @@ fn apply_button(
     let hover = if is_done { "It is applied" } else { "Renders the scene so" };
     if button.on_hover_text(hover).on_disabled_hover_text(hover).clicked() {
         model.choose(after.clone(), actions);
-        own.applied = Some(Applied { before, after });
+        own.applied = Some(AppliedFix { before, after });
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// A mend that was applied from the tab: how shadows were made before, and are after.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Applied {
+pub struct AppliedFix {
     /// Without the mend.
     pub before: Choice,
     /// With it.
@@ -19,7 +19,7 @@ pub struct DiagnosisPanel {
     /// Index of the selected region.
     pub selected: usize,
     /// The mend that was applied last.
-    pub applied: Option<Applied>,
+    pub applied: Option<AppliedFix>,
     of: Option<Arc<Diagnosis>>,
 }
 

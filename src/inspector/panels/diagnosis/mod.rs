@@ -9,7 +9,7 @@ pub mod fields;
 mod recorded;
 
 use crate::accuracy::Finding;
-use crate::ask::{DiagnosisOf, Kind, Reply};
+use crate::ask::{DiagnosisOf, QuestionKind, Reply};
 use crate::capture::{Capture, FrameTarget, Snapshot};
 use crate::diagnosis::{Diagnosis, RegionFound, RegionKind};
 use crate::inspector::action::Action;
@@ -63,7 +63,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
     ui.horizontal(|ui| match reply.steps() {
         Some((done, of)) => {
             if ui.button("Cancel").on_hover_text("Stop diagnosing; what was found before stays").clicked() {
-                model.answers.cancel(Kind::DiagnosisOf);
+                model.answers.cancel(QuestionKind::DiagnosisOf);
             }
             let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32);
             let width = ui.available_width().min(180.0);

@@ -1,6 +1,6 @@
 //! What is wrong in another program's frame: a fault a paragraph, with its evidence and its proof.
 
-use crate::ask::{FaultsOf, Kind};
+use crate::ask::{FaultsOf, QuestionKind};
 use crate::diagnosis::Proof;
 use crate::diagnosis::recorded::FrameDiagnosis;
 use crate::inspector::look::theme;
@@ -14,7 +14,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
     ui.horizontal(|ui| match reply.steps() {
         Some(_) => {
             if ui.button("Cancel").clicked() {
-                model.answers.cancel(Kind::FaultsOf);
+                model.answers.cancel(QuestionKind::FaultsOf);
             }
             let words = "following rays, and running the frame with one thing changed";
             ui.add(egui::Label::new(theme::note(words)).wrap());

@@ -1,6 +1,6 @@
 //! Under the passes: the draws of the selected one, and what the frame left out.
 
-use super::fields::Passes;
+use super::fields::PassesPanel;
 use super::{recorded, thumbnail};
 use crate::ask::Reply;
 use crate::capture::{Capture, DrawState, DrawSummary, StepDraws};
@@ -9,8 +9,8 @@ use crate::inspector::model::Model;
 use crate::plan::LeftOut;
 use crate::reading::format;
 use crate::reading::left_out::by_reason;
-use crate::reading::moment::Moment;
-use crate::reading::written::Written;
+use crate::reading::moment::CapturePoint;
+use crate::reading::written::WrittenAspects;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ const INDENT: f32 = THUMBNAIL[0] + THUMBNAIL_WIDTH + 8.0;
 
 /// The draws of the selected step: part, name and triangles, and a thumbnail where the state after
 /// each is known. Many are folded away until all are wished for, or one of them is selected.
-pub fn of_step(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>) {
+pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Capture>) {
     let draws = &capture.steps[model.selection.step].draws;
     // One line less is folded away for the line that says so.
     let short = if draws.len() <= LISTED { draws.len() } else { LISTED - 1 };
@@ -74,7 +74,7 @@ fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Repl
         response.scroll_to_me(None);
     }
     if response.clicked() {
-        model.select(Moment { step: model.selection.step, draw: Some(index) });
+        model.select(CapturePoint { step: model.selection.step, draw: Some(index) });
         model.selection.wants_scroll = false;
     }
     if !ui.is_rect_visible(rect) {
@@ -100,7 +100,7 @@ fn changes_nothing(draw: &DrawSummary) -> bool {
 fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row: Rect) {
     let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
     let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
-    let written = Written::by_draw(capture, model.selection.step, index);
+    let written = WrittenAspects::by_draw(capture, model.selection.step, index);
     let colored = thumbnail::colored(model, written);
     thumbnail::paint_thumbnail(ui, model, colored, place);
     if changes_nothing(&capture.steps[model.selection.step].draws[index]) {

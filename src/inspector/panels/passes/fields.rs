@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 /// The panel.
 #[derive(Debug, Default)]
-pub struct Passes {
+pub struct PassesPanel {
     /// The search field, while it is open.
     pub search: Option<StepSearch>,
     /// It has just been opened.

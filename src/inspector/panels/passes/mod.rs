@@ -12,9 +12,9 @@ use crate::inspector::look::theme;
 use crate::inspector::model::{Model, StepSearch};
 use crate::reading::format;
 use crate::reading::steps;
-use crate::reading::written::Written;
+use crate::reading::written::WrittenAspects;
 use egui::{CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
-pub use fields::Passes;
+pub use fields::PassesPanel;
 use std::sync::Arc;
 use thumbnail::{colored, paint_row_background, paint_thumbnail};
 
@@ -22,7 +22,7 @@ use thumbnail::{colored, paint_row_background, paint_thumbnail};
 const BESIDE: &str = "beside the frame";
 
 /// Draws the panel.
-pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
+pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     if let Some(search) = model.requests.search.take() {
         own.search = Some(search);
         own.search_wants_focus = true;
@@ -51,12 +51,12 @@ fn empty(ui: &mut Ui, model: &Model) {
     ui.add(egui::Label::new(theme::note(text)).wrap());
 }
 
-fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>) {
+fn tree(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Capture>) {
     let filter = match &own.search {
         Some(StepSearch::Find(words)) => words.clone(),
         _ => String::new(),
     };
-    let groups = recorded::Groups::new(own, model);
+    let groups = recorded::DebugGroups::new(own, model);
     let mut group = None;
     let mut found = 0;
     for (index, step) in capture.steps.iter().enumerate() {
@@ -141,7 +141,7 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     }
     paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
     let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
-    let written = colored(model, Written::by_step(capture, index));
+    let written = colored(model, WrittenAspects::by_step(capture, index));
     paint_thumbnail(ui, model, written, thumbnail);
     let time = format::milliseconds(step.gpu_ms);
     let font = TextStyle::Monospace.resolve(ui.style());

@@ -1,11 +1,11 @@
 //! What only the frames of other programs have: who drew them, their debug groups, and draws that make something else
 //! when they are computed anew.
 
-use super::fields::Passes;
-use crate::capture::{Differs, DrawSummary};
+use super::fields::PassesPanel;
+use crate::capture::{DrawSummary, RecomputeDifference};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::plan::{FramePlan, May, Program};
+use crate::plan::{FramePlan, Program, ShaderEffect};
 use crate::reading::format;
 use egui::{Label, Role, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -34,18 +34,18 @@ pub fn groups_of(plan: &FramePlan, pass: usize) -> &[String] {
 
 /// The debug groups of a frame that has any.
 #[derive(Debug)]
-pub struct Groups {
+pub struct DebugGroups {
     plan: Arc<FramePlan>,
 }
 
-impl Groups {
+impl DebugGroups {
     /// Of the shown frame. The selected pass is in no group that hides its passes once it has to be seen.
-    pub fn new(own: &mut Passes, model: &Model) -> Option<Groups> {
+    pub fn new(own: &mut PassesPanel, model: &Model) -> Option<DebugGroups> {
         let plan = model.frame.plan.clone()?;
         if (0..plan.passes.len()).all(|pass| groups_of(&plan, pass).is_empty()) {
             return None;
         }
-        let groups = Groups { plan };
+        let groups = DebugGroups { plan };
         if std::mem::replace(&mut own.folded_of, model.scenes_opened) != model.scenes_opened {
             own.folded.clear();
         }
@@ -66,7 +66,7 @@ impl Groups {
     }
 
     /// Draws the groups that begin with a pass; how deep it is set in, or `None` where one of its groups hides it.
-    pub fn above(&self, ui: &mut Ui, own: &mut Passes, pass: usize) -> Option<usize> {
+    pub fn above(&self, ui: &mut Ui, own: &mut PassesPanel, pass: usize) -> Option<usize> {
         let path = groups_of(&self.plan, pass);
         for (level, name) in path.iter().enumerate() {
             let first = self.first(pass, level);
@@ -82,7 +82,7 @@ impl Groups {
 }
 
 /// A group: a click shows or hides its passes.
-fn heading(ui: &mut Ui, own: &mut Passes, name: &str, group: [usize; 2]) {
+fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
     let is_folded = own.folded.contains(&group);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::click());
     let label = format!("Debug group {name}");
@@ -109,14 +109,14 @@ pub fn indented(ui: &mut Ui, levels: usize, add: impl FnOnce(&mut Ui)) {
 
 /// At how many pixels a draw that is computed anew leaves something else than was stored; `None` where it does not.
 pub fn mark(draw: &DrawSummary) -> Option<String> {
-    let Differs { depth, stencil, .. } = draw.differs.filter(|differs| !differs.is_nowhere())?;
+    let RecomputeDifference { depth, stencil, .. } = draw.differs.filter(|differs| !differs.is_nowhere())?;
     Some(format!("≠ {}", format::count(depth.max(stencil))))
 }
 
 /// What the mark means, and what the shader of a draw of the selected pass may do that is not known here.
 pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
     let mut words = String::new();
-    if let Some(Differs { depth, stencil, .. }) = draw.differs.filter(|differs| !differs.is_nowhere()) {
+    if let Some(RecomputeDifference { depth, stencil, .. }) = draw.differs.filter(|differs| !differs.is_nowhere()) {
         words += &format!(
             "\n≠ Computed anew from what was there before it, this draw leaves another stencil at {} and another depth \
              at {}. Histories are not to be trusted there.",
@@ -129,10 +129,10 @@ pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
     if let Some((plan, draw)) = plan.zip(draw)
         && let Program::Recorded { may_discard, writes_depth } = draw.program
     {
-        let mut tell = |may: May, what: &str| match may {
-            May::No => {}
-            May::Yes => words += &format!("\nIts shader may {what}, which is not followed"),
-            May::Unknown => words += &format!("\nIts shader could not be read: it may {what}"),
+        let mut tell = |may: ShaderEffect, what: &str| match may {
+            ShaderEffect::No => {}
+            ShaderEffect::Yes => words += &format!("\nIts shader may {what}, which is not followed"),
+            ShaderEffect::Unknown => words += &format!("\nIts shader could not be read: it may {what}"),
         };
         if draw.discards_unknown(&plan.meshes[draw.mesh.0]) {
             tell(may_discard, "discard fragments");

@@ -6,7 +6,7 @@ use crate::inspector::look::texture::TextureSize;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::depth::DepthScale;
-use crate::reading::written::{Content, Written};
+use crate::reading::written::{TexelContent, WrittenAspects};
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 use std::sync::Arc;
 
@@ -26,15 +26,15 @@ pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: 
 }
 
 /// What a step or a draw wrote, with its colouring.
-pub fn colored(model: &mut Model, written: Option<Written>) -> Option<(Arc<Image>, Coloring)> {
-    let Written { image, content, .. } = written?;
+pub fn colored(model: &mut Model, written: Option<WrittenAspects>) -> Option<(Arc<Image>, Coloring)> {
+    let WrittenAspects { image, content, .. } = written?;
     let coloring = match content {
-        Content::Color => Coloring::Srgb,
-        Content::LetThrough => Coloring::Linear,
-        Content::Stencil => Coloring::Stencil,
-        Content::Count => Coloring::Count,
-        Content::Labels => Coloring::Labels,
-        Content::Depth(measure) => {
+        TexelContent::Color => Coloring::Srgb,
+        TexelContent::LetThrough => Coloring::Linear,
+        TexelContent::Stencil => Coloring::Stencil,
+        TexelContent::Count => Coloring::Count,
+        TexelContent::Labels => Coloring::Labels,
+        TexelContent::Depth(measure) => {
             let range = model.textures.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
             Coloring::Depth(DepthScale { measure, range })
         }

@@ -1,6 +1,6 @@
 //! Step controls: back, forth, play, draw by draw, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
 
-use super::fields::Passes;
+use super::fields::PassesPanel;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::{Model, StepSearch};
@@ -9,7 +9,7 @@ use crate::reading::steps;
 use egui::{Key, Ui, vec2};
 
 /// Draws the controls above the passes.
-pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
+pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else { return };
     let count = model.steps();
     ui.horizontal(|ui| {
@@ -97,7 +97,7 @@ fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) {
 }
 
 /// The field of Ctrl-G or Ctrl-F while it is open: Enter goes, Escape closes.
-fn search(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
+fn search(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     let Some(mut search) = own.search.take() else { return };
     let (text, name, hint) = match &mut search {
         StepSearch::GoTo(text) => (text, "Go to step", "step number"),

@@ -2,10 +2,10 @@
 //!
 //! Pictures are laid over one another texel by texel. Lines, numbers and names are drawn by the code that draws them
 //! in the window, into a window of the picture's size that nobody sees; `look/triangles.rs` fills its triangles, which may take
-//! a while and needs nothing of the window: [`Drawing::finish`].
+//! a while and needs nothing of the window: [`PictureDrawing::finish`].
 
 use super::overlays;
-use super::{Layers, PicturePanel, compared_names, layers};
+use super::{PictureLayers, PicturePanel, compared_names, layers};
 use crate::capture::Capture;
 use crate::inspector::canvas::divider;
 use crate::inspector::canvas::placement::Placement;
@@ -14,9 +14,9 @@ use crate::inspector::look::texture;
 use crate::inspector::look::theme;
 use crate::inspector::look::triangles;
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::Compare;
+use crate::inspector::model::looking::Comparison;
 use crate::picture::Picture;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
 
@@ -25,13 +25,13 @@ const NAMED_FROM: u32 = 480;
 
 /// A picture, and triangles that are yet to be drawn over it.
 #[derive(Debug, Clone)]
-pub struct Drawing {
+pub struct PictureDrawing {
     picture: Picture,
     triangles: Vec<ClippedPrimitive>,
     letters: ColorImage,
 }
 
-impl Drawing {
+impl PictureDrawing {
     /// Draws the triangles: some tenths of a second where there are wireframes.
     pub fn finish(&self) -> Picture {
         let mut picture = self.picture.clone();
@@ -50,16 +50,16 @@ pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,
     capture: &Capture,
-    shown: &Shown,
+    shown: &ShownPicture,
     coloring: (Coloring, [f64; 2]),
-) -> Drawing {
+) -> PictureDrawing {
     let size = shown.images[0].size();
     let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
     let seam = own.seam;
     let compare = model.modes.compare;
-    let compare = compare.map(|compare| Compare { at: seam.unwrap_or(compare.at).clamp(0.0, 1.0), ..compare });
+    let compare = compare.map(|compare| Comparison { at: seam.unwrap_or(compare.at).clamp(0.0, 1.0), ..compare });
     let mut picture = texture::picture(&shown.images[0], coloring.0);
-    let Layers { sheets, compared, .. } = layers(own, model, (capture, rect), shown, coloring, compare);
+    let PictureLayers { sheets, compared, .. } = layers(own, model, (capture, rect), shown, coloring, compare);
     for sheet in &sheets {
         let columns = sheet.part.left().round() as u32..sheet.part.right().round() as u32;
         texture::lay_over(&mut picture, &sheet.image, sheet.coloring, columns);
@@ -78,7 +78,7 @@ pub fn drawing(
             divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);
         }
     });
-    Drawing { picture, triangles, letters }
+    PictureDrawing { picture, triangles, letters }
 }
 
 /// What `paint` draws into a window of this size, a point a pixel, and the texture of its letters.

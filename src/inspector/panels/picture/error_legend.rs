@@ -3,12 +3,12 @@
 
 use super::legend_entry;
 use crate::accuracy::{ErrorCounts, Finding};
-use crate::inspector::look::findings::{self, Pattern, Style};
+use crate::inspector::look::findings::{self, FindingPattern, FindingStyle};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers::percent;
 use crate::reading::format;
-use crate::reading::shown::Shown;
+use crate::reading::shown::ShownPicture;
 use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Sense, Stroke, Ui};
 use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
 
@@ -28,7 +28,7 @@ const ORDER: [Finding; 6] = [
 ];
 
 /// Draws the legend of `shown`, which is an error picture.
-pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &Shown) {
+pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPicture) {
     ui.spacing_mut().interact_size.y = LINE;
     let truth = model.frame.capture.as_ref().and_then(|capture| model.view.truth_to_show(capture));
     let found = truth.map(|(_, truth)| (truth.error, truth.worst));
@@ -105,21 +105,21 @@ fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
 }
 
 /// A swatch with the hatching of a finding.
-pub fn hatched(ui: &mut Ui, style: Style) {
+pub fn hatched(ui: &mut Ui, style: FindingStyle) {
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
     paint(ui, rect, style);
 }
 
-fn paint(ui: &Ui, rect: Rect, style: Style) {
+fn paint(ui: &Ui, rect: Rect, style: FindingStyle) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, CornerRadius::same(2), style.color);
     let stroke = Stroke::new(1.5, style.color.lerp_to_gamma(Color32::BLACK, 0.6));
     let (rising, falling) = match style.pattern {
-        Pattern::Rising => (true, false),
-        Pattern::Falling => (false, true),
-        Pattern::Crossed => (true, true),
-        Pattern::Plain => (false, false),
-        Pattern::Dotted => {
+        FindingPattern::Rising => (true, false),
+        FindingPattern::Falling => (false, true),
+        FindingPattern::Crossed => (true, true),
+        FindingPattern::Plain => (false, false),
+        FindingPattern::Dotted => {
             for (x, y) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
                 painter.circle_filled(rect.lerp_inside(vec2(x, y)), 1.4, stroke.color);
             }

@@ -8,8 +8,8 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::model::selection::Hover;
 use crate::reading::depth::DepthMeasure;
-use crate::reading::layers::Layer;
-use crate::reading::shown::{FaceChoice, Shown, Zoom};
+use crate::reading::layers::MapLayer;
+use crate::reading::shown::{FaceChoice, ShownPicture, TexelZoom};
 use egui::{Color32, CornerRadius, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 
 /// Room for a name above each picture, points.
@@ -23,7 +23,7 @@ const SMALL: f32 = 112.0;
 
 /// Draws the layers of `shown`, named; a click shows one of them large. They leave room for the
 /// legend.
-pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &Shown, coloring: Coloring) {
+pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture, coloring: Coloring) {
     let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::room(rect, shown), 0.0)).shrink(GAP);
     let (columns, side) = arrangement(area.size(), shown.images.len());
     let rows = shown.images.len().div_ceil(columns);
@@ -55,7 +55,7 @@ fn arrangement(area: egui::Vec2, count: usize) -> (usize, f32) {
     (columns, (area.x / columns as f32 - GAP).clamp(1.0, LEAST_SIDE * 1.5))
 }
 
-fn one(ui: &mut Ui, model: &mut Model, shown: &Shown, index: usize, coloring: Coloring, square: Rect) {
+fn one(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, index: usize, coloring: Coloring, square: Rect) {
     let (image, layer) = (&shown.images[index], &shown.layers[index]);
     let response = ui.interact(square, ui.scope_id().with(("layer", index)), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, capitalized(&layer.full_name)));
@@ -85,13 +85,13 @@ fn one(ui: &mut Ui, model: &mut Model, shown: &Shown, index: usize, coloring: Co
     };
     if response.on_hover_text(hint).clicked() {
         model.view.face = FaceChoice::One(index);
-        model.view.zoom = Zoom::Fit;
+        model.view.zoom = TexelZoom::Fit;
         model.selection.map_pick = None;
     }
 }
 
-fn caption(ui: &Ui, model: &mut Model, shown: &Shown, index: usize, coloring: Coloring) -> (String, Color32) {
-    let Layer { name, note, .. } = &shown.layers[index];
+fn caption(ui: &Ui, model: &mut Model, shown: &ShownPicture, index: usize, coloring: Coloring) -> (String, Color32) {
+    let MapLayer { name, note, .. } = &shown.layers[index];
     if let Some(note) = note {
         return (format!("{name} {note}"), theme::of(ui).faint);
     }

@@ -2,12 +2,12 @@
 //! border: where it would come in, or, of one behind the eye, on its side.
 
 use crate::inspector::action::Action;
-use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
+use crate::inspector::canvas::handles::{HandleAnchor, HandleKind, arrows, grabbed, moved_light, place_of_light};
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::pick_ray;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::DVec3;
 
@@ -30,14 +30,21 @@ pub fn button(ui: &mut Ui, is_off: &mut bool, model: &Model) {
 }
 
 /// Draws the handles and moves the lights of the draft.
-pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Placement, actions: &mut Vec<Action>) {
+pub fn ui(
+    ui: &Ui,
+    model: &mut Model,
+    rect: Rect,
+    shown: &ShownPicture,
+    placement: Placement,
+    actions: &mut Vec<Action>,
+) {
     let (Some(capture), Some(scene)) = (&model.frame.capture, &mut model.scene) else { return };
     if shown.kind == PictureKind::Map || model.walk.is_on() {
         return;
     }
     let draft = &mut scene.draft;
     let camera = capture.camera;
-    let anchor = Anchor { middle: camera.eye, reach: SUN };
+    let anchor = HandleAnchor { middle: camera.eye, reach: SUN };
     let ahead = (camera.target - camera.eye).normalize_or_zero();
     let whole = placement.rect().intersect(rect);
     let mut changed = false;
@@ -55,7 +62,7 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
         let outwards = (!whole.contains(at)).then(|| (at - inside).normalized());
         let at = if outwards.is_some() { inside } else { at };
         let id = ui.scope_id().with(("light in the picture", index));
-        let name = format!("{} in the picture", Grip::Light(index).name());
+        let name = format!("{} in the picture", HandleKind::Light(index).name());
         let response = grabbed(ui, id, Rect::from_center_size(at, Vec2::splat(GRAB)), &name);
         let is_held = response.hovered() || response.dragged() || response.has_focus();
         let away = match (before_eye, outwards) {
@@ -63,7 +70,7 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
             (Some(_), Some(_)) => ", out of view this way",
             (Some(_), None) => "",
         };
-        let name = Grip::Light(index).name();
+        let name = HandleKind::Light(index).name();
         let response = response.on_hover_text(format!("{name}{away}: drag it, or use the arrow keys"));
         sign(ui, whole, at, is_held, outwards);
         let mut by = response.drag_delta() / placement.scale;

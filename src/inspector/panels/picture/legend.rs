@@ -5,17 +5,17 @@ use super::error_legend;
 use super::legend_entry::{bar, entry, entry_with, title};
 use super::modes_legend;
 use crate::inspector::look::palette;
-use crate::inspector::look::texture::Shares;
+use crate::inspector::look::texture::LightShares;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::Model;
 use crate::numbers;
-use crate::reading::change::Change;
+use crate::reading::change::StepChange;
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.
@@ -26,7 +26,7 @@ const MOST_VALUES: usize = 12;
 const MOST_MISREAD: usize = 4;
 
 /// What the legend takes of a picture of this size, points.
-pub fn room(rect: Rect, shown: &Shown) -> f32 {
+pub fn room(rect: Rect, shown: &ShownPicture) -> f32 {
     if fits(rect, shown.kind) { width(rect, shown.kind) + 12.0 } else { 0.0 }
 }
 
@@ -39,7 +39,14 @@ fn width(rect: Rect, kind: PictureKind) -> f32 {
 }
 
 /// Draws the legend of `shown`; `range` is that of the grey ramp.
-pub fn ui(ui: &mut Ui, counts_findings: &mut bool, model: &mut Model, rect: Rect, shown: &Shown, range: [f64; 2]) {
+pub fn ui(
+    ui: &mut Ui,
+    counts_findings: &mut bool,
+    model: &mut Model,
+    rect: Rect,
+    shown: &ShownPicture,
+    range: [f64; 2],
+) {
     if !fits(rect, shown.kind) {
         return;
     }
@@ -56,7 +63,7 @@ pub fn ui(ui: &mut Ui, counts_findings: &mut bool, model: &mut Model, rect: Rect
 }
 
 /// Draws the legend of what a step changed.
-pub fn of_change(ui: &mut Ui, rect: Rect, change: &Change) {
+pub fn of_change(ui: &mut Ui, rect: Rect, change: &StepChange) {
     if rect.width() >= WIDTH * 2.0 {
         card(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
     }
@@ -77,7 +84,7 @@ fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+fn stencil(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let histogram = model.textures.histogram(&shown.images[0]);
     let are_counts = model.frame.capture.as_ref().is_some_and(|capture| capture.counts_volumes());
     theme::heading(ui, if are_counts { "Stencil count" } else { "Stencil value" });
@@ -96,10 +103,10 @@ fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
 }
 
 /// Values with how many pixels have each.
-type Counted<V> = Vec<(V, u64)>;
+type ValueCounts<V> = Vec<(V, u64)>;
 
 /// As many values as are listed, those of the most pixels, and the rest; both in the order given.
-fn most_frequent<V>(values: Counted<V>, most: usize) -> (Counted<V>, Counted<V>) {
+fn most_frequent<V>(values: ValueCounts<V>, most: usize) -> (ValueCounts<V>, ValueCounts<V>) {
     let mut by_pixels: Vec<usize> = (0..values.len()).collect();
     by_pixels.sort_by_key(|index| std::cmp::Reverse(values[*index].1));
     let listed: std::collections::BTreeSet<usize> = by_pixels.into_iter().take(most).collect();
@@ -119,7 +126,7 @@ fn more_values<V>(ui: &mut Ui, rest: &[(V, u64)]) {
 }
 
 /// Signed counts; those that eight bits would take for zero apart.
-fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let tally = model.textures.tally(&shown.images[0]);
     theme::heading(ui, &title(shown));
     let in_order = tally.range(0..).chain(tally.range(..0).rev()).map(|(count, pixels)| (*count as f32, *pixels));
@@ -142,11 +149,11 @@ fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &Shown) {
 }
 
 /// What white, black and colours mean where a picture holds what light comes through.
-fn let_through(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+fn let_through(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let content = model.frame.capture.as_ref().and_then(|capture| MapContent::of_capture(capture));
     let arrives = content == Some(MapContent::Textures);
     theme::heading(ui, if arrives { "Light that arrives" } else { "Light let through" });
-    let mut total = Shares::default();
+    let mut total = LightShares::default();
     for image in &shown.images {
         let shares = model.textures.shares(image);
         total.all += shares.all;
@@ -176,7 +183,7 @@ fn let_through(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     }
 }
 
-fn labels(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+fn labels(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, &title(shown));
     for (value, label) in palette::LABELS.iter().enumerate() {
@@ -190,7 +197,7 @@ fn labels(ui: &mut Ui, model: &mut Model, shown: &Shown) {
 }
 
 /// The grey ramp with its ends and handles.
-fn depth(ui: &mut Ui, model: &mut Model, shown: &Shown, range: [f64; 2]) {
+fn depth(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2]) {
     let is_raw = shown.measure == DepthMeasure::Raw;
     theme::heading(ui, if is_raw { "Depth as stored" } else { "Distance" });
     let full = model.full_range(shown);

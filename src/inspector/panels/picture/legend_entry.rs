@@ -2,11 +2,11 @@
 
 use crate::inspector::look::theme;
 use crate::reading::format;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, vec2};
 
 /// `Mask, light 1`.
-pub fn title(shown: &Shown) -> String {
+pub fn title(shown: &ShownPicture) -> String {
     let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
     let kind = match shown.kind {
         PictureKind::Count => "Count",

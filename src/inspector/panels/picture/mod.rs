@@ -17,18 +17,18 @@ use crate::capture::{Capture, Image};
 use crate::inspector::action::Action;
 use crate::inspector::canvas::divider;
 use crate::inspector::canvas::magnifier;
-use crate::inspector::canvas::{self, Canvas, Sheet, marks};
+use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{Segment, at_right, segments, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, segments, segments_of};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{Compare, With};
-use crate::inspector::model::looking::{NoBefore, Phase, has_phases};
+use crate::inspector::model::looking::{ComparedWith, Comparison};
+use crate::inspector::model::looking::{NoStepBefore, StepPhase, has_phases};
 use crate::inspector::model::selection::Hover;
-use crate::reading::change::{Change, ChangeCache};
+use crate::reading::change::{ChangeCache, StepChange};
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
-use crate::reading::shown::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
+use crate::reading::shown::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available};
 use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
 use overlays::Overlays;
 use std::sync::Arc;
@@ -94,11 +94,11 @@ fn single(
     own: &mut PicturePanel,
     model: &mut Model,
     (capture, rect): (&Capture, Rect),
-    shown: &Shown,
+    shown: &ShownPicture,
     (coloring, range): (Coloring, [f64; 2]),
     actions: &mut Vec<Action>,
 ) {
-    let Layers { change, sheets, compared } =
+    let PictureLayers { change, sheets, compared } =
         layers(own, model, (capture, rect), shown, (coloring, range), model.modes.compare);
     let canvas = Canvas {
         name: canvas::PICTURE,
@@ -145,13 +145,13 @@ fn single(
 }
 
 /// What lies over a picture.
-pub struct Layers {
+pub struct PictureLayers {
     /// What the step changed.
-    pub change: Option<Change>,
+    pub change: Option<StepChange>,
     /// The pictures, in the order in which they lie.
-    pub sheets: Vec<Sheet>,
+    pub sheets: Vec<PictureSheet>,
     /// The comparison, where there is something to compare with.
-    pub compared: Option<Compare>,
+    pub compared: Option<Comparison>,
 }
 
 /// What lies over `shown` in `rect`: what changed, tints, and on one side of `compare`'s divider what is compared.
@@ -159,14 +159,14 @@ pub fn layers(
     own: &mut PicturePanel,
     model: &mut Model,
     (capture, rect): (&Capture, Rect),
-    shown: &Shown,
+    shown: &ShownPicture,
     (coloring, range): (Coloring, [f64; 2]),
-    compare: Option<Compare>,
-) -> Layers {
+    compare: Option<Comparison>,
+) -> PictureLayers {
     let mut sheets = Vec::new();
     let change = change_of(own, model, capture, shown);
     if let Some((ground, change)) = &change {
-        let sheet = |image: &Arc<Image>, coloring, has_numbers| Sheet {
+        let sheet = |image: &Arc<Image>, coloring, has_numbers| PictureSheet {
             image: image.clone(),
             coloring,
             part: rect,
@@ -183,16 +183,16 @@ pub fn layers(
             beside = coloring;
         }
         let part = divider::part(rect, compare);
-        sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
+        sheets.push(PictureSheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
     }
-    Layers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
+    PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
 }
 
 /// What the sides of a comparison are called: the compared one, and the one that is shown.
-pub fn compared_names(model: &Model, capture: &Capture, compare: &Compare) -> [String; 2] {
+pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
     let now = match compare.with {
-        With::Step(_) => model.moment().words(capture),
-        With::Technique(_) => capture.technique.clone(),
+        ComparedWith::Step(_) => model.moment().words(capture),
+        ComparedWith::Technique(_) => capture.technique.clone(),
     };
     [compare.with.words(capture), now]
 }
@@ -202,9 +202,9 @@ pub fn change_of(
     own: &mut PicturePanel,
     model: &Model,
     capture: &Capture,
-    shown: &Shown,
-) -> Option<(Arc<Image>, Change)> {
-    if model.modes.phase != Phase::Diff || !has_phases(shown.kind) {
+    shown: &ShownPicture,
+) -> Option<(Arc<Image>, StepChange)> {
+    if model.modes.phase != StepPhase::Diff || !has_phases(shown.kind) {
         return None;
     }
     let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
@@ -218,8 +218,8 @@ pub fn change_of(
 /// There is no picture, and why.
 fn nothing(ui: &mut Ui, model: &Model, capture: &Capture, rect: Rect) {
     let text = match model.modes.phase {
-        Phase::Before => model.shown_before(capture).err().map(NoBefore::sentence),
-        Phase::After | Phase::Diff => None,
+        StepPhase::Before => model.shown_before(capture).err().map(NoStepBefore::sentence),
+        StepPhase::After | StepPhase::Diff => None,
     };
     let text = text.unwrap_or("Nothing is drawn into the picture yet at this step.");
     let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
@@ -269,7 +269,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
 }
 
 /// What goes with one kind of picture only.
-fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Shown>) {
+fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     match shown.map(|shown| shown.kind) {
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
         Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
@@ -295,14 +295,14 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let kinds: Vec<PictureKind> =
         PictureKind::ALL.into_iter().filter(|kind| !kind.is_of_some_frames() || available.contains(kind)).collect();
     let shown = model.kind();
-    let auto = Segment::new("Auto", "What each step writes: colour, stencil, depth, or a light's map");
+    let auto = ButtonSegment::new("Auto", "What each step writes: colour, stencil, depth, or a light's map");
     let of_kind = |kind: &PictureKind| {
         let is_enabled = available.contains(kind);
         let explanation = if is_enabled { kind.meaning(capture) } else { kind.why_missing(capture) };
         let is_seen = shown == Some(*kind) && model.view.kind != Some(*kind);
-        Segment { is_enabled, is_seen, ..Segment::new(kind.name(capture), explanation) }
+        ButtonSegment { is_enabled, is_seen, ..ButtonSegment::new(kind.name(capture), explanation) }
     };
-    let segments: Vec<Segment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
+    let segments: Vec<ButtonSegment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
     let chosen =
         model.view.kind.map_or(Some(0), |chosen| kinds.iter().position(|kind| *kind == chosen).map(|at| at + 1));
     match segments_of(ui, &segments, chosen) {
@@ -358,7 +358,7 @@ fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
 }
 
 /// Names too long and too many for buttons.
-fn layer_list(ui: &mut Ui, layers: &[layers::Layer], mut chosen: usize) -> Option<usize> {
+fn layer_list(ui: &mut Ui, layers: &[layers::MapLayer], mut chosen: usize) -> Option<usize> {
     let before = chosen;
     let all = format!("All {}", layers.len());
     let current = chosen.checked_sub(1).map_or(all.as_str(), |layer| &layers[layer].name);
@@ -391,22 +391,22 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
-    if let Zoom::Pixels(pixels) = model.view.zoom {
+    if let TexelZoom::Pixels(pixels) = model.view.zoom {
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }
     walking::button(ui, model);
     gizmos::button(ui, &mut own.hides_gizmos, model);
-    let fits = model.view.zoom == Zoom::Fit;
-    let is_exact = model.view.zoom == Zoom::Pixels(1.0);
+    let fits = model.view.zoom == TexelZoom::Fit;
+    let is_exact = model.view.zoom == TexelZoom::Pixels(1.0);
     let word = theme::switch_word(ui, "1:1", is_exact);
     if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
         if fits {
             model.view.center = size.map(|side| f64::from(side) / 2.0);
         }
-        model.view.zoom = Zoom::Pixels(1.0);
+        model.view.zoom = TexelZoom::Pixels(1.0);
     }
     let word = theme::switch_word(ui, "Fit", fits);
     if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
-        model.view.zoom = Zoom::Fit;
+        model.view.zoom = TexelZoom::Fit;
     }
 }

@@ -4,11 +4,11 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{Segment, at_right, segments_of};
+use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of};
 use crate::inspector::model::Model;
-use crate::inspector::model::looking::{self, Compare, Phase, With, has_phases, step_words};
+use crate::inspector::model::looking::{self, ComparedWith, Comparison, StepPhase, has_phases, step_words};
 use crate::reading::change::ChangeCache;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use crate::technique::Technique;
 use egui::{Button, Rect, Ui, UiBuilder, vec2};
 
@@ -16,7 +16,7 @@ use egui::{Button, Rect, Ui, UiBuilder, vec2};
 const NOTE_WIDTH: f32 = 232.0;
 
 /// Draws the tools that go with `shown`: those that are always there first, so that they keep their place.
-pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&Shown>) {
+pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
     let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
     ui.add_enabled_ui(is_single, |ui| {
@@ -34,11 +34,11 @@ fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
     let is_enabled = kind.is_some_and(has_phases);
     let segment = |(label, explanation): (&'static str, &'static str)| {
         let explanation = if is_enabled { explanation } else { "Of colour, stencil and depth only" };
-        Segment { is_enabled, ..Segment::new(label, explanation) }
+        ButtonSegment { is_enabled, ..ButtonSegment::new(label, explanation) }
     };
-    let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
-    if let Some(index) = segments_of(ui, &Phase::LABELS.map(segment), chosen) {
-        model.modes.phase = Phase::ALL[index];
+    let chosen = StepPhase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
+    if let Some(index) = segments_of(ui, &StepPhase::LABELS.map(segment), chosen) {
+        model.modes.phase = StepPhase::ALL[index];
     }
 }
 
@@ -72,7 +72,7 @@ pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
 }
 
 /// What is compared with, and a button that swaps the sides.
-fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Compare) {
+fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Comparison) {
     ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
@@ -82,14 +82,14 @@ fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Co
             } else {
                 step_words(capture, step)
             };
-            ui.selectable_value(&mut compare.with, With::Step(step), text);
+            ui.selectable_value(&mut compare.with, ComparedWith::Step(step), text);
         }
         if model.scene.is_some() {
             ui.separator();
             for technique in Technique::ALL.into_iter().filter(|technique| technique.name() != capture.technique) {
                 let line = ui.selectable_value(
                     &mut compare.with,
-                    With::Technique(technique),
+                    ComparedWith::Technique(technique),
                     format!("technique {}", technique.name()),
                 );
                 line.on_hover_text(technique.summary());
@@ -108,7 +108,7 @@ pub fn compare_note(
     changes: &mut ChangeCache,
     model: &Model,
     capture: &Capture,
-    shown: &Shown,
+    shown: &ShownPicture,
     rect: Rect,
 ) {
     if model.modes.compare.is_none() {

@@ -5,9 +5,9 @@ use crate::inspector::look::texture::DEPTH_BARS;
 use crate::inspector::look::theme;
 use crate::inspector::look::{coloring, palette};
 use crate::inspector::model::Model;
-use crate::reading::change::{self, Change, Sorts};
+use crate::reading::change::{self, ChangedTexels, StepChange};
 use crate::reading::format;
-use crate::reading::shown::Shown;
+use crate::reading::shown::ShownPicture;
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
 
 /// Changes of counts that are listed one by one.
@@ -16,11 +16,11 @@ const MOST_LISTED: usize = 10;
 const BARS_HEIGHT: f32 = 32.0;
 
 /// What changed, with how many texels.
-pub fn change(ui: &mut Ui, found: &Change) {
+pub fn change(ui: &mut Ui, found: &StepChange) {
     theme::heading(ui, &format!("{} changed", format::counted(found.texels, "texel")));
     let [width, height] = found.image.size().map(u64::from);
     let entries: Vec<(Color32, String, u64, &str)> = match &found.sorts {
-        Sorts::Counts(counts) => {
+        ChangedTexels::Counts(counts) => {
             let listed = counts.iter().rev().take(MOST_LISTED);
             listed
                 .map(|(by, texels)| {
@@ -29,7 +29,7 @@ pub fn change(ui: &mut Ui, found: &Change) {
                 })
                 .collect()
         }
-        Sorts::Depths([nearer, farther, appeared, went]) => [
+        ChangedTexels::Depths([nearer, farther, appeared, went]) => [
             (palette::UP, "nearer", *nearer, "The surface is nearer than before"),
             (palette::DOWN, "farther", *farther, "The surface is farther than before"),
             (palette::APPEARED, "new surface", *appeared, "Nothing was drawn here before"),
@@ -39,15 +39,15 @@ pub fn change(ui: &mut Ui, found: &Change) {
         .filter(|(_, _, texels, _)| *texels > 0)
         .map(|(color, name, texels, hover)| (color, name.to_owned(), texels, hover))
         .collect(),
-        Sorts::Colors => Vec::new(),
+        ChangedTexels::Colors => Vec::new(),
     };
     for (color, name, texels, hover) in entries {
         entry(ui, color, &name, texels).on_hover_text(hover);
     }
-    if found.sorts == Sorts::Colors && found.texels > 0 {
+    if found.sorts == ChangedTexels::Colors && found.texels > 0 {
         ui.label(theme::note("in their new colour"));
     }
-    if let Sorts::Counts(counts) = &found.sorts
+    if let ChangedTexels::Counts(counts) = &found.sorts
         && counts.len() > MOST_LISTED
     {
         ui.label(theme::note(format::counted((counts.len() - MOST_LISTED) as u64, "more sort")));
@@ -57,7 +57,7 @@ pub fn change(ui: &mut Ui, found: &Change) {
 }
 
 /// The two inks of a bit, with how many texels have each.
-pub fn bit(ui: &mut Ui, model: &mut Model, shown: &Shown, bit: u8) {
+pub fn bit(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, bit: u8) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, &format!("Bit {bit} of the stencil"));
     ui.label(theme::note(format!("worth {}", 1_u32 << bit)));
@@ -69,7 +69,7 @@ pub fn bit(ui: &mut Ui, model: &mut Model, shown: &Shown, bit: u8) {
 }
 
 /// How many pixels had how many fragments.
-pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, "Fragments a pixel");
     let all: u64 = (0..=255_u64).zip(histogram).map(|(count, pixels)| count * pixels).sum();
@@ -87,7 +87,7 @@ pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &Shown) {
 }
 
 /// How often each depth of `full` occurs; what the grey ramp covers is lighter.
-pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &Shown, range: [f64; 2], full: [f64; 2]) {
+pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2], full: [f64; 2]) {
     let mut bars = [0_u64; DEPTH_BARS];
     for image in &shown.images {
         let of_image = model.textures.depth_histogram(image, shown.measure, full);

@@ -6,11 +6,11 @@ use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::projected::outline;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
 
 /// Draws the outline over the picture in `rect`; maps have pixels of their own.
-pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &Shown, placement: Placement) {
+pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     let Some(capture) = &model.frame.capture else { return };
     let Some(history) = model.history_of_frame().filter(|_| shown.kind != PictureKind::Map) else { return };
     let event = model.selected_in(&history).map(|index| &history.events[index]);

@@ -6,19 +6,19 @@ use crate::ask::AnatomyOf;
 use crate::capture::TestCounts;
 use crate::capture::{Capture, Image};
 use crate::inspector::action::Overlay;
-use crate::inspector::canvas::Sheet;
-use crate::inspector::canvas::overlay_lines::{Lines, PlacedLines, middle, multiplicity};
+use crate::inspector::canvas::PictureSheet;
+use crate::inspector::canvas::overlay_lines::{OverlayLines, PlacedLines, middle, multiplicity};
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::plate;
 use crate::inspector::model::Model;
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use crate::reading::format;
 use crate::reading::object_ids::ObjectIds;
 use crate::reading::outcomes::OUTCOMES;
-use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -33,17 +33,17 @@ const BUTTON_WIDTH: f32 = 84.0;
 /// What was made for the overlays of a frame.
 #[derive(Debug, Default)]
 pub struct Overlays {
-    made: Option<Made>,
+    made: Option<OverlayMeshes>,
 }
 
 /// What follows from an anatomy and a light.
 #[derive(Debug)]
-struct Made {
+struct OverlayMeshes {
     anatomy: Arc<Anatomy>,
     capture: [u32; 2],
     light: usize,
-    silhouettes: Option<(Lines, PlacedLines)>,
-    volumes: Option<(Lines, PlacedLines)>,
+    silhouettes: Option<(OverlayLines, PlacedLines)>,
+    volumes: Option<(OverlayLines, PlacedLines)>,
     objects: Option<SeenObjects>,
 }
 
@@ -55,11 +55,18 @@ struct SeenObjects {
 }
 
 impl Overlays {
-    fn make(&mut self, on: &BTreeSet<Overlay>, anatomy: &Arc<Anatomy>, capture: &Capture, light: usize) -> &mut Made {
-        let is_it =
-            |made: &Made| Arc::ptr_eq(&made.anatomy, anatomy) && made.light == light && made.capture == capture.size;
+    fn make(
+        &mut self,
+        on: &BTreeSet<Overlay>,
+        anatomy: &Arc<Anatomy>,
+        capture: &Capture,
+        light: usize,
+    ) -> &mut OverlayMeshes {
+        let is_it = |made: &OverlayMeshes| {
+            Arc::ptr_eq(&made.anatomy, anatomy) && made.light == light && made.capture == capture.size
+        };
         let made = self.made.take().filter(is_it);
-        let mut made = made.unwrap_or_else(|| Made {
+        let mut made = made.unwrap_or_else(|| OverlayMeshes {
             anatomy: anatomy.clone(),
             capture: capture.size,
             light,
@@ -68,10 +75,10 @@ impl Overlays {
             objects: None,
         });
         if on.contains(&Overlay::Silhouettes) && made.silhouettes.is_none() {
-            made.silhouettes = Some((Lines::silhouettes(anatomy, capture, light), PlacedLines::default()));
+            made.silhouettes = Some((OverlayLines::silhouettes(anatomy, capture, light), PlacedLines::default()));
         }
         if on.contains(&Overlay::Volumes) && made.volumes.is_none() {
-            made.volumes = Some((Lines::volumes(anatomy, capture, light), PlacedLines::default()));
+            made.volumes = Some((OverlayLines::volumes(anatomy, capture, light), PlacedLines::default()));
         }
         if (on.contains(&Overlay::Receivers) || on.contains(&Overlay::Names)) && made.objects.is_none() {
             let ids = ObjectIds::new(anatomy, capture);
@@ -124,7 +131,13 @@ fn swatch_of(ui: &Ui, overlay: Overlay) -> egui::Color32 {
 }
 
 /// Pictures over the shown one; asks for what they need.
-pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Shown, rect: Rect) -> Vec<Sheet> {
+pub fn sheets(
+    own: &mut Overlays,
+    model: &Model,
+    capture: &Capture,
+    shown: &ShownPicture,
+    rect: Rect,
+) -> Vec<PictureSheet> {
     let mut sheets = Vec::new();
     if shown.kind == PictureKind::Map {
         return sheets;
@@ -135,7 +148,7 @@ pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Show
             let made = own.make(&model.modes.overlays, &anatomy, capture, light);
             let receivers = made.objects.as_ref().map(|objects| objects.receivers.clone());
             if let Some(image) = receivers.filter(|_| model.modes.overlays.contains(&Overlay::Receivers)) {
-                sheets.push(Sheet { image, coloring: Coloring::Receivers, part: rect, has_numbers: false });
+                sheets.push(PictureSheet { image, coloring: Coloring::Receivers, part: rect, has_numbers: false });
             }
         }
     }
@@ -144,13 +157,13 @@ pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Show
         && let Some(known) = model.want_tests().ready
     {
         let image = known.outcomes.clone();
-        sheets.push(Sheet { image, coloring: Coloring::Outcomes, part: rect, has_numbers: false });
+        sheets.push(PictureSheet { image, coloring: Coloring::Outcomes, part: rect, has_numbers: false });
     }
     sheets
 }
 
 /// Lines and names over the picture, and the card that lists what is on.
-pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &Shown, placement: Placement) {
+pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     if model.modes.overlays.is_empty() || shown.kind == PictureKind::Map {
         return;
     }
@@ -248,14 +261,16 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
     };
     let theme = theme::of(ui);
     let made = own.made.as_ref();
-    let left_out = |lines: Option<&(Lines, PlacedLines)>| lines.map_or(0, |(lines, _)| lines.left_out);
+    let left_out = |lines: Option<&(OverlayLines, PlacedLines)>| lines.map_or(0, |(lines, _)| lines.left_out);
     if on.contains(&Overlay::Silhouettes) {
         line(ui, theme.lit, "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast");
     }
     if on.contains(&Overlay::Volumes) {
         let has_any = made.and_then(|made| made.volumes.as_ref()).is_none_or(|(lines, _)| !lines.lines.is_empty());
         if has_any {
-            for (part, name) in [(Part::Side, "side"), (Part::LightCap, "light cap"), (Part::DarkCap, "dark cap")] {
+            for (part, name) in
+                [(DrawPart::Side, "side"), (DrawPart::LightCap, "light cap"), (DrawPart::DarkCap, "dark cap")]
+            {
                 line(ui, theme.part(part).unwrap_or(theme.dim), name);
             }
         } else {

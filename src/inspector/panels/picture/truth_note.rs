@@ -1,18 +1,18 @@
 //! What stands over the picture while truth or error is wished for and not there: how far the
 //! tracing is, or why there is none.
 
-use crate::ask::{Kind, TruthOf};
+use crate::ask::{QuestionKind, TruthOf};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::picture::legend;
-use crate::reading::shown::{Shown, has_truth};
+use crate::reading::shown::{ShownPicture, has_truth};
 use egui::{Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the note, points.
 const WIDTH: f32 = 264.0;
 
 /// Draws the note into the upper left corner of `rect`; `shown` is what is shown meanwhile.
-pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &Shown) {
+pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture) {
     let is_known = model.frame.capture.as_ref().is_some_and(|capture| has_truth(capture));
     if !model.view.wants_truth() || is_known {
         return;
@@ -29,7 +29,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &Shown) {
     });
 }
 
-fn contents(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+fn contents(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     if !model.can_ask() {
         ui.add(egui::Label::new("This folder has no truth: capture it with --truth.").wrap());
         return;
@@ -49,11 +49,11 @@ fn contents(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     }
 }
 
-fn tracing(ui: &mut Ui, model: &mut Model, shown: &Shown, share: f32) {
+fn tracing(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, share: f32) {
     theme::heading(ui, &format!("The truth is being traced … {:.0} %", share * 100.0));
     ui.horizontal(|ui| {
         if ui.button("Cancel").on_hover_text("Stop tracing the truth").clicked() {
-            model.cancel(Kind::TruthOf);
+            model.cancel(QuestionKind::TruthOf);
         }
         let bar = egui::ProgressBar::new(share).desired_width(ui.available_width()).desired_height(8.0);
         ui.add(bar).accessible_name("Tracing");
@@ -68,6 +68,6 @@ fn tracing(ui: &mut Ui, model: &mut Model, shown: &Shown, share: f32) {
 
 fn ask_again(ui: &mut Ui, model: &mut Model, words: &str) {
     if ui.button(words).on_hover_text("Trace the truth of this frame").clicked() {
-        model.answers.try_again(Kind::TruthOf);
+        model.answers.try_again(QuestionKind::TruthOf);
     }
 }

@@ -1,10 +1,10 @@
 //! The picked pixel's point, or a corner of its triangle, in every space, with the matrices between them.
 
-use super::told::{Pixel, Told};
+use super::told::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::reading::coordinates::{Place, Spherical, Vertex, matrix_row, vector};
+use crate::reading::coordinates::{PixelCoordinates, Spherical, VertexCoordinates, matrix_row, vector};
 use crate::reading::format;
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
@@ -12,7 +12,7 @@ use egui::{CollapsingHeader, Grid, Label, Ui};
 const DIGITS: u32 = 4;
 
 /// Folded until somebody asks.
-pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &Model, (capture, at): (&Capture, [u32; 2]), told: &Told) {
+pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, (capture, at): (&Capture, [u32; 2]), told: &PickedHistory) {
     // Another program's camera is a guess, and so is its unit.
     if capture.origin.is_some() {
         return;
@@ -21,8 +21,8 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &Model, (capture, at): (&Capture,
     header.show(ui, |ui| {
         let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
         let place = match (history, &model.frame.plan) {
-            (Some(history), Some(plan)) => Place::of(capture, at).with_vertices(capture, plan, history),
-            _ => Place::of(capture, at),
+            (Some(history), Some(plan)) => PixelCoordinates::of(capture, at).with_vertices(capture, plan, history),
+            _ => PixelCoordinates::of(capture, at),
         };
         choose(ui, &mut own.corner, &place.vertices);
         points(ui, &place, place.vertices.iter().find(|vertex| Some(vertex.index) == own.corner));
@@ -37,7 +37,7 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &Model, (capture, at): (&Capture,
 }
 
 /// Whose coordinates are shown: the point's, or a corner's.
-fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[Vertex]) {
+fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[VertexCoordinates]) {
     let Some(first) = vertices.first() else { return };
     // Of another triangle than before, the point comes first.
     *corner = corner.filter(|index| vertices.iter().any(|vertex| vertex.index == *index));
@@ -53,7 +53,7 @@ fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[Vertex]) {
     });
 }
 
-fn points(ui: &mut Ui, place: &Place, corner: Option<&Vertex>) {
+fn points(ui: &mut Ui, place: &PixelCoordinates, corner: Option<&VertexCoordinates>) {
     Grid::new("coordinates of the point").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         let mut row = |name: &str, value: String| {
             ui.label(theme::note(name));

@@ -1,16 +1,16 @@
 //! "History" in the Pixel panel: one row an event, in the order in which they happened.
 
-use super::room::Rows;
-use super::told::{Pixel, Told};
+use super::room::HistoryRows;
+use super::told::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
-use crate::history::{Event, PixelHistory, Test};
-use crate::inspector::action::Panel;
+use crate::history::{PixelEvent, PixelHistory, TestResult};
+use crate::inspector::action::PanelKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use crate::reading::format;
-use crate::reading::history_row::{Cells, Outcome, line, short, sign};
-use crate::reading::moment::Moment;
+use crate::reading::history_row::{EventOutcome, HistoryCells, line, short, sign};
+use crate::reading::moment::CapturePoint;
 use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use egui::{pos2, vec2};
 
@@ -22,11 +22,11 @@ const GREYED: f32 = 0.4;
 /// Draws heading, rows and the selected event of the picked pixel. Returns where the rows end.
 pub fn ui(
     ui: &mut Ui,
-    own: &mut Pixel,
+    own: &mut PixelPanel,
     model: &mut Model,
-    told: &Told,
+    told: &PickedHistory,
     (capture, at): (&Capture, [u32; 2]),
-    rows: Rows,
+    rows: HistoryRows,
 ) -> f32 {
     heading(ui, own, model, told, at);
     if !model.can_ask() {
@@ -56,7 +56,7 @@ pub fn ui(
 }
 
 /// Title, how many events, and the switch; while another pixel's are waited for, that.
-fn heading(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, at: [u32; 2]) {
+fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, told: &PickedHistory, at: [u32; 2]) {
     ui.horizontal(|ui| {
         theme::heading(ui, "History");
         if !model.can_ask() || told.failed.is_some() {
@@ -107,18 +107,18 @@ fn wrong(ui: &mut Ui, wrong: &[String]) {
 }
 
 /// Indices of the events that are listed.
-fn shown(own: &Pixel, model: &Model, history: &PixelHistory) -> Vec<usize> {
-    let is_shown = |event: &Event| !own.hides_idle || event.does_something() || model.selection.has_event(event);
+fn shown(own: &PixelPanel, model: &Model, history: &PixelHistory) -> Vec<usize> {
+    let is_shown = |event: &PixelEvent| !own.hides_idle || event.does_something() || model.selection.has_event(event);
     history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
 }
 
 fn table(
     ui: &mut Ui,
-    own: &mut Pixel,
+    own: &mut PixelPanel,
     model: &mut Model,
     (capture, history): (&Capture, &PixelHistory),
     shown: &[usize],
-    Rows { height: row_height, most }: Rows,
+    HistoryRows { height: row_height, most }: HistoryRows,
 ) {
     if shown.is_empty() {
         let none = history.events.is_empty();
@@ -147,7 +147,7 @@ fn table(
 }
 
 /// Where the columns are.
-struct Columns {
+struct HistoryColumns {
     pass: f32,
     what: f32,
     what_room: f32,
@@ -158,16 +158,16 @@ struct Columns {
     change: f32,
 }
 
-impl Columns {
+impl HistoryColumns {
     /// In a row; tests and operations of a stencil have columns only where there is one.
-    fn of(row: Rect, has_stencil: bool) -> Columns {
+    fn of(row: Rect, has_stencil: bool) -> HistoryColumns {
         let change = row.right() - 6.0;
         let operation = change - 80.0;
         let stencil = operation - 42.0;
         let depth = if has_stencil { stencil - 37.0 } else { change - 100.0 };
         let side = depth - 32.0;
         let what = row.left() + 36.0;
-        Columns {
+        HistoryColumns {
             pass: row.left() + 20.0,
             what,
             what_room: side - what - 4.0,
@@ -189,7 +189,7 @@ fn head(ui: &mut Ui, has_stencil: bool) {
             "Columns: pass, face, side, depth test, stencil test, operation, change",
         )
     });
-    let columns = Columns::of(rect, has_stencil);
+    let columns = HistoryColumns::of(rect, has_stencil);
     let write = |x: f32, align: Align2, text: &str| {
         let font = FontId::proportional(theme::SMALL_SIZE);
         ui.painter().text(pos2(x, rect.center().y), align, text, font, theme::of(ui).faint);
@@ -207,9 +207,9 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
 }
 
-fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory, event: &Event, height: f32) {
+fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory, event: &PixelEvent, height: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    let cells = Cells::of(history, event, capture);
+    let cells = HistoryCells::of(history, event, capture);
     let is_selected = model.selection.has_event(event);
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, cells.name()));
     if response.clicked() {
@@ -246,27 +246,27 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
 /// Of the menu of a row, and of the selected event.
 const IN_SCENE: &str = "Show the triangle in the Scene tab";
 
-fn can_show_in_scene(model: &Model, event: &Event) -> bool {
+fn can_show_in_scene(model: &Model, event: &PixelEvent) -> bool {
     model.can_ask() && event.is_from_camera && event.triangle().is_some()
 }
 
-fn show_in_scene(model: &mut Model, event: &Event) {
+fn show_in_scene(model: &mut Model, event: &PixelEvent) {
     model.selection.select_event(event);
     model.requests.triangle_in_scene = true;
-    model.requests.panels.push(Panel::Scene);
+    model.requests.panels.push(PanelKind::Scene);
 }
 
 /// After the draw of an event; a clear comes before all draws of its step.
-fn moment_of(event: &Event) -> Moment {
-    Moment { step: event.pass, draw: event.triangle().map(|one| one.draw) }
+fn moment_of(event: &PixelEvent) -> CapturePoint {
+    CapturePoint { step: event.pass, draw: event.triangle().map(|one| one.draw) }
 }
 
-fn go_to(model: &mut Model, event: &Event) {
+fn go_to(model: &mut Model, event: &PixelEvent) {
     model.select(moment_of(event));
 }
 
-fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
-    let columns = Columns::of(rect, has_stencil);
+fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Color32) {
+    let columns = HistoryColumns::of(rect, has_stencil);
     let painter = ui.painter();
     let middle = rect.center().y;
     let number = theme::number_font(theme::SMALL_SIZE);
@@ -278,15 +278,15 @@ fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
         painter.rect_filled(swatch, CornerRadius::same(2), color);
     }
     // Of both words more has to be seen than the first.
-    let what = if cells.part == Some(Part::PlanarShadow) { "flat" } else { cells.what.as_str() };
+    let what = if cells.part == Some(DrawPart::PlanarShadow) { "flat" } else { cells.what.as_str() };
     theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [what, &cells.of], ink);
     painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
     match cells.outcome {
-        Outcome::Cleared => {}
-        Outcome::Nothing(why) => {
+        EventOutcome::Cleared => {}
+        EventOutcome::Nothing(why) => {
             painter.text(pos2(columns.depth, middle), Align2::LEFT_CENTER, why, words, theme::of(ui).faint);
         }
-        Outcome::Tested { depth, stencil, operation } => {
+        EventOutcome::Tested { depth, stencil, operation } => {
             test(ui, pos2(columns.depth, middle), depth);
             if let Some(x) = columns.stencil {
                 test(ui, pos2(x, middle), stencil);
@@ -304,19 +304,19 @@ fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
 }
 
 /// How a test went: a tick, a cross, a word or a dash, and its colour.
-fn test(ui: &Ui, at: Pos2, test: Test) {
+fn test(ui: &Ui, at: Pos2, test: TestResult) {
     let painter = ui.painter();
     let mark = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x + 2.0, *y)).collect();
         painter.line(points, Stroke::new(1.7, color));
     };
     match test {
-        Test::Passed => mark(&[(0.0, 0.5), (3.0, 3.5), (9.0, -3.5)], theme::of(ui).passed),
-        Test::Failed => {
+        TestResult::Passed => mark(&[(0.0, 0.5), (3.0, 3.5), (9.0, -3.5)], theme::of(ui).passed),
+        TestResult::Failed => {
             mark(&[(0.5, -3.5), (7.5, 3.5)], theme::of(ui).failed);
             mark(&[(0.5, 3.5), (7.5, -3.5)], theme::of(ui).failed);
         }
-        Test::Always | Test::NotReached => {
+        TestResult::Always | TestResult::NotReached => {
             let font = FontId::proportional(theme::SMALL_SIZE);
             painter.text(at, Align2::LEFT_CENTER, sign(test), font, theme::of(ui).decided);
         }

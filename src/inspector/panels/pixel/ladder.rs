@@ -1,16 +1,16 @@
 //! The ladder: the view ray through the picked pixel from the eye (top) to infinity, with every face
 //! of a light's shadow volumes on it, what each added, and the count as it runs.
 
-use super::told::{Pixel, Told};
+use super::told::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
-use crate::history::{Count, Fate, Ladder, PixelHistory, Rung};
+use crate::history::{FragmentOutcome, Ladder, PixelHistory, Rung, VolumeCount};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers;
-use crate::plan::{Part, Side};
+use crate::plan::{CountedSide, DrawPart};
 use crate::reading::format;
 use crate::reading::history_row::{self, named, side};
-use crate::reading::ladder_layout::{Mark, Placed, Stretch, place, stretches};
+use crate::reading::ladder_layout::{CountStretch, LadderMark, PlacedMark, place, stretches};
 use egui::{
     Align2, Color32, CornerRadius, FontId, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
@@ -28,16 +28,16 @@ const COUNT_ROOM: f32 = 40.0;
 const OPENED_AT_ONCE: usize = 100;
 
 /// Does this frame count volumes, so that there is a ladder?
-pub fn is_shown(told: &Told, capture: &Capture) -> bool {
+pub fn is_shown(told: &PickedHistory, capture: &Capture) -> bool {
     told.history.is_some() && capture.counts_volumes()
 }
 
 /// Draws the ladder of `light` under the history, if it can be in `room` points; nothing where no volumes are counted.
 pub fn ui(
     ui: &mut Ui,
-    own: &mut Pixel,
+    own: &mut PixelPanel,
     model: &mut Model,
-    told: &Told,
+    told: &PickedHistory,
     (capture, light): (&Capture, usize),
     room: f32,
 ) {
@@ -75,11 +75,11 @@ pub fn ui(
 /// Which way it counts, and from what.
 fn direction(ladder: &Ladder) -> String {
     let way = match (ladder.side, ladder.surface) {
-        (Side::Behind, Some(_)) => "Counted from infinity towards the surface",
-        (Side::Behind, None) => "Counted from infinity, and no surface ends it",
-        (Side::InFront, Some(_)) => "Counted from the eye towards the surface",
-        (Side::InFront, None) => "Counted from the eye, and no surface ends it",
-        (Side::AsNeeded, _) => "Counted along the whole ray, each volume in front of the surface or behind it",
+        (CountedSide::Behind, Some(_)) => "Counted from infinity towards the surface",
+        (CountedSide::Behind, None) => "Counted from infinity, and no surface ends it",
+        (CountedSide::InFront, Some(_)) => "Counted from the eye towards the surface",
+        (CountedSide::InFront, None) => "Counted from the eye, and no surface ends it",
+        (CountedSide::AsNeeded, _) => "Counted along the whole ray, each volume in front of the surface or behind it",
     };
     let near = ladder.start - ladder.cleared_to;
     let start = match (ladder.cleared_to, near) {
@@ -102,10 +102,10 @@ fn direction(ladder: &Ladder) -> String {
 /// What the light pass reads where the bits of the stencil do not hold the count.
 fn in_its_bits(ladder: &Ladder) -> String {
     match ladder.tested {
-        Count::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => {
+        VolumeCount::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => {
             format!(", in {} {byte}", ladder.bits)
         }
-        Count::Stencil(_) | Count::Float(_) => String::new(),
+        VolumeCount::Stencil(_) | VolumeCount::Float(_) => String::new(),
     }
 }
 
@@ -125,7 +125,7 @@ fn added(value: i32) -> String {
 
 /// Where the columns are in the ladder's rectangle.
 #[derive(Clone, Copy)]
-struct Columns {
+struct LadderColumns {
     ray: f32,
     name: f32,
     name_room: f32,
@@ -135,21 +135,21 @@ struct Columns {
     count: f32,
 }
 
-impl Columns {
-    fn of(rect: Rect) -> Columns {
+impl LadderColumns {
+    fn of(rect: Rect) -> LadderColumns {
         let count = rect.right() - 6.0;
         let steps = count - 26.0 - COUNT_ROOM;
         let added = steps - 10.0;
         let distance = added - 34.0;
         let (ray, name) = (rect.left() + 20.0, rect.left() + 40.0);
-        Columns { ray, name, name_room: distance - 50.0 - name, distance, added, steps, count }
+        LadderColumns { ray, name, name_room: distance - 50.0 - name, distance, added, steps, count }
     }
 }
 
 /// The ladder itself, down to `bottom` if it can be.
 fn drawn(
     ui: &mut Ui,
-    own: &mut Pixel,
+    own: &mut PixelPanel,
     model: &mut Model,
     (capture, history): (&Capture, &PixelHistory),
     (light, ladder): (usize, &Ladder),
@@ -166,14 +166,14 @@ fn drawn(
     response.widget_info(|| {
         WidgetInfo::labeled(Role::Image, true, format!("Ladder of the view ray. {}", direction(ladder)))
     });
-    let columns = Columns::of(rect);
+    let columns = LadderColumns::of(rect);
     let top = rect.top() + MARGIN;
     let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), line));
     // Rungs first, as what is selected has a background.
     for (mark, y) in &placed {
         match mark {
-            Mark::Rung(index) => rung(ui, own, model, (capture, history), &ladder.rungs[*index], row(*y)),
-            Mark::More(from, to) => {
+            LadderMark::Rung(index) => rung(ui, own, model, (capture, history), &ladder.rungs[*index], row(*y)),
+            LadderMark::More(from, to) => {
                 if let Some(opened) = fold(ui, ladder, *from..*to, row(*y)) {
                     own.unfolded.entry(light).or_default().push(opened);
                 }
@@ -188,8 +188,8 @@ fn drawn(
     for (mark, y) in &placed {
         let rect = row(*y);
         match mark {
-            Mark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], rect),
-            Mark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
+            LadderMark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], rect),
+            LadderMark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
             other => paint_end(ui, capture, history, ladder, *other, rect),
         }
     }
@@ -199,7 +199,7 @@ fn drawn(
 /// A rung as a widget: clicking it selects its triangle everywhere.
 fn rung(
     ui: &mut Ui,
-    own: &mut Pixel,
+    own: &mut PixelPanel,
     model: &mut Model,
     (capture, history): (&Capture, &PixelHistory),
     rung: &Rung,
@@ -256,7 +256,7 @@ fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
 }
 
 /// The line itself, from the eye to infinity.
-fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
+fn ray(ui: &Ui, columns: LadderColumns, top: f32, placed: &[PlacedMark]) {
     let [Some(first), Some(last)] = [placed.first(), placed.last()] else { return };
     let stroke = Stroke::new(1.5, theme::of(ui).faint);
     ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
@@ -264,7 +264,7 @@ fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
 
 fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, rect: Rect) {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return };
-    let columns = Columns::of(rect);
+    let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     let counts = rung.added != 0;
     let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(20.0, 6.0));
@@ -286,7 +286,8 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [&what, &of], ink);
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
-    let is_clipped = matches!(one.fate, Fate::Clipped(_) | Fate::Discarded(_) | Fate::Culled);
+    let is_clipped =
+        matches!(one.fate, FragmentOutcome::Clipped(_) | FragmentOutcome::Discarded(_) | FragmentOutcome::Culled);
     let distance = if is_clipped { "clipped".to_owned() } else { short(capture, rung.distance) };
     painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
     if !counts {
@@ -315,7 +316,7 @@ fn short(capture: &Capture, distance: f64) -> String {
 }
 
 fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
-    let columns = Columns::of(rect);
+    let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     for offset in [-4.0, 0.0, 4.0] {
         painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::of(ui).dim);
@@ -325,8 +326,8 @@ fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
 }
 
 /// Eye, near plane, surface, infinity.
-fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: Mark, rect: Rect) {
-    let columns = Columns::of(rect);
+fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: LadderMark, rect: Rect) {
+    let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     let words =
         |text: &str, color: Color32| theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [text, ""], color);
@@ -334,11 +335,11 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
         painter.text(pos2(x, y), Align2::RIGHT_CENTER, text, theme::number_font(theme::SMALL_SIZE), color);
     };
     match mark {
-        Mark::Eye => {
+        LadderMark::Eye => {
             painter.circle_filled(pos2(columns.ray, y), 4.0, theme::of(ui).text);
             words("eye", theme::of(ui).dim);
         }
-        Mark::Near => {
+        LadderMark::Near => {
             let [from, to] = [columns.ray - 14.0, columns.ray + 14.0].map(|x| pos2(x, y));
             painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::of(ui).dim), 4.0, 3.0));
             words("near plane", theme::of(ui).dim);
@@ -347,7 +348,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
         }
-        Mark::Surface => {
+        LadderMark::Surface => {
             let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(32.0, 7.0));
             painter.rect_filled(bar, CornerRadius::same(1), theme::of(ui).text);
             let of = surface_name(history).unwrap_or("");
@@ -360,14 +361,14 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             );
             // What the light pass asks about.
             let count = match ladder.tested {
-                Count::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => byte.to_string(),
+                VolumeCount::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => byte.to_string(),
                 _ => signed(ladder.count),
             };
             let size = theme::TEXT_SIZE;
             let ink = if ladder.tested.is_zero() { theme::of(ui).lit } else { theme::of(ui).text };
             painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, count, theme::number_font(size), ink);
         }
-        Mark::Infinity => {
+        LadderMark::Infinity => {
             painter.text(
                 pos2(columns.ray, y + 7.0),
                 Align2::CENTER_CENTER,
@@ -380,19 +381,20 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
         }
-        Mark::Rung(_) | Mark::More(..) => {}
+        LadderMark::Rung(_) | LadderMark::More(..) => {}
     }
 }
 
 /// What the visible surface is of.
 fn surface_name(history: &PixelHistory) -> Option<&str> {
-    let wrote =
-        history.triangles().filter(|(event, one)| one.part == Part::Surface && event.before.depth != event.after.depth);
+    let wrote = history
+        .triangles()
+        .filter(|(event, one)| one.part == DrawPart::Surface && event.before.depth != event.after.depth);
     wrote.last().map(|(_, one)| one.draw_name.as_str())
 }
 
 /// The running count as a step line, further right where it is higher, with an arrow where it goes.
-fn paint_count(ui: &Ui, columns: Columns, top: f32, ladder: &Ladder, stretches: &[Stretch]) {
+fn paint_count(ui: &Ui, columns: LadderColumns, top: f32, ladder: &Ladder, stretches: &[CountStretch]) {
     let counts = || stretches.iter().map(|one| one.count).chain([0]);
     let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };
     let step = (COUNT_ROOM / (most - least).max(1) as f32).min(COUNT_STEP);

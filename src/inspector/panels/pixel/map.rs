@@ -2,7 +2,7 @@
 
 use crate::ask::ReadersOf;
 use crate::capture::Capture;
-use crate::inspector::action::Panel;
+use crate::inspector::action::PanelKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::DecidedBy;
@@ -55,6 +55,6 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, decision: &MapDecis
     });
     if ui.button(theme::note("Show the texel in Shadow map")).clicked() {
         model.requests.texel_under = Some(decision.light);
-        model.requests.panels.push(Panel::ShadowMap);
+        model.requests.panels.push(PanelKind::ShadowMap);
     }
 }

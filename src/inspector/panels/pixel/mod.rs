@@ -29,14 +29,14 @@ use crate::reading::shown::{PictureKind, has_truth};
 use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 
-pub use told::Pixel;
-use told::Told;
+use told::PickedHistory;
+pub use told::PixelPanel;
 
 /// Height of a row of values where room is short, points.
 const TIGHT_ROW: f32 = 18.0;
 
 /// Draws the panel.
-pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
+pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());
         return;
@@ -117,9 +117,9 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
 /// twice.
 fn sentence(
     ui: &mut Ui,
-    own: &mut Pixel,
+    own: &mut PixelPanel,
     model: &Model,
-    told: &Told,
+    told: &PickedHistory,
     (capture, at): (&Capture, [u32; 2]),
     map: Option<&MapDecision>,
 ) {
@@ -155,7 +155,7 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
     let in_row = if is_tight { 2 } else { 1 };
     let spacing = if is_tight { [10.0, 0.0] } else { [16.0, 2.0] };
     grid("pixel values").num_columns(2 * in_row).spacing(spacing).show(ui, |ui| {
-        let mut pairs = Pairs { in_row, done: 0 };
+        let mut pairs = ValuePairs { in_row, done: 0 };
         pairs.text(ui, "pixel", &format!("{}, {}", at[0], at[1]));
         match model.moment().frame(capture) {
             Some(frame) => frame_values(ui, &mut pairs, capture, frame, at),
@@ -178,12 +178,12 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
 }
 
 /// Cells of a grid: names and values, so many pairs in a row.
-struct Pairs {
+struct ValuePairs {
     in_row: usize,
     done: usize,
 }
 
-impl Pairs {
+impl ValuePairs {
     fn add(&mut self, ui: &mut Ui, name: &str, value: impl FnOnce(&mut Ui)) {
         ui.label(theme::note(name));
         value(ui);
@@ -200,7 +200,7 @@ impl Pairs {
     }
 }
 
-fn frame_values(ui: &mut Ui, pairs: &mut Pairs, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) {
+fn frame_values(ui: &mut Ui, pairs: &mut ValuePairs, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) {
     if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
         let is_alone = pairs.in_row == 1;
         pairs.add(ui, "colour", |ui| {
@@ -236,7 +236,7 @@ fn frame_values(ui: &mut Ui, pairs: &mut Pairs, capture: &Capture, frame: &Frame
     }
 }
 
-fn stencil_cells(ui: &mut Ui, pairs: &mut Pairs, stencil: u8) {
+fn stencil_cells(ui: &mut Ui, pairs: &mut ValuePairs, stencil: u8) {
     let bits = theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::of(ui).dim);
     let is_alone = pairs.in_row == 1;
     let beside = is_alone.then(|| bits.clone());

@@ -16,16 +16,16 @@ const LEAST_ROWS: usize = 4;
 
 /// Rows of the history.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rows {
+pub struct HistoryRows {
     /// Height of one, points.
     pub height: f32,
     /// So many are shown before they scroll.
     pub most: usize,
 }
 
-impl Rows {
+impl HistoryRows {
     /// With room for all.
-    const ROOMY: Rows = Rows { height: 22.0, most: MOST_ROWS };
+    const ROOMY: HistoryRows = HistoryRows { height: 22.0, most: MOST_ROWS };
     /// Height where room is short, points.
     const LOW: f32 = 18.0;
 }
@@ -36,14 +36,14 @@ pub fn is_tight(size: egui::Vec2) -> bool {
 }
 
 /// The rows of a history of `events`, where so many points are left for it and for the ladder below it.
-pub fn rows(left: f32, events: usize, has_ladder: bool) -> Rows {
+pub fn rows(left: f32, events: usize, has_ladder: bool) -> HistoryRows {
     let all = events.min(MOST_ROWS);
     let [wished, least] = if has_ladder { [LADDER, LEAST_LADDER] } else { [0.0; 2] };
-    if HISTORY_AROUND + Rows::ROOMY.height * all as f32 + wished <= left {
-        return Rows::ROOMY;
+    if HISTORY_AROUND + HistoryRows::ROOMY.height * all as f32 + wished <= left {
+        return HistoryRows::ROOMY;
     }
-    let fitting = ((left - HISTORY_AROUND - least) / Rows::LOW).max(0.0) as usize;
-    Rows { height: Rows::LOW, most: fitting.clamp(LEAST_ROWS, MOST_ROWS) }
+    let fitting = ((left - HISTORY_AROUND - least) / HistoryRows::LOW).max(0.0) as usize;
+    HistoryRows { height: HistoryRows::LOW, most: fitting.clamp(LEAST_ROWS, MOST_ROWS) }
 }
 
 #[cfg(test)]
@@ -52,14 +52,14 @@ mod tests {
 
     #[test]
     fn with_room_for_all_rows_are_high_and_else_low_and_fewer() {
-        assert_eq!(rows(900.0, 40, true), Rows::ROOMY);
-        assert_eq!(rows(400.0, 3, false), Rows::ROOMY);
+        assert_eq!(rows(900.0, 40, true), HistoryRows::ROOMY);
+        assert_eq!(rows(400.0, 3, false), HistoryRows::ROOMY);
         let heights = [560.0, 480.0, 420.0, 380.0, 200.0];
         let most: Vec<usize> = heights.iter().map(|left| rows(*left, 40, true).most).collect();
         assert!(most.windows(2).all(|pair| pair[0] >= pair[1]), "{most:?}");
         assert_eq!((most[0], most[4]), (12, LEAST_ROWS));
-        for left in heights.into_iter().filter(|left| *left >= HISTORY_AROUND + LEAST_LADDER + 4.0 * Rows::LOW) {
-            let Rows { height, most } = rows(left, 40, true);
+        for left in heights.into_iter().filter(|left| *left >= HISTORY_AROUND + LEAST_LADDER + 4.0 * HistoryRows::LOW) {
+            let HistoryRows { height, most } = rows(left, 40, true);
             assert!(HISTORY_AROUND + height * most as f32 + LEAST_LADDER <= left, "the ladder has its room in {left}");
         }
         assert!(rows(380.0, 40, false).most > rows(380.0, 40, true).most);

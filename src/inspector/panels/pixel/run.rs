@@ -17,18 +17,18 @@ const MOST_LETTERS: usize = 24;
 
 /// A value in the table, with the colour that stands for it.
 #[derive(Debug, Clone, PartialEq)]
-struct Value {
+struct RunValue {
     text: String,
     color: Option<Color32>,
 }
 
 /// The pixel's values after a step.
 #[derive(Debug, Clone, PartialEq)]
-struct Values {
-    stencil: Option<Value>,
-    count: Option<Value>,
-    color: Option<Value>,
-    depth: Option<Value>,
+struct RunValues {
+    stencil: Option<RunValue>,
+    count: Option<RunValue>,
+    color: Option<RunValue>,
+    depth: Option<RunValue>,
 }
 
 /// Draws the table; clicking a pass selects its step.
@@ -41,7 +41,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
         Snapshot::Frame(frame) => Some(values(capture, index, frame, at)),
         Snapshot::Map { .. } => None,
     });
-    let runs: Vec<Option<Values>> = runs.collect();
+    let runs: Vec<Option<RunValues>> = runs.collect();
     let has_count = runs.iter().flatten().any(|values| values.count.is_some());
     let has = [has_stencil, has_count];
     // The columns beside it keep their place.
@@ -51,7 +51,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     let row_height = ui.spacing().interact_size.y.min(20.0);
     grid.min_row_height(row_height).show(ui, |ui| {
         head(ui, has);
-        let mut before: Option<&Values> = None;
+        let mut before: Option<&RunValues> = None;
         for (index, run) in runs.iter().enumerate() {
             if pass_cell(ui, capture, index, longest, index == model.selection.step) {
                 selected = Some(index);
@@ -100,17 +100,17 @@ fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, longest: usize, is_se
     ui.add(button).on_hover_text(format!("Go to {}, {name}", steps::words(capture, index))).clicked()
 }
 
-fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> Values {
+fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> RunValues {
     let count = counts::known_after(capture, step).and_then(|(_, image)| image.count_at(at));
     let stencil = frame.stencil.as_ref().and_then(|aspect| aspect.image.byte_at(at));
-    Values {
-        stencil: stencil.map(|value| Value { text: numbers::signed(value), color: Some(palette::stencil(value)) }),
-        count: count.map(|count| Value { text: numbers::count_in_float(count), color: Some(palette::count(count)) }),
-        color: frame.color.image.rgba_at(at).map(|[red, green, blue, _]| Value {
+    RunValues {
+        stencil: stencil.map(|value| RunValue { text: numbers::signed(value), color: Some(palette::stencil(value)) }),
+        count: count.map(|count| RunValue { text: numbers::count_in_float(count), color: Some(palette::count(count)) }),
+        color: frame.color.image.rgba_at(at).map(|[red, green, blue, _]| RunValue {
             text: format!("{red} {green} {blue}"),
             color: Some(Color32::from_rgb(red, green, blue)),
         }),
-        depth: frame.depth.image.depth_at(at).map(|depth| Value { text: distance(capture, depth), color: None }),
+        depth: frame.depth.image.depth_at(at).map(|depth| RunValue { text: distance(capture, depth), color: None }),
     }
 }
 
@@ -120,7 +120,7 @@ fn distance(capture: &Capture, depth: f32) -> String {
         .map_or_else(|| "–".to_owned(), |away| format::length(away, capture.depth.unit.name()))
 }
 
-fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, [has_stencil, has_count]: [bool; 2]) {
+fn row(ui: &mut Ui, now: &RunValues, before: Option<&RunValues>, [has_stencil, has_count]: [bool; 2]) {
     if has_stencil {
         cell(ui, now.stencil.as_ref(), before.and_then(|before| before.stencil.as_ref()));
     }
@@ -134,7 +134,7 @@ fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, [has_stencil, has_cou
 }
 
 /// A value with its colour; faint where the pass left it as it was at this pixel.
-fn cell(ui: &mut Ui, now: Option<&Value>, before: Option<&Value>) {
+fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>) {
     let Some(value) = now else {
         ui.label("");
         return;

@@ -1,27 +1,27 @@
 //! How the picked pixel's surface answers each light: the cosine, and the formula's terms.
 
-use super::told::Told;
+use super::told::PickedHistory;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
-use crate::reading::shading::{Shaded, TextureTerm, digits, three};
+use crate::reading::shading::{SurfaceShading, TextureTerm, digits, three};
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
 /// Folded until somebody asks.
-pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, told: &Told) {
+pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, told: &PickedHistory) {
     let (Some(history), Some(plan)) = (&told.history, &model.frame.plan) else { return };
     if capture.origin.is_some() || !told.is_of_pick || !told.wrong.is_empty() {
         return;
     }
     let header = CollapsingHeader::new("Shading").id_salt("shading");
-    header.show(ui, |ui| match Shaded::of(capture, plan, history) {
+    header.show(ui, |ui| match SurfaceShading::of(capture, plan, history) {
         Some(shaded) => terms(ui, &shaded),
         None => drop(ui.label(theme::note("No surface is here."))),
     });
 }
 
-fn terms(ui: &mut Ui, shaded: &Shaded) {
+fn terms(ui: &mut Ui, shaded: &SurfaceShading) {
     let words = "light = its colour × fading × (colour × diffuse + highlight)";
     ui.add(Label::new(theme::note(words)).wrap());
     let grid = |name: &str| Grid::new(format!("shading of {name}")).num_columns(2).spacing([12.0, 2.0]);

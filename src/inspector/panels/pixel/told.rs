@@ -9,7 +9,7 @@ use std::sync::{Arc, Weak};
 
 /// The panel.
 #[derive(Debug, Default)]
-pub struct Pixel {
+pub struct PixelPanel {
     /// Events that did nothing are hidden.
     pub hides_idle: bool,
     /// Rungs of each light's ladder that were opened from a fold: of this history.
@@ -29,7 +29,7 @@ pub struct Pixel {
 
 /// What is known of the picked pixel's history in this frame of the window.
 #[derive(Debug)]
-pub struct Told {
+pub struct PickedHistory {
     /// Of the pixel; of the one before, or of the frame before, while that is on its way.
     pub history: Option<Arc<PixelHistory>>,
     /// It is of the picked pixel of the shown frame.
@@ -42,9 +42,9 @@ pub struct Told {
     pub wrong: Vec<String>,
 }
 
-impl Pixel {
+impl PixelPanel {
     /// What is told of the pick now; of another history than before nothing is unfolded.
-    pub fn told(&mut self, model: &Model) -> Told {
+    pub fn told(&mut self, model: &Model) -> PickedHistory {
         let reply = model.want_history();
         let history = reply.latest().filter(|_| reply.failed.is_none()).cloned();
         if let Some(history) = &reply.ready
@@ -60,7 +60,7 @@ impl Pixel {
             self.checked = Arc::downgrade(history);
             self.wrong = history.disagreements().into_iter().map(|one| one.to_string()).collect();
         }
-        Told {
+        PickedHistory {
             is_of_pick: reply.ready.is_some(),
             is_late: is_late(&reply),
             wrong: history.as_ref().map(|_| self.wrong.clone()).unwrap_or_default(),

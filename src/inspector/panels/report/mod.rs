@@ -6,13 +6,13 @@ pub mod plot;
 pub mod row;
 pub mod table;
 
-use crate::ask::{Kind, Reply, ReportOf};
-use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::ask::{QuestionKind, Reply, ReportOf};
+use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
 use crate::report::MeasuredReport;
-use crate::report::plot::{Page, Plot, layout};
+use crate::report::plot::{Plot, PlotPage, layout};
 use crate::technique::Choice;
 use egui::{Align, Layout, RichText, ScrollArea, Ui, vec2};
 use std::sync::{Arc, Weak};
@@ -30,12 +30,12 @@ const LEAST_STEPS: usize = 8;
 /// The tab: its plot, laid out once for each size.
 #[derive(Debug, Default)]
 pub struct ReportPanel {
-    plot: Option<(Weak<MeasuredReport>, Page, Arc<Plot>)>,
+    plot: Option<(Weak<MeasuredReport>, PlotPage, Arc<Plot>)>,
 }
 
 impl ReportPanel {
     /// The plot of a report on a page.
-    fn plot(&mut self, measured: &Arc<MeasuredReport>, page: Page) -> Arc<Plot> {
+    fn plot(&mut self, measured: &Arc<MeasuredReport>, page: PlotPage) -> Arc<Plot> {
         match &self.plot {
             Some((of, laid_out, plot)) if std::ptr::eq(of.as_ptr(), Arc::as_ptr(measured)) && *laid_out == page => {
                 Arc::clone(plot)
@@ -92,7 +92,7 @@ fn plot_of(
     let width = f64::from(ui.available_width().floor());
     // A little less than there is: a scroll bar would ask for another width.
     let height = Some(f64::from((height - 2.0).floor()));
-    let page = Page { width, height, most_columns: 4, compact: true };
+    let page = PlotPage { width, height, most_columns: 4, compact: true };
     plot::ui(ui, model, (&measured.report, &own.plot(measured, page)), actions);
 }
 
@@ -102,7 +102,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
     ui.horizontal(|ui| match &reply.running {
         Some(progress) => {
             if ui.button("Cancel").on_hover_text("Stop measuring; the rows so far stay").clicked() {
-                model.answers.cancel(Kind::ReportOf);
+                model.answers.cancel(QuestionKind::ReportOf);
             }
             let choices = model.answers.asked::<ReportOf>().map_or(&[][..], |ask| &ask.choices);
             // The truth comes first, with steps of its own.
@@ -136,7 +136,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
                 }
             }
             if !is_new && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked() {
-                model.dialog = Some(Dialog::Export(ExportKind::Report));
+                model.dialog = Some(DialogKind::Export(ExportKind::Report));
             }
             let words = match model.origin().filter(|_| is_new) {
                 Some(_) => "Another program drew this frame: no technique can be measured on it.".to_owned(),

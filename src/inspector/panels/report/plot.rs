@@ -4,8 +4,10 @@ use super::row;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme::{self, Theme};
 use crate::inspector::model::Model;
-use crate::report::plot::{Anchor, Chart, Ink, Line, Plot, RADIUS, Rect as PlotRect, Spot, Style, Text};
-use crate::report::{Report, Row};
+use crate::report::plot::{
+    Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, RADIUS, SceneChart, TechniqueStyle, TextAnchor,
+};
+use crate::report::{Report, ReportRow};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
@@ -22,7 +24,7 @@ pub fn ui(ui: &mut Ui, model: &Model, (report, plot): (&Report, &Plot), actions:
     let size = vec2(plot.size[0] as f32, plot.size[1] as f32);
     let (rect, canvas) = ui.allocate_exact_size(size, Sense::hover());
     canvas.widget_info(|| WidgetInfo::labeled(Role::Image, true, &plot.summary));
-    let sheet = Sheet {
+    let sheet = PlotSheet {
         painter: ui.painter().with_clip_rect(ui.clip_rect().intersect(rect)),
         corner: rect.min,
         theme: theme::of(ui),
@@ -43,7 +45,13 @@ pub fn ui(ui: &mut Ui, model: &Model, (report, plot): (&Report, &Plot), actions:
 }
 
 /// A row's mark: a button.
-fn mark(ui: &mut Ui, model: &Model, sheet: &Sheet, (spot, row): (&Spot, &Row), actions: &mut Vec<Action>) {
+fn mark(
+    ui: &mut Ui,
+    model: &Model,
+    sheet: &PlotSheet,
+    (spot, row): (&PlotPoint, &ReportRow),
+    actions: &mut Vec<Action>,
+) {
     let at = sheet.place(spot.at);
     let target = Rect::from_center_size(at, Vec2::splat(TARGET));
     let response = ui.interact(target, ui.scope_id().with(("report mark", spot.row)), Sense::click());
@@ -64,23 +72,23 @@ fn mark(ui: &mut Ui, model: &Model, sheet: &Sheet, (spot, row): (&Spot, &Row), a
 }
 
 /// Draws a technique's mark, as in the plot, around a point.
-pub fn key(ui: &Ui, at: Pos2, style: &Style, filled: bool) {
-    Sheet { painter: ui.painter().clone(), corner: Pos2::ZERO, theme: theme::of(ui) }.mark(at, style, filled);
+pub fn key(ui: &Ui, at: Pos2, style: &TechniqueStyle, filled: bool) {
+    PlotSheet { painter: ui.painter().clone(), corner: Pos2::ZERO, theme: theme::of(ui) }.mark(at, style, filled);
 }
 
 /// Where a layout is drawn.
-struct Sheet {
+struct PlotSheet {
     painter: Painter,
     corner: Pos2,
     theme: &'static Theme,
 }
 
-impl Sheet {
+impl PlotSheet {
     fn place(&self, [x, y]: [f64; 2]) -> Pos2 {
         self.corner + vec2(x as f32, y as f32)
     }
 
-    fn chart(&self, chart: &Chart) {
+    fn chart(&self, chart: &SceneChart) {
         let PlotRect { min, max } = chart.band;
         let band = Rect::from_min_max(self.place(min), self.place(max));
         self.painter.rect_filled(band, CornerRadius::ZERO, self.theme.raised);
@@ -105,17 +113,17 @@ impl Sheet {
         }
     }
 
-    fn line(&self, line: &Line) {
+    fn line(&self, line: &PlotLine) {
         let color = if line.faint { self.ink(line.ink).gamma_multiply(0.45) } else { self.ink(line.ink) };
         let points = line.points.iter().map(|point| self.place(*point)).collect();
         self.painter.line(points, Stroke::new(line.width as f32, color));
     }
 
-    fn text(&self, text: &Text) {
+    fn text(&self, text: &PlotText) {
         let anchor = match text.anchor {
-            Anchor::Start => Align2::LEFT_CENTER,
-            Anchor::Middle => Align2::CENTER_CENTER,
-            Anchor::End => Align2::RIGHT_CENTER,
+            TextAnchor::Start => Align2::LEFT_CENTER,
+            TextAnchor::Middle => Align2::CENTER_CENTER,
+            TextAnchor::End => Align2::RIGHT_CENTER,
         };
         let font = FontId::proportional(text.size as f32);
         let (at, color) = (self.place(text.at), self.ink(text.ink));
@@ -126,7 +134,7 @@ impl Sheet {
         }
     }
 
-    fn mark(&self, at: Pos2, style: &Style, filled: bool) {
+    fn mark(&self, at: Pos2, style: &TechniqueStyle, filled: bool) {
         let outline: Vec<Pos2> =
             style.mark.outline(RADIUS).into_iter().map(|[x, y]| at + vec2(x as f32, y as f32)).collect();
         let color = self.technique(style);
@@ -135,17 +143,17 @@ impl Sheet {
     }
 
     /// A technique's hue: on light ground that of the printed report.
-    fn technique(&self, style: &Style) -> Color32 {
+    fn technique(&self, style: &TechniqueStyle) -> Color32 {
         let [red, green, blue] = if *self.theme == theme::LIGHT { style.paper } else { style.screen };
         Color32::from_rgb(red, green, blue)
     }
 
-    fn ink(&self, ink: Ink) -> Color32 {
+    fn ink(&self, ink: PlotInk) -> Color32 {
         match ink {
-            Ink::Text => self.theme.text,
-            Ink::Dim | Ink::Front => self.theme.dim,
-            Ink::Grid => self.theme.line,
-            Ink::Technique(style) => self.technique(style),
+            PlotInk::Text => self.theme.text,
+            PlotInk::Dim | PlotInk::Front => self.theme.dim,
+            PlotInk::Grid => self.theme.line,
+            PlotInk::Technique(style) => self.technique(style),
         }
     }
 }

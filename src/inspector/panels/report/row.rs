@@ -2,10 +2,10 @@
 
 use crate::inspector::action::Action;
 use crate::inspector::model::Model;
-use crate::report::Row;
+use crate::report::ReportRow;
 
 /// Is the row what is shown now: same scene, technique and settings?
-pub fn is_current(model: &Model, row: &Row) -> bool {
+pub fn is_current(model: &Model, row: &ReportRow) -> bool {
     let (scene, technique, settings) = match (&model.scene, &model.frame.capture) {
         (Some(open), _) => {
             let choice = &open.draft.choice;
@@ -19,6 +19,6 @@ pub fn is_current(model: &Model, row: &Row) -> bool {
 }
 
 /// Asks to render as a row was.
-pub fn open_row(row: &Row) -> Action {
+pub fn open_row(row: &ReportRow) -> Action {
     Action::OpenReportRow { technique: row.technique.clone(), settings: row.settings.clone() }
 }

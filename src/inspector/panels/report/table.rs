@@ -7,7 +7,7 @@ use crate::inspector::model::Model;
 use crate::numbers;
 use crate::reading::format;
 use crate::report::plot::{style_of, text_width};
-use crate::report::{Report, Row};
+use crate::report::{Report, ReportRow};
 use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 /// Widths of what stands before a name: its sign.
@@ -16,27 +16,27 @@ const SIGN_WIDTH: f32 = 30.0;
 const WIDEST_NAME: f32 = 200.0;
 
 /// A column of numbers.
-struct Column {
+struct TableColumn {
     heading: &'static str,
     width: f32,
     /// Lower ones are given room first.
     rank: usize,
-    cell: fn(&Row) -> String,
+    cell: fn(&ReportRow) -> String,
 }
 
-const COLUMNS: [Column; 7] = [
-    Column { heading: "wrong", width: 58.0, rank: 2, cell: |row| format::count(row.wrong()) },
-    Column { heading: "%", width: 46.0, rank: 0, cell: |row| numbers::per_hundred(row.wrong_fraction) },
-    Column {
+const COLUMNS: [TableColumn; 7] = [
+    TableColumn { heading: "wrong", width: 58.0, rank: 2, cell: |row| format::count(row.wrong()) },
+    TableColumn { heading: "%", width: 46.0, rank: 0, cell: |row| numbers::per_hundred(row.wrong_fraction) },
+    TableColumn {
         heading: "colour",
         width: 58.0,
         rank: 3,
         cell: |row| row.wrong_color.map_or_else(|| "-".to_owned(), format::count),
     },
-    Column { heading: "ms", width: 46.0, rank: 1, cell: |row| numbers::milliseconds(row.frame_ms.median) },
-    Column { heading: "set-up ms", width: 66.0, rank: 4, cell: |row| numbers::milliseconds(row.setup_ms) },
-    Column { heading: "triangles", width: 66.0, rank: 5, cell: |row| format::count(row.triangles) },
-    Column { heading: "MiB", width: 46.0, rank: 6, cell: |row| numbers::mebibytes(row.bytes) },
+    TableColumn { heading: "ms", width: 46.0, rank: 1, cell: |row| numbers::milliseconds(row.frame_ms.median) },
+    TableColumn { heading: "set-up ms", width: 66.0, rank: 4, cell: |row| numbers::milliseconds(row.setup_ms) },
+    TableColumn { heading: "triangles", width: 66.0, rank: 5, cell: |row| format::count(row.triangles) },
+    TableColumn { heading: "MiB", width: 46.0, rank: 6, cell: |row| numbers::mebibytes(row.bytes) },
 ];
 
 /// Draws the table in the width that there is.
@@ -54,16 +54,16 @@ pub fn ui(ui: &mut Ui, model: &Model, report: &Report, actions: &mut Vec<Action>
 }
 
 /// The columns that fit beside the names, the more important ones first; error and time always.
-fn columns(rows: &[Row], width: f32) -> Vec<&'static Column> {
-    let name = |row: &Row| text_width(&row.name(), f64::from(theme::TEXT_SIZE)) as f32;
+fn columns(rows: &[ReportRow], width: f32) -> Vec<&'static TableColumn> {
+    let name = |row: &ReportRow| text_width(&row.name(), f64::from(theme::TEXT_SIZE)) as f32;
     let names = SIGN_WIDTH + rows.iter().map(name).fold(0.0, f32::max).min(WIDEST_NAME);
-    let taken = |column: &Column| {
+    let taken = |column: &TableColumn| {
         COLUMNS.iter().filter(|other| other.rank <= column.rank).fold(names + 12.0, |sum, other| sum + other.width)
     };
     COLUMNS.iter().filter(|column| column.rank < 2 || taken(column) <= width).collect()
 }
 
-fn headings(ui: &mut Ui, name: &str, columns: &[&'static Column]) {
+fn headings(ui: &mut Ui, name: &str, columns: &[&'static TableColumn]) {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::RowHeader, true, name));
@@ -76,7 +76,7 @@ fn headings(ui: &mut Ui, name: &str, columns: &[&'static Column]) {
 }
 
 /// Each column with the right end of its cell in a row.
-fn places(columns: &[&'static Column], row: Rect) -> impl Iterator<Item = (&'static Column, Pos2)> {
+fn places(columns: &[&'static TableColumn], row: Rect) -> impl Iterator<Item = (&'static TableColumn, Pos2)> {
     let mut right = row.right() - 6.0;
     columns.iter().copied().rev().map(move |column| {
         let at = pos2(right, row.center().y);
@@ -85,7 +85,7 @@ fn places(columns: &[&'static Column], row: Rect) -> impl Iterator<Item = (&'sta
     })
 }
 
-fn table_row(ui: &mut Ui, model: &Model, row: &Row, columns: &[&'static Column], actions: &mut Vec<Action>) {
+fn table_row(ui: &mut Ui, model: &Model, row: &ReportRow, columns: &[&'static TableColumn], actions: &mut Vec<Action>) {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let is_current = row::is_current(model, row);
@@ -109,7 +109,7 @@ fn table_row(ui: &mut Ui, model: &Model, row: &Row, columns: &[&'static Column],
 }
 
 /// Technique and label, cut where the numbers begin.
-fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[&'static Column]) {
+fn name(ui: &Ui, rect: Rect, row: &ReportRow, columns: &[&'static TableColumn]) {
     let numbers: f32 = columns.iter().map(|column| column.width).sum();
     let width = (rect.width() - numbers - SIGN_WIDTH - 6.0).max(40.0);
     let mut job = egui::text::LayoutJob::default();

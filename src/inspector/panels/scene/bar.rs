@@ -1,11 +1,11 @@
 //! The toolbar and the legend of the Scene tab.
 
-use super::stage::Stage;
-use super::view::{Layout, Pane, SceneView};
+use super::stage::SceneStage;
+use super::view::{Pane, PaneLayout, SceneView};
 use crate::anatomy::Anatomy;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::segments;
-use crate::plan::Part;
+use crate::plan::DrawPart;
 use crate::reading::format;
 use egui::{Color32, Margin, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
 
@@ -32,12 +32,12 @@ pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
 }
 
 fn layouts(ui: &mut Ui, view: &mut SceneView) {
-    const LAYOUTS: [(Layout, &str, &str); 5] = [
-        (Layout::One(Pane::Free), "Free", "One view that is turned by hand"),
-        (Layout::One(Pane::Top), "Top", "From above"),
-        (Layout::One(Pane::Front), "Front", "From the front, along −z"),
-        (Layout::One(Pane::Right), "Right", "From the right, along −x"),
-        (Layout::Four, "Four views", "Top, free, front and right"),
+    const LAYOUTS: [(PaneLayout, &str, &str); 5] = [
+        (PaneLayout::One(Pane::Free), "Free", "One view that is turned by hand"),
+        (PaneLayout::One(Pane::Top), "Top", "From above"),
+        (PaneLayout::One(Pane::Front), "Front", "From the front, along −z"),
+        (PaneLayout::One(Pane::Right), "Right", "From the right, along −x"),
+        (PaneLayout::Four, "Four views", "Top, free, front and right"),
     ];
     let labels = LAYOUTS.map(|(_, label, meaning)| (label, meaning));
     let chosen = LAYOUTS.iter().position(|(layout, ..)| *layout == view.layout);
@@ -47,7 +47,13 @@ fn layouts(ui: &mut Ui, view: &mut SceneView) {
 }
 
 /// What is shown, with its colours: each entry is a switch.
-pub fn legend(ui: &mut Ui, view: &mut SceneView, (anatomy, is_of_frame): (&Anatomy, bool), stage: &Stage, rect: Rect) {
+pub fn legend(
+    ui: &mut Ui,
+    view: &mut SceneView,
+    (anatomy, is_of_frame): (&Anatomy, bool),
+    stage: &SceneStage,
+    rect: Rect,
+) {
     ui.painter().rect_filled(rect, egui::CornerRadius::ZERO, theme::of(ui).panel);
     let builder = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 6.0))).id_salt("scene legend");
     ui.scope_builder(builder, |ui| {
@@ -67,7 +73,7 @@ pub fn legend(ui: &mut Ui, view: &mut SceneView, (anatomy, is_of_frame): (&Anato
 
 fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     let colors = theme::of(ui);
-    let count = |part: Part| -> u64 {
+    let count = |part: DrawPart| -> u64 {
         let parts = anatomy.volumes.iter().flat_map(|volume| &volume.parts);
         parts.filter(|one| one.part == part).map(|one| one.triangles.len() as u64).sum()
     };
@@ -76,49 +82,49 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     let objects = anatomy.objects.iter().map(|object| object.mesh.triangles().len() as u64).sum();
     theme::heading(ui, "Shown");
     let triangles = |count: u64| format!("{} triangles", format::count(count));
-    switch(ui, &mut shown.objects, Mark::Square(colors.dim), "Objects", &triangles(objects));
+    switch(ui, &mut shown.objects, EntryMark::Square(colors.dim), "Objects", &triangles(objects));
     let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
-    switch(ui, &mut shown.wireframe, Mark::Line(colors.text, 1.0), "Wireframe", hint);
+    switch(ui, &mut shown.wireframe, EntryMark::Line(colors.text, 1.0), "Wireframe", hint);
     if anatomy.is_view_assumed {
-        let hint = format!("{}; sides and caps are not told apart", triangles(count(Part::Side)));
-        switch(ui, &mut shown.sides, Mark::Square(colors.side), "Volumes", &hint);
+        let hint = format!("{}; sides and caps are not told apart", triangles(count(DrawPart::Side)));
+        switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Volumes", &hint);
     } else {
-        let caps = [count(Part::LightCap), count(Part::DarkCap)].map(triangles);
-        switch(ui, &mut shown.sides, Mark::Square(colors.side), "Sides", &triangles(count(Part::Side)));
-        switch(ui, &mut shown.light_caps, Mark::Square(colors.light_cap), "Light caps", &caps[0]);
-        switch(ui, &mut shown.dark_caps, Mark::Square(colors.dark_cap), "Dark caps", &caps[1]);
+        let caps = [count(DrawPart::LightCap), count(DrawPart::DarkCap)].map(triangles);
+        switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Sides", &triangles(count(DrawPart::Side)));
+        switch(ui, &mut shown.light_caps, EntryMark::Square(colors.light_cap), "Light caps", &caps[0]);
+        switch(ui, &mut shown.dark_caps, EntryMark::Square(colors.dark_cap), "Dark caps", &caps[1]);
     }
     let hint = format!("{} edges; thicker and numbered where the multiplicity is not ±1", format::count(edges));
-    switch(ui, &mut shown.silhouettes, Mark::Line(colors.text, 2.0), "Silhouettes", &hint);
+    switch(ui, &mut shown.silhouettes, EntryMark::Line(colors.text, 2.0), "Silhouettes", &hint);
     let hint = "What the camera sees, with the near rectangle, and what each light's map sees; of a receiver's texture \
                 from its rectangle to the light, of a silhouette as the light projects it";
-    switch(ui, &mut shown.frusta, Mark::Line(colors.lit, 1.0), "Frusta", hint);
+    switch(ui, &mut shown.frusta, EntryMark::Line(colors.lit, 1.0), "Frusta", hint);
     let hint = "The space between the near rectangle and the light: what casts within it holds the eye in its shadow, or \
                 is cut by the near plane";
-    switch(ui, &mut shown.near_clip, Mark::Square(colors.decided), "Near-clip volume", hint);
+    switch(ui, &mut shown.near_clip, EntryMark::Square(colors.decided), "Near-clip volume", hint);
     let hint = "From the eye to the picked pixel's surface, and on to the light: full where it is lit, dashed where \
                 it is not";
-    switch(ui, &mut shown.rays, Mark::Line(colors.text, 1.0), "Rays of the pick", hint);
-    switch(ui, &mut shown.names, Mark::None, "Names", "What each object is called");
+    switch(ui, &mut shown.rays, EntryMark::Line(colors.text, 1.0), "Rays of the pick", hint);
+    switch(ui, &mut shown.names, EntryMark::None, "Names", "What each object is called");
 }
 
 /// The sign of an entry.
-enum Mark {
+enum EntryMark {
     Square(Color32),
     Line(Color32, f32),
     None,
 }
 
-fn switch(ui: &mut Ui, on: &mut bool, mark: Mark, name: &str, hint: &str) {
+fn switch(ui: &mut Ui, on: &mut bool, mark: EntryMark, name: &str, hint: &str) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         match mark {
-            Mark::Square(color) => theme::swatch(ui, color),
-            Mark::Line(color, width) => {
+            EntryMark::Square(color) => theme::swatch(ui, color),
+            EntryMark::Line(color, width) => {
                 let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
                 ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(width, color));
             }
-            Mark::None => {
+            EntryMark::None => {
                 ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
             }
         }
@@ -158,7 +164,7 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
     combo.response.accessible_name(name);
 }
 
-fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
+fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &SceneStage) {
     if anatomy.is_view_assumed {
         let words = "Found from the draws of another program. Its field of view is not known: 90° is assumed, so widths \
                      and heights may be stretched.";
@@ -178,8 +184,9 @@ fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
         ui.add(egui::Label::new(theme::note(words)).wrap());
     }
     if !anatomy.volumes.is_empty() && !anatomy.is_view_assumed {
-        let lacks = |part: Part| anatomy.volumes.iter().all(|volume| volume.parts.iter().all(|one| one.part != part));
-        let lacking = [(Part::LightCap, "light caps"), (Part::DarkCap, "dark caps")];
+        let lacks =
+            |part: DrawPart| anatomy.volumes.iter().all(|volume| volume.parts.iter().all(|one| one.part != part));
+        let lacking = [(DrawPart::LightCap, "light caps"), (DrawPart::DarkCap, "dark caps")];
         let lacking: Vec<&str> = lacking.into_iter().filter(|(part, _)| lacks(*part)).map(|(_, name)| name).collect();
         if !lacking.is_empty() {
             let words = format!("This frame draws no {}.", lacking.join(" and no "));

@@ -5,12 +5,12 @@
 //! there. What moves in the scene is shown at the draft's moment, and moved at its start.
 
 use super::lens::Lens;
-use super::stage::Stage;
+use super::stage::SceneStage;
 use super::view::{Pane, SceneView};
 use crate::anatomy::Anatomy;
 use crate::ask::RunRequest;
 use crate::inspector::action::Action;
-use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
+use crate::inspector::canvas::handles::{HandleAnchor, HandleKind, arrows, grabbed, moved_light, place_of_light};
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
 use crate::inspector::model::scene::OpenScene;
@@ -29,25 +29,26 @@ pub fn ui(
     ui: &Ui,
     model: &mut Model,
     view: &mut SceneView,
-    (anatomy, stage): (&Anatomy, &Stage),
+    (anatomy, stage): (&Anatomy, &SceneStage),
     (pane, lens, rect): (Pane, &Lens, Rect),
     actions: &mut Vec<Action>,
 ) {
-    let anchor = Anchor { middle: stage.middle, reach: 0.85 * stage.radius };
-    let here = Here { pane, lens, rect, anchor };
+    let anchor = HandleAnchor { middle: stage.middle, reach: 0.85 * stage.radius };
+    let here = GizmoView { pane, lens, rect, anchor };
     let Some(scene) = model.scene.as_mut() else {
         return signs(ui, anatomy, view.shown.names, &here);
     };
     let painter = ui.painter_at(rect);
     let mut changed = false;
-    let lights = (0..scene.draft.lights.len()).map(Grip::Light);
+    let lights = (0..scene.draft.lights.len()).map(HandleKind::Light);
     let movable = 0..if view.gizmos && view.moves_objects { scene.object_count() } else { 0 };
-    let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(Grip::Object);
-    let objects: Vec<Grip> = objects.collect();
+    let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(HandleKind::Object);
+    let objects: Vec<HandleKind> = objects.collect();
     let spot = |scene: &OpenScene, grip| place(scene, grip, anchor).and_then(|at| lens.place(at));
     let taken: Vec<Pos2> = objects.iter().filter_map(|grip| spot(scene, *grip)).collect();
     // The last one is on top.
-    let grips: Vec<Grip> = [Grip::Target, Grip::Eye].into_iter().chain(objects).chain(lights).collect();
+    let grips: Vec<HandleKind> =
+        [HandleKind::Target, HandleKind::Eye].into_iter().chain(objects).chain(lights).collect();
     let camera = scene.draft.camera;
     if let (Some(eye), Some(target)) = (lens.place(camera.eye), lens.place(camera.target)) {
         painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
@@ -56,7 +57,7 @@ pub fn ui(
         let Some(at) = spot(scene, grip).filter(|at| rect.contains(*at)) else { continue };
         sign(ui, &painter, (grip, is_directional(&scene.draft, grip)), at, &here);
         // The camera looks at the middle of a model: who wishes to move that is not to move what it looks at.
-        let is_hidden = grip == Grip::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
+        let is_hidden = grip == HandleKind::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
         if view.gizmos && !is_hidden {
             changed |= handle(ui, view, scene, (grip, at), &here);
         }
@@ -70,13 +71,13 @@ pub fn ui(
 }
 
 /// Of another program's frame the found lights and the eye, which nobody can move.
-fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &Here) {
+fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &GizmoView) {
     let painter = ui.painter_at(here.rect);
     let lights = anatomy.lights.iter().enumerate().map(|(index, light)| {
         let light = Light { position: light.position, ..Light::point(DVec3::ZERO) };
-        (Grip::Light(index), place_of_light(&light, 0.0, here.anchor), light.is_directional())
+        (HandleKind::Light(index), place_of_light(&light, 0.0, here.anchor), light.is_directional())
     });
-    for (grip, place, is_directional) in std::iter::once((Grip::Eye, anatomy.camera.eye, false)).chain(lights) {
+    for (grip, place, is_directional) in std::iter::once((HandleKind::Eye, anatomy.camera.eye, false)).chain(lights) {
         let Some(at) = here.lens.place(place).filter(|at| here.rect.contains(*at)) else { continue };
         sign(ui, &painter, (grip, is_directional), at, here);
         if has_names {
@@ -90,31 +91,31 @@ fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
 }
 
 /// For people.
-fn name_of(scene: &OpenScene, grip: Grip) -> String {
-    let object = if let Grip::Object(index) = grip { scene.object(index) } else { None };
+fn name_of(scene: &OpenScene, grip: HandleKind) -> String {
+    let object = if let HandleKind::Object(index) = grip { scene.object(index) } else { None };
     object.map_or_else(|| grip.name(), |object| object.name)
 }
 
-fn is_directional(draft: &RunRequest, grip: Grip) -> bool {
-    matches!(grip, Grip::Light(index) if draft.lights[index].is_directional())
+fn is_directional(draft: &RunRequest, grip: HandleKind) -> bool {
+    matches!(grip, HandleKind::Light(index) if draft.lights[index].is_directional())
 }
 
 /// Of the view that is drawn.
-struct Here<'a> {
+struct GizmoView<'a> {
     pane: Pane,
     lens: &'a Lens,
     rect: Rect,
-    anchor: Anchor,
+    anchor: HandleAnchor,
 }
 
 /// Where a thing is at the draft's moment, world space.
-fn place(scene: &OpenScene, grip: Grip, anchor: Anchor) -> Option<DVec3> {
+fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DVec3> {
     let draft = &scene.draft;
     match grip {
-        Grip::Light(index) => draft.lights.get(index).map(|light| place_of_light(light, draft.time, anchor)),
-        Grip::Eye => Some(draft.camera.eye),
-        Grip::Target => Some(draft.camera.target),
-        Grip::Object(index) => {
+        HandleKind::Light(index) => draft.lights.get(index).map(|light| place_of_light(light, draft.time, anchor)),
+        HandleKind::Eye => Some(draft.camera.eye),
+        HandleKind::Target => Some(draft.camera.target),
+        HandleKind::Object(index) => {
             let object = scene.object(index)?;
             let pose = object.motion.apply(&object.pose, draft.time);
             Some(pose.world_from_object().transform_point3(scene.middle_of(index, &object)))
@@ -122,15 +123,15 @@ fn place(scene: &OpenScene, grip: Grip, anchor: Anchor) -> Option<DVec3> {
     }
 }
 
-fn move_by(scene: &mut OpenScene, grip: Grip, by: DVec3, anchor: Anchor) {
+fn move_by(scene: &mut OpenScene, grip: HandleKind, by: DVec3, anchor: HandleAnchor) {
     let draft = &mut scene.draft;
     match grip {
-        Grip::Light(index) => {
+        HandleKind::Light(index) => {
             draft.lights[index].position = moved_light(&draft.lights[index], draft.time, by, anchor);
         }
-        Grip::Eye => draft.camera.eye += by,
-        Grip::Target => draft.camera.target += by,
-        Grip::Object(index) => {
+        HandleKind::Eye => draft.camera.eye += by,
+        HandleKind::Target => draft.camera.target += by,
+        HandleKind::Object(index) => {
             let time = draft.time;
             if let Some(object) = scene.object(index) {
                 scene.place(index, moved_object(&object, time, by));
@@ -153,10 +154,10 @@ fn moved_object(object: &Object, time: f64, by: DVec3) -> Pose {
 }
 
 /// What a thing looks like, whether it can be moved or not.
-fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (Grip, bool), at: Pos2, here: &Here) {
+fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (HandleKind, bool), at: Pos2, here: &GizmoView) {
     let colors = theme::of(ui);
     match grip {
-        Grip::Light(_) => {
+        HandleKind::Light(_) => {
             if is_directional && let Some(middle) = here.lens.place(here.anchor.middle) {
                 let along = (middle - at) * 0.35;
                 painter.arrow(at, along, Stroke::new(1.5, colors.lit));
@@ -167,16 +168,16 @@ fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (Grip, bool), at: Po
             }
             painter.circle(at, 5.0, colors.lit, Stroke::new(1.0, colors.background));
         }
-        Grip::Eye => {
+        HandleKind::Eye => {
             let body = Rect::from_center_size(at, vec2(11.0, 8.0));
             painter.rect(body, 2, colors.text, Stroke::new(1.0, colors.background), egui::StrokeKind::Outside);
             painter.circle_filled(at, 2.2, colors.background);
         }
-        Grip::Target => {
+        HandleKind::Target => {
             painter.circle_stroke(at, 4.0, Stroke::new(1.5, colors.dim));
             painter.circle_filled(at, 1.2, colors.dim);
         }
-        Grip::Object(_) => {
+        HandleKind::Object(_) => {
             let body = Rect::from_center_size(at, Vec2::splat(8.0));
             painter.rect(body, 1, colors.raised, Stroke::new(1.5, colors.text), egui::StrokeKind::Middle);
         }
@@ -184,7 +185,13 @@ fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (Grip, bool), at: Po
 }
 
 /// The handle and, where it is the chosen one, its axes. True where it was moved.
-fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, (grip, at): (Grip, Pos2), here: &Here) -> bool {
+fn handle(
+    ui: &Ui,
+    view: &mut SceneView,
+    scene: &mut OpenScene,
+    (grip, at): (HandleKind, Pos2),
+    here: &GizmoView,
+) -> bool {
     let in_view = format!("in the {} view", here.pane.name());
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
     let called = name_of(scene, grip);
@@ -193,7 +200,7 @@ fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, (grip, at): (Gri
     let response = response.on_hover_text(format!("{called}: drag it, or use the arrow keys"));
     if response.drag_started() || response.clicked() || response.gained_focus() {
         view.grip = Some(grip);
-        if let Grip::Object(index) = grip {
+        if let HandleKind::Object(index) = grip {
             scene.edited = index;
         }
     }

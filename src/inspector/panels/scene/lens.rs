@@ -4,7 +4,7 @@
 //! middle of the view. The oblique projections (cavalier, cabinet) draw depth at an angle, at full or
 //! half length, so that a front keeps its true shape.
 
-use crate::viewport::View;
+use crate::viewport::ViewportCamera;
 use egui::{Pos2, Rect, Vec2, pos2};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
@@ -17,7 +17,7 @@ const MOST_PITCH: f64 = 89.9;
 
 /// How depth is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Projection {
+pub enum LensProjection {
     /// Farther is smaller.
     Perspective,
     /// Depth is not seen.
@@ -28,18 +28,18 @@ pub enum Projection {
     Cabinet,
 }
 
-impl Projection {
+impl LensProjection {
     /// All, with what each is.
-    pub const ALL: [(Projection, &'static str, &'static str); 4] = [
-        (Projection::Perspective, "perspective", "Farther is smaller, as seen by an eye"),
-        (Projection::Orthographic, "orthographic", "Lengths stay, depth is not seen"),
+    pub const ALL: [(LensProjection, &'static str, &'static str); 4] = [
+        (LensProjection::Perspective, "perspective", "Farther is smaller, as seen by an eye"),
+        (LensProjection::Orthographic, "orthographic", "Lengths stay, depth is not seen"),
         (
-            Projection::Cavalier,
+            LensProjection::Cavalier,
             "cavalier",
             "Oblique: the front keeps its shape, depth goes off at an angle at full length",
         ),
         (
-            Projection::Cabinet,
+            LensProjection::Cabinet,
             "cabinet",
             "Oblique: the front keeps its shape, depth goes off at an angle at half length",
         ),
@@ -47,12 +47,12 @@ impl Projection {
 
     /// In the chooser.
     pub fn name(self) -> &'static str {
-        Projection::ALL.iter().find(|(one, ..)| *one == self).map_or("", |(_, name, _)| name)
+        LensProjection::ALL.iter().find(|(one, ..)| *one == self).map_or("", |(_, name, _)| name)
     }
 
     /// Is depth drawn at an angle?
     pub fn is_oblique(self) -> bool {
-        matches!(self, Projection::Cavalier | Projection::Cabinet)
+        matches!(self, LensProjection::Cavalier | LensProjection::Cabinet)
     }
 }
 
@@ -70,7 +70,7 @@ pub struct PaneView {
     /// Across the shorter side of a perspective view, degrees.
     pub fov_y: f64,
     /// How depth is drawn.
-    pub projection: Projection,
+    pub projection: LensProjection,
     /// At which angle, where it is oblique, degrees.
     pub oblique: f64,
 }
@@ -104,9 +104,9 @@ impl PaneView {
     /// The view in a rectangle of the screen.
     pub fn lens(&self, rect: Rect) -> Lens {
         let length = match self.projection {
-            Projection::Cavalier => 1.0,
-            Projection::Cabinet => 0.5,
-            Projection::Perspective | Projection::Orthographic => 0.0,
+            LensProjection::Cavalier => 1.0,
+            LensProjection::Cabinet => 0.5,
+            LensProjection::Perspective | LensProjection::Orthographic => 0.0,
         };
         let (sine, cosine) = self.oblique.to_radians().sin_cos();
         Lens {
@@ -117,7 +117,7 @@ impl PaneView {
             // A view that a small window leaves no room for still has a scale, so that dragging stays finite.
             scale: f64::from(rect.size().min_elem().max(1.0)) / self.height,
             shear: DVec2::new(cosine, sine) * length,
-            eye: (self.projection == Projection::Perspective).then(|| self.distance()),
+            eye: (self.projection == LensProjection::Perspective).then(|| self.distance()),
         }
     }
 }
@@ -157,7 +157,7 @@ impl Lens {
     }
 
     /// What the GPU draws by: clip space, with reversed depth, of places relative to `origin`, all within `reach` of it.
-    pub fn on_gpu(&self, origin: DVec3, reach: f64) -> View {
+    pub fn on_gpu(&self, origin: DVec3, reach: f64) -> ViewportCamera {
         let view = DMat4::from_mat3(self.rotation) * DMat4::from_translation(origin - self.center);
         let [x, y] = (2.0 * self.scale / self.size).to_array();
         // Depth is linear in parallel views, and has room for all there is.
@@ -175,7 +175,7 @@ impl Lens {
             }
         };
         let viewer = self.viewer();
-        View {
+        ViewportCamera {
             clip_from_stage: (clip * view).as_mat4(),
             viewer: (viewer - (origin * viewer.w).extend(0.0)).as_vec4(),
             step: DVec2::from(step).as_vec2(),
@@ -244,7 +244,7 @@ mod tests {
 
     const RECT: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(500.0, 250.0) };
 
-    fn pane(projection: Projection) -> PaneView {
+    fn pane(projection: LensProjection) -> PaneView {
         let center = DVec3::new(1.0, 2.0, 3.0);
         PaneView { center, height: 10.0, yaw: 0.0, pitch: 0.0, fov_y: 40.0, projection, oblique: 30.0 }
     }
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn the_middle_plane_is_drawn_to_scale_in_every_projection() {
-        for (projection, ..) in Projection::ALL {
+        for (projection, ..) in LensProjection::ALL {
             let lens = pane(projection).lens(RECT);
             is_near(lens.place(DVec3::new(1.0, 2.0, 3.0)).expect("seen"), [300.0, 150.0]);
             is_near(lens.place(DVec3::new(2.0, 3.0, 3.0)).expect("seen"), [320.0, 130.0]);
@@ -266,25 +266,25 @@ mod tests {
     fn depth_is_smaller_unseen_or_at_an_angle() {
         let behind = DVec3::new(2.0, 2.0, 1.0);
         let place = |projection| pane(projection).lens(RECT).place(behind).expect("seen");
-        is_near(place(Projection::Orthographic), [320.0, 150.0]);
+        is_near(place(LensProjection::Orthographic), [320.0, 150.0]);
         let (sine, cosine) = 30.0_f32.to_radians().sin_cos();
-        is_near(place(Projection::Cavalier), [320.0 + 40.0 * cosine, 150.0 - 40.0 * sine]);
-        is_near(place(Projection::Cabinet), [320.0 + 20.0 * cosine, 150.0 - 20.0 * sine]);
-        let eye = pane(Projection::Perspective).distance() as f32;
-        is_near(place(Projection::Perspective), [300.0 + 20.0 * eye / (eye + 2.0), 150.0]);
+        is_near(place(LensProjection::Cavalier), [320.0 + 40.0 * cosine, 150.0 - 40.0 * sine]);
+        is_near(place(LensProjection::Cabinet), [320.0 + 20.0 * cosine, 150.0 - 20.0 * sine]);
+        let eye = pane(LensProjection::Perspective).distance() as f32;
+        is_near(place(LensProjection::Perspective), [300.0 + 20.0 * eye / (eye + 2.0), 150.0]);
     }
 
     #[test]
     fn from_the_top_x_is_right_and_z_is_down_and_from_the_right_z_is_left() {
-        let top = PaneView { pitch: 90.0, ..pane(Projection::Orthographic) }.lens(RECT);
+        let top = PaneView { pitch: 90.0, ..pane(LensProjection::Orthographic) }.lens(RECT);
         is_near(top.place(DVec3::new(2.0, 7.0, 4.0)).expect("seen"), [320.0, 170.0]);
-        let right = PaneView { yaw: 90.0, ..pane(Projection::Orthographic) }.lens(RECT);
+        let right = PaneView { yaw: 90.0, ..pane(LensProjection::Orthographic) }.lens(RECT);
         is_near(right.place(DVec3::new(9.0, 3.0, 4.0)).expect("seen"), [280.0, 130.0]);
     }
 
     #[test]
     fn a_move_on_the_screen_is_a_move_in_the_world_at_any_depth() {
-        for (projection, ..) in Projection::ALL {
+        for (projection, ..) in LensProjection::ALL {
             let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
             let at = DVec3::new(2.0, 1.0, 0.5);
             let by = vec2(17.0, -9.0);
@@ -298,7 +298,7 @@ mod tests {
 
     #[test]
     fn points_towards_the_viewer_are_at_the_same_place_of_the_screen() {
-        for (projection, ..) in Projection::ALL {
+        for (projection, ..) in LensProjection::ALL {
             let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
             let at = DVec3::new(2.0, 1.0, 0.5);
             let viewer = lens.viewer();
@@ -310,7 +310,7 @@ mod tests {
 
     #[test]
     fn the_gpu_puts_a_place_where_the_lens_does_and_what_is_nearer_before_what_is_not() {
-        for (projection, ..) in Projection::ALL {
+        for (projection, ..) in LensProjection::ALL {
             let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
             let origin = DVec3::new(0.5, 0.25, -0.75);
             let clip = lens.on_gpu(origin, 9.0).clip_from_stage.as_dmat4();
@@ -329,7 +329,7 @@ mod tests {
 
     #[test]
     fn a_line_is_cut_where_it_goes_behind_the_eye() {
-        let lens = pane(Projection::Perspective).lens(RECT);
+        let lens = pane(LensProjection::Perspective).lens(RECT);
         let behind = DVec3::new(1.0, 3.0, 40.0);
         assert_eq!(lens.place(behind), None);
         assert_eq!(lens.line([behind, behind]), None);

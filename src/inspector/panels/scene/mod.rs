@@ -19,7 +19,7 @@ mod toggles;
 mod view;
 
 pub use view::SceneView;
-use view::{Layout, Pane};
+use view::{Pane, PaneLayout};
 
 use crate::ask::AnatomyOf;
 use crate::inspector::action::Action;
@@ -69,8 +69,8 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
         views
     };
     match view.layout {
-        Layout::One(pane) => pane::ui(ui, model, view, anatomy, &stage, (pane, views), actions),
-        Layout::Four => {
+        PaneLayout::One(pane) => pane::ui(ui, model, view, anatomy, &stage, (pane, views), actions),
+        PaneLayout::Four => {
             for (index, pane) in Pane::ALL.into_iter().enumerate() {
                 let size = views.size() / 2.0;
                 let corner = vec2((index % 2) as f32 * size.x, (index / 2) as f32 * size.y);

@@ -1,7 +1,7 @@
 //! One view: mouse and keys turn, move and scale it; over the drawn stage lie words, rays and handles.
 
-use super::lens::{Lens, Projection};
-use super::stage::Stage;
+use super::lens::{Lens, LensProjection};
+use super::stage::SceneStage;
 use super::view::{Pane, SceneView, index_of};
 use super::{gizmos, rays};
 use crate::anatomy::Anatomy;
@@ -9,7 +9,7 @@ use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{keep_arrows, plate};
 use crate::inspector::model::Model;
-use crate::viewport::Drawing;
+use crate::viewport::ViewportDrawing;
 use egui::{
     Align2, CornerRadius, Key, PointerButton, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder,
     WidgetInfo, vec2,
@@ -33,7 +33,7 @@ pub fn ui(
     model: &mut Model,
     view: &mut SceneView,
     anatomy: &Anatomy,
-    stage: &Arc<Stage>,
+    stage: &Arc<SceneStage>,
     (pane, rect): (Pane, Rect),
     actions: &mut Vec<Action>,
 ) {
@@ -43,7 +43,7 @@ pub fn ui(
     navigate(ui, view, pane, &response);
     let lens = view.view_mut(pane).lens(rect);
     let painter = ui.painter_at(rect);
-    let drawing = Drawing {
+    let drawing = ViewportDrawing {
         geometry: stage.geometry.clone(),
         view: lens.on_gpu(stage.middle, stage.reach),
         rect,
@@ -75,7 +75,7 @@ fn title(ui: &mut Ui, view: &mut SceneView, pane: Pane, rect: Rect) {
             let shown = view.view_mut(pane);
             let combo = egui::ComboBox::from_id_salt(("projection", pane.name())).width(96.0);
             let combo = combo.selected_text(shown.projection.name()).show_ui(ui, |ui| {
-                for (projection, name, meaning) in Projection::ALL {
+                for (projection, name, meaning) in LensProjection::ALL {
                     ui.selectable_value(&mut shown.projection, projection, name).on_hover_text(meaning);
                 }
             });
@@ -136,7 +136,7 @@ fn navigate(ui: &Ui, view: &mut SceneView, pane: Pane, response: &Response) {
     }
 }
 
-fn labels(ui: &Ui, stage: &Stage, lens: &Lens, rect: Rect) {
+fn labels(ui: &Ui, stage: &SceneStage, lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
     // Words that would lie on others are left out.

@@ -1,8 +1,8 @@
 //! The pick's rays and the history's selected triangle, over a view.
 
 use super::lens::Lens;
-use super::stage::Stage;
-use super::toggles::Choice;
+use super::stage::SceneStage;
+use super::toggles::VolumeFilter;
 use crate::anatomy::{Anatomy, recorded_places};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
@@ -15,7 +15,15 @@ use glam::{DVec3, DVec4};
 const LIT: u8 = 0;
 
 /// Draws rays and triangle.
-pub fn ui(ui: &Ui, model: &Model, choice: Choice, stage: &Stage, anatomy: &Anatomy, lens: &Lens, rect: Rect) {
+pub fn ui(
+    ui: &Ui,
+    model: &Model,
+    choice: VolumeFilter,
+    stage: &SceneStage,
+    anatomy: &Anatomy,
+    lens: &Lens,
+    rect: Rect,
+) {
     let (Some(capture), Some(at)) = (&model.frame.capture, model.selection.pick) else { return };
     selected_triangle(ui, model, capture, (stage, anatomy, lens, rect));
     let painter = ui.painter_at(rect);
@@ -55,14 +63,14 @@ pub fn ui(ui: &Ui, model: &Model, choice: Choice, stage: &Stage, anatomy: &Anato
 }
 
 /// Where the selected triangle is: the middle of what of it is drawn. `None` where none is selected.
-pub fn middle_of_selected(model: &Model, stage: &Stage, anatomy: &Anatomy) -> Option<DVec3> {
+pub fn middle_of_selected(model: &Model, stage: &SceneStage, anatomy: &Anatomy) -> Option<DVec3> {
     let corners = selected(model, model.frame.capture.as_ref()?, stage, anatomy)?;
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     middle.is_finite().then_some(middle)
 }
 
 /// Corners of what is drawn of the selected triangle: it may reach to infinity.
-fn selected(model: &Model, capture: &Capture, stage: &Stage, anatomy: &Anatomy) -> Option<Vec<DVec3>> {
+fn selected(model: &Model, capture: &Capture, stage: &SceneStage, anatomy: &Anatomy) -> Option<Vec<DVec3>> {
     let history = model.history_of_frame()?;
     let event = history.events.get(model.selected_in(&history)?).filter(|event| event.is_from_camera)?;
     // Corners are relative to the eye.
@@ -83,7 +91,7 @@ fn selected_triangle(
     ui: &Ui,
     model: &Model,
     capture: &Capture,
-    (stage, anatomy, lens, rect): (&Stage, &Anatomy, &Lens, Rect),
+    (stage, anatomy, lens, rect): (&SceneStage, &Anatomy, &Lens, Rect),
 ) {
     let Some(corners) = selected(model, capture, stage, anatomy) else { return };
     let painter = ui.painter_at(rect);

@@ -4,12 +4,12 @@
 //! is ended on a sphere about the lamp, which every ray from it meets once, so that volumes stay closed; what a
 //! directional light throws there goes to the GPU as it is, and fades on its way.
 
-use super::toggles::{Choice, Toggles};
+use super::toggles::{SceneToggles, VolumeFilter};
 use crate::anatomy::{Anatomy, Frustum, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
 use crate::inspector::look::coloring;
 use crate::inspector::look::theme::Theme;
-use crate::plan::Part;
-use crate::viewport::{Geometry, Line, Vertex};
+use crate::plan::DrawPart;
+use crate::viewport::{ViewportGeometry, ViewportLine, ViewportVertex};
 use egui::Color32;
 use glam::{DVec3, DVec4, Vec3};
 use std::collections::BTreeSet;
@@ -39,7 +39,7 @@ const MOST_TRIANGLES: usize = 20_000_000;
 
 /// Words at a place.
 #[derive(Debug, Clone)]
-pub struct Label {
+pub struct StageLabel {
     /// World space.
     pub at: DVec3,
     /// What is written.
@@ -50,7 +50,7 @@ pub struct Label {
 
 /// What the views draw.
 #[derive(Debug, Default)]
-pub struct Stage {
+pub struct SceneStage {
     /// World space; geometry is relative to it.
     pub middle: DVec3,
     /// Half of what there is to see, metres.
@@ -58,9 +58,9 @@ pub struct Stage {
     /// The farthest that anything is from the middle, metres.
     pub reach: f64,
     /// Faces and lines.
-    pub geometry: Arc<Geometry>,
+    pub geometry: Arc<ViewportGeometry>,
     /// Multiplicities and names.
-    pub labels: Vec<Label>,
+    pub labels: Vec<StageLabel>,
     /// Casters that hold everything, whose volumes are not shown unless they are chosen.
     pub left_out: BTreeSet<String>,
     /// There is more than the GPU is given, or it has places that are no numbers.
@@ -114,14 +114,14 @@ fn is_seen(object: &PlacedObject) -> bool {
     object.visible || object.casts
 }
 
-impl Stage {
+impl SceneStage {
     /// Of `anatomy`, in the colours of `theme`.
-    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
+    pub fn new(anatomy: &Anatomy, shown: &SceneToggles, choice: VolumeFilter, theme: &Theme) -> SceneStage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
-        let stage = Stage { middle, radius, ..Stage::default() };
-        let geometry = Geometry { origin: middle, ..Geometry::default() };
-        let mut build = Build { stage, geometry, theme };
+        let stage = SceneStage { middle, radius, ..SceneStage::default() };
+        let geometry = ViewportGeometry { origin: middle, ..ViewportGeometry::default() };
+        let mut build = StageBuilder { stage, geometry, theme };
         if shown.names {
             build.names(anatomy, &holders);
         }
@@ -154,7 +154,7 @@ impl Stage {
         if shown.near_clip {
             build.near_clips(anatomy, choice);
         }
-        let Build { mut stage, geometry, .. } = build;
+        let StageBuilder { mut stage, geometry, .. } = build;
         if choice.caster.is_none() {
             let held_back = anatomy.volumes.iter().map(|volume| volume.caster).filter(|caster| holders[*caster]);
             stage.left_out = held_back.map(|caster| anatomy.objects[caster].name.clone()).collect();
@@ -198,13 +198,13 @@ impl Stage {
 }
 
 /// A stage that is being made.
-struct Build<'a> {
-    stage: Stage,
-    geometry: Geometry,
+struct StageBuilder<'a> {
+    stage: SceneStage,
+    geometry: ViewportGeometry,
     theme: &'a Theme,
 }
 
-impl Build<'_> {
+impl StageBuilder<'_> {
     /// The triangles and edges of an object. One that holds others turns its front to `inside`, the picture's eye.
     fn object(&mut self, object: &PlacedObject, inside: Option<DVec3>) {
         let triangles = object.mesh.triangles();
@@ -280,7 +280,7 @@ impl Build<'_> {
 
     /// How many more triangles the GPU is given, of all kinds together.
     fn room_for_triangles(&self) -> usize {
-        let Geometry { solids, holders, shells, .. } = &self.geometry;
+        let ViewportGeometry { solids, holders, shells, .. } = &self.geometry;
         MOST_TRIANGLES.saturating_sub(solids.len() + holders.len() + shells.len())
     }
 
@@ -295,15 +295,15 @@ impl Build<'_> {
             return NONE;
         }
         self.stage.reach = self.stage.reach.max(at.truncate().length());
-        self.geometry.vertices.push(Vertex::new(at, normal, color));
+        self.geometry.vertices.push(ViewportVertex::new(at, normal, color));
         index as u32
     }
 
-    fn volume(&mut self, volume: &ShadowVolume, light: &PlacedLight, shown: &Toggles, strength: f32) {
+    fn volume(&mut self, volume: &ShadowVolume, light: &PlacedLight, shown: &SceneToggles, strength: f32) {
         for part in &volume.parts {
             let (is_shown, share) = match part.part {
-                Part::Side => (shown.sides, 0.26 * strength),
-                Part::LightCap => (shown.light_caps, 0.24 * strength.max(0.5)),
+                DrawPart::Side => (shown.sides, 0.26 * strength),
+                DrawPart::LightCap => (shown.light_caps, 0.24 * strength.max(0.5)),
                 _ => (shown.dark_caps, 0.36 * strength),
             };
             let Some(color) = self.theme.part(part.part).filter(|_| is_shown) else { continue };
@@ -336,12 +336,12 @@ impl Build<'_> {
             self.line(ends, width * strength.max(0.7), self.theme.text.gamma_multiply(strength));
             if many > 1 && self.stage.labels.len() < MOST_NUMBERS {
                 let text = format!("{}{many}", if edge.multiplicity > 0 { "+" } else { "−" });
-                self.stage.labels.push(Label { at: (ends[0] + ends[1]) / 2.0, text, of: Some(ends) });
+                self.stage.labels.push(StageLabel { at: (ends[0] + ends[1]) / 2.0, text, of: Some(ends) });
             }
         }
     }
 
-    fn frusta(&mut self, anatomy: &Anatomy, choice: Choice) {
+    fn frusta(&mut self, anatomy: &Anatomy, choice: VolumeFilter) {
         let is_shown = |frustum: &&Frustum| match frustum.of {
             ViewOf::Camera => true,
             ViewOf::Map { light, caster, .. } => choice.has_frustum(light, caster),
@@ -375,7 +375,7 @@ impl Build<'_> {
         }
     }
 
-    fn near_clips(&mut self, anatomy: &Anatomy, choice: Choice) {
+    fn near_clips(&mut self, anatomy: &Anatomy, choice: VolumeFilter) {
         let color = self.theme.decided;
         for (light, near_clip) in anatomy.near_clips.iter().enumerate() {
             let Some(near_clip) = near_clip.filter(|_| choice.light.is_none_or(|one| one == light)) else { continue };
@@ -405,7 +405,7 @@ impl Build<'_> {
                 (true, false) => format!("{} (receives none)", object.name),
                 (false, _) => format!("{} (casts none)", object.name),
             };
-            self.stage.labels.push(Label { at, text, of: None });
+            self.stage.labels.push(StageLabel { at, text, of: None });
         }
     }
 
@@ -421,7 +421,7 @@ impl Build<'_> {
         if from.is_finite() && to.is_finite() && self.geometry.lines.len() < MOST_VERTICES {
             self.stage.reach =
                 ends.iter().fold(self.stage.reach, |reach, end| reach.max((*end - self.stage.middle).length()));
-            self.geometry.lines.push(Line { from, width, to, color });
+            self.geometry.lines.push(ViewportLine { from, width, to, color });
         }
     }
 }
@@ -435,8 +435,8 @@ pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
 mod tests {
     use super::*;
 
-    fn stage() -> Stage {
-        Stage { middle: DVec3::new(1.0, 0.0, 0.0), radius: 5.0, ..Stage::default() }
+    fn stage() -> SceneStage {
+        SceneStage { middle: DVec3::new(1.0, 0.0, 0.0), radius: 5.0, ..SceneStage::default() }
     }
 
     #[test]
@@ -465,8 +465,12 @@ mod tests {
             near_clips: Vec::new(),
         };
         let lines = |objects: bool, wireframe: bool| {
-            let shown = Toggles { objects, wireframe, silhouettes: false, frusta: false, ..Toggles::default() };
-            Stage::new(&anatomy, &shown, Choice::default(), &crate::inspector::look::theme::DARK).geometry.lines.len()
+            let shown =
+                SceneToggles { objects, wireframe, silhouettes: false, frusta: false, ..SceneToggles::default() };
+            SceneStage::new(&anatomy, &shown, VolumeFilter::default(), &crate::inspector::look::theme::DARK)
+                .geometry
+                .lines
+                .len()
         };
         // Twelve of the box, and a diagonal on each of six sides.
         assert_eq!([lines(true, false), lines(false, true), lines(true, true)], [0, 18, 18]);

@@ -2,7 +2,7 @@
 
 /// What is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Toggles {
+pub struct SceneToggles {
     /// Objects.
     pub objects: bool,
     /// All edges of objects' triangles.
@@ -25,9 +25,9 @@ pub struct Toggles {
     pub names: bool,
 }
 
-impl Default for Toggles {
-    fn default() -> Toggles {
-        Toggles {
+impl Default for SceneToggles {
+    fn default() -> SceneToggles {
+        SceneToggles {
             objects: true,
             wireframe: false,
             sides: true,
@@ -44,14 +44,14 @@ impl Default for Toggles {
 
 /// Of which light and caster volumes and silhouettes are shown; `None`: of all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Choice {
+pub struct VolumeFilter {
     /// Index of the light.
     pub light: Option<usize>,
     /// Index of the object.
     pub caster: Option<usize>,
 }
 
-impl Choice {
+impl VolumeFilter {
     /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
     /// where they are asked for by name.
     pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {

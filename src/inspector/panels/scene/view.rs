@@ -1,10 +1,10 @@
 //! What the tab remembers: its views, what they show, and what was made for them.
 
-use super::lens::{PaneView, Projection};
-use super::stage::{self, Stage};
-use super::toggles::{Choice, Toggles};
+use super::lens::{LensProjection, PaneView};
+use super::stage::{self, SceneStage};
+use super::toggles::{SceneToggles, VolumeFilter};
 use crate::anatomy::Anatomy;
-use crate::inspector::canvas::handles::Grip;
+use crate::inspector::canvas::handles::HandleKind;
 use crate::inspector::look::theme;
 use crate::scene::{self, Camera};
 use glam::DVec3;
@@ -42,10 +42,10 @@ impl Pane {
 
     fn first_view(self) -> PaneView {
         let (yaw, pitch, projection) = match self {
-            Pane::Free => (0.0, 0.0, Projection::Perspective),
-            Pane::Top => (0.0, 90.0, Projection::Orthographic),
-            Pane::Front => (0.0, 0.0, Projection::Orthographic),
-            Pane::Right => (90.0, 0.0, Projection::Orthographic),
+            Pane::Free => (0.0, 0.0, LensProjection::Perspective),
+            Pane::Top => (0.0, 90.0, LensProjection::Orthographic),
+            Pane::Front => (0.0, 0.0, LensProjection::Orthographic),
+            Pane::Right => (90.0, 0.0, LensProjection::Orthographic),
         };
         PaneView { center: DVec3::ZERO, height: 10.0, yaw, pitch, fov_y: 40.0, projection, oblique: 45.0 }
     }
@@ -53,7 +53,7 @@ impl Pane {
 
 /// Which views are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Layout {
+pub enum PaneLayout {
     /// One.
     One(Pane),
     /// All four.
@@ -63,33 +63,33 @@ pub enum Layout {
 /// What the Scene tab remembers.
 #[derive(Debug)]
 pub struct SceneView {
-    pub layout: Layout,
+    pub layout: PaneLayout,
     pub views: [PaneView; 4],
     /// The views show the whole scene of this name already.
     pub fitted: bool,
-    pub shown: Toggles,
-    pub choice: Choice,
+    pub shown: SceneToggles,
+    pub choice: VolumeFilter,
     /// Lights and camera have handles.
     pub gizmos: bool,
     /// Objects have handles too.
     pub moves_objects: bool,
     /// The handle whose axes are shown.
-    pub grip: Option<Grip>,
+    pub grip: Option<HandleKind>,
     /// The history's selected triangle is to be in the middle.
     pub wants_triangle: bool,
     /// Which scene that is.
     scenes_opened: u64,
-    built: Option<Built>,
+    built: Option<BuiltStage>,
 }
 
 impl Default for SceneView {
     fn default() -> SceneView {
         SceneView {
-            layout: Layout::One(Pane::Free),
+            layout: PaneLayout::One(Pane::Free),
             views: Pane::ALL.map(Pane::first_view),
             fitted: false,
-            shown: Toggles::default(),
-            choice: Choice::default(),
+            shown: SceneToggles::default(),
+            choice: VolumeFilter::default(),
             gizmos: true,
             moves_objects: false,
             grip: None,
@@ -102,19 +102,19 @@ impl Default for SceneView {
 
 /// A stage and what it is of.
 #[derive(Debug)]
-struct Built {
+struct BuiltStage {
     anatomy: Arc<Anatomy>,
-    shown: Toggles,
-    choice: Choice,
+    shown: SceneToggles,
+    choice: VolumeFilter,
     is_dark: bool,
-    stage: Arc<Stage>,
+    stage: Arc<SceneStage>,
 }
 
 impl SceneView {
     /// Another scene is open: it is looked at as a whole.
     fn forget(&mut self) {
         self.fitted = false;
-        self.choice = Choice::default();
+        self.choice = VolumeFilter::default();
         self.grip = None;
         self.built = None;
     }
@@ -160,11 +160,11 @@ impl SceneView {
         let view = self.view_mut(Pane::Free);
         (view.yaw, view.pitch) = angles(camera);
         view.projection = match camera.projection {
-            scene::Projection::Perspective => Projection::Perspective,
-            scene::Projection::Orthographic { .. } => Projection::Orthographic,
+            scene::Projection::Perspective => LensProjection::Perspective,
+            scene::Projection::Orthographic { .. } => LensProjection::Orthographic,
             // Of the two that a view has, the nearer.
-            scene::Projection::Oblique { factor, .. } if factor > 0.75 => Projection::Cavalier,
-            scene::Projection::Oblique { .. } => Projection::Cabinet,
+            scene::Projection::Oblique { factor, .. } if factor > 0.75 => LensProjection::Cavalier,
+            scene::Projection::Oblique { .. } => LensProjection::Cabinet,
         };
         if let scene::Projection::Oblique { angle_degrees, .. } = camera.projection {
             view.oblique = angle_degrees;
@@ -172,10 +172,10 @@ impl SceneView {
         view.center = camera.target;
         view.fov_y = camera.fov_y_degrees;
         view.height = 2.0 * camera.half_height_at_target();
-        self.layout = Layout::One(Pane::Free);
+        self.layout = PaneLayout::One(Pane::Free);
     }
 
-    pub fn stage(&mut self, anatomy: &Arc<Anatomy>, theme: &theme::Theme) -> Arc<Stage> {
+    pub fn stage(&mut self, anatomy: &Arc<Anatomy>, theme: &theme::Theme) -> Arc<SceneStage> {
         let is_dark = *theme == theme::DARK;
         if let Some(built) = &self.built
             && Arc::ptr_eq(&built.anatomy, anatomy)
@@ -183,9 +183,9 @@ impl SceneView {
         {
             return built.stage.clone();
         }
-        let stage = Arc::new(Stage::new(anatomy, &self.shown, self.choice, theme));
+        let stage = Arc::new(SceneStage::new(anatomy, &self.shown, self.choice, theme));
         let (anatomy, stage_too) = (anatomy.clone(), stage.clone());
-        self.built = Some(Built { anatomy, shown: self.shown, choice: self.choice, is_dark, stage: stage_too });
+        self.built = Some(BuiltStage { anatomy, shown: self.shown, choice: self.choice, is_dark, stage: stage_too });
         stage
     }
 }

@@ -18,10 +18,10 @@ const FILLED: f64 = 0.6;
 const AROUND: u32 = 32;
 
 /// Makes a shape.
-type Shape = fn() -> Result<Mesh, MeshError>;
+type ShapeMaker = fn() -> Result<Mesh, MeshError>;
 
 /// Shapes that can be added, a metre large, with their names.
-const SHAPES: [(&str, Shading, Shape); 5] = [
+const SHAPES: [(&str, Shading, ShapeMaker); 5] = [
     ("box", Shading::Flat, || shapes::cuboid([1.0; 3])),
     ("sphere", Shading::Phong, || shapes::sphere(0.5, AROUND, AROUND / 2)),
     ("torus", Shading::Phong, || shapes::torus(0.35, 0.15, AROUND, AROUND / 2)),

@@ -5,7 +5,7 @@
 
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::scene::OpenScene;
-use crate::scene::{Camera, Object, Pose, Surroundings, is_model};
+use crate::scene::{Camera, Object, Pose, SceneBounds, is_model};
 use egui::Ui;
 use glam::{DVec3, DVec4};
 
@@ -39,20 +39,20 @@ fn poses(model: &Object) -> [Pose; 2] {
 }
 
 /// What is made for a model at a pose.
-struct Made {
+struct ModelSurroundings {
     floor: Option<Pose>,
     light: DVec4,
     camera: Camera,
 }
 
-impl Made {
-    fn at(pose: Pose, scene: &OpenScene) -> Option<Made> {
+impl ModelSurroundings {
+    fn at(pose: Pose, scene: &OpenScene) -> Option<ModelSurroundings> {
         let [opened, turned] =
             [scene.loaded[0].pose, pose].map(|pose| Object { pose, ..scene.loaded[0].clone() }.world_positions());
-        let (before, around) = (Surroundings::of(&opened)?, Surroundings::of(&turned)?);
+        let (before, around) = (SceneBounds::of(&opened)?, SceneBounds::of(&turned)?);
         let floor = scene.loaded.get(1).map(|floor| floor.pose);
         let lower = DVec3::Y * (around.lowest() - before.lowest());
-        Some(Made {
+        Some(ModelSurroundings {
             floor: floor.map(|floor| Pose { translate: floor.translate + lower, ..floor }),
             light: around.light().position,
             camera: around.camera(&turned),
@@ -63,11 +63,11 @@ impl Made {
 /// The model, which comes first, and of what is around it all that is where it was made, whichever axis was up then:
 /// what was put elsewhere stays.
 fn turn(scene: &mut OpenScene, pose: Pose) {
-    let before = poses(&scene.loaded[0]).map(|pose| Made::at(pose, scene));
-    let made = Made::at(pose, scene);
+    let before = poses(&scene.loaded[0]).map(|pose| ModelSurroundings::at(pose, scene));
+    let made = ModelSurroundings::at(pose, scene);
     scene.place(0, pose);
     let Some(made) = made else { return };
-    let before: Vec<Made> = before.into_iter().flatten().collect();
+    let before: Vec<ModelSurroundings> = before.into_iter().flatten().collect();
     if let (Some(floor), Some(now)) = (made.floor, scene.object(1).map(|floor| floor.pose))
         && before.iter().any(|one| one.floor == Some(now))
     {

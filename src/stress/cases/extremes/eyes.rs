@@ -4,17 +4,17 @@ use super::ulps;
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Least};
+use crate::stress::{CaseNumber, LeastShares, StressCase};
 use glam::DVec3;
 
 /// All of them.
-pub const ALL: &[Case] =
+pub const ALL: &[StressCase] =
     &[EYE_IN_VOLUME, EYE_ON_SIDE_PLANE, LIGHT_BEHIND_EYE, SKY_BEHIND_VOLUME, SUN_ALONG_VIEW, ONE_PIXEL, WIDE, TALL];
 
-const EYE_IN_VOLUME: Case = Case {
+const EYE_IN_VOLUME: StressCase = StressCase {
     name: "eye-in-volume",
     lesson: "a roof over the eye: whoever counts from the eye on begins with a count that is not zero",
-    drives: Drives::Scene(|_| under_a_roof()),
+    drives: CaseNumber::Scene(|_| under_a_roof()),
     also: &[EYE_COUNT],
     failures: &[CUT_BY_NEAR.is_mixed().at_most(0.999)],
     ..PLAIN
@@ -27,12 +27,12 @@ pub fn under_a_roof() -> Result<Scene, MeshError> {
     Ok(scene([1.5, 2.0, 3.5], [0.0, 0.3, 0.0], Light::point([1.2, 6.0, 3.0]), objects))
 }
 
-const EYE_ON_SIDE_PLANE: Case = Case {
+const EYE_ON_SIDE_PLANE: StressCase = StressCase {
     name: "eye-on-side-plane",
     lesson: "the eye lies in a volume's side, to the last bit: it is seen as a line, and cut by the near plane",
     parameter: "ulps",
     values: &[-1.0, 0.0, 1.0],
-    drives: Drives::Scene(|steps| {
+    drives: CaseNumber::Scene(|steps| {
         // The light at height 4 carries the edge at x = 1, height 2, to x = 1.5 at the eye's height.
         let board = Object::of("board", shapes::quad([1.0, 2.0])?).at([0.5, 2.0, 0.0]);
         let eye = [ulps(1.5, steps), 1.0, 1.0];
@@ -42,10 +42,10 @@ const EYE_ON_SIDE_PLANE: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_BEHIND_EYE: Case = Case {
+const LIGHT_BEHIND_EYE: StressCase = StressCase {
     name: "light-behind-eye",
     lesson: "the light is behind the eye, and a caster between eye and near plane: it is not drawn, but casts",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let board = Object::of("board", shapes::quad([0.3; 2])?).turned([90.0, 0.0, 0.0]).at([0.1, 1.1, 3.5]);
         let wall = Object::of("wall", shapes::quad([6.0, 4.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.0, -2.0]);
         let mut scene =
@@ -57,10 +57,10 @@ const LIGHT_BEHIND_EYE: Case = Case {
     ..PLAIN
 };
 
-const SKY_BEHIND_VOLUME: Case = Case {
+const SKY_BEHIND_VOLUME: StressCase = StressCase {
     name: "sky-behind-volume",
     lesson: "pixels that show no surface lie behind volumes too: they are neither lit nor dark",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let mut scene = still_life()?;
         scene.camera.target = scene.camera.eye + DVec3::new(-1.2, -0.55, -4.0);
         Ok(scene)
@@ -69,30 +69,30 @@ const SKY_BEHIND_VOLUME: Case = Case {
     ..PLAIN
 };
 
-const SUN_ALONG_VIEW: Case = Case {
+const SUN_ALONG_VIEW: StressCase = StressCase {
     name: "sun-along-view",
     lesson: "the sun shines along the view: every volume is seen from its end, every side edge-on in the middle",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let mut scene = still_life()?;
         scene.lights = vec![Light::directional(scene.camera.eye - scene.camera.target)];
         Ok(scene)
     }),
-    least: |_| Least::all_lit("no shadow is seen from where the light comes"),
+    least: |_| LeastShares::all_lit("no shadow is seen from where the light comes"),
     ..PLAIN
 };
 
-const ONE_PIXEL: Case = Case {
+const ONE_PIXEL: StressCase = StressCase {
     name: "one-pixel",
     lesson: "a picture of one pixel has neighbours on no side: it is dark, then lit",
     parameter: "lit",
     values: &[0.0, 1.0],
-    drives: Drives::Scene(|lit| {
+    drives: CaseNumber::Scene(|lit| {
         let mut scene = still_life()?;
         scene.camera.target = if lit > 0.0 { DVec3::new(2.0, 0.0, 1.0) } else { BOX_SHADOW };
         Ok(scene)
     }),
     size: Some([1, 1]),
-    least: |lit| if lit > 0.0 { Least::all_lit(ONLY_PIXEL) } else { Least::all_dark(ONLY_PIXEL) },
+    least: |lit| if lit > 0.0 { LeastShares::all_lit(ONLY_PIXEL) } else { LeastShares::all_dark(ONLY_PIXEL) },
     ..PLAIN
 };
 
@@ -101,10 +101,10 @@ const ONLY_PIXEL: &str = "it is the only pixel";
 /// The middle of the shadow on the still life's floor.
 const BOX_SHADOW: DVec3 = DVec3::new(-0.25, 0.0, -0.375);
 
-const WIDE: Case = Case {
+const WIDE: StressCase = StressCase {
     name: "wide-picture",
     lesson: "16384 × 1 pixels: the widest that there is, across a shadow's edges",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let mut scene = still_life()?;
         scene.camera.target = BOX_SHADOW;
         // As high as one pixel; across, that is 60 degrees.
@@ -115,10 +115,10 @@ const WIDE: Case = Case {
     ..PLAIN
 };
 
-const TALL: Case = Case {
+const TALL: StressCase = StressCase {
     name: "tall-picture",
     lesson: "1 × 16384 pixels: one column, each pixel a sliver, across a shadow's edges",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let mut scene = still_life()?;
         scene.camera.target = BOX_SHADOW;
         Ok(scene)

@@ -4,12 +4,12 @@ use super::ulps;
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Failure, Least};
+use crate::stress::{CaseNumber, KnownFailure, LeastShares, StressCase};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
 /// All of them.
-pub const ALL: &[Case] = &[
+pub const ALL: &[StressCase] = &[
     LIGHT_AT_SHEET,
     TURNED_SHEET,
     LAMP_AT_CEILING,
@@ -26,17 +26,17 @@ pub const ALL: &[Case] = &[
 // Planar shadows fail here before the specification allows it, which is within 1e-5 degrees of a
 // receiver's plane: the sheet is the caster. Its shadow's corners lie a thousand kilometres away, and
 // are drawn as places on the floor, not as directions.
-const LIGHT_AT_SHEET: Case = Case {
+const LIGHT_AT_SHEET: StressCase = StressCase {
     name: "light-at-sheet",
     lesson: "the light is so near a sheet that its map's near plane passes it: the map sees through it",
     parameter: "distance in caster's sizes",
     values: &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
-    drives: Drives::Scene(|distance| {
+    drives: CaseNumber::Scene(|distance| {
         let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).at([0.0, 1.0, 0.0]);
         let light = Light::point([0.1, 1.0 + 0.8 * distance, 0.15]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
     }),
-    least: |_| Least { lit: 0.005, because: "only the sheet's top is lit", ..Least::USUAL },
+    least: |_| LeastShares { lit: 0.005, because: "only the sheet's top is lit", ..LeastShares::USUAL },
     also: &[BY_VERTEX_SHADER],
     failures: &[
         TOLD_IN_F32.at(|distance| distance < 5e-6).at_most(0.1),
@@ -48,18 +48,18 @@ const LIGHT_AT_SHEET: Case = Case {
     ..PLAIN
 };
 
-const NEARER_THAN_MAP: Failure =
+const NEARER_THAN_MAP: KnownFailure =
     fails(MAP, "map-near-plane", "it begins at a millionth of the scene: what is nearer to the light is not in it")
         .is_missing();
 
-const FAR_CORNERS: Failure =
+const FAR_CORNERS: KnownFailure =
     fails(PLANAR, "f32-limit", "a shadow of a thousand kilometres has corners that 24 bits can't place to a pixel")
         .at(|distance| distance < 5e-6)
         .is_missing()
         .at_most(0.004)
         .perhaps();
 
-const ONE_MATRIX: Failure = fails(
+const ONE_MATRIX: KnownFailure = fails(
     TEXTURE,
     "f32-limit",
     "the sheet is thrown by one matrix, in which 24 bits no longer tell its height from the light's",
@@ -67,16 +67,16 @@ const ONE_MATRIX: Failure = fails(
 .at(|distance| distance < 5e-6)
 .is_missing();
 
-const TURNED_SHEET: Case = Case {
+const TURNED_SHEET: StressCase = StressCase {
     name: "turned-sheet",
     lesson: "the same with the sheet turned: no coordinate of its corners or of the light is alike",
-    drives: Drives::Scene(|distance| {
+    drives: CaseNumber::Scene(|distance| {
         let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).turned([30.0, 0.0, 0.0]).at([0.0, 1.0, 0.0]);
         let over = DMat3::from_rotation_x(30.0_f64.to_radians()) * DVec3::new(0.1, 0.8 * distance, 0.15);
         let light = Light::point(DVec3::Y + over);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
     }),
-    least: |_| Least::USUAL,
+    least: |_| LeastShares::USUAL,
     failures: &[
         // It takes the light to be in the sheet's plane, and then nothing casts.
         TOLD_IN_F32.at(|distance| distance < 5e-7).is_missing().at_most(0.66),
@@ -95,12 +95,12 @@ const TURNED_SHEET: Case = Case {
     ..LIGHT_AT_SHEET
 };
 
-const LAMP_AT_CEILING: Case = Case {
+const LAMP_AT_CEILING: StressCase = StressCase {
     name: "lamp-at-ceiling",
     lesson: "inside a room, a lamp just under its ceiling: the room casts too, and is around eye and lamp",
     parameter: "metres below the ceiling",
     values: LIGHT_AT_SHEET.values,
-    drives: Drives::Scene(|distance| {
+    drives: CaseNumber::Scene(|distance| {
         let room = cuboid("room", [0.0, 1.5, 0.0], [6.0, 3.0, 6.0])?;
         let ring = Object::of("ring", shapes::torus(0.6, 0.25, 32, 16)?).at([0.0, 1.0, 0.0]);
         Ok(scene([1.5, 2.0, 2.8], [0.0, 0.6, 0.0], Light::point([0.3, 3.0 - distance, 0.2]), vec![room, ring]))
@@ -108,12 +108,12 @@ const LAMP_AT_CEILING: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_IN_NEAR_PLANE: Case = Case {
+const LIGHT_IN_NEAR_PLANE: StressCase = StressCase {
     name: "light-in-near-plane",
     lesson: "the light lies in the near plane and sees it as a line: who counts there from the light sees nothing",
     parameter: "ulps",
     values: &[-1.0, 0.0, 1.0],
-    drives: Drives::Scene(|steps| {
+    drives: CaseNumber::Scene(|steps| {
         // The eye at z = 4 has its near plane at z = 3; a board between it and the light crosses it.
         let board = Object::of("board", shapes::quad([0.6; 2])?).at([0.5, 2.0, 3.0]);
         let light = Light::point([1.0, 3.0, ulps(3.0, steps)]);
@@ -137,16 +137,16 @@ const LIGHT_IN_NEAR_PLANE: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_INSIDE_MESH: Case = Case {
+const LIGHT_INSIDE_MESH: StressCase = StressCase {
     name: "light-inside-mesh",
     lesson: "the light is inside a closed mesh: all outside is dark, though no outer face is turned to the light",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let mut scene = still_life()?;
         scene.lights = vec![Light::point([0.1, 0.85, 0.05])];
         Ok(scene)
     }),
     also: &[LIGHT_FACING, ALL_CAST, BY_VERTEX_SHADER],
-    least: |_| Least::all_dark("outside the mesh all is dark"),
+    least: |_| LeastShares::all_dark("outside the mesh all is dark"),
     failures: &[
         CUT_BY_NEAR.is_missing().at_most(0.999),
         NO_FIT,
@@ -157,10 +157,10 @@ const LIGHT_INSIDE_MESH: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_IN_TORUS_HOLE: Case = Case {
+const LIGHT_IN_TORUS_HOLE: StressCase = StressCase {
     name: "light-in-torus-hole",
     lesson: "the light is in a ring's hole: outside the mesh, with the mesh all around",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let ring = Object::of("ring", shapes::torus(0.7, 0.2, 24, 12)?).at([0.0, 0.8, 0.0]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.05, 0.85, 0.0]), vec![floor(3.0)?, ring]))
     }),
@@ -169,12 +169,12 @@ const LIGHT_IN_TORUS_HOLE: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_IN_FACE_PLANE: Case = Case {
+const LIGHT_IN_FACE_PLANE: StressCase = StressCase {
     name: "light-in-face-plane",
     lesson: "the light lies in the plane of a box's top, and a last bit above and below: which way does it face?",
     parameter: "ulps",
     values: &[-1.0, 0.0, 1.0],
-    drives: Drives::Scene(|steps| {
+    drives: CaseNumber::Scene(|steps| {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.5, ulps(1.0, steps), 0.25]), objects))
     }),
@@ -183,10 +183,10 @@ const LIGHT_IN_FACE_PLANE: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_ON_VERTEX: Case = Case {
+const LIGHT_ON_VERTEX: StressCase = StressCase {
     name: "light-on-vertex",
     lesson: "the light is on a corner of the box: the three faces there are edge-on and cast nothing, the others do",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.25, 1.0, 0.25]), objects))
     }),
@@ -194,10 +194,10 @@ const LIGHT_ON_VERTEX: Case = Case {
     ..PLAIN
 };
 
-const CASTER_AROUND_LIGHT: Case = Case {
+const CASTER_AROUND_LIGHT: StressCase = StressCase {
     name: "caster-around-light",
     lesson: "a lamp shade around the light, open above and below: it is on every side, and behind the light too",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let rim = |height: f64| (0..24).map(move |step| (f64::from(step) / 24.0 * TAU, height));
         let points: Vec<[f64; 3]> =
             rim(0.7).chain(rim(1.1)).map(|(angle, height)| [0.5 * angle.cos(), height, 0.5 * angle.sin()]).collect();
@@ -222,10 +222,10 @@ const CASTER_AROUND_LIGHT: Case = Case {
     ..PLAIN
 };
 
-const SUN_ALONG_RECEIVER: Case = Case {
+const SUN_ALONG_RECEIVER: StressCase = StressCase {
     name: "sun-along-receiver",
     lesson: "the sun shines level: the floor is edge-on and in no light, the wall behind the box has its shadow",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
         let objects = vec![floor(3.0)?, wall, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::directional(DVec3::new(0.2, 0.0, 1.0)), objects))
@@ -234,13 +234,15 @@ const SUN_ALONG_RECEIVER: Case = Case {
     ..PLAIN
 };
 
-const LIGHT_COUNT: Case = Case {
+const LIGHT_COUNT: StressCase = StressCase {
     name: "light-count",
     lesson: "none, one and sixteen lights: none must find in the stencil what another left there",
     parameter: "lights",
     values: &[0.0, 1.0, 16.0],
-    drives: Drives::Scene(ring_of_lights),
-    least: |lights| if lights == 0.0 { Least::nothing("without a light nothing is lit or dark") } else { Least::USUAL },
+    drives: CaseNumber::Scene(ring_of_lights),
+    least: |lights| {
+        if lights == 0.0 { LeastShares::nothing("without a light nothing is lit or dark") } else { LeastShares::USUAL }
+    },
     ..PLAIN
 };
 

@@ -3,12 +3,12 @@
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Least};
+use crate::stress::{CaseNumber, LeastShares, StressCase};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// All of them.
-pub const ALL: &[Case] = &[
+pub const ALL: &[StressCase] = &[
     BOTH_SIDES,
     OPEN_MESH,
     MOBIUS,
@@ -30,12 +30,12 @@ fn over_floor(casters: Vec<Object>) -> Result<Scene, MeshError> {
     Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), objects))
 }
 
-const BOTH_SIDES: Case = Case {
+const BOTH_SIDES: StressCase = StressCase {
     name: "both-sides",
     lesson: "a single sheet, seen from the side that it faces and from the other: it casts the same either way",
     parameter: "eye turned",
     values: &[0.0, 180.0],
-    drives: Drives::Scene(|degrees| {
+    drives: CaseNumber::Scene(|degrees| {
         let sheet = Object::of("sheet", shapes::quad([1.0; 2])?).turned([70.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]);
         let mut scene = over_floor(vec![sheet])?;
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -45,10 +45,10 @@ const BOTH_SIDES: Case = Case {
     ..PLAIN
 };
 
-const OPEN_MESH: Case = Case {
+const OPEN_MESH: StressCase = StressCase {
     name: "open-mesh",
     lesson: "a box without its top: the silhouette of the faces turned to the light does not close",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let closed = shapes::cuboid([0.8, 0.6, 0.8])?;
         let points: Vec<[f64; 3]> = closed.positions().iter().map(|point| point.to_array()).collect();
         let is_top = |corners: &&[u32; 3]| corners.iter().all(|vertex| points[*vertex as usize][1] > 0.0);
@@ -66,10 +66,10 @@ const OPEN_MESH: Case = Case {
     ..PLAIN
 };
 
-const MOBIUS: Case = Case {
+const MOBIUS: StressCase = StressCase {
     name: "mobius",
     lesson: "a strip with one side: no winding is consistent, so no face is the outer one",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let steps = 48_u32;
         let at = |step: u32, side: f64| {
             let around = f64::from(step) / f64::from(steps) * TAU;
@@ -91,10 +91,10 @@ const MOBIUS: Case = Case {
     ..PLAIN
 };
 
-const FINS: Case = Case {
+const FINS: StressCase = StressCase {
     name: "fins",
     lesson: "three fins on one edge: it has three triangles, and two of them can't cancel for the third",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let fin = |index: u32| {
             let (sin, cos) = (f64::from(index) / 3.0 * TAU + 0.3).sin_cos();
             [[0.5 * cos, 0.3, 0.5 * sin], [0.5 * cos, -0.3, 0.5 * sin]]
@@ -116,10 +116,10 @@ const FINS: Case = Case {
     ..PLAIN
 };
 
-const SHARED_EDGE: Case = Case {
+const SHARED_EDGE: StressCase = StressCase {
     name: "shared-edge",
     lesson: "two cubes that meet in an edge: four triangles share it, and it may be silhouette twice or not at all",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let cube = shapes::cuboid([0.5; 3])?;
         let pair = shapes::joined([(&cube, DVec3::ZERO), (&cube, DVec3::new(0.5, 0.5, 0.0))])?;
         over_floor(vec![Object::of("cubes", pair).at([-0.25, 0.5, 0.0])])
@@ -129,10 +129,10 @@ const SHARED_EDGE: Case = Case {
     ..PLAIN
 };
 
-const SPLIT_VERTICES: Case = Case {
+const SPLIT_VERTICES: StressCase = StressCase {
     name: "split-vertices",
     lesson: "a cube with corners of its own for every triangle, as files have them: welded, it is closed again",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let cube = shapes::cuboid([0.8, 0.6, 0.8])?;
         let corner = |vertex: &u32| cube.positions()[*vertex as usize].to_array();
         let points: Vec<[f64; 3]> = cube.triangles().as_flattened().iter().map(corner).collect();
@@ -143,10 +143,10 @@ const SPLIT_VERTICES: Case = Case {
     ..PLAIN
 };
 
-const T_JUNCTION: Case = Case {
+const T_JUNCTION: StressCase = StressCase {
     name: "t-junction",
     lesson: "a wall whose one half has a corner in the middle of the other's edge: the edges are three, and none shared",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let points = [
             [-0.6, -0.4, 0.0],
             [0.0, -0.4, 0.0],
@@ -165,12 +165,12 @@ const T_JUNCTION: Case = Case {
     ..PLAIN
 };
 
-const COINCIDENT: Case = Case {
+const COINCIDENT: StressCase = StressCase {
     name: "coincident",
     lesson: "the same triangle twice, and then with its other side: two volumes fill the same space",
     parameter: "turned",
     values: &[0.0, 1.0],
-    drives: Drives::Scene(|turned| {
+    drives: CaseNumber::Scene(|turned| {
         let points = [[-0.6, 0.0, 0.4], [0.6, 0.0, 0.4], [0.0, 0.3, -0.6]];
         let second = if turned == 0.0 { [0, 1, 2] } else { [0, 2, 1] };
         over_floor(vec![Object::of("pair", shapes::triangles(&points, &[[0, 1, 2], second])?).at([0.0, 0.8, 0.0])])
@@ -178,10 +178,10 @@ const COINCIDENT: Case = Case {
     ..PLAIN
 };
 
-const INSTANCES: Case = Case {
+const INSTANCES: StressCase = StressCase {
     name: "instances",
     lesson: "one mesh mirrored and stretched: mirroring turns every triangle inside out",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let place = |at: [f64; 3], scale: [f64; 3]| -> Result<Object, MeshError> {
             let name = format!("cylinder at {}", at[0]);
             Ok(Object::of(&name, shapes::cylinder(0.3, 0.8, 16)?).at(at).scaled(scale))
@@ -197,22 +197,22 @@ const INSTANCES: Case = Case {
     ..PLAIN
 };
 
-const DEGENERATE: Case = Case {
+const DEGENERATE: StressCase = StressCase {
     name: "degenerate",
     lesson: "a mesh of nothing but a triangle without area: it casts nothing, and nothing breaks",
     parameter: "corners alike",
     values: &[0.0, 2.0, 3.0],
-    drives: Drives::Scene(|alike| over_floor(vec![line(alike)?])),
-    least: |_| Least::all_lit("nothing casts"),
+    drives: CaseNumber::Scene(|alike| over_floor(vec![line(alike)?])),
+    least: |_| LeastShares::all_lit("nothing casts"),
     ..PLAIN
 };
 
-const BESIDE_DEGENERATE: Case = Case {
+const BESIDE_DEGENERATE: StressCase = StressCase {
     name: "beside-degenerate",
     lesson: "a triangle without area beside a box: the box's shadow is whole",
     parameter: "corners alike",
     values: DEGENERATE.values,
-    drives: Drives::Scene(|alike| over_floor(vec![line(alike)?, cuboid("box", [-1.0, 0.6, 0.0], [0.4; 3])?])),
+    drives: CaseNumber::Scene(|alike| over_floor(vec![line(alike)?, cuboid("box", [-1.0, 0.6, 0.0], [0.4; 3])?])),
     ..PLAIN
 };
 
@@ -227,10 +227,10 @@ fn line(alike: f64) -> Result<Object, MeshError> {
     Ok(Object::of("line", shapes::triangles(&points, &[triangle])?).at([0.0, 0.8, 0.0]))
 }
 
-const UNDRAWN: Case = Case {
+const UNDRAWN: StressCase = StressCase {
     name: "undrawn",
     lesson: "a caster that is not drawn: its light cap lies on no surface, so it must be tested like any other face",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let hidden = cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?;
         over_floor(vec![hidden.unseen()])
     }),

@@ -3,16 +3,16 @@
 use crate::scene::{Light, Object, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Least};
+use crate::stress::{CaseNumber, LeastShares, StressCase};
 
 /// All of them.
-pub const ALL: &[Case] =
+pub const ALL: &[StressCase] =
     &[COPLANAR, ACROSS_LIGHT, THROUGH_FLOOR, BEHIND_PROJECTOR, SHELF_BETWEEN, ROUND_RECEIVER, NO_CASTER, NO_RECEIVER];
 
-const COPLANAR: Case = Case {
+const COPLANAR: StressCase = StressCase {
     name: "coplanar",
     lesson: "a tile lies in the floor's plane, to the last bit: it darkens nothing, and does not fight",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let tile = Object::of("tile", shapes::quad([1.3; 2])?).at([0.2, 0.0, 0.3]);
         let objects = vec![floor(3.0)?, tile, cuboid("box", [0.0, 1.0, 0.0], [0.5; 3])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), objects))
@@ -20,10 +20,10 @@ const COPLANAR: Case = Case {
     ..PLAIN
 };
 
-const ACROSS_LIGHT: Case = Case {
+const ACROSS_LIGHT: StressCase = StressCase {
     name: "across-light",
     lesson: "a wall reaches from below the light to above it: what is above must not be thrown on the floor",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let wall = Object::of("wall", shapes::quad([1.0, 2.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -0.3]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.3, 1.7, 0.8]), vec![floor(3.0)?, wall]))
     }),
@@ -34,10 +34,10 @@ const ACROSS_LIGHT: Case = Case {
     ..PLAIN
 };
 
-const THROUGH_FLOOR: Case = Case {
+const THROUGH_FLOOR: StressCase = StressCase {
     name: "through-floor",
     lesson: "a box stands in the floor, half of it below: what is below must not be thrown up on it",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, -0.4, 0.0], [0.6, 1.6, 0.6])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.6, 1.5, 0.6]), objects))
     }),
@@ -49,26 +49,26 @@ const THROUGH_FLOOR: Case = Case {
     ..PLAIN
 };
 
-const BEHIND_PROJECTOR: Case = Case {
+const BEHIND_PROJECTOR: StressCase = StressCase {
     name: "behind-projector",
     lesson: "a wall behind the light: a slide's picture has a mirror image there unless q ≤ 0 is left out",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
         let board = Object::of("board", shapes::quad([0.5; 2])?).turned([90.0, 0.0, 0.0]).at([0.1, 1.3, 1.5]);
         Ok(scene([1.0, 3.0, 4.5], [0.0, 0.8, -1.0], Light::point([0.0, 1.2, 0.5]), vec![floor(3.0)?, wall, board]))
     }),
     also: &[REVERSED],
-    least: |_| Least::all_lit("the slide's shadow falls beyond the floor"),
+    least: |_| LeastShares::all_lit("the slide's shadow falls beyond the floor"),
     failures: &[fails(REVERSED, "reverse-projection", "behind the light, where q is negative, the slide shows again")
         .is_false()
         .at_most(0.08)],
     ..PLAIN
 };
 
-const SHELF_BETWEEN: Case = Case {
+const SHELF_BETWEEN: StressCase = StressCase {
     name: "shelf-between",
     lesson: "a shelf stands between the light and a caster that is smaller: who compares no depth darkens the shelf",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let shelf = Object::of("shelf", shapes::quad([1.2; 2])?).at([0.0, 1.4, 0.0]);
         let objects = vec![floor(3.0)?, shelf, cuboid("box", [0.1, 0.6, 0.1], [0.4; 3])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.4, 4.0, 0.6]), objects))
@@ -77,10 +77,10 @@ const SHELF_BETWEEN: Case = Case {
     ..PLAIN
 };
 
-const ROUND_RECEIVER: Case = Case {
+const ROUND_RECEIVER: StressCase = StressCase {
     name: "round-receiver",
     lesson: "a ring under a board: it is not flat, and it darkens itself",
-    drives: Drives::Scene(|_| {
+    drives: CaseNumber::Scene(|_| {
         let ring = Object::of("ring", shapes::torus(0.6, 0.25, 32, 16)?).at([0.0, 0.5, 0.0]);
         let board = Object::of("board", shapes::quad([0.5, 0.9])?).at([0.4, 1.6, 0.0]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([2.5, 3.0, 0.5]), vec![floor(3.0)?, ring, board]))
@@ -90,30 +90,30 @@ const ROUND_RECEIVER: Case = Case {
     ..PLAIN
 };
 
-const NO_CASTER: Case = Case {
+const NO_CASTER: StressCase = StressCase {
     name: "no-caster",
     lesson: "nothing casts, and nothing is there to cast: all is lit",
     parameter: "objects",
     values: &[2.0, 0.0],
-    drives: Drives::Scene(|objects| {
+    drives: CaseNumber::Scene(|objects| {
         let mut scene = still_life()?;
         scene.objects.truncate(objects as usize);
         scene.objects.iter_mut().for_each(|object| object.casts = false);
         Ok(scene)
     }),
     least: |objects| match objects {
-        0.0 => Least::nothing("there is no surface"),
-        _ => Least::all_lit("nothing casts"),
+        0.0 => LeastShares::nothing("there is no surface"),
+        _ => LeastShares::all_lit("nothing casts"),
     },
     ..PLAIN
 };
 
-const NO_RECEIVER: Case = Case {
+const NO_RECEIVER: StressCase = StressCase {
     name: "no-receiver",
     lesson: "no surface receives, and none is drawn: volumes are counted and nobody asks",
     parameter: "drawn",
     values: &[1.0, 0.0],
-    drives: Drives::Scene(|drawn| {
+    drives: CaseNumber::Scene(|drawn| {
         let mut scene = still_life()?;
         let apart = |object: &mut Object| {
             object.receives = false;
@@ -123,8 +123,8 @@ const NO_RECEIVER: Case = Case {
         Ok(scene)
     }),
     least: |drawn| match drawn {
-        0.0 => Least::nothing("no surface is drawn"),
-        _ => Least::all_lit("what does not receive is lit"),
+        0.0 => LeastShares::nothing("no surface is drawn"),
+        _ => LeastShares::all_lit("what does not receive is lit"),
     },
     ..PLAIN
 };

@@ -3,15 +3,15 @@
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene, still_life};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Failure};
+use crate::stress::{CaseNumber, KnownFailure, StressCase};
 use glam::DVec3;
 
-pub const GRAZING: Case = Case {
+pub const GRAZING: StressCase = StressCase {
     name: "grazing",
     lesson: "the light sinks towards the floor's plane: shadows grow without end, and a bias without limit",
     parameter: "degrees above the floor",
     values: &[10.0, 3.0, 1.0, 1e-1, 1e-2, 1e-3, 1e-4],
-    drives: Drives::Scene(|degrees| {
+    drives: CaseNumber::Scene(|degrees| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let mut scene = still_life()?;
         scene.lights = vec![Light::directional(DVec3::new(0.8 * cos, sin, 0.6 * cos))];
@@ -36,16 +36,16 @@ pub const GRAZING: Case = Case {
     ..PLAIN
 };
 
-const ACNE: Failure =
+const ACNE: KnownFailure =
     fails(UNBIASED, "acne", "without a bias every surface is as deep as its own texels, and half of them are nearer")
         .at_most(0.06);
 
-pub const GRAZING_EDGE: Case = Case {
+pub const GRAZING_EDGE: StressCase = StressCase {
     name: "grazing-edge",
     lesson: "the sun sinks towards a floor with a board just over it: the shadow's edge falls where light grazes",
     parameter: "degrees above the floor",
     values: &[10.0, 1.0, 1e-1, 3e-2, 1e-2, 1e-3, 3e-4, 1e-4],
-    drives: Drives::Scene(|degrees| beside_a_board(degrees, Object::unseen)),
+    drives: CaseNumber::Scene(|degrees| beside_a_board(degrees, Object::unseen)),
     failures: &of_volumes::<4, 19>(
         [
             SUNK.at(|degrees| degrees < 2e-4).at_most(0.043),
@@ -66,10 +66,10 @@ fn beside_a_board(degrees: f64, form: fn(Object) -> Object) -> Result<Scene, Mes
     Ok(scene([0.3, 2.0, 4.0], [0.0; 3], sun, vec![floor(3.0)?, board]))
 }
 
-pub const GRAZING_BOARD: Case = Case {
+pub const GRAZING_BOARD: StressCase = StressCase {
     name: "grazing-board",
     lesson: "the same with the board in view: it has a depth of its own, as near to the floor's as the light is low",
-    drives: Drives::Scene(|degrees| beside_a_board(degrees, |board| board)),
+    drives: CaseNumber::Scene(|degrees| beside_a_board(degrees, |board| board)),
     failures: &of_volumes::<5, 23>(
         [
             SUNK.at(|degrees| degrees < 2e-4).at_most(0.2),
@@ -91,7 +91,10 @@ pub const GRAZING_BOARD: Case = Case {
 };
 
 /// Failures that all who count volumes have alike, and others.
-const fn of_volumes<const N: usize, const ALL: usize>(alike: [Failure; N], others: [Failure; 3]) -> [Failure; ALL] {
+const fn of_volumes<const N: usize, const ALL: usize>(
+    alike: [KnownFailure; N],
+    others: [KnownFailure; 3],
+) -> [KnownFailure; ALL] {
     let volumes = [Z_FAIL, AUTO, Z_PASS, Z_PASS_PLUS];
     let mut all = [others[0]; ALL];
     let mut index = 0;
@@ -107,7 +110,7 @@ const fn of_volumes<const N: usize, const ALL: usize>(alike: [Failure; N], other
 }
 
 /// A texel's image on the floor is kilometres long.
-const SPREAD: Failure = fails(MAP, "aliasing", "what lies within a texel of the edge is metres of the floor")
+const SPREAD: KnownFailure = fails(MAP, "aliasing", "what lies within a texel of the edge is metres of the floor")
     .at(|degrees| degrees < 5e-4)
     .at_most(0.02)
     .perhaps();
@@ -116,12 +119,12 @@ const SPREAD: Failure = fails(MAP, "aliasing", "what lies within a texel of the 
 /// step of depth on the floor is 2e-7 m of height. Under a light of a thousandth of a degree that moves
 /// the shadow's edge by a centimetre: half a pixel of 240 rows, two of 720. No volume can tell more than
 /// the depth it is compared with.
-const SUNK: Failure = fails(Z_FAIL, "f32-limit", "a step of depth moves the shadow's edge by more than a pixel")
+const SUNK: KnownFailure = fails(Z_FAIL, "f32-limit", "a step of depth moves the shadow's edge by more than a pixel")
     .at(|degrees| degrees < 5e-3)
     .is_mixed();
 
 /// In larger pictures.
-const SINKING: Failure =
+const SINKING: KnownFailure =
     fails(Z_FAIL, "f32-limit", "several steps of depth, as sides and floor round apart, are part of a pixel")
         .at(|degrees| degrees < 0.2)
         .at_most(0.0001)

@@ -4,7 +4,7 @@ use crate::scene::{Light, Mesh, MeshError, Object, shapes};
 use crate::stress::cases::extremes::under_a_roof;
 use crate::stress::cases::stage::{floor, scene};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Failure};
+use crate::stress::{CaseNumber, KnownFailure, StressCase};
 use crate::technique::Technique;
 
 /// Fifty places of the near plane, from before the box to behind it.
@@ -18,12 +18,12 @@ const NEAR_STEPS: [f64; 50] = {
     steps
 };
 
-pub const NEAR_PLANE: Case = Case {
+pub const NEAR_PLANE: StressCase = StressCase {
     name: "near-plane",
     lesson: "the near plane moves through a caster and its volume: what it cuts away z-pass does not count",
     parameter: "near in metres",
     values: &NEAR_STEPS,
-    drives: Drives::Motion(|near| {
+    drives: CaseNumber::Motion(|near| {
         let roof = Object::of("roof", corrugated()?).at([0.0, 1.0, 1.2]).unseen();
         let mut scene = scene([0.0, 1.2, 3.0], [0.0, 0.6, 0.0], Light::point([0.2, 2.6, 2.2]), vec![floor(3.0)?, roof]);
         scene.camera.near = near;
@@ -52,7 +52,7 @@ pub const NEAR_PLANE: Case = Case {
 const ROOF_BEGINS: f64 = 1.44;
 const ROOF_ENDS: f64 = 2.16;
 
-const CRACK: Failure = fails(
+const CRACK: KnownFailure = fails(
     Z_PASS_PLUS,
     "near-plane-crack",
     "the light's view and the camera's cut a caster along one line, and round it apart",
@@ -76,12 +76,12 @@ fn corrugated() -> Result<Mesh, MeshError> {
     shapes::triangles(&points, &triangles.collect::<Vec<_>>())
 }
 
-pub const NEAR_IN_VOLUME: Case = Case {
+pub const NEAR_IN_VOLUME: StressCase = StressCase {
     name: "near-in-volume",
     lesson: "the eye is in a roof's shadow, and the near plane comes to it: what is counted there gets small",
     parameter: "near in metres",
     values: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
-    drives: Drives::Scene(|near| {
+    drives: CaseNumber::Scene(|near| {
         let mut scene = under_a_roof()?;
         scene.camera.near = near;
         Ok(scene)
@@ -97,7 +97,7 @@ pub const NEAR_IN_VOLUME: Case = Case {
 };
 
 /// Wrong pixels are ten times as many where the plane is ten times as near.
-const ROUNDED: Failure = fails(
+const ROUNDED: KnownFailure = fails(
     Z_PASS_PLUS,
     "near-plane-rounding",
     "the smaller the near rectangle, the fewer bits tell the light's view where volumes cut it",

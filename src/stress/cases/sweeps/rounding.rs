@@ -3,13 +3,13 @@
 use crate::scene::{Camera, Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Failure};
+use crate::stress::{CaseNumber, KnownFailure, StressCase};
 use crate::technique::Technique;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// Each seam by itself: as chance has it, a tenth of them have a hole.
-const HOLE: Failure = fails(
+const HOLE: KnownFailure = fails(
     Z_FAIL,
     "f32-limit",
     "two sides meet the floor in the middle of a pixel, as near as positions are rounded: each is counted or not by chance",
@@ -17,13 +17,13 @@ const HOLE: Failure = fails(
 .at(|pixels| pixels <= 1e-4)
 .at_most(0.001);
 
-pub const SEAM: Case = Case {
+pub const SEAM: StressCase = StressCase {
     name: "seam",
     lesson: "two sheets that touch, turned and raised in a hundred ways, and seams of their shadows that come to the middles \
              of pixels: the seam is dark on both sides, and rounding leaves holes in it",
     parameter: "pixels from the middle",
     values: &[0.1, 0.01, 1e-3, 1e-4, 1e-5, 0.0],
-    drives: Drives::Scene(seams),
+    drives: CaseNumber::Scene(seams),
     without: &[
         (Technique::ShadowMap, "a texel is wider than a seam: `map-size` shows that"),
         (Technique::PlanarTexture, "a texel is wider than a seam"),
@@ -72,7 +72,7 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
 }
 
 /// A column or two.
-const MOVED_END: Failure = fails(
+const MOVED_END: KnownFailure = fails(
     Z_FAIL,
     "f32-limit",
     "strips are cut where the picture ends, and rounding moves the cut by half a pixel: the outermost column misses it",
@@ -80,13 +80,13 @@ const MOVED_END: Failure = fails(
 .at(|metres| metres >= 1e6)
 .at_most(0.02);
 
-pub const LONG_EDGE: Case = Case {
+pub const LONG_EDGE: StressCase = StressCase {
     name: "long-edge",
     lesson: "strips over a floor under a near lamp, longer and longer: the GPU cuts them where the picture ends, and rounds \
              where that is by their length",
     parameter: "metres",
     values: &[10.0, 1e3, 1e4, 1e6],
-    drives: Drives::Scene(|metres| {
+    drives: CaseNumber::Scene(|metres| {
         let half = metres / 2.0;
         let strip = |index: u32| {
             let front = -2.0 + 0.5 * f64::from(index);
