@@ -37,13 +37,14 @@ pub enum DifferenceError {
     },
 }
 
-/// Which of the two captures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Side {
-    /// The first.
-    A,
-    /// The second.
-    B,
+named_enum! {
+    /// Which of the two captures.
+    pub enum Side {
+        /// The first.
+        A = "A",
+        /// The second.
+        B = "B",
+    }
 }
 
 /// Two frames compared.

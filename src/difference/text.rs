@@ -1,8 +1,8 @@
 //! A difference in words: the first pass that differs, then every pass, then the lights.
 
 use super::{
-    AspectDifference, AspectKind, Difference, Found, LightDifference, Note, PassDifference, PixelDifference, Side,
-    Texel, TexelDifference,
+    AspectDifference, AspectKind, Difference, Found, LightDifference, Note, PassDifference, PixelDifference, Texel,
+    TexelDifference,
 };
 use crate::numbers;
 use crate::truth::LABEL_NAMES;
@@ -48,16 +48,6 @@ impl Difference {
 impl PassDifference {
     fn has_no_pixels(&self) -> bool {
         self.states().flatten().all(|aspect| aspect.pixels().is_none())
-    }
-}
-
-impl Side {
-    /// `A` or `B`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Side::A => "A",
-            Side::B => "B",
-        }
     }
 }
 

@@ -71,23 +71,24 @@ named_enum! {
     }
 }
 
-/// Why a row is not what was expected.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Surprise {
-    /// The truth has too few lit or dark pixels for the row to mean anything.
-    LittleToSee,
-    /// Wrong pixels, where none is known.
-    Wrong,
-    /// The known failure does not show.
-    NotShown,
-    /// Wrong pixels of another kind than the known failure's.
-    OtherKind,
-    /// More wrong pixels than the known failure explains.
-    TooMany,
-    /// So many pixels differ along edges that excusing them hides an error.
-    TooManyExcused,
-    /// Pixels flicker.
-    Flickers,
+named_enum! {
+    /// Why a row is not what was expected.
+    pub enum Surprise {
+        /// The truth has too few lit or dark pixels for the row to mean anything.
+        LittleToSee = "too few lit or dark pixels to compare",
+        /// Wrong pixels, where none is known.
+        Wrong = "wrong where it must be right",
+        /// The known failure does not show.
+        NotShown = "right where it is known to fail",
+        /// Wrong pixels of another kind than the known failure's.
+        OtherKind = "wrong in another way than known",
+        /// More wrong pixels than the known failure explains.
+        TooMany = "more wrong than known",
+        /// So many pixels differ along edges that excusing them hides an error.
+        TooManyExcused = "too many pixels excused along edges",
+        /// Pixels flicker.
+        Flickers = "pixels flicker",
+    }
 }
 
 impl Failure {
@@ -172,14 +173,6 @@ impl Expected {
 
 impl fmt::Display for Surprise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Surprise::LittleToSee => "too few lit or dark pixels to compare",
-            Surprise::Wrong => "wrong where it must be right",
-            Surprise::NotShown => "right where it is known to fail",
-            Surprise::OtherKind => "wrong in another way than known",
-            Surprise::TooMany => "more wrong than known",
-            Surprise::TooManyExcused => "too many pixels excused along edges",
-            Surprise::Flickers => "pixels flicker",
-        })
+        f.write_str(self.name())
     }
 }

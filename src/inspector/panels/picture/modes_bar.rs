@@ -32,12 +32,12 @@ pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&Shown>) {
 /// They keep their place where a picture has no before and after.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
     let is_enabled = kind.is_some_and(has_phases);
-    let segment = |(label, explanation): (&'static str, &'static str)| {
-        let explanation = if is_enabled { explanation } else { "Of colour, stencil and depth only" };
-        Segment { is_enabled, ..Segment::new(label, explanation) }
+    let segment = |phase: Phase| {
+        let explanation = if is_enabled { phase.explanation() } else { "Of colour, stencil and depth only" };
+        Segment { is_enabled, ..Segment::new(phase.name(), explanation) }
     };
     let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
-    if let Some(index) = segments_of(ui, &Phase::LABELS.map(segment), chosen) {
+    if let Some(index) = segments_of(ui, &Phase::ALL.map(segment), chosen) {
         model.modes.phase = Phase::ALL[index];
     }
 }
