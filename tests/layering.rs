@@ -46,7 +46,7 @@ const MAY_USE: [(&str, &[&str]); 37] = [
         ],
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
-    ("report", &["technique", "capture", "numbers", "picture", "shards"]),
+    ("report", &["technique", "capture", "accuracy", "numbers", "picture", "shards"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report", "shards"]),
     (
         "reading",

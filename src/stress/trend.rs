@@ -16,7 +16,7 @@ pub enum Trend {
 }
 
 /// What became of one technique's rows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Course {
     /// In words and numbers.
     pub text: String,
