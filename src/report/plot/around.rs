@@ -1,6 +1,6 @@
 //! What is around the charts: heading, legend, notes.
 
-use super::{Ink, Key, LINE, Line, Plot, SMALL_SIZE, STYLES, Style, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width};
+use super::{Ink, Key, LINE, Line, Plot, SMALL_SIZE, STYLES, Style, TEXT_SIZE, Text, style_of, text_width};
 use crate::report::{Report, Row, table};
 
 /// The plot in a sentence, for who can't see it.
@@ -16,19 +16,12 @@ pub fn summary(report: &Report) -> String {
 
 /// Title and what it was measured on; where the charts begin.
 pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
-    let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
     let adapter = &report.adapter;
     let sizes = table::sizes(report.rows.iter().map(|row| row.size));
     let facts = [adapter.name.as_str(), adapter.driver.as_str(), sizes.as_str()];
     let facts: Vec<&str> = facts.into_iter().filter(|fact| !fact.is_empty()).collect();
     let lines = wrapped(&facts.join(" · "), plot.size[0] - 16.0);
-    plot.texts.push(title);
-    let mut y = 38.0;
-    for line in lines {
-        plot.texts.push(Text::new([8.0, y], line, TEXT_SIZE, Ink::Dim));
-        y += LINE;
-    }
-    y + 4.0
+    plot.add_heading(&lines) + 4.0
 }
 
 /// Words in lines of at most `width` points.

@@ -1,8 +1,9 @@
 //! A sweep's page: the median time of a frame against the value that changes, one chart a scene, a line each technique with its
 //! settings. Hollow marks are values at which pixels are wrong.
 
+use super::chart::NO_TIMES;
 use super::scale::{self, Log};
-use super::{Anchor, Chart, Ink, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of};
+use super::{Anchor, Chart, Ink, Line, Plot, Rect, SMALL_SIZE, Spot, TITLE_SIZE, Text, style_of};
 use crate::report::{Report, Row, Swept};
 
 /// Width of the page, unless names need more, and height of a chart, points.
@@ -20,8 +21,6 @@ const FPS: f64 = 8.0;
 const NAMES: f64 = 58.0;
 /// From a name to the next below it, points.
 const NAME_HEIGHT: f64 = 13.0;
-/// The axis where no row has a place on it, milliseconds.
-const NO_TIMES: [f64; 2] = [1.0, 100.0];
 
 /// Lays out the page of a report that is a sweep.
 pub fn sweep(report: &Report) -> Plot {
@@ -31,10 +30,8 @@ pub fn sweep(report: &Report) -> Plot {
     plot.title = format!("Frame time against {name}");
     plot.summary =
         format!("{} charts: the median time of a frame against {name}, a line each technique.", scenes.len());
-    let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
     let facts = format!("{} · filled: right; hollow: pixels are wrong", report.adapter.name);
-    plot.texts = vec![title, Text::new([8.0, 38.0], facts, TEXT_SIZE, Ink::Dim)];
-    let mut top = 56.0;
+    let mut top = plot.add_heading(&[facts]);
     for scene in scenes {
         plot.charts.push(chart(report, scene, &name).moved([0.0, top]));
         top += HEIGHT;
@@ -70,20 +67,18 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
     let place = |row: &Row| [across.position(values(row)), up.position(row.frame_ms.median)];
     let (mut lines, mut spots, mut names) = (Vec::new(), Vec::new(), Vec::new());
     let mut values_shown: Vec<&Swept> = Vec::new();
-    let grid = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
     let mut texts = vec![
         Text::new([8.0, 10.0], scene, TITLE_SIZE, Ink::Text).strong(),
-        Text::new([8.0, 28.0], "frame time, median", SMALL_SIZE, Ink::Dim),
-        Text::new([area.max[0] + FPS, 28.0], "frames a second", SMALL_SIZE, Ink::Dim),
-        Text::new([area.max[0], area.max[1] + 32.0], name, SMALL_SIZE, Ink::Dim).anchored(Anchor::End),
+        Text::small([8.0, 28.0], "frame time, median"),
+        Text::small([area.max[0] + FPS, 28.0], "frames a second"),
+        Text::small([area.max[0], area.max[1] + 32.0], name).anchored(Anchor::End),
     ];
     for tick in up.ticks(17.0) {
         let y = up.position(tick);
-        lines.push(grid([[area.min[0], y], [area.max[0], y]]));
-        let ms = Text::new([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms"), SMALL_SIZE, Ink::Dim);
-        texts.push(ms.anchored(Anchor::End));
+        lines.push(Line::grid([[area.min[0], y], [area.max[0], y]]));
+        texts.push(Text::small([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms")).anchored(Anchor::End));
         let fps = (1000.0 / tick * 100.0).round() / 100.0;
-        texts.push(Text::new([area.max[0] + FPS, y], fps.to_string(), SMALL_SIZE, Ink::Dim));
+        texts.push(Text::small([area.max[0] + FPS, y], fps.to_string()));
     }
     for (caption, rows) in &lines_of {
         let style = style_of(&report.rows[rows[0]].technique);
@@ -109,9 +104,8 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
     let mut free_from = f64::NEG_INFINITY;
     for swept in values_shown {
         let x = across.position(swept.value);
-        lines.insert(0, grid([[x, area.min[1]], [x, area.max[1]]]));
-        let text =
-            Text::new([x, area.max[1] + 13.0], swept.text.clone(), SMALL_SIZE, Ink::Dim).anchored(Anchor::Middle);
+        lines.insert(0, Line::grid([[x, area.min[1]], [x, area.max[1]]]));
+        let text = Text::small([x, area.max[1] + 13.0], &*swept.text).anchored(Anchor::Middle);
         if text.rect().min[0] > free_from {
             free_from = text.rect().max[0] + 6.0;
             texts.push(text);
