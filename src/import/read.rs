@@ -9,11 +9,11 @@ use super::document::{self, Document, FORMAT};
 use super::error::ImportError;
 use super::pictures::{self, Layout};
 use super::raw::{
-    Api, RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture,
-    RawTopology,
+    Api, RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawTarget, RawTexture, RawTopology,
 };
 use super::{geometry, shader, states};
 use crate::files::open_plain;
+use crate::plan::May;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -261,13 +261,13 @@ impl Reader {
         shader: Option<&document::Shader>,
         alpha_to_coverage: bool,
     ) -> Result<RawFragment, ImportError> {
-        let none = RawFragment { may_discard: RawMay::No, writes_depth: RawMay::No };
+        let none = RawFragment { may_discard: May::No, writes_depth: May::No };
         let Some(document::Shader { encoding, bytes }) = shader else { return Ok(none) };
         let key = (encoding.clone(), *bytes);
         let known = self.shaders.get(&key).copied();
         let fragment = known.map_or_else(|| Ok(shader::read(encoding, &self.blobs.read(*bytes)?)), Ok)?;
         self.shaders.insert(key, fragment);
-        let may_discard = if alpha_to_coverage { RawMay::Yes } else { fragment.may_discard };
+        let may_discard = if alpha_to_coverage { May::Yes } else { fragment.may_discard };
         Ok(RawFragment { may_discard, ..fragment })
     }
 }

@@ -4,8 +4,9 @@ use super::probe::{Gpu, Landed, Probes, Room, accepted};
 use super::states::{self, PassState};
 use super::{readback, rewrite};
 use crate::import::{
-    Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture, pictures,
+    Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawTarget, RawTexture, pictures,
 };
+use crate::plan::May;
 use crate::wrap::command::{Command, DrawCommand, Finished, PassCommand, Targets};
 use crate::wrap::{Described, Part};
 use std::collections::{BTreeMap, HashMap};
@@ -258,7 +259,7 @@ impl Replay {
         // What is not followed has no fragments to tell apart.
         let is_followed =
             !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
-        let is_asked = is_followed && fragment.may_discard == RawMay::Yes;
+        let is_asked = is_followed && fragment.may_discard == May::Yes;
         let kept =
             is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size, &mut self.room)).and_then(|kept| {
                 kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
@@ -321,14 +322,14 @@ fn unlike(described: &Described) -> Vec<&'static str> {
         .collect()
 }
 
-const UNKNOWN: RawFragment = RawFragment { may_discard: RawMay::Unknown, writes_depth: RawMay::Unknown };
+const UNKNOWN: RawFragment = RawFragment { may_discard: May::Unknown, writes_depth: May::Unknown };
 
 /// Of a draw without a pipeline, which wgpu refuses.
 fn no_shape() -> crate::import::RawShape {
     crate::import::RawShape {
         cull: crate::import::RawCull::Both,
         front_is_counter_clockwise: true,
-        fill: crate::import::RawFill::Solid,
+        fill: wgpu::PolygonMode::Fill,
         bias: [0.0; 3],
         depth_clamp: false,
         depth_clip: true,
@@ -339,15 +340,15 @@ fn no_shape() -> crate::import::RawShape {
 /// What a pipeline's fragment shader may do.
 fn fragment(described: &Described) -> RawFragment {
     let Some(stage) = &described.fragment else {
-        return RawFragment { may_discard: RawMay::No, writes_depth: RawMay::No };
+        return RawFragment { may_discard: May::No, writes_depth: May::No };
     };
     let module = stage.source.module();
     let Some(found) = module.and_then(|module| rewrite::fragment(&module, stage.entry_point.as_deref())) else {
         return UNKNOWN;
     };
-    let may = |does: bool| if does { RawMay::Yes } else { RawMay::No };
+    let may = |does: bool| if does { May::Yes } else { May::No };
     let may_discard = match found.masks {
-        true => RawMay::Unknown,
+        true => May::Unknown,
         false => may(found.discards || described.multisample.alpha_to_coverage_enabled),
     };
     RawFragment { may_discard, writes_depth: may(found.writes_depth) }

@@ -229,10 +229,8 @@ impl<'a> Making<'a> {
         self.meshes.push(mesh_of(draw, name.clone()));
         let target = self.frame.textures[self.stage.target(place).texture].format.clone();
         let raster = states::raster(draw, cull, place != Place::Colors && target.has_stencil());
-        let program = Program::Recorded {
-            may_discard: states::may(draw.fragment.may_discard),
-            writes_depth: states::may(draw.fragment.writes_depth),
-        };
+        let program =
+            Program::Recorded { may_discard: draw.fragment.may_discard, writes_depth: draw.fragment.writes_depth };
         if let (Some(DrawState { snapshot: Snapshot::Frame(after), .. }), Snapshot::Frame(snapshot)) =
             (&after, &mut step.snapshot)
         {
