@@ -46,7 +46,7 @@ pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::{UpAxis, model_scene};
 pub use not_taken::NotTaken;
-pub use object::{Motion, Object, Orbit, Pose, Swing};
+pub use object::{Motion, Object, Orbit, Pose, PoseBits, Swing};
 pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
 pub use picture::{Level, Picture, PictureError, Texture};
 pub use placement::Surroundings;
