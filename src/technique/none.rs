@@ -2,9 +2,9 @@
 
 use super::PlanError;
 use super::description::{Description, ONE_ROW, Standing};
-use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::frame::{Frame, Job, StencilUse};
 use super::lesson::Lesson;
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, Visibility};
 
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
@@ -24,9 +24,8 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
     frame.ambient_pass();
     for light in frame.light_ids() {
-        frame.mask_pass(light, &[Drawn::lit()]);
         let purpose = "Adds the light everywhere: nothing asks whether something stands between.";
-        frame.light_pass(light, purpose, &frame.light_everywhere());
+        frame.mask_and_light_passes(light, Visibility::Everywhere, purpose);
     }
     Ok(frame.finish())
 }
