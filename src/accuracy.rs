@@ -75,6 +75,7 @@ pub struct ErrorCounts {
     /// In shadow in truth.
     pub missing_shadow: u64,
     /// Another surface, or none.
+    #[serde(default)]
     pub wrong_surface: u64,
     /// Disagreements that are excused.
     pub edge_band: u64,
@@ -84,6 +85,11 @@ impl ErrorCounts {
     /// Pixels that are wrong and not excused.
     pub fn wrong(&self) -> u64 {
         self.false_shadow + self.missing_shadow + self.wrong_surface
+    }
+
+    /// Their share of those compared, 0 to 1; 0 where nothing was compared.
+    pub fn wrong_fraction(&self) -> f64 {
+        if self.compared == 0 { 0.0 } else { self.wrong() as f64 / self.compared as f64 }
     }
 
     fn of(findings: &[u8]) -> ErrorCounts {
@@ -113,13 +119,14 @@ impl std::iter::Sum for ErrorCounts {
 }
 
 /// Wrong pixels of one kind that touch each other, corners included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct WrongRegion {
     /// How many.
     pub pixels: u64,
     /// Which kind.
     pub kind: Finding,
     /// First and last column and row: left, top, right, bottom.
+    #[serde(rename = "box")]
     pub bounds: [u32; 4],
     /// One of its pixels: the first in reading order.
     pub at: [u32; 2],

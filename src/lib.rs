@@ -83,6 +83,7 @@ pub mod history;
 pub mod import;
 #[cfg(feature = "inspector")]
 pub mod inspector;
+mod last_used;
 pub mod math;
 mod numbers;
 #[cfg(feature = "program")]

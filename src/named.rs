@@ -1,13 +1,30 @@
-//! Enums whose variants have a name on the command line, in files and in JSON.
+//! Enums whose variants have a name on the command line, in files, in JSON or on a button, and other words.
 //!
-//! A variant is written once, with its name; the rest follows from that.
+//! A variant is written once, with its words; the rest follows from that.
 
-/// Defines an enum with `ALL` in the order given, `name`, `from_name`, and serde by name.
+/// Defines an enum with `ALL` in the order given, `name`, `from_name`, and serde by name. Functions that are named in
+/// brackets after the enum's own name return the texts in brackets after the variants' names, in the same order.
 macro_rules! named_enum {
+    (@texts $Enum:ident [] $([$Variant:ident])+) => {};
+    (
+        @texts $Enum:ident [$(#[$of_text:meta])* $text_of:ident $(, $($other_texts_of:tt)+)?]
+        $([$Variant:ident $text:expr $(, $($other_texts:tt)+)?])+
+    ) => {
+        impl $Enum {
+            $(#[$of_text])*
+            pub const fn $text_of(self) -> &'static str {
+                match self {
+                    $($Enum::$Variant => $text,)+
+                }
+            }
+        }
+
+        named_enum!(@texts $Enum [$($($other_texts_of)+)?] $([$Variant $($($other_texts)+)?])+);
+    };
     (
         $(#[$attribute:meta])*
-        pub enum $Enum:ident {
-            $($(#[$of_variant:meta])* $Variant:ident = $name:literal,)+
+        pub enum $Enum:ident $(($($texts_of:tt)+))? {
+            $($(#[$of_variant:meta])* $Variant:ident = $name:literal $(($($texts:tt)+))?,)+
         }
     ) => {
         $(#[$attribute])*
@@ -20,7 +37,7 @@ macro_rules! named_enum {
             /// Every one, in order.
             pub const ALL: [$Enum; [$($name),+].len()] = [$($Enum::$Variant),+];
 
-            /// Its name on the command line, in files and in JSON.
+            /// Its name on the command line, in files and in JSON, or on its button.
             pub const fn name(self) -> &'static str {
                 match self {
                     $($Enum::$Variant => $name,)+
@@ -45,5 +62,7 @@ macro_rules! named_enum {
                 $Enum::from_name(&name).ok_or_else(|| serde::de::Error::custom(format!("nothing is called `{name}` here")))
             }
         }
+
+        named_enum!(@texts $Enum [$($($texts_of)+)?] $([$Variant $($($texts)+)?])+);
     };
 }

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 37] = [
+const MAY_USE: [(&str, &[&str]); 38] = [
     ("named", &[]),
+    ("last_used", &[]),
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -14,10 +15,10 @@ const MAY_USE: [(&str, &[&str]); 37] = [
     ("shards", &[]),
     ("picture", &["numbers"]),
     ("viewport", &[]),
-    ("scene", &["math", "files"]),
+    ("scene", &["math", "files", "last_used"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
-    ("geometry", &["math", "scene"]),
+    ("geometry", &["math", "scene", "last_used"]),
     ("plan", &["math", "scene", "geometry", "numbers"]),
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
     ("capture", &["math", "scene", "plan", "accuracy", "truth", "files"]),
@@ -25,7 +26,7 @@ const MAY_USE: [(&str, &[&str]); 37] = [
     ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress", "files"]),
     ("wrap", &[]),
-    ("gpu", &["math", "scene", "plan", "capture", "wrap"]),
+    ("gpu", &["math", "scene", "plan", "capture", "wrap", "last_used"]),
     ("history", &["math", "numbers", "geometry", "plan", "technique", "capture", "stencil_machine", "truth"]),
     ("difference", &["capture", "accuracy", "numbers", "picture", "truth"]),
     (
@@ -46,7 +47,7 @@ const MAY_USE: [(&str, &[&str]); 37] = [
         ],
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
-    ("report", &["technique", "capture", "numbers", "picture", "shards"]),
+    ("report", &["technique", "capture", "accuracy", "numbers", "picture", "shards"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report", "shards"]),
     (
         "reading",

@@ -136,7 +136,12 @@ fn frames_that_move_are_counted_with_their_set_up() {
         assert!(moving.cost_ms() == of_frame.total_ms && still.cost_ms() == still.frame_ms.median);
         // Of four frames.
         assert!(moving.wrong_color.is_some_and(|all| still.wrong_color.is_some_and(|one| all >= 3 * one)));
-        assert!(moving.compared > 3 * still.compared, "{} of {}", moving.compared, still.compared);
+        assert!(
+            moving.error.compared > 3 * still.error.compared,
+            "{} of {}",
+            moving.error.compared,
+            still.error.compared
+        );
     }
     let wrong = |technique: &str| {
         moving.iter().find(|row| row.technique == technique && row.label.is_empty()).map(|row| row.wrong())
@@ -152,7 +157,7 @@ fn frames_that_move_are_counted_with_their_set_up() {
         let json = fs::read_to_string(folder.path().join("m.json")).expect("rows");
         let rows = Report::from_json(&json).expect("a report").rows;
         let row = rows.into_iter().find(|row| row.technique == "none").expect("none");
-        (row.moving.expect("it moves").setup_ms > 0.0, row.compared, row.missing_shadow)
+        (row.moving.expect("it moves").setup_ms > 0.0, row.error.compared, row.error.missing_shadow)
     };
     let of_first = still_at_0(folder.path(), &words);
     assert_eq!(of_none("nothing"), (false, 3 * of_first[0], 3 * of_first[1]));
@@ -176,7 +181,7 @@ fn still_at_0(folder: &Path, words: &[&str]) -> [u64; 2] {
     let json = fs::read_to_string(folder.join("m.json")).expect("rows");
     let rows = Report::from_json(&json).expect("a report").rows;
     let row = rows.into_iter().find(|row| row.technique == "none").expect("none");
-    [row.compared, row.missing_shadow]
+    [row.error.compared, row.error.missing_shadow]
 }
 
 #[test]
@@ -193,7 +198,7 @@ fn a_report_is_written_in_every_form() {
     for row in &report.rows {
         assert!(row.frame_ms.min > 0.0 && row.frame_ms.min <= row.frame_ms.median, "{row:?}");
         assert!(row.frame_ms.median <= row.frame_ms.max && row.setup_ms > 0.0, "{row:?}");
-        assert!(row.compared > 1000 && row.bytes > 80 * 60 * 8 && row.triangles >= 3, "{row:?}");
+        assert!(row.error.compared > 1000 && row.bytes > 80 * 60 * 8 && row.triangles >= 3, "{row:?}");
         assert_eq!(row.frame_ms.runs, 2);
         // Light-facing triangles alone are wrong for an open mesh, a far plane for every mesh.
         let is_wrong_form = row.label.contains("light-facing") || row.label.contains("standard-finite");
@@ -201,7 +206,7 @@ fn a_report_is_written_in_every_form() {
         assert!(!is_exact || (row.wrong(), row.wrong_color) == (0, Some(0)), "{row:?}");
     }
     let none = report.rows.iter().find(|row| row.technique == "none").expect("none");
-    assert!(none.missing_shadow > 20 && none.wrong_fraction > 0.0, "{none:?}");
+    assert!(none.error.missing_shadow > 20 && none.wrong_fraction > 0.0, "{none:?}");
     assert!(report.rows.iter().any(|row| row.pareto && row.wrong() == 0));
     assert!(file("r.svg").contains("<svg") && file("r.svg").contains("shadow-map 4096"));
 

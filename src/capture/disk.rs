@@ -210,7 +210,7 @@ fn write_step(
         draws: step.draws.len(),
         triangles: step.triangles(),
         gpu_ms: step.gpu_ms,
-        draw_list: step.draws.iter().map(Into::into).collect(),
+        draw_list: step.draws.clone(),
         // After the pass's own files, which the last draw names again.
         draws_captured: draws::write(folder, &stem, step, capture, written)?,
     })
@@ -286,7 +286,7 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         }
         entry.error = Some(truth.error);
         entry.findings = Finding::ALL.iter().map(|finding| finding.name().to_owned()).collect();
-        entry.worst_region = truth.worst.as_ref().map(Into::into);
+        entry.worst_region = truth.worst;
     }
     if let Some(map) = &light.map {
         let file = if map.holds_colors() { textures_file(index) } else { map_file(index) };

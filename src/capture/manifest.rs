@@ -2,11 +2,11 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, Capture, DrawSummary, Origin, RecomputeDifference, Timing};
-use crate::accuracy::{ErrorCounts, Finding, WrongRegion};
+use super::{AdapterInfo, Capture, DrawSummary, Origin, Timing};
+use crate::accuracy::{ErrorCounts, WrongRegion};
 use crate::math::depth::DepthCurve;
 use crate::plan::{CountOf, CountedSide, DecidedBy, DrawPart, LeftOut};
-use crate::scene::{Camera, Projection};
+use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ pub(super) struct Manifest {
     pub settings: BTreeMap<String, String>,
     pub size: [u32; 2],
     pub adapter: AdapterInfo,
-    pub camera: CameraEntry,
+    pub camera: Camera,
     /// `depth = offset + scale / distance`; a folder without it was stored reversed and infinite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth: Option<DepthCurve>,
@@ -36,19 +36,6 @@ pub(super) struct Manifest {
     /// Where it comes from, if another program drew it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct CameraEntry {
-    pub eye: [f64; 3],
-    pub target: [f64; 3],
-    pub up: [f64; 3],
-    /// Where it is not a pinhole.
-    #[serde(default, skip_serializing_if = "Projection::is_pinhole")]
-    pub projection: Projection,
-    pub fov_y_degrees: f64,
-    pub near: f64,
-    pub far: Option<f64>,
 }
 
 /// A pass with the files of what it left, or with the map it drew into.
@@ -64,7 +51,7 @@ pub(super) struct PassEntry {
     pub draws: usize,
     pub triangles: u64,
     pub gpu_ms: Option<f64>,
-    pub draw_list: Vec<DrawEntry>,
+    pub draw_list: Vec<DrawSummary>,
     /// One a draw, in order, where the state after each was captured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draws_captured: Option<Vec<DrawStateEntry>>,
@@ -75,7 +62,7 @@ pub(super) struct PassEntry {
 pub(super) struct DrawStateEntry {
     pub name: String,
     pub caster: Option<String>,
-    pub part: String,
+    pub part: DrawPart,
     #[serde(flatten)]
     pub files: StateFiles,
 }
@@ -110,18 +97,7 @@ pub(super) struct StateFiles {
     pub texture_layer: Option<usize>,
 }
 
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct DrawEntry {
-    pub name: String,
-    pub caster: Option<String>,
-    pub part: String,
-    pub triangles: u64,
-    /// Of another program's draw: pixels where it makes something else when it is computed anew.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub differs: Option<RecomputeDifference>,
-}
-
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct LightEntry {
     pub index: usize,
     pub kind: String,
@@ -163,18 +139,7 @@ pub(super) struct LightEntry {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub worst_region: Option<RegionEntry>,
-}
-
-/// The largest connected wrong region.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct RegionEntry {
-    pub pixels: u64,
-    pub kind: String,
-    /// First and last column and row: left, top, right, bottom.
-    #[serde(rename = "box")]
-    pub bounds: [u32; 4],
-    pub at: [u32; 2],
+    pub worst_region: Option<WrongRegion>,
 }
 
 /// Row by row.
@@ -196,7 +161,7 @@ impl Manifest {
             settings: capture.settings.clone(),
             size: capture.size,
             adapter: capture.adapter.clone(),
-            camera: CameraEntry::from(&capture.camera),
+            camera: capture.camera,
             depth: Some(capture.depth),
             passes: Vec::new(),
             lights: Vec::new(),
@@ -204,55 +169,6 @@ impl Manifest {
             timing: capture.timing,
             origin: capture.origin.clone(),
         }
-    }
-}
-
-impl From<&Camera> for CameraEntry {
-    fn from(camera: &Camera) -> CameraEntry {
-        CameraEntry {
-            eye: camera.eye.to_array(),
-            target: camera.target.to_array(),
-            up: camera.up.to_array(),
-            projection: camera.projection,
-            fov_y_degrees: camera.fov_y_degrees,
-            near: camera.near,
-            far: camera.far,
-        }
-    }
-}
-
-impl From<&CameraEntry> for Camera {
-    fn from(entry: &CameraEntry) -> Camera {
-        Camera {
-            eye: DVec3::from_array(entry.eye),
-            target: DVec3::from_array(entry.target),
-            up: DVec3::from_array(entry.up),
-            projection: entry.projection,
-            fov_y_degrees: entry.fov_y_degrees,
-            near: entry.near,
-            far: entry.far,
-        }
-    }
-}
-
-impl From<&DrawSummary> for DrawEntry {
-    fn from(draw: &DrawSummary) -> DrawEntry {
-        DrawEntry {
-            name: draw.name.clone(),
-            caster: draw.caster.clone(),
-            part: draw.part.name().to_owned(),
-            triangles: draw.triangles,
-            differs: draw.differs,
-        }
-    }
-}
-
-impl DrawEntry {
-    /// `None` for a part that this version does not know.
-    pub fn to_summary(&self) -> Option<DrawSummary> {
-        let part = DrawPart::from_name(&self.part)?;
-        let (name, caster) = (self.name.clone(), self.caster.clone());
-        Some(DrawSummary { name, caster, part, triangles: self.triangles, after: None, differs: self.differs })
     }
 }
 
@@ -267,27 +183,7 @@ impl LightEntry {
         } else {
             ("point", Some(at), None)
         };
-        let kind = kind.to_owned();
-        LightEntry {
-            index,
-            kind,
-            position,
-            towards,
-            decided_by: None,
-            count_of: None,
-            shadow: None,
-            count: None,
-            wrapped_pixels: None,
-            map: None,
-            textures: None,
-            layer_names: Vec::new(),
-            matrices: None,
-            truth: None,
-            error: None,
-            error_picture: None,
-            findings: Vec::new(),
-            worst_region: None,
-        }
+        LightEntry { index, kind: kind.to_owned(), position, towards, ..LightEntry::default() }
     }
 
     /// What decided where its shadow is: as it says, or in a folder that does not, as technique and files tell.
@@ -317,21 +213,6 @@ impl LightEntry {
         }
         let point = self.position.map(|at| DVec3::from_array(at).extend(1.0));
         point.or_else(|| self.towards.map(|at| DVec3::from_array(at).extend(0.0)))
-    }
-}
-
-impl From<&WrongRegion> for RegionEntry {
-    fn from(region: &WrongRegion) -> RegionEntry {
-        let kind = region.kind.name().to_owned();
-        RegionEntry { pixels: region.pixels, kind, bounds: region.bounds, at: region.at }
-    }
-}
-
-impl RegionEntry {
-    /// `None` for a kind that is no error.
-    pub fn to_region(&self) -> Option<WrongRegion> {
-        let kind = Finding::ALL.into_iter().find(|finding| finding.is_wrong() && finding.name() == self.kind)?;
-        Some(WrongRegion { pixels: self.pixels, kind, bounds: self.bounds, at: self.at })
     }
 }
 

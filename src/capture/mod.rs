@@ -106,21 +106,29 @@ pub struct Step {
 }
 
 /// One draw of a step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DrawSummary {
     /// Short: `sides of bunny`.
     pub name: String,
     /// The object it shows or whose shadow it makes.
     pub caster: Option<String>,
     /// Which part of it.
+    #[serde(deserialize_with = "known_part")]
     pub part: DrawPart,
     /// Triangles submitted.
     pub triangles: u64,
     /// The state after it; `None` where only the state after its pass was captured.
+    #[serde(skip)]
     pub after: Option<DrawState>,
     /// Of another program's draw that was computed anew from what was there before it: where that made something else
     /// than was stored; `None` where that was not asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub differs: Option<RecomputeDifference>,
+}
+
+fn known_part<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<DrawPart, D::Error> {
+    let unknown = |_| serde::de::Error::custom("it names a part of a draw that is not known");
+    <DrawPart as serde::Deserialize>::deserialize(deserializer).map_err(unknown)
 }
 
 /// Pixels where a draw that is computed anew leaves something else than was stored.
@@ -172,16 +180,18 @@ pub struct FrameSnapshot {
     pub target: FrameTarget,
 }
 
-/// What a pass that sees the picture's depth and stencil draws into.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FrameTarget {
-    /// The picture itself.
-    #[default]
-    Picture,
-    /// The light's labels ([`CapturedLight::shadow`]).
-    Labels,
-    /// The light's count ([`CapturedLight::count`]).
-    Count,
+named_enum! {
+    /// What a pass that sees the picture's depth and stencil draws into.
+    #[derive(Default)]
+    pub enum FrameTarget {
+        /// The picture itself.
+        #[default]
+        Picture = "picture",
+        /// The light's labels ([`CapturedLight::shadow`]).
+        Labels = "labels",
+        /// The light's count ([`CapturedLight::count`]).
+        Count = "count",
+    }
 }
 
 /// One aspect after a step.

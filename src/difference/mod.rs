@@ -37,13 +37,14 @@ pub enum DifferenceError {
     },
 }
 
-/// Which of the two captures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ComparedSide {
-    /// The first.
-    A,
-    /// The second.
-    B,
+named_enum! {
+    /// Which of the two captures.
+    pub enum ComparedSide {
+        /// The first.
+        A = "A",
+        /// The second.
+        B = "B",
+    }
 }
 
 /// Two frames compared.

@@ -1,8 +1,8 @@
 //! A difference in words: the first pass that differs, then every pass, then the lights.
 
 use super::{
-    AspectChange, AspectDifference, AspectKind, ComparedSide, Difference, DifferenceNote, LightDifference,
-    PassDifference, PixelDifference, Texel, TexelDifference,
+    AspectChange, AspectDifference, AspectKind, Difference, DifferenceNote, LightDifference, PassDifference,
+    PixelDifference, Texel, TexelDifference,
 };
 use crate::numbers;
 use crate::truth::PixelLabel;
@@ -48,16 +48,6 @@ impl Difference {
 impl PassDifference {
     fn has_no_pixels(&self) -> bool {
         self.states().flatten().all(|aspect| aspect.pixels().is_none())
-    }
-}
-
-impl ComparedSide {
-    /// `A` or `B`.
-    pub fn name(self) -> &'static str {
-        match self {
-            ComparedSide::A => "A",
-            ComparedSide::B => "B",
-        }
     }
 }
 

@@ -7,10 +7,10 @@ use super::{
     Blob, CapFan, CasterPlanes, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings,
     FarEnd, SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
-use crate::scene::{Mesh, Pose, Shading};
+use crate::last_used::LastUsed;
+use crate::scene::{Mesh, Pose, PoseBits, Shading};
 use glam::{DVec3, DVec4};
 use std::collections::HashMap;
-use std::hash::Hash;
 use std::sync::Arc;
 
 /// Triangles kept at once (about 60 bytes each, and as much again for each pose); a scene of more starts over with
@@ -31,10 +31,7 @@ const MOST_FLATTENED_KEPT: usize = 500_000;
 #[derive(Debug, Default)]
 pub struct GeometryCache {
     edges: HashMap<u64, Arc<EdgeList>>,
-    /// By their keys, with whether the newest plan has asked for them.
-    flattened: HashMap<u64, (FlattenedTriangles, bool)>,
-    /// In all of them.
-    flattened_kept: usize,
+    flattened: LastUsed<u64, FlattenedTriangles>,
     planes: HashMap<(u64, PoseBits), Arc<CasterPlanes>>,
     connectivities: HashMap<u64, Arc<Connectivity>>,
     topologies: HashMap<u64, Arc<Topology>>,
@@ -43,8 +40,6 @@ pub struct GeometryCache {
     doubled: HashMap<(u64, PoseBits), bool>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
     surfaces: LastUsed<SurfaceKey, DrawnSurface>,
-    /// Triangles in all of them.
-    surfaces_kept: usize,
     triangles_kept: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
@@ -52,8 +47,6 @@ pub struct GeometryCache {
 
 /// Homogeneous world positions of a caster's shadow on a plane.
 type FlattenedTriangles = Arc<Vec<[DVec4; 3]>>;
-
-type PoseBits = [u64; 9];
 
 /// Mesh, place, form and origin.
 type ExtrudedKey = (u64, PoseBits, ExtrudedForm, [u64; 3]);
@@ -70,36 +63,6 @@ pub struct DrawnSurface {
     pub indices: Blob<u32>,
     /// Of each corner.
     pub normals: Blob<[f32; 4]>,
-}
-
-/// What stays as long as the newest plan asks for it.
-#[derive(Debug)]
-struct LastUsed<K, V> {
-    /// With whether the newest plan has asked.
-    kept: HashMap<K, (V, bool)>,
-}
-
-impl<K, V> Default for LastUsed<K, V> {
-    fn default() -> Self {
-        LastUsed { kept: HashMap::new() }
-    }
-}
-
-impl<K: Eq + Hash, V: Clone> LastUsed<K, V> {
-    fn next_plan(&mut self) {
-        self.kept.retain(|_, (_, used)| std::mem::take(used));
-    }
-
-    fn get(&mut self, key: &K) -> Option<V> {
-        let (found, used) = self.kept.get_mut(key)?;
-        *used = true;
-        Some(found.clone())
-    }
-
-    fn keep(&mut self, key: K, made: V) -> V {
-        self.kept.insert(key, (made.clone(), true));
-        made
-    }
 }
 
 /// How a volume's silhouette is found.
@@ -146,25 +109,16 @@ impl GeometryCache {
     pub fn next_plan(&mut self) {
         self.extruded.next_plan();
         self.surfaces.next_plan();
-        self.surfaces_kept = self.surfaces.kept.values().map(|(surface, _)| surface.indices.len() / 3).sum();
-        self.flattened.retain(|_, (_, used)| std::mem::take(used));
-        self.flattened_kept = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
+        self.flattened.next_plan();
     }
 
     /// A flattened caster: made again only if plane, caster or light changed.
     pub fn flattened(&mut self, what: &FlattenedCaster, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
-        let key = what.key();
-        if let Some((triangles, used)) = self.flattened.get_mut(&key) {
-            *used = true;
-            return triangles.clone();
-        }
-        let triangles = Arc::new(make());
-        let kept = self.flattened_kept + triangles.len();
-        if kept <= MOST_FLATTENED_KEPT {
-            self.flattened_kept = kept;
-            self.flattened.insert(key, (triangles.clone(), true));
-        }
-        triangles
+        self.flattened.get_or_make_within(MOST_FLATTENED_KEPT, what.key(), || {
+            let triangles = Arc::new(make());
+            let count = triangles.len();
+            (triangles, count)
+        })
     }
 
     /// The edges of `mesh`, built on first use.
@@ -180,7 +134,7 @@ impl GeometryCache {
 
     /// The planes of a caster's triangles, made on first use.
     pub fn planes(&mut self, caster: Caster) -> Arc<CasterPlanes> {
-        let key = (caster.mesh.content_hash(), pose_bits(caster.pose));
+        let key = (caster.mesh.content_hash(), caster.pose.bits());
         if let Some(planes) = self.planes.get(&key) {
             return planes.clone();
         }
@@ -218,12 +172,12 @@ impl GeometryCache {
     /// A caster's volume for a vertex shader: made again only if caster or origin changed.
     pub fn extruded(&mut self, caster: Caster, origin: DVec3, form: ExtrudedForm) -> ExtrudedVolume {
         let Caster { mesh, pose, world } = caster;
-        let key = (mesh.content_hash(), pose_bits(pose), form, origin.to_array().map(f64::to_bits));
+        let key = (mesh.content_hash(), pose.bits(), form, origin.to_array().map(f64::to_bits));
         if let Some(volume) = self.extruded.get(&key) {
             return volume;
         }
-        let volume = ExtrudedVolume::new(world, mesh.triangles(), &self.edges(mesh), origin, form);
-        self.extruded.keep(key, volume)
+        let edges = self.edges(mesh);
+        self.extruded.get_or_make(key, || ExtrudedVolume::new(world, mesh.triangles(), &edges, origin, form))
     }
 
     /// What of a mesh is drawn alike under any light, relative to `origin` and with this shading of each group: made again
@@ -238,16 +192,8 @@ impl GeometryCache {
         let Caster { mesh, pose, .. } = of;
         let groups = mesh.groups().iter().map(|group| group.triangles.end).zip(shadings.iter().copied()).collect();
         let origin = origin.to_array().map(f64::to_bits);
-        let key = (mesh.content_hash(), mesh.normals_hash(), pose_bits(pose), origin, groups);
-        if let Some(surface) = self.surfaces.get(&key) {
-            return surface;
-        }
-        let (surface, kept) = (make(), self.surfaces_kept + mesh.triangles().len());
-        if kept > MOST_SURFACES_KEPT {
-            return surface;
-        }
-        self.surfaces_kept = kept;
-        self.surfaces.keep(key, surface)
+        let key = (mesh.content_hash(), mesh.normals_hash(), pose.bits(), origin, groups);
+        self.surfaces.get_or_make_within(MOST_SURFACES_KEPT, key, || (make(), mesh.triangles().len()))
     }
 
     /// How `mesh` hangs together, found out on first use.
@@ -271,7 +217,7 @@ impl GeometryCache {
     /// What speaks against it, or is not proven.
     pub fn light_facing_suffices(&mut self, caster: Caster, light: DVec4) -> Result<(), String> {
         let mesh = caster.mesh;
-        let key = (mesh.content_hash(), pose_bits(caster.pose));
+        let key = (mesh.content_hash(), caster.pose.bits());
         let known = match self.solids.get(&key) {
             Some(known) => known.clone(),
             None => {
@@ -293,7 +239,7 @@ impl GeometryCache {
 
     /// Has a placed mesh two triangles with the same corners? `find_out` looks, once a place.
     pub fn has_doubles(&mut self, caster: Caster, find_out: impl FnOnce() -> bool) -> bool {
-        let key = (caster.mesh.content_hash(), pose_bits(caster.pose));
+        let key = (caster.mesh.content_hash(), caster.pose.bits());
         if let Some(known) = self.doubled.get(&key) {
             return *known;
         }
@@ -320,11 +266,6 @@ fn insert_among<T>(known: &mut HashMap<(u64, PoseBits), T>, key: (u64, PoseBits)
         known.clear();
     }
     known.insert(key, found);
-}
-
-fn pose_bits(pose: &Pose) -> PoseBits {
-    let [t, r, s] = [pose.translate, pose.rotate_degrees, pose.scale].map(|part| part.to_array().map(f64::to_bits));
-    [t[0], t[1], t[2], r[0], r[1], r[2], s[0], s[1], s[2]]
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 //! Equal data is uploaded once, and stays as long as the newest plan uses it.
 
 use super::GpuError;
+use crate::last_used::LastUsed;
 use crate::plan::Blob;
-use std::collections::HashMap;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{Buffer, BufferUsages, Device};
 
@@ -13,13 +13,13 @@ type Key = (u64, usize);
 
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    kept: HashMap<Key, (Buffer, bool)>,
+    cached: LastUsed<Key, Buffer>,
 }
 
 impl Buffers {
     /// Forgets what has not been asked for since the last call.
     pub fn next_plan(&mut self) {
-        self.kept.retain(|_, (_, used)| std::mem::take(used));
+        self.cached.next_plan();
     }
 
     /// The buffer that holds `blob`, readable as vertices, indices and, as far as [`check_bound`] lets it, as storage.
@@ -30,10 +30,8 @@ impl Buffers {
         // Nothing can't be bound: it is one entry that nothing is like.
         let nothing = [u8::MAX; 16];
         let contents = if contents.is_empty() { &nothing[..] } else { contents };
-        let upload = || (device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage }), true);
-        let (buffer, used) = self.kept.entry((blob.hash(), contents.len())).or_insert_with(upload);
-        *used = true;
-        Ok(buffer.clone())
+        let upload = || device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        Ok(self.cached.get_or_make((blob.hash(), contents.len()), upload))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Maps and textures of lights that are kept from frame to frame while nothing that makes them changes.
 
+use crate::last_used::LastUsed;
 use crate::plan::{AttachmentId, FramePlan};
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::Texture;
@@ -9,7 +9,7 @@ use wgpu::Texture;
 /// By [`FramePlan::kept_by`]; they stay as long as the newest plan that keeps maps uses them.
 #[derive(Debug, Default)]
 pub(super) struct MapCache {
-    kept: HashMap<u64, (Arc<CachedMap>, bool)>,
+    cached: LastUsed<u64, Arc<CachedMap>>,
 }
 
 /// A texture, and whether its passes have run.
@@ -34,7 +34,7 @@ impl CachedMap {
 impl MapCache {
     /// Forgets what has not been asked for since the last call.
     pub fn next_plan(&mut self) {
-        self.kept.retain(|_, (_, used)| std::mem::take(used));
+        self.cached.next_plan();
     }
 
     /// The kept texture of an attachment, made by `create` if it is new; `None` where it is drawn in every
@@ -45,9 +45,7 @@ impl MapCache {
         id: AttachmentId,
         create: impl FnOnce() -> Arc<Texture>,
     ) -> Option<Arc<CachedMap>> {
-        let new = || (Arc::new(CachedMap { texture: create(), is_drawn: AtomicBool::new(false) }), true);
-        let (map, used) = self.kept.entry(plan.kept_by(id)?).or_insert_with(new);
-        *used = true;
-        Some(map.clone())
+        let new = || Arc::new(CachedMap { texture: create(), is_drawn: AtomicBool::new(false) });
+        Some(self.cached.get_or_make(plan.kept_by(id)?, new))
     }
 }

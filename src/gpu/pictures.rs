@@ -4,8 +4,8 @@
 //! ([`TextureImage::levels`]), so that a lookup can be computed again.
 
 use super::GpuContext;
+use crate::last_used::LastUsed;
 use crate::scene::TextureImage;
-use std::collections::HashMap;
 use wgpu::{Extent3d, TextureUsages, TextureView, TextureViewDescriptor};
 
 /// Hash and size.
@@ -13,21 +13,18 @@ type Key = (u64, [u32; 2]);
 
 #[derive(Debug, Default)]
 pub(super) struct Pictures {
-    kept: HashMap<Key, (TextureView, bool)>,
+    cached: LastUsed<Key, TextureView>,
 }
 
 impl Pictures {
     /// Forgets what has not been asked for since the last call.
     pub fn next_plan(&mut self) {
-        self.kept.retain(|_, (_, used)| std::mem::take(used));
+        self.cached.next_plan();
     }
 
     /// The texture of a picture, all levels of it.
     pub fn get(&mut self, context: &GpuContext, picture: &TextureImage) -> TextureView {
-        let key = (picture.hash(), picture.size());
-        let (view, used) = self.kept.entry(key).or_insert_with(|| (upload(context, picture), true));
-        *used = true;
-        view.clone()
+        self.cached.get_or_make((picture.hash(), picture.size()), || upload(context, picture))
     }
 }
 

@@ -1,9 +1,10 @@
 //! A frame's events and states as a table, for whoever wants to see what was recorded.
 
-use super::raw::{
-    RawCull, RawDraw, RawEvent, RawFormat, RawFrame, RawKind, RawShaderEffect, RawStencilFace, RawStencilOperation,
-};
+use super::raw::{RawCull, RawDraw, RawEvent, RawFormat, RawFrame, RawKind, RawStencilFace};
+use crate::plan::ShaderEffect;
+use crate::plan::words::spelled;
 use std::fmt::Write;
+use wgpu::StencilOperation;
 
 /// A line an event: its number, what it does, how many triangles, its states, and where it draws.
 pub fn list(frame: &RawFrame) -> String {
@@ -65,7 +66,7 @@ fn states(draw: &RawDraw) -> String {
         words.push(format!("cull {}", draw.shape.cull.name()));
     }
     if let Some(depth) = &draw.depth {
-        words.push(format!("depth {}{}", depth.compare.name(), if depth.write { " write" } else { "" }));
+        words.push(format!("depth {}{}", spelled(depth.compare, '-'), if depth.write { " write" } else { "" }));
     }
     if let Some([front, back]) = &draw.stencil {
         let (front, back) = (face(front), face(back));
@@ -78,7 +79,7 @@ fn states(draw: &RawDraw) -> String {
         words.extend(blend.equations.is_some().then(|| "blend".to_owned()));
         words.extend((blend.write == [false; 4]).then(|| "no colour".to_owned()));
     }
-    words.extend((draw.fragment.may_discard != RawShaderEffect::No).then(|| "may discard".to_owned()));
+    words.extend((draw.fragment.may_discard != ShaderEffect::No).then(|| "may discard".to_owned()));
     if draw.samples > 1 {
         words.push(format!("{} samples", draw.samples));
     }
@@ -86,15 +87,15 @@ fn states(draw: &RawDraw) -> String {
 }
 
 /// Its test and what it does where; a mask only where it hides a bit.
-fn face(face: &RawStencilFace) -> String {
-    let mut text = format!("{} {}", face.compare.name(), face.reference);
-    let masks = [("compares", face.compare_mask), ("writes", face.write_mask)];
+fn face(RawStencilFace { face, masks }: &RawStencilFace) -> String {
+    let mut text = format!("{} {}", spelled(face.compare, '-'), masks.reference);
+    let masks = [("compares", masks.read), ("writes", masks.write)];
     for (what, mask) in masks.into_iter().filter(|(_, mask)| *mask != 0xff) {
         let _ = write!(text, " {what} {mask:#04x}");
     }
-    let operations = [("fail", face.fail), ("depth-fail", face.depth_fail), ("pass", face.pass)];
-    for (when, operation) in operations.into_iter().filter(|(_, operation)| *operation != RawStencilOperation::Keep) {
-        let _ = write!(text, " {when} {}", operation.name());
+    let operations = [("fail", face.fail_op), ("depth-fail", face.depth_fail_op), ("pass", face.pass_op)];
+    for (when, operation) in operations.into_iter().filter(|(_, operation)| *operation != StencilOperation::Keep) {
+        let _ = write!(text, " {when} {}", spelled(operation, '-'));
     }
     text
 }

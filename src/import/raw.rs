@@ -1,11 +1,13 @@
 //! A frame as RenderDoc tells it: plain data, with no interpretation beyond units and orientation.
 //!
 //! Every API comes out the same way round: row 0 of a picture is at the top, viewport and scissor count pixels
-//! from there, and "counter-clockwise" is what the eye sees on that picture.
+//! from there, and "counter-clockwise" is what the eye sees on that picture. States are wgpu's, as far as wgpu has them.
 
 use crate::capture::Image;
+use crate::plan::{FaceMasks, ShaderEffect, StencilFace};
 use std::ops::Range;
 use std::sync::Arc;
+use wgpu::{BlendComponent, CompareFunction, PolygonMode};
 
 named_enum! {
     /// Whose calls were recorded.
@@ -276,18 +278,6 @@ named_enum! {
     }
 }
 
-named_enum! {
-    /// How a triangle is filled.
-    pub enum RawFill {
-        /// All of it.
-        Solid = "solid",
-        /// Its edges.
-        Lines = "lines",
-        /// Its corners.
-        Points = "points",
-    }
-}
-
 /// Which triangles make fragments, and how deep they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawShape {
@@ -296,7 +286,7 @@ pub struct RawShape {
     /// Are triangles that turn counter-clockwise, as seen on the picture, front faces?
     pub front_is_counter_clockwise: bool,
     /// How a triangle is filled.
-    pub fill: RawFill,
+    pub fill: PolygonMode,
     /// Depth bias: in units of the smallest step, per slope, and the limit of both (0: none).
     pub bias: [f32; 3],
     /// Is depth brought into the depth range?
@@ -307,55 +297,11 @@ pub struct RawShape {
     pub clip_planes: bool,
 }
 
-named_enum! {
-    /// How two values are compared; the new one is on the left.
-    pub enum RawCompare {
-        /// Never passes.
-        Never = "never",
-        /// <
-        Less = "less",
-        /// ≤
-        LessEqual = "less-equal",
-        /// =
-        Equal = "equal",
-        /// ≥
-        GreaterEqual = "greater-equal",
-        /// >
-        Greater = "greater",
-        /// ≠
-        NotEqual = "not-equal",
-        /// Always passes.
-        Always = "always",
-    }
-}
-
-named_enum! {
-    /// What becomes of a stencil value.
-    pub enum RawStencilOperation {
-        /// Nothing.
-        Keep = "keep",
-        /// 0.
-        Zero = "zero",
-        /// The reference.
-        Replace = "replace",
-        /// One more, at most 255.
-        IncrementClamp = "increment-clamp",
-        /// One less, at least 0.
-        DecrementClamp = "decrement-clamp",
-        /// All bits turned.
-        Invert = "invert",
-        /// One more; 255 becomes 0.
-        IncrementWrap = "increment-wrap",
-        /// One less; 0 becomes 255.
-        DecrementWrap = "decrement-wrap",
-    }
-}
-
 /// A depth test that is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawDepth {
     /// Passes where the fragment's depth compares so with the stored one.
-    pub compare: RawCompare,
+    pub compare: CompareFunction,
     /// Is the depth of what passes stored?
     pub write: bool,
     /// Is the stored depth also held against bounds (which are not told)?
@@ -365,59 +311,27 @@ pub struct RawDepth {
 /// A stencil test that is on, for one side of triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawStencilFace {
-    /// Passes where `reference & compare_mask` compares so with `stored & compare_mask`.
-    pub compare: RawCompare,
-    /// The reference.
-    pub reference: u8,
-    /// Bits that are compared.
-    pub compare_mask: u8,
-    /// Bits that may change.
-    pub write_mask: u8,
-    /// Where the stencil test fails.
-    pub fail: RawStencilOperation,
-    /// Where the stencil test passes and the depth test fails.
-    pub depth_fail: RawStencilOperation,
-    /// Where both pass.
-    pub pass: RawStencilOperation,
+    /// How `reference & read` must compare with `stored & read`, and what becomes of the stored value.
+    pub face: StencilFace,
+    /// The reference, and the masks.
+    pub masks: FaceMasks,
 }
 
 /// How the first colour target is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawBlend {
-    /// Blending of `[colour, alpha]`; absent where the fragment's colour replaces what is there.
-    pub equations: Option<[RawBlendEquation; 2]>,
+    /// Blending of `[colour, alpha]`, each absent where wgpu has no word for it; all absent where the fragment's colour
+    /// replaces what is there.
+    pub equations: Option<[Option<BlendComponent>; 2]>,
     /// Red, green, blue and alpha: which are written.
     pub write: [bool; 4],
-}
-
-/// source · factor ∘ target · factor, in RenderDoc's names.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RawBlendEquation {
-    /// The fragment's factor: `One`, `SrcAlpha`, …
-    pub source: String,
-    /// The factor of what is there.
-    pub target: String,
-    /// `Add`, `Subtract`, `ReversedSubtract`, `Minimum`, `Maximum`.
-    pub operation: String,
-}
-
-named_enum! {
-    /// Does it?
-    pub enum RawShaderEffect {
-        /// It can't.
-        No = "no",
-        /// It may, for some fragments.
-        Yes = "yes",
-        /// The shader can't be read.
-        Unknown = "unknown",
-    }
 }
 
 /// What the fragment shader may do, as its text or code says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawFragment {
     /// It drops fragments (`discard`, alpha to coverage, a sample mask of its own).
-    pub may_discard: RawShaderEffect,
+    pub may_discard: ShaderEffect,
     /// It makes a depth of its own.
-    pub writes_depth: RawShaderEffect,
+    pub writes_depth: ShaderEffect,
 }

@@ -9,11 +9,12 @@ use super::document::{self, FORMAT, RenderDocDocument};
 use super::error::ImportError;
 use super::pictures::{self, TexelLayout};
 use super::raw::{
-    RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawShaderEffect, RawTarget, RawTexture,
-    RawTopology, RecordedApi,
+    RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawTarget, RawTexture, RawTopology,
+    RecordedApi,
 };
 use super::{geometry, shader, states};
 use crate::files::open_plain;
+use crate::plan::ShaderEffect;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -262,13 +263,13 @@ impl DocumentReader {
         shader: Option<&document::RenderDocShader>,
         alpha_to_coverage: bool,
     ) -> Result<RawFragment, ImportError> {
-        let none = RawFragment { may_discard: RawShaderEffect::No, writes_depth: RawShaderEffect::No };
+        let none = RawFragment { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
         let Some(document::RenderDocShader { encoding, bytes }) = shader else { return Ok(none) };
         let key = (encoding.clone(), *bytes);
         let known = self.shaders.get(&key).copied();
         let fragment = known.map_or_else(|| Ok(shader::read(encoding, &self.blobs.read(*bytes)?)), Ok)?;
         self.shaders.insert(key, fragment);
-        let may_discard = if alpha_to_coverage { RawShaderEffect::Yes } else { fragment.may_discard };
+        let may_discard = if alpha_to_coverage { ShaderEffect::Yes } else { fragment.may_discard };
         Ok(RawFragment { may_discard, ..fragment })
     }
 }

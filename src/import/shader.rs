@@ -2,24 +2,25 @@
 //!
 //! Nothing is run and no branch is followed: a shader that can discard in some case may discard.
 
-use super::raw::{RawFragment, RawShaderEffect};
+use super::raw::RawFragment;
+use crate::plan::ShaderEffect;
 
 /// What the shader may do. `encoding` is RenderDoc's name of its language.
 pub fn read(encoding: &str, bytes: &[u8]) -> RawFragment {
     let [discards, depth] = match encoding {
         "GLSL" => glsl(&String::from_utf8_lossy(bytes)),
         "SPIRV" | "OpenGLSPIRV" => spirv(bytes),
-        _ => [RawShaderEffect::Unknown; 2],
+        _ => [ShaderEffect::Unknown; 2],
     };
     RawFragment { may_discard: discards, writes_depth: depth }
 }
 
-const fn may(does: bool) -> RawShaderEffect {
-    if does { RawShaderEffect::Yes } else { RawShaderEffect::No }
+const fn may(does: bool) -> ShaderEffect {
+    if does { ShaderEffect::Yes } else { ShaderEffect::No }
 }
 
 /// Words of GLSL outside comments.
-fn glsl(text: &str) -> [RawShaderEffect; 2] {
+fn glsl(text: &str) -> [ShaderEffect; 2] {
     let code = without_comments(text);
     let has = |word: &str| code.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|found| found == word);
     [may(has("discard") || has("gl_SampleMask")), may(has("gl_FragDepth") || has("gl_FragDepthEXT"))]
@@ -40,7 +41,7 @@ fn without_comments(text: &str) -> String {
 }
 
 /// Instructions of SPIR-V, by the numbers of its specification.
-fn spirv(bytes: &[u8]) -> [RawShaderEffect; 2] {
+fn spirv(bytes: &[u8]) -> [ShaderEffect; 2] {
     const MAGIC: u32 = 0x0723_0203;
     const HEADER: usize = 5;
     const EXECUTION_MODE: u32 = 16;
@@ -52,14 +53,14 @@ fn spirv(bytes: &[u8]) -> [RawShaderEffect; 2] {
     const DISCARDS: [u32; 3] = [252, 4416, 5380];
     let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
     if words.first() != Some(&MAGIC) {
-        return [RawShaderEffect::Unknown; 2];
+        return [ShaderEffect::Unknown; 2];
     }
     let [mut discards, mut depth] = [false; 2];
     let mut rest = words.get(HEADER..).unwrap_or_default();
     while let Some(&first) = rest.first() {
         let (operation, length) = (first & 0xffff, (first >> 16) as usize);
         let Some(instruction) = rest.get(..length).filter(|instruction| !instruction.is_empty()) else {
-            return [RawShaderEffect::Unknown; 2];
+            return [ShaderEffect::Unknown; 2];
         };
         discards |= DISCARDS.contains(&operation);
         discards |= operation == DECORATE && instruction.get(2..4) == Some(&[BUILT_IN, SAMPLE_MASK]);
@@ -76,10 +77,10 @@ mod tests {
     #[test]
     fn words_of_glsl_count_outside_comments() {
         let read = |text: &str| read("GLSL", text.as_bytes());
-        let none = RawFragment { may_discard: RawShaderEffect::No, writes_depth: RawShaderEffect::No };
+        let none = RawFragment { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
         assert_eq!(read("void main() { gl_FragColor = vec4(1); } // discard\n/* gl_FragDepth */ int discarded;"), none);
-        assert_eq!(read("if (a < 0.5) discard;").may_discard, RawShaderEffect::Yes);
-        assert_eq!(read("/* a // b */ gl_FragDepth = 1.0;").writes_depth, RawShaderEffect::Yes);
+        assert_eq!(read("if (a < 0.5) discard;").may_discard, ShaderEffect::Yes);
+        assert_eq!(read("/* a // b */ gl_FragDepth = 1.0;").writes_depth, ShaderEffect::Yes);
         assert_eq!(read("// an end without a line"), none);
         assert_eq!(read("/* never closed discard"), none);
     }
@@ -90,15 +91,15 @@ mod tests {
             let words = [&[0x0723_0203, 0x1_0000, 0, 9, 0], instructions].concat();
             read("SPIRV", &words.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<u8>>())
         };
-        assert_eq!(module(&[]), RawFragment { may_discard: RawShaderEffect::No, writes_depth: RawShaderEffect::No });
-        assert_eq!(module(&[1 << 16 | 252]).may_discard, RawShaderEffect::Yes);
-        assert_eq!(module(&[3 << 16 | 16, 4, 12]).writes_depth, RawShaderEffect::Yes);
-        assert_eq!(module(&[3 << 16 | 16, 4, 7, 1 << 16 | 253]).may_discard, RawShaderEffect::No);
+        assert_eq!(module(&[]), RawFragment { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No });
+        assert_eq!(module(&[1 << 16 | 252]).may_discard, ShaderEffect::Yes);
+        assert_eq!(module(&[3 << 16 | 16, 4, 12]).writes_depth, ShaderEffect::Yes);
+        assert_eq!(module(&[3 << 16 | 16, 4, 7, 1 << 16 | 253]).may_discard, ShaderEffect::No);
     }
 
     #[test]
     fn broken_code_is_unknown() {
-        let unknown = RawFragment { may_discard: RawShaderEffect::Unknown, writes_depth: RawShaderEffect::Unknown };
+        let unknown = RawFragment { may_discard: ShaderEffect::Unknown, writes_depth: ShaderEffect::Unknown };
         let broken = [&0x0723_0203_u32.to_le_bytes()[..], &[0; 16], &[252, 0, 0, 0]].concat();
         for bytes in [&broken[..], b"", b"text"] {
             assert_eq!(read("SPIRV", bytes), unknown);

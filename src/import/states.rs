@@ -1,10 +1,9 @@
 //! Fixed-function state, the same way round for every API.
 
 use super::document::{RenderDocBlend, RenderDocBlendEquation, RenderDocDraw, RenderDocStencilFace};
-use super::raw::{
-    RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawFormat, RawShape, RawStencilFace,
-    RawStencilOperation, RawView,
-};
+use super::raw::{RawBlend, RawCull, RawDepth, RawFormat, RawShape, RawStencilFace, RawView};
+use crate::plan::{FaceMasks, StencilFace};
+use wgpu::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
 
 /// The states of a draw.
 #[derive(Debug)]
@@ -69,9 +68,9 @@ fn shape(draw: &RenderDocDraw, is_gl: bool) -> Result<RawShape, String> {
         other => return Err(unknown("culling", other)),
     };
     let fill = match draw.fill.as_str() {
-        "Solid" => RawFill::Solid,
-        "Wireframe" => RawFill::Lines,
-        "Point" => RawFill::Points,
+        "Solid" => PolygonMode::Fill,
+        "Wireframe" => PolygonMode::Line,
+        "Point" => PolygonMode::Point,
         other => return Err(unknown("filling", other)),
     };
     Ok(RawShape {
@@ -87,52 +86,88 @@ fn shape(draw: &RenderDocDraw, is_gl: bool) -> Result<RawShape, String> {
 
 fn face(face: &RenderDocStencilFace) -> Result<RawStencilFace, String> {
     Ok(RawStencilFace {
-        compare: compare(&face.compare)?,
-        reference: face.reference.min(255) as u8,
-        compare_mask: face.compare_mask as u8,
-        write_mask: face.write_mask as u8,
-        fail: operation(&face.fail)?,
-        depth_fail: operation(&face.depth_fail)?,
-        pass: operation(&face.pass)?,
+        face: StencilFace {
+            compare: compare(&face.compare)?,
+            fail_op: operation(&face.fail)?,
+            depth_fail_op: operation(&face.depth_fail)?,
+            pass_op: operation(&face.pass)?,
+        },
+        masks: FaceMasks {
+            reference: face.reference.min(255) as u8,
+            read: face.compare_mask as u8,
+            write: face.write_mask as u8,
+        },
     })
 }
 
 fn blend(blend: &RenderDocBlend) -> RawBlend {
-    let equation = |RenderDocBlendEquation { source, target, operation }: &RenderDocBlendEquation| RawBlendEquation {
-        source: source.clone(),
-        target: target.clone(),
-        operation: operation.clone(),
-    };
     RawBlend {
         equations: blend.enabled.then(|| [equation(&blend.color), equation(&blend.alpha)]),
         write: [1, 2, 4, 8].map(|bit| blend.write_mask & bit != 0),
     }
 }
 
-fn compare(name: &str) -> Result<RawCompare, String> {
+/// `None` where wgpu has no word for it.
+fn equation(RenderDocBlendEquation { source, target, operation }: &RenderDocBlendEquation) -> Option<BlendComponent> {
+    let operation = match operation.as_str() {
+        "Add" => BlendOperation::Add,
+        "Subtract" => BlendOperation::Subtract,
+        "ReversedSubtract" => BlendOperation::ReverseSubtract,
+        // Of these two no factor counts.
+        "Minimum" => return Some(BlendComponent { operation: BlendOperation::Min, ..BlendComponent::REPLACE }),
+        "Maximum" => return Some(BlendComponent { operation: BlendOperation::Max, ..BlendComponent::REPLACE }),
+        _ => return None,
+    };
+    Some(BlendComponent { src_factor: factor(source)?, dst_factor: factor(target)?, operation })
+}
+
+fn factor(name: &str) -> Option<BlendFactor> {
+    Some(match name {
+        "Zero" => BlendFactor::Zero,
+        "One" => BlendFactor::One,
+        "SrcCol" => BlendFactor::Src,
+        "InvSrcCol" => BlendFactor::OneMinusSrc,
+        "SrcAlpha" => BlendFactor::SrcAlpha,
+        "InvSrcAlpha" => BlendFactor::OneMinusSrcAlpha,
+        "DstCol" => BlendFactor::Dst,
+        "InvDstCol" => BlendFactor::OneMinusDst,
+        "DstAlpha" => BlendFactor::DstAlpha,
+        "InvDstAlpha" => BlendFactor::OneMinusDstAlpha,
+        "SrcAlphaSat" => BlendFactor::SrcAlphaSaturated,
+        "FactorRGB" => BlendFactor::Constant,
+        "InvFactorRGB" => BlendFactor::OneMinusConstant,
+        "Src1Col" => BlendFactor::Src1,
+        "InvSrc1Col" => BlendFactor::OneMinusSrc1,
+        "Src1Alpha" => BlendFactor::Src1Alpha,
+        "InvSrc1Alpha" => BlendFactor::OneMinusSrc1Alpha,
+        _ => return None,
+    })
+}
+
+fn compare(name: &str) -> Result<CompareFunction, String> {
     Ok(match name {
-        "Never" => RawCompare::Never,
-        "Less" => RawCompare::Less,
-        "LessEqual" => RawCompare::LessEqual,
-        "Equal" => RawCompare::Equal,
-        "GreaterEqual" => RawCompare::GreaterEqual,
-        "Greater" => RawCompare::Greater,
-        "NotEqual" => RawCompare::NotEqual,
-        "AlwaysTrue" => RawCompare::Always,
+        "Never" => CompareFunction::Never,
+        "Less" => CompareFunction::Less,
+        "LessEqual" => CompareFunction::LessEqual,
+        "Equal" => CompareFunction::Equal,
+        "GreaterEqual" => CompareFunction::GreaterEqual,
+        "Greater" => CompareFunction::Greater,
+        "NotEqual" => CompareFunction::NotEqual,
+        "AlwaysTrue" => CompareFunction::Always,
         other => return Err(unknown("comparison", other)),
     })
 }
 
-fn operation(name: &str) -> Result<RawStencilOperation, String> {
+fn operation(name: &str) -> Result<StencilOperation, String> {
     Ok(match name {
-        "Keep" => RawStencilOperation::Keep,
-        "Zero" => RawStencilOperation::Zero,
-        "Replace" => RawStencilOperation::Replace,
-        "IncSat" => RawStencilOperation::IncrementClamp,
-        "DecSat" => RawStencilOperation::DecrementClamp,
-        "Invert" => RawStencilOperation::Invert,
-        "IncWrap" => RawStencilOperation::IncrementWrap,
-        "DecWrap" => RawStencilOperation::DecrementWrap,
+        "Keep" => StencilOperation::Keep,
+        "Zero" => StencilOperation::Zero,
+        "Replace" => StencilOperation::Replace,
+        "IncSat" => StencilOperation::IncrementClamp,
+        "DecSat" => StencilOperation::DecrementClamp,
+        "Invert" => StencilOperation::Invert,
+        "IncWrap" => StencilOperation::IncrementWrap,
+        "DecWrap" => StencilOperation::DecrementWrap,
         other => return Err(unknown("stencil operation", other)),
     })
 }
@@ -190,7 +225,7 @@ mod tests {
         assert!(depth_only.depth.is_some() && depth_only.stencil.is_none());
         let both = read(&draw, true, 1, Some(&RawFormat::D24S8), false).expect("states");
         let [front, _] = both.stencil.expect("a stencil test");
-        assert_eq!((front.reference, front.compare_mask, front.write_mask), (255, 255, 15));
+        assert_eq!(front.masks, FaceMasks { reference: 255, read: 255, write: 15 });
     }
 
     #[test]

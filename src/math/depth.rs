@@ -32,12 +32,15 @@ named_enum! {
 named_enum! {
     /// What a distance is told in.
     #[derive(Default)]
-    pub enum LengthUnit {
+    pub enum LengthUnit(
+        /// Where there is room for a letter.
+        letter
+    ) {
         /// Scenes are in metres.
         #[default]
-        Metre = "m",
+        Metre = "m" ("m"),
         /// Another program's unit, which no capture tells.
-        Unknown = "units",
+        Unknown = "units" ("u"),
     }
 }
 
@@ -58,16 +61,6 @@ pub struct DepthCurve {
     /// Of all distances.
     #[serde(default)]
     pub unit: LengthUnit,
-}
-
-impl LengthUnit {
-    /// Where there is room for a letter.
-    pub fn letter(self) -> &'static str {
-        match self {
-            LengthUnit::Metre => "m",
-            LengthUnit::Unknown => "u",
-        }
-    }
 }
 
 impl DepthMapping {

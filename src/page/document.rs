@@ -5,11 +5,13 @@ use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArray, PageArrays};
 use super::clip::{self, PageMesh};
 use super::passes::{self, PagePass};
 use super::reads::{self, PageReads};
-use crate::capture::{AdapterInfo, Capture, DrawSummary, FrameSnapshot, Image, Origin, PixelFormat, Snapshot};
+use crate::capture::{
+    AdapterInfo, Capture, DrawSummary, FrameSnapshot, FrameTarget, Image, Origin, PixelFormat, Snapshot,
+};
 use crate::history;
 use crate::math::depth::DepthCurve;
 use crate::picture::colors;
-use crate::plan::{Attachment, AttachmentRole, CountOf, DecidedBy, FramePlan, LeftOut};
+use crate::plan::{Attachment, AttachmentRole, CountOf, DecidedBy, DrawPart, FramePlan, LeftOut};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::{layers, steps};
 use serde::Serialize;
@@ -55,7 +57,7 @@ struct PageStep<'a> {
 #[derive(Serialize)]
 struct PageStepDraw<'a> {
     name: &'a str,
-    part: &'static str,
+    part: DrawPart,
     triangles: u64,
     /// Null where it was not captured.
     after: Option<PageState>,
@@ -67,7 +69,7 @@ struct PageStepDraw<'a> {
 #[derive(Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 enum PageState {
-    Frame { target: &'static str, color: ArrayIndex, depth: ArrayIndex, stencil: Option<ArrayIndex> },
+    Frame { target: FrameTarget, color: ArrayIndex, depth: ArrayIndex, stencil: Option<ArrayIndex> },
     Map { light: usize, face: usize },
 }
 
@@ -165,7 +167,7 @@ fn step<'a>(capture: &'a Capture, index: usize, arrays: &mut PageArrays) -> Page
     let step = &capture.steps[index];
     let draw = |draw: &'a DrawSummary| PageStepDraw {
         name: &draw.name,
-        part: draw.part.name(),
+        part: draw.part,
         triangles: draw.triangles,
         after: draw.after.as_ref().map(|after| state(&after.snapshot, arrays)),
         differs: draw.differs.map(|differs| differs.depth + differs.stencil),
@@ -185,7 +187,7 @@ fn state(snapshot: &Snapshot, arrays: &mut PageArrays) -> PageState {
     match snapshot {
         Snapshot::Map { light, face } => PageState::Map { light: *light, face: *face },
         Snapshot::Frame(FrameSnapshot { color, depth, stencil, target }) => PageState::Frame {
-            target: passes::target_name(*target),
+            target: *target,
             color: image(&color.image, arrays),
             depth: image(&depth.image, arrays),
             stencil: stencil.as_ref().map(|stencil| image(&stencil.image, arrays)),

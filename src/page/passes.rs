@@ -18,7 +18,7 @@ pub struct PagePass<'a> {
     /// It draws into the picture, or tests against its depth and stencil.
     is_of_picture: bool,
     has_depth: bool,
-    target: &'static str,
+    target: FrameTarget,
     /// Left, top, width and height in pixels.
     area: [f32; 4],
     /// The stored depths of clip depth 0 and 1.
@@ -44,7 +44,7 @@ struct PageStart {
 struct PageDraw<'a> {
     name: &'a str,
     caster: Option<&'a str>,
-    part: &'static str,
+    part: DrawPart,
     /// Of caps that a vertex shader carries, for each triangle: 1 in the dark cap, 0 in the light cap.
     is_dark: Option<ArrayIndex>,
     mesh: usize,
@@ -90,7 +90,7 @@ fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut PageArrays) -> Pa
         view: pass.view.0,
         is_of_picture: plan.is_of_picture(pass),
         has_depth: target.is_some(),
-        target: target_name(history::target_of(plan, pass)),
+        target: history::target_of(plan, pass),
         area: viewport.area,
         range: viewport.depth,
         scissor: pass.scissor,
@@ -100,15 +100,6 @@ fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut PageArrays) -> Pa
         clear_count: clear_count.map(|clear| clear[0] as f32),
         depth_steps: target.and_then(|target| plan.attachment(target.attachment).depth_steps()),
         draws: pass.draws.iter().map(|one| draw(plan, one, arrays)).collect(),
-    }
-}
-
-/// As the page calls what a pass draws into.
-pub fn target_name(target: FrameTarget) -> &'static str {
-    match target {
-        FrameTarget::Picture => "picture",
-        FrameTarget::Labels => "labels",
-        FrameTarget::Count => "count",
     }
 }
 
@@ -126,7 +117,7 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDr
     PageDraw {
         name: &draw.name,
         caster: draw.caster.as_deref(),
-        part: draw.part.name(),
+        part: draw.part,
         is_dark: (draw.part == DrawPart::Caps).then(|| dark_caps(plan, draw, arrays)),
         mesh: draw.mesh.0,
         triangles: [draw.triangles.start, draw.triangles.end],

@@ -33,57 +33,48 @@ pub enum DecidedBy {
     Nothing,
 }
 
-/// On which side of the visible surface the faces of shadow volumes count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CountedSide {
-    /// Between the eye and the surface: z-pass.
-    InFront,
-    /// Between the surface and infinity: z-fail.
-    Behind,
-    /// Those of some volumes in front of it, those of others behind it.
-    AsNeeded,
-}
-
-/// What a count of a light's shadow volumes is a count of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CountOf {
-    /// Casters that are proven closed: of each, only triangles that face the light cast. Others too, that have no
-    /// surface behind them.
-    Bodies,
-    /// Triangles, whichever way they face: both sides of a closed mesh cast.
-    Surfaces,
-    /// Some casters are proven closed, of others every surface counts.
-    Mixed,
-}
-
-impl CountOf {
-    /// `bodies`, `surfaces`, `bodies and surfaces`.
-    pub fn what(self) -> &'static str {
-        match self {
-            CountOf::Bodies => "bodies",
-            CountOf::Surfaces => "surfaces",
-            CountOf::Mixed => "bodies and surfaces",
-        }
+named_enum! {
+    /// On which side of the visible surface the faces of shadow volumes count.
+    pub enum CountedSide(
+        /// `behind`, as in "faces behind the surface".
+        preposition
+    ) {
+        /// Between the eye and the surface: z-pass.
+        InFront = "in-front" ("in front of"),
+        /// Between the surface and infinity: z-fail.
+        Behind = "behind" ("behind"),
+        /// Those of some volumes in front of it, those of others behind it.
+        AsNeeded = "as-needed" ("on either side of"),
     }
+}
 
-    /// In a sentence, for whoever reads a count.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            CountOf::Bodies => {
-                "A count is of bodies: every caster that can darken a surface here is proven closed, and counts 1 each \
-                 time the way to the light goes through it."
-            }
-            CountOf::Surfaces => {
-                "A count is of surfaces, not of bodies: each one on the way to the light counts 1, so that a closed body \
-                 whose both sides cast counts 2."
-            }
-            CountOf::Mixed => {
-                "A count is of bodies and of surfaces: a caster that is proven closed counts 1 each time the way to the \
-                 light goes through it, of the others each surface counts 1."
-            }
-        }
+named_enum! {
+    /// What a count of a light's shadow volumes is a count of.
+    pub enum CountOf(
+        /// `bodies`, `surfaces`, `bodies and surfaces`.
+        what,
+        /// In a sentence, for whoever reads a count.
+        meaning
+    ) {
+        /// Casters that are proven closed: of each, only triangles that face the light cast. Others too, that have no
+        /// surface behind them.
+        Bodies = "bodies" (
+            "bodies",
+            "A count is of bodies: every caster that can darken a surface here is proven closed, and counts 1 each \
+             time the way to the light goes through it."
+        ),
+        /// Triangles, whichever way they face: both sides of a closed mesh cast.
+        Surfaces = "surfaces" (
+            "surfaces",
+            "A count is of surfaces, not of bodies: each one on the way to the light counts 1, so that a closed body \
+             whose both sides cast counts 2."
+        ),
+        /// Some casters are proven closed, of others every surface counts.
+        Mixed = "mixed" (
+            "bodies and surfaces",
+            "A count is of bodies and of surfaces: a caster that is proven closed counts 1 each time the way to the \
+             light goes through it, of the others each surface counts 1."
+        ),
     }
 }
 
@@ -108,17 +99,6 @@ impl DecidedBy {
             | DecidedBy::Flattened
             | DecidedBy::Labels
             | DecidedBy::Nothing => None,
-        }
-    }
-}
-
-impl CountedSide {
-    /// `behind`, as in "faces behind the surface".
-    pub fn preposition(self) -> &'static str {
-        match self {
-            CountedSide::InFront => "in front of",
-            CountedSide::Behind => "behind",
-            CountedSide::AsNeeded => "on either side of",
         }
     }
 }

@@ -5,83 +5,86 @@ use crate::numbers;
 named_enum! {
     /// Why something is not in a frame. The first may be forbidden (`leave-out`), each by its name; the rest is what
     /// a technique can't do, does not do, or has done before.
-    pub enum Decision {
+    pub enum Decision(
+        /// What is left out, for people, with places for a name and a number.
+        template
+    ) {
         /// A light that reaches no surface in view: its passes.
-        Light = "light",
+        Light = "light" ("all passes"),
         /// A caster behind which, as the light sees it, there is nothing: its volume.
-        Caster = "caster",
+        Caster = "caster" ("volume"),
         /// A volume that misses the view.
-        View = "view",
+        View = "view" ("volume"),
         /// A caster wholly in the umbra of another, or a part of one in that of another part: its volume.
-        Umbra = "umbra",
+        Umbra = "umbra" ("volume"),
         /// Of a closed caster, the triangles that face away from the light.
-        AwayTriangles = "away-triangles",
+        AwayTriangles = "away-triangles" ("triangles that face away"),
         /// Caps of a caster that holds no point of the near plane in its shadow: z-pass counts without.
-        Caps = "caps",
+        Caps = "caps" ("caps"),
         /// The light cap of a caster that is not in view.
-        LightCap = "light-cap",
+        LightCap = "light-cap" ("light cap"),
         /// The dark cap of a volume whose far end is not in view, or is one point.
-        DarkCap = "dark-cap",
+        DarkCap = "dark-cap" ("dark cap"),
         /// What of a volume lies beyond all that receives: it ends there.
-        BeyondReceivers = "beyond-receivers",
+        BeyondReceivers = "beyond-receivers" ("far part of the volume"),
         /// Surfaces that are not in view.
-        Surfaces = "surfaces",
+        Surfaces = "surfaces" ("surface"),
         /// Triangles of a closed surface that face away from the eye.
-        HiddenTriangles = "hidden-triangles",
+        HiddenTriangles = "hidden-triangles" ("{count} triangles that face away from the eye"),
         /// In a light's pass, triangles that face away from it.
-        UnlitTriangles = "unlit-triangles",
+        UnlitTriangles = "unlit-triangles" ("{count} triangles that face away"),
         /// The stencil buffer where nothing counts or marks.
-        Stencil = "stencil",
+        Stencil = "stencil" ("stencil buffer"),
         /// Clearing a stencil that nothing has written.
-        Clear = "clear",
+        Clear = "clear" ("stencil clear"),
         /// Faces of a cube map that no caster shows in.
-        MapFaces = "map-faces",
+        MapFaces = "map-faces" ("{name}"),
         /// Pixels that a light of limited range does not reach.
-        Scissor = "scissor",
+        Scissor = "scissor" ("pixels out of reach"),
         /// The volume of a caster that has no casting triangle.
-        NothingCasts = "nothing-casts",
+        NothingCasts = "nothing-casts" ("volume"),
         /// The pass of a light that no volume is needed for.
-        VolumePass = "volume-pass",
+        VolumePass = "volume-pass" ("volume pass"),
         /// Triangles inside the outline of a dark cap at infinity.
-        InnerDarkCap = "inner-dark-cap",
+        InnerDarkCap = "inner-dark-cap" ("inner triangles of the dark cap"),
         /// Counting with the triangles that face the light alone: what it takes is not proven.
-        LightFacing = "light-facing",
+        LightFacing = "light-facing" ("choice of light-facing triangles"),
         /// Counting in eight bits, which could be too few.
-        EightBits = "eight-bits",
+        EightBits = "eight-bits" ("eight-bit count"),
         /// Two passes and clamping, which a float count does not know.
-        TwoPasses = "two-passes",
+        TwoPasses = "two-passes" ("two passes and clamping"),
         /// Extrusion in the vertex shader, which finds no casting triangle for the CPU.
-        VertexExtrusion = "vertex-extrusion",
+        VertexExtrusion = "vertex-extrusion" ("extrusion in the vertex shader"),
         /// What z-pass-plus begins with.
-        NearPlane = "near-plane",
+        NearPlane = "near-plane" ("count at the near plane"),
         /// A light's shadow map: nothing would be in it.
-        Map = "map",
+        Map = "map" ("shadow map"),
         /// A caster in a light's map: behind it there is nothing.
-        MapCaster = "map-caster",
+        MapCaster = "map-caster" ("{name} in the shadow map"),
         /// A caster's silhouette: behind it there is nothing, or no picture holds it.
-        Silhouette = "silhouette",
+        Silhouette = "silhouette" ("silhouette of {name}"),
         /// Silhouettes of more casters than fit.
-        MostSilhouettes = "most-silhouettes",
+        MostSilhouettes = "most-silhouettes" ("silhouettes of the last {count} objects"),
         /// The texture of a receiver that would show no shadow.
-        Texture = "texture",
+        Texture = "texture" ("texture of {name}"),
         /// All of a light's textures.
-        Textures = "textures",
+        Textures = "textures" ("textures"),
         /// Shadows on flat receivers: there are none.
-        PlanarShadows = "planar-shadows",
+        PlanarShadows = "planar-shadows" ("planar shadows"),
         /// Flat receivers that show the side that the light is not on.
-        DarkReceivers = "dark-receivers",
+        DarkReceivers = "dark-receivers" ("{count} flat receivers"),
         /// Flat receivers beyond those that are served.
-        SmallReceivers = "small-receivers",
+        SmallReceivers = "small-receivers" ("{count} small flat receivers"),
         /// Darkening a pixel once only, which takes a stencil.
-        BlendOnce = "blend-once",
+        BlendOnce = "blend-once" ("blending once"),
         /// What a model's materials ask for and no shader does.
-        Material = "material",
+        Material = "material" ("{name}"),
         /// What a scene's file holds and no frame shows.
-        SceneFile = "scene-file",
+        SceneFile = "scene-file" ("{name}"),
         /// Drawing again what is there from the frame before.
-        Kept = "kept",
+        Kept = "kept" ("drawing `{name}` again"),
         /// A draw of which no sample showed in the frame before.
-        Unseen = "unseen",
+        Unseen = "unseen" ("{name}"),
     }
 }
 
@@ -101,41 +104,9 @@ impl Decision {
     /// triangles or things; `name`: which of several.
     pub(super) fn what(self, name: Option<&str>, count: Option<u64>) -> String {
         let (name, of) = (name.unwrap_or("it"), numbers::count(count.unwrap_or(0)));
-        let plain = match self {
-            Decision::Light => "all passes",
-            Decision::Umbra if count.is_some() => return format!("volume of parts ({of} triangles)"),
-            Decision::Caster | Decision::View | Decision::Umbra | Decision::NothingCasts => "volume",
-            Decision::AwayTriangles => "triangles that face away",
-            Decision::Caps => "caps",
-            Decision::LightCap => "light cap",
-            Decision::DarkCap => "dark cap",
-            Decision::BeyondReceivers => "far part of the volume",
-            Decision::Surfaces => "surface",
-            Decision::HiddenTriangles => return format!("{of} triangles that face away from the eye"),
-            Decision::UnlitTriangles => return format!("{of} triangles that face away"),
-            Decision::Stencil => "stencil buffer",
-            Decision::Clear => "stencil clear",
-            Decision::MapFaces | Decision::Unseen | Decision::Material | Decision::SceneFile => name,
-            Decision::Scissor => "pixels out of reach",
-            Decision::VolumePass => "volume pass",
-            Decision::InnerDarkCap => "inner triangles of the dark cap",
-            Decision::LightFacing => "choice of light-facing triangles",
-            Decision::EightBits => "eight-bit count",
-            Decision::TwoPasses => "two passes and clamping",
-            Decision::VertexExtrusion => "extrusion in the vertex shader",
-            Decision::NearPlane => "count at the near plane",
-            Decision::Map => "shadow map",
-            Decision::MapCaster => return format!("{name} in the shadow map"),
-            Decision::Silhouette => return format!("silhouette of {name}"),
-            Decision::MostSilhouettes => return format!("silhouettes of the last {of} objects"),
-            Decision::Texture => return format!("texture of {name}"),
-            Decision::Textures => "textures",
-            Decision::PlanarShadows => "planar shadows",
-            Decision::DarkReceivers => return format!("{of} flat receivers"),
-            Decision::SmallReceivers => return format!("{of} small flat receivers"),
-            Decision::BlendOnce => "blending once",
-            Decision::Kept => return format!("drawing `{name}` again"),
-        };
-        plain.to_owned()
+        match self {
+            Decision::Umbra if count.is_some() => format!("volume of parts ({of} triangles)"),
+            _ => self.template().replace("{count}", &of).replace("{name}", name),
+        }
     }
 }

@@ -9,6 +9,7 @@ mod defaults;
 pub use defaults::defaults;
 
 use super::{ColorWrite, FaceMasks, Pass, RasterState, StencilFace};
+use std::fmt;
 use wgpu::{CompareFunction, StencilOperation};
 
 named_enum! {
@@ -121,9 +122,9 @@ fn operation(op: StencilOperation, reference: u8) -> String {
 }
 
 /// `DecrementWrap` as `decrement-wrap`, `DECREMENT_WRAP` …: words joined by `between`.
-fn spelled(name: &str, between: char) -> String {
+pub(crate) fn spelled(name: impl fmt::Debug, between: char) -> String {
     let mut words = String::new();
-    for letter in name.chars() {
+    for letter in format!("{name:?}").chars() {
         if letter.is_uppercase() && !words.is_empty() {
             words.push(between);
         }
@@ -133,19 +134,20 @@ fn spelled(name: &str, between: char) -> String {
 }
 
 fn web_gpu(raster: &RasterState) -> Vec<String> {
-    let word = |name: String| format!("\"{}\"", spelled(&name, '-'));
+    let compare = |compare: CompareFunction| format!("\"{}\"", spelled(compare, '-'));
+    let operation = |operation: StencilOperation| format!("\"{}\"", spelled(operation, '-'));
     let stencil = &raster.stencil;
     let face = |name: &str, face: &StencilFace| {
         format!(
             "{name}: {{ compare: {}, failOp: {}, depthFailOp: {}, passOp: {} }},",
-            word(format!("{:?}", face.compare)),
-            word(format!("{:?}", face.fail_op)),
-            word(format!("{:?}", face.depth_fail_op)),
-            word(format!("{:?}", face.pass_op))
+            compare(face.compare),
+            operation(face.fail_op),
+            operation(face.depth_fail_op),
+            operation(face.pass_op)
         )
     };
     let mut lines = vec![
-        format!("depthCompare: {},", word(format!("{:?}", raster.depth_compare))),
+        format!("depthCompare: {},", compare(raster.depth_compare)),
         format!("depthWriteEnabled: {},", raster.depth_write),
         format!("depthBias: {},", raster.depth_bias.constant),
         format!("depthBiasSlopeScale: {},", raster.depth_bias.slope_scale),
@@ -155,7 +157,7 @@ fn web_gpu(raster: &RasterState) -> Vec<String> {
         format!("stencilWriteMask: {:#04x},", stencil.write_mask & 0xff),
         format!("pass.setStencilReference({});", raster.stencil_reference),
         format!("cullMode: \"{}\",", raster.cull.map_or("none".to_owned(), |face| format!("{face:?}").to_lowercase())),
-        format!("frontFace: {},", word(format!("{:?}", raster.front_face))),
+        format!("frontFace: \"{}\",", spelled(raster.front_face, '-')),
         format!("unclippedDepth: {},", raster.unclipped_depth),
     ];
     let blend = |src: &str, dst: &str, op: &str| {
@@ -172,6 +174,20 @@ fn web_gpu(raster: &RasterState) -> Vec<String> {
     lines
 }
 
+/// In OpenGL and in Direct3D.
+fn operation_in(op: StencilOperation) -> [&'static str; 2] {
+    match op {
+        StencilOperation::IncrementClamp => ["INCR", "INCR_SAT"],
+        StencilOperation::DecrementClamp => ["DECR", "DECR_SAT"],
+        StencilOperation::IncrementWrap => ["INCR_WRAP", "INCR"],
+        StencilOperation::DecrementWrap => ["DECR_WRAP", "DECR"],
+        StencilOperation::Keep => ["KEEP"; 2],
+        StencilOperation::Zero => ["ZERO"; 2],
+        StencilOperation::Replace => ["REPLACE"; 2],
+        StencilOperation::Invert => ["INVERT"; 2],
+    }
+}
+
 fn open_gl(raster: &RasterState) -> Vec<String> {
     let compare = |compare: CompareFunction| {
         let name = match compare {
@@ -182,16 +198,7 @@ fn open_gl(raster: &RasterState) -> Vec<String> {
         };
         format!("GL_{name}")
     };
-    let operation = |op: StencilOperation| match op {
-        StencilOperation::IncrementClamp => "GL_INCR",
-        StencilOperation::DecrementClamp => "GL_DECR",
-        StencilOperation::IncrementWrap => "GL_INCR_WRAP",
-        StencilOperation::DecrementWrap => "GL_DECR_WRAP",
-        StencilOperation::Keep => "GL_KEEP",
-        StencilOperation::Zero => "GL_ZERO",
-        StencilOperation::Replace => "GL_REPLACE",
-        StencilOperation::Invert => "GL_INVERT",
-    };
+    let operation = |op| format!("GL_{}", operation_in(op)[0]);
     let on = |is_on: bool, what: &str| format!("{}({what});", if is_on { "glEnable" } else { "glDisable" });
     let stencil = &raster.stencil;
     let mut lines = vec![
@@ -244,22 +251,8 @@ fn open_gl(raster: &RasterState) -> Vec<String> {
 }
 
 fn direct3d(raster: &RasterState) -> Vec<String> {
-    let compare = |compare: CompareFunction| {
-        format!("D3D12_COMPARISON_FUNC_{}", spelled(&format!("{compare:?}"), '_').to_uppercase())
-    };
-    let operation = |op: StencilOperation| {
-        let name = match op {
-            StencilOperation::IncrementClamp => "INCR_SAT",
-            StencilOperation::DecrementClamp => "DECR_SAT",
-            StencilOperation::IncrementWrap => "INCR",
-            StencilOperation::DecrementWrap => "DECR",
-            StencilOperation::Keep => "KEEP",
-            StencilOperation::Zero => "ZERO",
-            StencilOperation::Replace => "REPLACE",
-            StencilOperation::Invert => "INVERT",
-        };
-        format!("D3D12_STENCIL_OP_{name}")
-    };
+    let compare = |compare: CompareFunction| format!("D3D12_COMPARISON_FUNC_{}", spelled(compare, '_').to_uppercase());
+    let operation = |op| format!("D3D12_STENCIL_OP_{}", operation_in(op)[1]);
     let truth = |is: bool| if is { "TRUE" } else { "FALSE" };
     let stencil = &raster.stencil;
     let mask = if raster.depth_write { "ALL" } else { "ZERO" };

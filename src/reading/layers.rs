@@ -7,15 +7,24 @@ use crate::plan::DecidedBy;
 /// Names of a cube map's faces in wgpu's order.
 pub const CUBE_FACES: [&str; 6] = ["+x", "−x", "+y", "−y", "+z", "−z"];
 
-/// What the layers of a light's map hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MapContent {
-    /// How far the casters are, seen from the light.
-    Depth,
-    /// For each flat receiver, what arrives on it.
-    Textures,
-    /// For each caster, what it lets through.
-    Silhouettes,
+named_enum! {
+    /// What the layers of a light's map hold. Its name is on the button of
+    /// [`PictureKind::Map`](super::shown::PictureKind::Map).
+    pub enum MapContent(
+        /// What one sees in it.
+        meaning,
+        /// What a layer is called in the Pixel panel.
+        one,
+        /// What a light's map is called as a whole, in a sentence.
+        whole
+    ) {
+        /// How far the casters are, seen from the light.
+        Depth = "Shadow map" ("Depth as the light sees it", "map", "shadow map"),
+        /// For each flat receiver, what arrives on it.
+        Textures = "Textures" ("How much of the light arrives on each flat receiver", "texture", "textures"),
+        /// For each caster, what it lets through.
+        Silhouettes = "Silhouettes" ("How much of the light each caster lets through", "silhouette", "silhouettes"),
+    }
 }
 
 /// One layer of a light's map.
@@ -44,42 +53,6 @@ impl MapContent {
     /// Of the first light that has a map.
     pub fn of_capture(capture: &Capture) -> Option<MapContent> {
         (0..capture.lights.len()).find_map(|light| MapContent::of(capture, light))
-    }
-
-    /// On the button of [`PictureKind::Map`](super::shown::PictureKind::Map).
-    pub fn name(self) -> &'static str {
-        match self {
-            MapContent::Depth => "Shadow map",
-            MapContent::Textures => "Textures",
-            MapContent::Silhouettes => "Silhouettes",
-        }
-    }
-
-    /// What one sees in it.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            MapContent::Depth => "Depth as the light sees it",
-            MapContent::Textures => "How much of the light arrives on each flat receiver",
-            MapContent::Silhouettes => "How much of the light each caster lets through",
-        }
-    }
-
-    /// What a layer is called in the Pixel panel.
-    pub fn one(self) -> &'static str {
-        match self {
-            MapContent::Depth => "map",
-            MapContent::Textures => "texture",
-            MapContent::Silhouettes => "silhouette",
-        }
-    }
-
-    /// What a light's map is called as a whole, in a sentence.
-    pub fn whole(self) -> &'static str {
-        match self {
-            MapContent::Depth => "shadow map",
-            MapContent::Textures => "textures",
-            MapContent::Silhouettes => "silhouettes",
-        }
     }
 }
 

@@ -14,70 +14,42 @@ use crate::reading::layers::{self, MapContent, MapLayer};
 use crate::reading::moment::CapturePoint;
 use std::sync::Arc;
 
-/// A kind of picture that a capture may hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum PictureKind {
-    /// What is seen.
-    Color,
-    /// Counts and marks.
-    Stencil,
-    /// A light's signed counts, where they are not in the stencil.
-    Count,
-    /// How far the surfaces are.
-    Depth,
-    /// A technique's answer for one light.
-    Mask,
-    /// The answer that rays give for one light.
-    Truth,
-    /// Where the two differ.
-    Error,
-    /// How many fragments of the step reached each pixel.
-    Overdraw,
-    /// What a light sees: depth, or what casters let through.
-    Map,
+named_enum! {
+    /// A kind of picture that a capture may hold, in the order of their buttons: what only some frames have comes last.
+    pub enum PictureKind(
+        /// What one sees in it, whatever a light's map holds.
+        meaning
+    ) {
+        /// What is seen.
+        Color = "Colour" ("The picture so far"),
+        /// Counts and marks.
+        Stencil = "Stencil" ("The stencil count of every pixel"),
+        /// How far the surfaces are.
+        Depth = "Depth" ("How far the surface at every pixel is"),
+        /// A technique's answer for one light.
+        Mask = "Mask" ("Where the technique says that a light is blocked"),
+        /// The answer that rays give for one light.
+        Truth = "Truth" ("Where rays say that a light is blocked"),
+        /// Where the two differ.
+        Error = "Error" ("Where the technique and the truth differ"),
+        /// How many fragments of the step reached each pixel.
+        Overdraw = "Overdraw" ("How many fragments of the selected step reached every pixel"),
+        /// A light's signed counts, where they are not in the stencil.
+        Count = "Count" ("How many shadow volumes of a light contain the surface at every pixel"),
+        /// What a light sees: depth, or what casters let through.
+        Map = "Map" ("What a light sees"),
+    }
 }
 
 impl PictureKind {
-    /// All, in the order of their buttons: what only some frames have comes last.
-    pub const ALL: [PictureKind; 9] = [
-        PictureKind::Color,
-        PictureKind::Stencil,
-        PictureKind::Depth,
-        PictureKind::Mask,
-        PictureKind::Truth,
-        PictureKind::Error,
-        PictureKind::Overdraw,
-        PictureKind::Count,
-        PictureKind::Map,
-    ];
-
-    /// On its button over a capture.
-    pub fn name(self, capture: &Capture) -> &'static str {
+    /// On its button over a capture, and what one sees in it.
+    pub fn label(self, capture: &Capture) -> [&'static str; 2] {
         match self {
-            PictureKind::Color => "Colour",
-            PictureKind::Stencil => "Stencil",
-            PictureKind::Count => "Count",
-            PictureKind::Depth => "Depth",
-            PictureKind::Mask => "Mask",
-            PictureKind::Truth => "Truth",
-            PictureKind::Error => "Error",
-            PictureKind::Overdraw => "Overdraw",
-            PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).name(),
-        }
-    }
-
-    /// What one sees in it.
-    pub fn meaning(self, capture: &Capture) -> &'static str {
-        match self {
-            PictureKind::Color => "The picture so far",
-            PictureKind::Stencil => "The stencil count of every pixel",
-            PictureKind::Count => "How many shadow volumes of a light contain the surface at every pixel",
-            PictureKind::Depth => "How far the surface at every pixel is",
-            PictureKind::Mask => "Where the technique says that a light is blocked",
-            PictureKind::Truth => "Where rays say that a light is blocked",
-            PictureKind::Error => "Where the technique and the truth differ",
-            PictureKind::Overdraw => "How many fragments of the selected step reached every pixel",
-            PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).meaning(),
+            PictureKind::Map => {
+                let content = MapContent::of_capture(capture).unwrap_or(MapContent::Depth);
+                [content.name(), content.meaning()]
+            }
+            other => [other.name(), other.meaning()],
         }
     }
 

@@ -6,9 +6,9 @@ use super::states::{self, PassState};
 use super::vertices::ResolvedVertices;
 use super::{readback, rewrite};
 use crate::import::{
-    RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawShaderEffect, RawTarget, RawTexture,
-    RecordedApi, pictures,
+    RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawTarget, RawTexture, RecordedApi, pictures,
 };
+use crate::plan::ShaderEffect;
 use crate::wrap::command::{DrawCommand, EncoderCommand, FinishedCommands, PassCommand, PassTargets};
 use crate::wrap::{PipelineSource, ViewSubresource};
 use std::collections::{BTreeMap, HashMap};
@@ -267,7 +267,7 @@ impl FrameReplay {
         // What is not followed has no fragments to tell apart.
         let is_followed =
             !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
-        let is_asked = is_followed && fragment.may_discard == RawShaderEffect::Yes;
+        let is_asked = is_followed && fragment.may_discard == ShaderEffect::Yes;
         let kept =
             is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size, &mut self.room)).and_then(|kept| {
                 kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
@@ -330,15 +330,14 @@ fn unlike(described: &PipelineSource) -> Vec<&'static str> {
         .collect()
 }
 
-const UNKNOWN: RawFragment =
-    RawFragment { may_discard: RawShaderEffect::Unknown, writes_depth: RawShaderEffect::Unknown };
+const UNKNOWN: RawFragment = RawFragment { may_discard: ShaderEffect::Unknown, writes_depth: ShaderEffect::Unknown };
 
 /// Of a draw without a pipeline, which wgpu refuses.
 fn no_shape() -> crate::import::RawShape {
     crate::import::RawShape {
         cull: crate::import::RawCull::Both,
         front_is_counter_clockwise: true,
-        fill: crate::import::RawFill::Solid,
+        fill: wgpu::PolygonMode::Fill,
         bias: [0.0; 3],
         depth_clamp: false,
         depth_clip: true,
@@ -349,15 +348,15 @@ fn no_shape() -> crate::import::RawShape {
 /// What a pipeline's fragment shader may do.
 fn fragment(described: &PipelineSource) -> RawFragment {
     let Some(stage) = &described.fragment else {
-        return RawFragment { may_discard: RawShaderEffect::No, writes_depth: RawShaderEffect::No };
+        return RawFragment { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
     };
     let module = stage.source.module();
     let Some(found) = module.and_then(|module| rewrite::fragment(&module, stage.entry_point.as_deref())) else {
         return UNKNOWN;
     };
-    let may = |does: bool| if does { RawShaderEffect::Yes } else { RawShaderEffect::No };
+    let may = |does: bool| if does { ShaderEffect::Yes } else { ShaderEffect::No };
     let may_discard = match found.masks {
-        true => RawShaderEffect::Unknown,
+        true => ShaderEffect::Unknown,
         false => may(found.discards || described.multisample.alpha_to_coverage_enabled),
     };
     RawFragment { may_discard, writes_depth: may(found.writes_depth) }

@@ -1,14 +1,11 @@
 //! wgpu's states as a raw frame has them.
 
-use crate::import::{
-    RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawShape, RawStencilFace, RawStencilOperation,
-    RawTopology, RawView,
-};
+use crate::import::{RawBlend, RawCull, RawDepth, RawShape, RawStencilFace, RawTopology, RawView};
+use crate::plan::FaceMasks;
 use crate::wrap::PipelineSource;
 use crate::wrap::command::PassCommand;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use wgpu::{BlendFactor, BlendOperation, CompareFunction, StencilOperation};
 
 /// What a pass has been told and still holds.
 #[derive(Debug, Clone, Default)]
@@ -139,16 +136,9 @@ impl PassState {
     /// The stencil test, where it does something.
     pub fn stencil(&self, pipeline: &PipelineSource) -> Option<[RawStencilFace; 2]> {
         let state = &pipeline.depth_stencil.as_ref()?.stencil;
-        let face = |face: &wgpu::StencilFaceState| RawStencilFace {
-            compare: compare(face.compare),
-            reference: self.reference(),
-            compare_mask: state.read_mask as u8,
-            write_mask: state.write_mask as u8,
-            fail: operation(face.fail_op),
-            depth_fail: operation(face.depth_fail_op),
-            pass: operation(face.pass_op),
-        };
-        state.is_enabled().then(|| [face(&state.front), face(&state.back)])
+        let masks =
+            FaceMasks { reference: self.reference(), read: state.read_mask as u8, write: state.write_mask as u8 };
+        state.is_enabled().then(|| [state.front, state.back].map(|face| RawStencilFace { face, masks }))
     }
 }
 
@@ -163,11 +153,7 @@ pub fn shape(pipeline: &PipelineSource, clip_planes: bool) -> RawShape {
             Some(wgpu::Face::Back) => RawCull::Back,
         },
         front_is_counter_clockwise: primitive.front_face == wgpu::FrontFace::Ccw,
-        fill: match primitive.polygon_mode {
-            wgpu::PolygonMode::Fill => RawFill::Solid,
-            wgpu::PolygonMode::Line => RawFill::Lines,
-            wgpu::PolygonMode::Point => RawFill::Points,
-        },
+        fill: primitive.polygon_mode,
         bias: [bias.constant as f32, bias.slope_scale, bias.clamp],
         depth_clamp: primitive.unclipped_depth,
         depth_clip: !primitive.unclipped_depth,
@@ -187,8 +173,8 @@ pub fn topology(pipeline: &PipelineSource) -> RawTopology {
 /// The depth test.
 pub fn depth(pipeline: &PipelineSource) -> Option<RawDepth> {
     let state = pipeline.depth_stencil.as_ref().filter(|state| state.format.has_depth_aspect())?;
-    let (compare_with, write) = (state.depth_compare?, state.depth_write_enabled.unwrap_or(false));
-    Some(RawDepth { compare: compare(compare_with), write, bounds: false })
+    let write = state.depth_write_enabled.unwrap_or(false);
+    Some(RawDepth { compare: state.depth_compare?, write, bounds: false })
 }
 
 /// How the first colour target is written.
@@ -196,68 +182,7 @@ pub fn blend(pipeline: &PipelineSource) -> Option<RawBlend> {
     let target = pipeline.targets.first()?.as_ref()?;
     let write = [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];
     Some(RawBlend {
-        equations: target.blend.map(|blend| [equation(blend.color), equation(blend.alpha)]),
+        equations: target.blend.map(|blend| [Some(blend.color), Some(blend.alpha)]),
         write: write.map(|part| target.write_mask.contains(part)),
     })
-}
-
-fn equation(of: wgpu::BlendComponent) -> RawBlendEquation {
-    let operation = match of.operation {
-        BlendOperation::Add => "Add",
-        BlendOperation::Subtract => "Subtract",
-        BlendOperation::ReverseSubtract => "ReversedSubtract",
-        BlendOperation::Min => "Minimum",
-        BlendOperation::Max => "Maximum",
-    };
-    let [source, target] = [of.src_factor, of.dst_factor].map(|factor| factor_name(factor).to_owned());
-    RawBlendEquation { source, target, operation: operation.to_owned() }
-}
-
-/// RenderDoc's names, as imports have them.
-fn factor_name(factor: BlendFactor) -> &'static str {
-    match factor {
-        BlendFactor::Zero => "Zero",
-        BlendFactor::One => "One",
-        BlendFactor::Src => "SrcCol",
-        BlendFactor::OneMinusSrc => "InvSrcCol",
-        BlendFactor::SrcAlpha => "SrcAlpha",
-        BlendFactor::OneMinusSrcAlpha => "InvSrcAlpha",
-        BlendFactor::Dst => "DstCol",
-        BlendFactor::OneMinusDst => "InvDstCol",
-        BlendFactor::DstAlpha => "DstAlpha",
-        BlendFactor::OneMinusDstAlpha => "InvDstAlpha",
-        BlendFactor::SrcAlphaSaturated => "SrcAlphaSat",
-        BlendFactor::Constant => "FactorRGB",
-        BlendFactor::OneMinusConstant => "InvFactorRGB",
-        BlendFactor::Src1 => "Src1Col",
-        BlendFactor::OneMinusSrc1 => "InvSrc1Col",
-        BlendFactor::Src1Alpha => "Src1Alpha",
-        BlendFactor::OneMinusSrc1Alpha => "InvSrc1Alpha",
-    }
-}
-
-fn compare(of: CompareFunction) -> RawCompare {
-    match of {
-        CompareFunction::Never => RawCompare::Never,
-        CompareFunction::Less => RawCompare::Less,
-        CompareFunction::LessEqual => RawCompare::LessEqual,
-        CompareFunction::Equal => RawCompare::Equal,
-        CompareFunction::GreaterEqual => RawCompare::GreaterEqual,
-        CompareFunction::Greater => RawCompare::Greater,
-        CompareFunction::NotEqual => RawCompare::NotEqual,
-        CompareFunction::Always => RawCompare::Always,
-    }
-}
-
-fn operation(of: StencilOperation) -> RawStencilOperation {
-    match of {
-        StencilOperation::Keep => RawStencilOperation::Keep,
-        StencilOperation::Zero => RawStencilOperation::Zero,
-        StencilOperation::Replace => RawStencilOperation::Replace,
-        StencilOperation::IncrementClamp => RawStencilOperation::IncrementClamp,
-        StencilOperation::DecrementClamp => RawStencilOperation::DecrementClamp,
-        StencilOperation::Invert => RawStencilOperation::Invert,
-        StencilOperation::IncrementWrap => RawStencilOperation::IncrementWrap,
-        StencilOperation::DecrementWrap => RawStencilOperation::DecrementWrap,
-    }
 }

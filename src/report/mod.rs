@@ -20,6 +20,7 @@ pub(crate) mod tests;
 
 pub use page::PageOrigin;
 
+use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
 use crate::numbers;
 use crate::shards::{self, MergeError, ResultsFile, ShardPart};
@@ -67,17 +68,9 @@ pub struct ReportRow {
     /// At which value of a sweep; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<SweepValue>,
-    /// Pixels whose label was compared with the truth, summed over lights.
-    pub compared: u64,
-    /// Of these: dark, but lit in truth.
-    pub false_shadow: u64,
-    /// Of these: lit, but in shadow in truth.
-    pub missing_shadow: u64,
-    /// Of these: showing another surface than the truth's.
-    #[serde(default)]
-    pub wrong_surface: u64,
-    /// Pixels that differ, but are excused: they are so near an edge that no picture could be certain.
-    pub edge_band: u64,
+    /// Against the truth, summed over lights.
+    #[serde(flatten)]
+    pub error: ErrorCounts,
     /// Wrong pixels of those compared, 0 to 1; 0 where nothing was compared.
     pub wrong_fraction: f64,
     /// Pixels, background included, whose colour is not that of the ray-traced picture in the same shading; each counts
@@ -191,7 +184,7 @@ impl Report {
     pub fn new(adapter: AdapterInfo, rows: Vec<ReportRow>) -> Report {
         let mut report = Report { adapter, rows, part: None };
         for row in &mut report.rows {
-            row.wrong_fraction = if row.compared == 0 { 0.0 } else { row.wrong() as f64 / row.compared as f64 };
+            row.wrong_fraction = row.error.wrong_fraction();
         }
         report.mark_pareto();
         report
@@ -327,7 +320,7 @@ impl ReportRow {
 
     /// Wrong pixels of all kinds.
     pub fn wrong(&self) -> u64 {
-        self.false_shadow + self.missing_shadow + self.wrong_surface
+        self.error.wrong()
     }
 
     /// Has it both a usable time and something that was compared?
@@ -337,7 +330,7 @@ impl ReportRow {
 
     /// Why the row can't be ranked or drawn, in a few words.
     pub fn problem(&self) -> Option<&'static str> {
-        if self.compared == 0 {
+        if self.error.compared == 0 {
             return Some("no pixel was compared");
         }
         let is_usable = |value: f64| value.is_finite() && value >= 0.0;
@@ -371,10 +364,10 @@ impl ReportRow {
             format!(
                 "{} wrong of {}: {} false shadow, {} missing shadow, {} wrong surface",
                 count(self.wrong()),
-                count(self.compared),
-                count(self.false_shadow),
-                count(self.missing_shadow),
-                count(self.wrong_surface),
+                count(self.error.compared),
+                count(self.error.false_shadow),
+                count(self.error.missing_shadow),
+                count(self.error.wrong_surface),
             ),
             format!(
                 "{} of another colour, background included",

@@ -9,11 +9,12 @@
 //! plot.rs    what a layout is made of; charts in rows on a page
 //! around.rs  heading, legend, notes           chart.rs   one scene's chart
 //! scale.rs   log scales and their ticks       labels.rs  words beside points, apart
-//! marks.rs   shape and colour of each technique
+//! axes.rs    area, band, grid and ticks       marks.rs   shape and colour of each technique
 //! swept.rs   a sweep's page: time against its value, a line each
 //! ```
 
 mod around;
+pub(crate) mod axes;
 mod chart;
 pub(crate) mod labels;
 mod marks;
@@ -245,6 +246,11 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 }
 
 impl PlotText {
+    /// Words beside the picture's own.
+    pub(crate) fn small(at: [f64; 2], text: impl Into<String>) -> PlotText {
+        PlotText::new(at, text, SMALL_SIZE, PlotInk::Dim)
+    }
+
     /// A line of words.
     pub(crate) fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: PlotInk) -> PlotText {
         PlotText { at, text: text.into(), size, anchor: TextAnchor::Start, ink, strong: false }
@@ -271,6 +277,13 @@ impl PlotText {
     }
 }
 
+impl PlotLine {
+    /// A line that helps the eye.
+    pub(crate) fn grid(points: [[f64; 2]; 2]) -> PlotLine {
+        PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false }
+    }
+}
+
 /// Lays out the plot of `report`.
 pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     let width = page.width.max(LEAST_CHART_WIDTH);
@@ -282,7 +295,7 @@ pub fn layout(report: &Report, page: &PlotPage) -> Plot {
             (scene, (0..report.rows.len()).filter(is_drawn).collect())
         })
         .collect();
-    let mut plot = Plot { summary: summary(report), ..Plot::empty(width) };
+    let mut plot = Plot { title: TITLE.to_owned(), summary: summary(report), ..Plot::empty(width) };
     let top = if page.compact { 0.0 } else { heading(&mut plot, report) };
     let legend = if page.compact { Plot::empty(width) } else { legend(report, width) };
     let notes = notes(report, width);
@@ -312,7 +325,7 @@ pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     let notes_top = plot.size[1];
     for (index, note) in notes.into_iter().enumerate() {
         let at = [8.0, notes_top + (index as f64 + 0.5) * LINE];
-        plot.texts.push(PlotText::new(at, note, SMALL_SIZE, PlotInk::Dim));
+        plot.texts.push(PlotText::small(at, note));
         plot.size[1] = at[1] + LINE / 2.0;
     }
     plot
@@ -329,13 +342,24 @@ impl Plot {
     pub(crate) fn empty(width: f64) -> Plot {
         Plot {
             size: [width, 0.0],
-            title: TITLE.to_owned(),
+            title: String::new(),
             summary: String::new(),
             charts: Vec::new(),
             texts: Vec::new(),
             keys: Vec::new(),
             lines: Vec::new(),
         }
+    }
+
+    /// Adds the title and, in lines below it, what was measured; where the page goes on.
+    pub(crate) fn add_heading(&mut self, facts: &[String]) -> f64 {
+        self.texts.push(PlotText::new([8.0, 18.0], self.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong());
+        let mut y = 38.0;
+        for line in facts {
+            self.texts.push(PlotText::new([8.0, y], line, TEXT_SIZE, PlotInk::Dim));
+            y += LINE;
+        }
+        y
     }
 
     /// Puts a part of the page below `top`.

@@ -100,8 +100,8 @@ fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
         words("settings", &|row| shortened(&row.label, longest)),
         numbers("wrong px", &wrong),
         numbers("%", &wrong_percent),
-        numbers("false", &|row| count(row.false_shadow)),
-        numbers("missing", &|row| count(row.missing_shadow)),
+        numbers("false", &|row| count(row.error.false_shadow)),
+        numbers("missing", &|row| count(row.error.missing_shadow)),
         numbers("colour", &wrong_color),
         numbers("frame ms", &|row| times(row.frame_ms.median)),
         numbers("min–max", &|row| format!("{}–{}", spread(row.frame_ms.min), spread(row.frame_ms.max))),
@@ -159,7 +159,7 @@ fn shortened(text: &str, longest: usize) -> String {
 
 /// Wrong pixels; a dash where nothing was compared, so that 0 always means "none".
 fn wrong(row: &ReportRow) -> String {
-    if row.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
+    if row.error.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
 }
 
 /// Pixels of a wrong colour; a dash where that was not measured.
@@ -168,7 +168,7 @@ fn wrong_color(row: &ReportRow) -> String {
 }
 
 fn wrong_percent(row: &ReportRow) -> String {
-    if row.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
+    if row.error.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
 }
 
 /// Digits after the point that the shortest frame needs, the same for all so that points align; fewer where the longest
@@ -242,7 +242,7 @@ mod tests {
         let mut timed = row("tori", "z-fail", "", 0, 6.25);
         timed.gpu_ms = Some(5.5);
         let mut empty = row("table", "none", "", 0, 2.0);
-        (empty.compared, empty.wrong_color) = (0, None);
+        (empty.error.compared, empty.wrong_color) = (0, None);
         Report::new(adapter(), vec![timed, row("tori", "shadow-map", "1024", 20, 8.0), empty])
     }
 
@@ -267,9 +267,9 @@ table · 100×10
     #[test]
     fn the_longest_names_and_numbers_stay_below_140_columns() {
         let mut long = row("tori", "a-technique-with-a-very-long-name", "4096, slope 2, constant 16, pcf 5", 0, 1234.5);
-        long.compared = 3840 * 2160;
-        long.false_shadow = 2_000_000;
-        long.missing_shadow = 2_000_000;
+        long.error.compared = 3840 * 2160;
+        long.error.false_shadow = 2_000_000;
+        long.error.missing_shadow = 2_000_000;
         long.wrong_color = Some(4_000_000);
         long.triangles = 120_000_000;
         long.gpu_ms = Some(1234.5);

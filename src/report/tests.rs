@@ -15,11 +15,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
         label: label.to_owned(),
         size: [100, 10],
         sweep: None,
-        compared: 1000,
-        false_shadow: wrong,
-        missing_shadow: 0,
-        wrong_surface: 0,
-        edge_band: 7,
+        error: ErrorCounts { compared: 1000, false_shadow: wrong, edge_band: 7, ..ErrorCounts::default() },
         wrong_fraction: 0.0,
         wrong_color: Some(wrong),
         frame_ms: FrameTimes { median: ms, min: ms - 0.1, max: ms + 0.3, runs: 9 },
@@ -63,7 +59,7 @@ fn scenes_are_apart() {
 #[test]
 fn a_row_without_time_or_pixels_is_not_ranked_and_beats_none() {
     let mut nothing_compared = row("a", "x", "", 0, 0.5);
-    nothing_compared.compared = 0;
+    nothing_compared.error.compared = 0;
     let rows = vec![row("a", "y", "", 5, 1.0), row("a", "z", "", 0, f64::NAN), nothing_compared];
     assert_eq!(front_of(rows), [true, false, false]);
 }
@@ -71,7 +67,7 @@ fn a_row_without_time_or_pixels_is_not_ranked_and_beats_none() {
 #[test]
 fn the_wrong_fraction_counts_all_kinds() {
     let mut one = row("a", "x", "", 1, 1.0);
-    (one.missing_shadow, one.wrong_surface) = (2, 3);
+    (one.error.missing_shadow, one.error.wrong_surface) = (2, 3);
     let report = Report::new(adapter(), vec![one]);
     assert_eq!(report.rows[0].wrong(), 6);
     assert_eq!(report.rows[0].wrong_fraction, 0.006);

@@ -55,7 +55,7 @@ pub struct CameraRays {
 }
 
 /// A camera in world space. View space is right-handed and looks down −z.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Where the eye is, world units (metres).
     pub eye: DVec3,
@@ -64,6 +64,7 @@ pub struct Camera {
     /// Roughly up; not parallel to `target − eye`.
     pub up: DVec3,
     /// How its picture is made.
+    #[serde(default, skip_serializing_if = "Projection::is_pinhole")]
     pub projection: Projection,
     /// Vertical field of view in degrees, in (0, 180); of a pinhole alone.
     pub fov_y_degrees: f64,

@@ -7,9 +7,9 @@
 //! step that can't be mended, as in a corner too narrow, is not made.
 
 use super::wall_tree::{Wall, WallTree};
-use super::{Object, Pose, Scene};
+use super::{Object, PoseBits, Scene};
+use crate::last_used::LastUsed;
 use glam::DVec3;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Pushes that mend one step, at most.
@@ -30,28 +30,22 @@ pub struct Walls {
 #[derive(Debug, Default)]
 pub struct WallCache {
     /// By the mesh's content and the pose.
-    kept: HashMap<(u64, [u64; 9]), Arc<WallTree>>,
+    trees: LastUsed<(u64, PoseBits), Arc<WallTree>>,
 }
 
 impl WallCache {
     /// The walls of a scene at its moment: of all objects that are drawn. Those of objects that have not moved
     /// since this was last asked are not made again.
     pub fn walls(&mut self, scene: &Scene) -> Walls {
-        let before = std::mem::take(&mut self.kept);
         let tree = |object: &Object| {
-            let key = (object.mesh.content_hash(), bits(&object.pose));
-            let known = self.kept.get(&key).or_else(|| before.get(&key));
-            let tree = known.cloned().unwrap_or_else(|| Arc::new(tree_of(object)));
-            self.kept.insert(key, tree.clone());
-            tree
+            let key = (object.mesh.content_hash(), object.pose.bits());
+            self.trees.get_or_make(key, || Arc::new(tree_of(object)))
         };
-        Walls { trees: scene.objects.iter().filter(|object| object.visible).map(tree).collect() }
+        let walls = Walls { trees: scene.objects.iter().filter(|object| object.visible).map(tree).collect() };
+        // What is gone is forgotten at once.
+        self.trees.next_plan();
+        walls
     }
-}
-
-fn bits(pose: &Pose) -> [u64; 9] {
-    let [t, r, s] = [pose.translate, pose.rotate_degrees, pose.scale].map(|part| part.to_array().map(f64::to_bits));
-    [t[0], t[1], t[2], r[0], r[1], r[2], s[0], s[1], s[2]]
 }
 
 fn tree_of(object: &Object) -> WallTree {
@@ -342,7 +336,8 @@ mod tests {
         assert!((before - 6.75).abs() < 0.01 && (after - 9.75).abs() < 0.01, "{before} {after}");
         scene.objects.pop();
         assert!((ends_at(&cache.walls(&scene)) - 35.0).abs() < 1e-9);
-        assert_eq!(cache.kept.len(), 1, "what is gone is forgotten");
+        let holders = [&first.trees[0], &first.trees[1], &second.trees[1]].map(Arc::strong_count);
+        assert_eq!(holders, [3, 1, 1], "what is gone is forgotten");
     }
 
     #[test]

@@ -46,7 +46,7 @@ pub use material::{Material, Shading};
 pub use mesh::{Mesh, MeshBuilder, MeshError, MeshGroup};
 pub use model_scene::{UpAxis, model_scene};
 pub use not_taken::Unsupported;
-pub use object::{Motion, Object, Orbit, Pose, Swing};
+pub use object::{Motion, Object, Orbit, Pose, PoseBits, Swing};
 pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
 pub use picture::{ImageError, MaterialTexture, MipLevel, TextureImage};
 pub use placement::SceneBounds;

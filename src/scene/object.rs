@@ -109,7 +109,15 @@ impl Default for Pose {
     }
 }
 
+/// A pose as a key: each number's bits.
+pub type PoseBits = [[u64; 3]; 3];
+
 impl Pose {
+    /// Its bits; poses that are equal but for the sign of a zero differ.
+    pub fn bits(&self) -> PoseBits {
+        [self.translate, self.rotate_degrees, self.scale].map(|part| part.to_array().map(f64::to_bits))
+    }
+
     /// Names what makes this pose unusable, in a few words for an error line.
     ///
     /// # Errors

@@ -2,6 +2,9 @@
 //!
 //! Each box is halved at the median of its triangles along its longest axis, so a tree of `n` triangles is
 //! about `log2 n` deep whatever their sizes.
+//!
+//! `obvhs`, by which meshes are held against themselves, is no substitute: its builder (PLOC) pairs the two nearest boxes,
+//! and where tens of thousands of triangles lie in one place it takes minutes. A walk must not wait for a model like that.
 
 use crate::math::AxisBox;
 use glam::DVec3;

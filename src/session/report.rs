@@ -23,11 +23,7 @@ pub fn report_rows(
             label: label(&one.choice, among),
             size: what.size,
             sweep: None,
-            compared: one.error.compared,
-            false_shadow: one.error.false_shadow,
-            missing_shadow: one.error.missing_shadow,
-            wrong_surface: one.error.wrong_surface,
-            edge_band: one.error.edge_band,
+            error: one.error,
             wrong_fraction: 0.0,
             wrong_color: Some(one.wrong_color),
             frame_ms: FrameTimes {

@@ -71,23 +71,24 @@ named_enum! {
     }
 }
 
-/// Why a row is not what was expected.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum UnexpectedResult {
-    /// The truth has too few lit or dark pixels for the row to mean anything.
-    LittleToSee,
-    /// Wrong pixels, where none is known.
-    Wrong,
-    /// The known failure does not show.
-    NotShown,
-    /// Wrong pixels of another kind than the known failure's.
-    OtherKind,
-    /// More wrong pixels than the known failure explains.
-    TooMany,
-    /// So many pixels differ along edges that excusing them hides an error.
-    TooManyExcused,
-    /// Pixels flicker.
-    Flickers,
+named_enum! {
+    /// Why a row is not what was expected.
+    pub enum UnexpectedResult {
+        /// The truth has too few lit or dark pixels for the row to mean anything.
+        LittleToSee = "too few lit or dark pixels to compare",
+        /// Wrong pixels, where none is known.
+        Wrong = "wrong where it must be right",
+        /// The known failure does not show.
+        NotShown = "right where it is known to fail",
+        /// Wrong pixels of another kind than the known failure's.
+        OtherKind = "wrong in another way than known",
+        /// More wrong pixels than the known failure explains.
+        TooMany = "more wrong than known",
+        /// So many pixels differ along edges that excusing them hides an error.
+        TooManyExcused = "too many pixels excused along edges",
+        /// Pixels flicker.
+        Flickers = "pixels flicker",
+    }
 }
 
 impl KnownFailure {
@@ -172,14 +173,6 @@ impl ExpectedResult {
 
 impl fmt::Display for UnexpectedResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            UnexpectedResult::LittleToSee => "too few lit or dark pixels to compare",
-            UnexpectedResult::Wrong => "wrong where it must be right",
-            UnexpectedResult::NotShown => "right where it is known to fail",
-            UnexpectedResult::OtherKind => "wrong in another way than known",
-            UnexpectedResult::TooMany => "more wrong than known",
-            UnexpectedResult::TooManyExcused => "too many pixels excused along edges",
-            UnexpectedResult::Flickers => "pixels flicker",
-        })
+        f.write_str(self.name())
     }
 }

@@ -18,7 +18,10 @@
 //! `lit` and `shadow` are so in truth. Expectations are those of pictures of `measured_at` pixels: at
 //! another `size` a failure may not show, or show more.
 
-use super::{MEASURED_AT, StressCase, StressResults, StressRow, StressSummary, TechniqueCourse, TruthCounts};
+use super::{
+    MEASURED_AT, StressCase, StressResults, StressRow, StressSummary, StressVerdict, TechniqueCourse, TruthCounts,
+    UnexpectedResult,
+};
 use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
 use crate::shards::ShardPart;
@@ -27,131 +30,6 @@ use std::collections::BTreeMap;
 
 /// Version of the form.
 const SCHEMA: u32 = 1;
-
-impl StressResults {
-    /// Machine-readable; `assets/help/json.md` says what each field means.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        let rows = self.rows.iter().map(RowEntry::new).collect();
-        let summary = self.summary().iter().map(SummaryEntry::new).collect();
-        let document = Document {
-            schema: SCHEMA,
-            adapter: &self.adapter,
-            size: self.size,
-            measured_at: MEASURED_AT,
-            shard: self.part.as_ref(),
-            rows,
-            summary,
-        };
-        Ok(serde_json::to_string_pretty(&document)? + "\n")
-    }
-}
-
-#[derive(Serialize)]
-struct Document<'a> {
-    schema: u32,
-    adapter: &'a AdapterInfo,
-    size: [u32; 2],
-    measured_at: [u32; 2],
-    #[serde(skip_serializing_if = "Option::is_none")]
-    shard: Option<&'a ShardPart>,
-    rows: Vec<RowEntry<'a>>,
-    summary: Vec<SummaryEntry>,
-}
-
-#[derive(Serialize)]
-struct Parameter {
-    name: &'static str,
-    value: f64,
-}
-
-#[derive(Serialize)]
-struct RowEntry<'a> {
-    case: &'static str,
-    parameter: Parameter,
-    technique: &'static str,
-    entrant: String,
-    settings: &'a BTreeMap<String, String>,
-    compared: u64,
-    false_shadow: u64,
-    missing_shadow: u64,
-    wrong_surface: u64,
-    edge_band: u64,
-    pixels: u64,
-    lit: u64,
-    shadow: u64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    flips: Option<u64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    off_limit: Option<u64>,
-    expected: &'static str,
-    verdict: &'static str,
-    surprise: Option<String>,
-    frame_ms: f64,
-    timed_frames: usize,
-    setup_ms: f64,
-    setup_from_nothing: bool,
-}
-
-impl<'a> RowEntry<'a> {
-    fn new(row: &'a StressRow) -> RowEntry<'a> {
-        let case = StressCase::named(row.case);
-        RowEntry {
-            case: row.case,
-            parameter: Parameter { name: row.parameter.0, value: row.parameter.1 },
-            technique: row.entrant.technique.name(),
-            entrant: row.entrant.to_string(),
-            settings: &row.settings,
-            compared: row.error.compared,
-            false_shadow: row.error.false_shadow,
-            missing_shadow: row.error.missing_shadow,
-            wrong_surface: row.error.wrong_surface,
-            edge_band: row.error.edge_band,
-            pixels: row.seen.pixels,
-            lit: row.seen.lit,
-            shadow: row.seen.shadow,
-            flips: row.flips,
-            off_limit: row.off_limit,
-            expected: row.expected.name(),
-            verdict: row.verdict().name(),
-            surprise: row.surprise().map(|surprise| surprise.to_string()),
-            frame_ms: row.frame_ms,
-            timed_frames: case.map_or(1, StressCase::timed_frames),
-            setup_ms: row.setup_ms,
-            setup_from_nothing: case.is_some_and(|case| case.timed),
-        }
-    }
-}
-
-/// A document that is read: what follows from its rows is worked out anew.
-#[derive(Deserialize)]
-struct ReadDocument {
-    schema: u32,
-    adapter: AdapterInfo,
-    size: [u32; 2],
-    shard: Option<ShardPart>,
-    rows: Vec<ReadRow>,
-}
-
-#[derive(Deserialize)]
-struct ReadRow {
-    case: String,
-    parameter: ReadParameter,
-    entrant: String,
-    settings: BTreeMap<String, String>,
-    #[serde(flatten)]
-    error: ErrorCounts,
-    #[serde(flatten)]
-    seen: TruthCounts,
-    flips: Option<u64>,
-    off_limit: Option<u64>,
-    frame_ms: f64,
-    setup_ms: f64,
-}
-
-#[derive(Deserialize)]
-struct ReadParameter {
-    value: f64,
-}
 
 /// What makes JSON no results of stress cases.
 #[derive(Debug, thiserror::Error)]
@@ -176,20 +54,108 @@ pub enum StressReadError {
 }
 
 impl StressResults {
-    /// Reads what [`StressResults::to_json`] writes.
+    /// Machine-readable; `assets/help/json.md` says what each field means.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        let document = Document {
+            schema: SCHEMA,
+            adapter: self.adapter.clone(),
+            size: self.size,
+            measured_at: MEASURED_AT,
+            shard: self.part.clone(),
+            rows: self.rows.iter().map(RowEntry::new).collect(),
+            summary: self.summary().iter().map(SummaryEntry::new).collect(),
+        };
+        Ok(serde_json::to_string_pretty(&document)? + "\n")
+    }
+
+    /// Reads what [`Stress::to_json`] writes.
     pub fn from_json(text: &str) -> Result<StressResults, StressReadError> {
-        let ReadDocument { schema, adapter, size, shard: part, rows } = serde_json::from_str(text)?;
+        let Document { schema, adapter, size, shard: part, rows, .. } = serde_json::from_str(text)?;
         if schema != SCHEMA {
             return Err(StressReadError::Schema { found: schema });
         }
-        let rows = rows.into_iter().map(ReadRow::row).collect::<Result<_, _>>()?;
+        let rows = rows.into_iter().map(RowEntry::into_row).collect::<Result<_, _>>()?;
         Ok(StressResults { adapter, size, rows, part })
     }
 }
 
-impl ReadRow {
-    fn row(self) -> Result<StressRow, StressReadError> {
-        let ReadRow { case, entrant, settings, error, seen, flips, off_limit, frame_ms, setup_ms, .. } = self;
+/// What of it follows from its rows is worked out anew when it is read.
+#[derive(Serialize, Deserialize)]
+struct Document {
+    schema: u32,
+    adapter: AdapterInfo,
+    size: [u32; 2],
+    #[serde(skip_deserializing)]
+    measured_at: [u32; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shard: Option<ShardPart>,
+    rows: Vec<RowEntry>,
+    #[serde(skip_deserializing)]
+    summary: Vec<SummaryEntry>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Parameter {
+    #[serde(skip_deserializing)]
+    name: &'static str,
+    value: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct RowEntry {
+    case: String,
+    parameter: Parameter,
+    #[serde(skip_deserializing)]
+    technique: &'static str,
+    entrant: String,
+    settings: BTreeMap<String, String>,
+    #[serde(flatten)]
+    error: ErrorCounts,
+    #[serde(flatten)]
+    seen: TruthCounts,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    flips: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    off_limit: Option<u64>,
+    #[serde(skip_deserializing)]
+    expected: &'static str,
+    #[serde(skip_deserializing)]
+    verdict: &'static str,
+    #[serde(skip_deserializing)]
+    surprise: Option<UnexpectedResult>,
+    frame_ms: f64,
+    #[serde(skip_deserializing)]
+    timed_frames: usize,
+    setup_ms: f64,
+    #[serde(skip_deserializing)]
+    setup_from_nothing: bool,
+}
+
+impl RowEntry {
+    fn new(row: &StressRow) -> RowEntry {
+        let case = StressCase::named(row.case);
+        RowEntry {
+            case: row.case.to_owned(),
+            parameter: Parameter { name: row.parameter.0, value: row.parameter.1 },
+            technique: row.entrant.technique.name(),
+            entrant: row.entrant.to_string(),
+            settings: row.settings.clone(),
+            error: row.error,
+            seen: row.seen,
+            flips: row.flips,
+            off_limit: row.off_limit,
+            expected: row.expected.name(),
+            verdict: row.verdict().name(),
+            surprise: row.surprise(),
+            frame_ms: row.frame_ms,
+            timed_frames: case.map_or(1, StressCase::timed_frames),
+            setup_ms: row.setup_ms,
+            setup_from_nothing: case.is_some_and(|case| case.timed),
+        }
+    }
+
+    fn into_row(self) -> Result<StressRow, StressReadError> {
+        let RowEntry { case, entrant, settings, error, seen, flips, off_limit, frame_ms, setup_ms, .. } = self;
         let value = self.parameter.value;
         let known = StressCase::named(&case).and_then(|known| {
             let entrant = known.entrants().into_iter().find(|one| one.to_string() == entrant)?;
@@ -226,17 +192,11 @@ struct SummaryEntry {
     flips: Option<u64>,
     expected: &'static str,
     because: &'static str,
-    verdict: &'static str,
-    surprise: Option<String>,
+    verdict: StressVerdict,
+    surprise: Option<UnexpectedResult>,
     surprise_at: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    course: Option<CourseEntry>,
-}
-
-#[derive(Serialize)]
-struct CourseEntry {
-    text: String,
-    holds: bool,
+    course: Option<TechniqueCourse>,
 }
 
 impl SummaryEntry {
@@ -253,10 +213,10 @@ impl SummaryEntry {
             flips: summary.flips,
             expected: summary.expected.name(),
             because: StressCase::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
-            verdict: summary.verdict.name(),
-            surprise: summary.surprise.map(|(_, surprise)| surprise.to_string()),
+            verdict: summary.verdict,
+            surprise: summary.surprise.map(|(_, surprise)| surprise),
             surprise_at: summary.surprise.map(|(at, _)| at),
-            course: summary.course.clone().map(|TechniqueCourse { text, holds }| CourseEntry { text, holds }),
+            course: summary.course.clone(),
         }
     }
 }

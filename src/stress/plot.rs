@@ -7,11 +7,12 @@
 
 use super::{CaseNumber, Entrant, StressCase, StressResults, StressRow, value_text};
 use crate::numbers;
+use crate::report::plot::axes::{Axes, Tick};
 use crate::report::plot::labels::{self, LabelObstacles, LabelRequest};
-use crate::report::plot::scale::{self, LogScale};
+use crate::report::plot::scale::LogScale;
 use crate::report::plot::{
-    LegendKey, Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SMALL_SIZE, SceneChart, TEXT_SIZE, TITLE_SIZE,
-    TextAnchor, style_of, text_width,
+    LegendKey, Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SMALL_SIZE, SceneChart, TEXT_SIZE, style_of,
+    text_width,
 };
 
 /// Width of the page and of its two charts, and height of a chart, points.
@@ -44,10 +45,9 @@ impl StressResults {
         let mut plot = Plot::empty(PAGE);
         plot.title = "Wrong pixels where a scene is driven to its extreme".to_owned();
         plot.summary = format!("{} sweeps: the share of wrong pixels against one number each.", cases.len());
-        let title = PlotText::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong();
         let [width, height] = self.size;
         let facts = format!("{} · {width} × {height}; filled: the first value with a wrong pixel", self.adapter.name);
-        plot.texts = vec![title, PlotText::new([8.0, 38.0], facts, TEXT_SIZE, PlotInk::Dim)];
+        plot.add_heading(&[facts]);
         self.legend(&mut plot, 58.0);
         for (index, case) in cases.iter().enumerate() {
             let corner = [(index % 2) as f64 * (PAGE - CHART[0]), 74.0 + (index / 2) as f64 * (CHART[1] + 14.0)];
@@ -86,13 +86,20 @@ impl StressResults {
                 entrants.push(row.entrant);
             }
         }
-        let axes = Axes::new(case, entrants.len(), rows().map(share));
+        let [left, right] = [LEFT, CHART[0] - RIGHT];
+        let across = Across::new(case.values, [left + 10.0, right - 10.0]);
+        let tick = |value| Tick { at: across.position(value), text: value_text(value) };
+        let x_ticks = across.ticks().into_iter().map(tick).collect();
+        let outer = PlotRect { min: [left, TOP], max: [right, CHART[1] - BOTTOM] };
+        let percent = |row: &StressRow| row.error.wrong_fraction() * 100.0;
+        let axes = Axes::new(outer, (entrants.len(), LANE), rows().map(percent), 22.0, x_ticks);
+        let place = |row: &StressRow, lane| [across.position(row.parameter.1), axes.height(percent(row), lane)];
         let mut lines = axes.grid();
         let (mut spots, mut wishes, mut segments) = (Vec::new(), Vec::new(), Vec::new());
         for (lane, entrant) in entrants.iter().enumerate() {
             let style = style_of(entrant.technique.name());
             let of_entrant: Vec<&StressRow> = rows().filter(|row| row.entrant == *entrant).collect();
-            let points: Vec<[f64; 2]> = of_entrant.iter().map(|row| axes.place(row, lane)).collect();
+            let points: Vec<[f64; 2]> = of_entrant.iter().map(|row| place(row, lane)).collect();
             segments.extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
             if points.len() > 1 {
                 let ink = PlotInk::Technique(style);
@@ -118,21 +125,11 @@ impl StressResults {
         // Those that must be shown and need most room first.
         wishes.sort_by_key(|wish: &LabelRequest| std::cmp::Reverse((wish.must, wish.text.len())));
         let obstacles = LabelObstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
-        let placed = labels::place(&wishes, &obstacles);
-        lines.extend(placed.iter().flatten().filter_map(|placed| {
-            let points = placed.leader?.to_vec();
-            Some(PlotLine { points, width: 0.8, ink: placed.text.ink, faint: true })
-        }));
+        let (labels, leaders) = labels::words_and_leaders(&wishes, &obstacles);
+        lines.extend(leaders);
         spots.sort_by_key(|spot| spot.filled);
-        SceneChart {
-            title: case.name.to_owned(),
-            area: axes.area,
-            band: axes.band,
-            lines,
-            spots,
-            texts: axes.texts(case),
-            labels: placed.into_iter().flatten().map(|placed| placed.text).collect(),
-        }
+        let texts = axes.captions(case.name, case.parameter).into_iter().chain(axes.tick_texts()).collect();
+        SceneChart { title: case.name.to_owned(), area: axes.area, band: axes.band, lines, spots, texts, labels }
     }
 }
 
@@ -140,10 +137,6 @@ impl StressResults {
 fn caption(entrant: &Entrant) -> String {
     let settings: Vec<String> = entrant.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
     if settings.is_empty() { entrant.technique.name().to_owned() } else { settings.join(" ") }
-}
-
-fn share(row: &StressRow) -> f64 {
-    if row.error.compared == 0 { 0.0 } else { row.error.wrong() as f64 / row.error.compared as f64 * 100.0 }
 }
 
 fn spot(row: &StressRow, at: [f64; 2], filled: bool) -> PlotPoint {
@@ -208,66 +201,5 @@ impl Across {
                 (0..=4).map(|quarter| first + (last - first) * f64::from(quarter) / 4.0).collect()
             }
         }
-    }
-}
-
-/// A chart's scales, relative to its corner.
-struct Axes {
-    area: PlotRect,
-    band: PlotRect,
-    across: Across,
-    /// Per cent.
-    up: LogScale,
-}
-
-impl Axes {
-    fn new(case: &StressCase, lanes: usize, shares: impl Iterator<Item = f64>) -> Axes {
-        let [x0, x1] = [LEFT, CHART[0] - RIGHT];
-        let bottom = CHART[1] - BOTTOM;
-        let band = PlotRect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
-        let area = PlotRect { min: [x0, TOP], max: [x1, band.min[1] - 7.0] };
-        let range = scale::range(shares, [0.01, 10.0]);
-        let up = LogScale::new(range, [area.max[1], area.min[1]]);
-        Axes { area, band, across: Across::new(case.values, [x0 + 10.0, x1 - 10.0]), up }
-    }
-
-    fn place(&self, row: &StressRow, lane: usize) -> [f64; 2] {
-        let share = share(row);
-        let in_band = self.band.min[1] + 3.0 + (lane as f64 + 0.5) * LANE;
-        [self.across.position(row.parameter.1), if share > 0.0 { self.up.position(share) } else { in_band }]
-    }
-
-    fn levels(&self) -> impl Iterator<Item = f64> {
-        self.up.ticks(22.0).into_iter().filter(|percent| *percent <= 100.0)
-    }
-
-    fn grid(&self) -> Vec<PlotLine> {
-        let line =
-            |points: [[f64; 2]; 2]| PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false };
-        let [left, right] = [self.area.min[0], self.area.max[0]];
-        let level = self.levels().map(|tick| self.up.position(tick)).map(|y| line([[left, y], [right, y]]));
-        let upright = self.across.ticks().into_iter().flat_map(|tick| {
-            let x = self.across.position(tick);
-            [&self.area, &self.band].map(|rect| line([[x, rect.min[1]], [x, rect.max[1]]]))
-        });
-        level.chain(upright).collect()
-    }
-
-    fn texts(&self, case: &StressCase) -> Vec<PlotText> {
-        let small = |at, text: String| PlotText::new(at, text, SMALL_SIZE, PlotInk::Dim);
-        let mut texts = vec![
-            PlotText::new([8.0, 10.0], case.name, TITLE_SIZE, PlotInk::Text).strong(),
-            small([8.0, 27.0], "wrong pixels, of those compared".to_owned()),
-            small([self.area.max[0], self.band.max[1] + 28.0], case.parameter.to_owned()).anchored(TextAnchor::End),
-        ];
-        let beside = self.area.min[0] - 6.0;
-        let levels = self.levels().map(|percent| (self.up.position(percent), format!("{percent}\u{a0}%")));
-        let none = ((self.band.min[1] + self.band.max[1]) / 2.0, "none wrong".to_owned());
-        texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text).anchored(TextAnchor::End)));
-        texts.extend(self.across.ticks().into_iter().map(|tick| {
-            let at = [self.across.position(tick), self.band.max[1] + 11.0];
-            small(at, value_text(tick)).anchored(TextAnchor::Middle)
-        }));
-        texts
     }
 }

@@ -37,7 +37,7 @@ pub struct StressRow {
 }
 
 /// What the truth shows, summed over lights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct TruthCounts {
     /// All pixels.
     pub pixels: u64,

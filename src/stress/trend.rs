@@ -16,7 +16,7 @@ pub enum ExpectedTrend {
 }
 
 /// What became of one technique's rows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct TechniqueCourse {
     /// In words and numbers.
     pub text: String,

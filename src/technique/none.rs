@@ -2,9 +2,9 @@
 
 use super::PlanError;
 use super::description::{ComparisonRole, ONE_ROW, TechniqueDescription};
-use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::Lesson;
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, Visibility};
 
 /// What is said of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
@@ -24,9 +24,8 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     frame.ambient_pass();
     for light in frame.light_ids() {
-        frame.mask_pass(light, &[SurfaceDrawing::lit()]);
         let purpose = "Adds the light everywhere: nothing asks whether something stands between.";
-        frame.light_pass(light, purpose, &frame.light_everywhere());
+        frame.mask_and_light_passes(light, Visibility::Everywhere, purpose);
     }
     Ok(frame.finish())
 }

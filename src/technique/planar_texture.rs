@@ -8,7 +8,7 @@
 
 use super::PlanError;
 use super::description::{ComparisonRole, TechniqueDescription};
-use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing, SurfacePiece};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfacePiece};
 use super::lesson::{Lesson, cited};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::TextureSettings;
@@ -58,20 +58,17 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     }
     frame.ambient_pass();
     for light in frame.light_ids() {
-        let has_textures = frame.plan.lights[light.0].map.is_some();
-        let (label, drawn) = match has_textures {
-            true => (SurfaceDrawing::lit_by(Visibility::ReceiverTexture), frame.light_by(Visibility::ReceiverTexture)),
-            false => (SurfaceDrawing::lit(), frame.light_everywhere()),
-        };
-        frame.mask_pass(light, &[label]);
-        let purpose = match has_textures {
-            true => {
+        let (how, purpose) = match frame.plan.lights[light.0].map {
+            Some(_) => (
+                Visibility::ReceiverTexture,
                 "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat have none, \
-                 and are lit as if nothing stood between."
+                 and are lit as if nothing stood between.",
+            ),
+            None => {
+                (Visibility::Everywhere, "Adds the light everywhere: no flat receiver has a shadow of it that shows.")
             }
-            false => "Adds the light everywhere: no flat receiver has a shadow of it that shows.",
         };
-        frame.light_pass(light, purpose, &drawn);
+        frame.mask_and_light_passes(light, how, purpose);
     }
     Ok(frame.finish())
 }

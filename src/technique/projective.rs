@@ -57,12 +57,11 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
         };
         let how = if drawn_layers.is_empty() { Visibility::Everywhere } else { Visibility::Projected };
         if settings.is_single_pass || drawn_layers.is_empty() {
-            frame.mask_pass(light, &[SurfaceDrawing::lit_by(how)]);
             let purpose = match how {
                 Visibility::Everywhere => "Adds the light everywhere: no silhouette is on its way.",
                 _ => "Adds the light, as far as the silhouettes on its way let it through.",
             };
-            frame.light_pass(light, purpose, &frame.light_by(how));
+            frame.mask_and_light_passes(light, how, purpose);
         } else {
             multi_pass(&mut frame, light, &layers, &drawn_layers);
         }

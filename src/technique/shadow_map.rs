@@ -8,7 +8,7 @@
 use super::PlanError;
 use super::casters::{self, DarkenedObjects};
 use super::description::{ComparisonRole, TechniqueDescription};
-use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
+use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::settings::MapSettings;
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
@@ -82,20 +82,18 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     }
     frame.ambient_pass();
     for light in frame.light_ids() {
-        let has_map = frame.plan.lights[light.0].map.is_some();
-        let (label, drawn) = match has_map {
-            true => (SurfaceDrawing::lit_by(Visibility::Map), frame.light_by(Visibility::Map)),
-            false => (SurfaceDrawing::lit(), frame.light_everywhere()),
-        };
-        frame.mask_pass(light, &[label]);
-        let purpose = match has_map {
-            true => {
+        let (how, purpose) = match frame.plan.lights[light.0].map {
+            Some(_) => (
+                Visibility::Map,
                 "Adds the light, carrying every fragment into the light's map: where the map holds something nearer to \
-                 the light, the fragment is in shadow and gets nothing."
-            }
-            false => "Adds the light everywhere: no caster can darken anything, and there is no map.",
+                 the light, the fragment is in shadow and gets nothing.",
+            ),
+            None => (
+                Visibility::Everywhere,
+                "Adds the light everywhere: no caster can darken anything, and there is no map.",
+            ),
         };
-        frame.light_pass(light, purpose, &drawn);
+        frame.mask_and_light_passes(light, how, purpose);
     }
     Ok(frame.finish())
 }

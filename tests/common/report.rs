@@ -1,6 +1,7 @@
 //! A report with invented numbers, for pictures and panels.
 
 use std::collections::BTreeMap;
+use stencilscope::accuracy::ErrorCounts;
 use stencilscope::capture::AdapterInfo;
 use stencilscope::report::{FrameTimes, Report, ReportRow};
 
@@ -15,11 +16,13 @@ fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wro
         label: label.to_owned(),
         size: [1280, 720],
         sweep: None,
-        compared: 901_234,
-        false_shadow: wrong / 3,
-        missing_shadow: wrong - wrong / 3,
-        wrong_surface: 0,
-        edge_band: 20_366,
+        error: ErrorCounts {
+            compared: 901_234,
+            false_shadow: wrong / 3,
+            missing_shadow: wrong - wrong / 3,
+            wrong_surface: 0,
+            edge_band: 20_366,
+        },
         wrong_fraction: 0.0,
         wrong_color: Some(wrong + wrong / 8),
         frame_ms: FrameTimes { median: ms, min: ms * (1.0 - spread), max: ms * (1.0 + 2.5 * spread), runs: 15 },

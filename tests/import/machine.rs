@@ -7,10 +7,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use stencilscope::capture::Image;
 use stencilscope::glam::DVec3;
-use stencilscope::import::{
-    RawCompare, RawContents, RawCull, RawDraw, RawFrame, RawKind, RawShaderEffect, RawStencilFace, RawStencilOperation,
-    RawTarget,
-};
+use stencilscope::import::{RawContents, RawCull, RawDraw, RawFrame, RawKind, RawStencilFace, RawTarget};
+use stencilscope::plan::ShaderEffect;
+use stencilscope::wgpu::{CompareFunction, StencilOperation};
 
 /// A draw held against what was stored after it.
 #[derive(Debug)]
@@ -36,7 +35,7 @@ pub fn compare(frame: &RawFrame) -> Vec<Compared> {
         let Some(target) = event.depth_target else { continue };
         let before = held.insert(target, event.after.clone());
         let (RawKind::Draw(draw), Some(before)) = (&event.kind, before) else { continue };
-        if draw.fragment.may_discard != RawShaderEffect::No {
+        if draw.fragment.may_discard != ShaderEffect::No {
             continue;
         }
         let texture = &frame.textures[target.texture];
@@ -154,8 +153,8 @@ impl Machine {
         let passes_depth = draw.depth.is_none_or(|test| compares(test.compare, depth, self.depth[at]));
         let face = draw.stencil.map(|[front, back]| if is_front { front } else { back });
         let passes_stencil = face.is_none_or(|face| {
-            let [reference, stored] = [face.reference, self.stencil[at]].map(|value| value & face.compare_mask);
-            compares(face.compare, f64::from(reference), f64::from(stored))
+            let [reference, stored] = [face.masks.reference, self.stencil[at]].map(|value| value & face.masks.read);
+            compares(face.face.compare, f64::from(reference), f64::from(stored))
         });
         if let Some(face) = face {
             self.stencil[at] = after(&face, self.stencil[at], passes_stencil, passes_depth);
@@ -199,34 +198,34 @@ fn depths(image: &Image) -> impl Iterator<Item = f32> {
     image.rows().flat_map(|row| row.as_chunks::<4>().0).map(|depth| f32::from_le_bytes(*depth))
 }
 
-fn after(face: &RawStencilFace, stored: u8, passes_stencil: bool, passes_depth: bool) -> u8 {
+fn after(RawStencilFace { face, masks }: &RawStencilFace, stored: u8, passes_stencil: bool, passes_depth: bool) -> u8 {
     let operation = match (passes_stencil, passes_depth) {
-        (false, _) => face.fail,
-        (true, false) => face.depth_fail,
-        (true, true) => face.pass,
+        (false, _) => face.fail_op,
+        (true, false) => face.depth_fail_op,
+        (true, true) => face.pass_op,
     };
     let new = match operation {
-        RawStencilOperation::Keep => stored,
-        RawStencilOperation::Zero => 0,
-        RawStencilOperation::Replace => face.reference,
-        RawStencilOperation::IncrementClamp => stored.saturating_add(1),
-        RawStencilOperation::DecrementClamp => stored.saturating_sub(1),
-        RawStencilOperation::Invert => !stored,
-        RawStencilOperation::IncrementWrap => stored.wrapping_add(1),
-        RawStencilOperation::DecrementWrap => stored.wrapping_sub(1),
+        StencilOperation::Keep => stored,
+        StencilOperation::Zero => 0,
+        StencilOperation::Replace => masks.reference,
+        StencilOperation::IncrementClamp => stored.saturating_add(1),
+        StencilOperation::DecrementClamp => stored.saturating_sub(1),
+        StencilOperation::Invert => !stored,
+        StencilOperation::IncrementWrap => stored.wrapping_add(1),
+        StencilOperation::DecrementWrap => stored.wrapping_sub(1),
     };
-    new & face.write_mask | stored & !face.write_mask
+    new & masks.write | stored & !masks.write
 }
 
-fn compares(compare: RawCompare, new: f64, stored: f64) -> bool {
+fn compares(compare: CompareFunction, new: f64, stored: f64) -> bool {
     match compare {
-        RawCompare::Never => false,
-        RawCompare::Less => new < stored,
-        RawCompare::LessEqual => new <= stored,
-        RawCompare::Equal => new == stored,
-        RawCompare::GreaterEqual => new >= stored,
-        RawCompare::Greater => new > stored,
-        RawCompare::NotEqual => new != stored,
-        RawCompare::Always => true,
+        CompareFunction::Never => false,
+        CompareFunction::Less => new < stored,
+        CompareFunction::LessEqual => new <= stored,
+        CompareFunction::Equal => new == stored,
+        CompareFunction::GreaterEqual => new >= stored,
+        CompareFunction::Greater => new > stored,
+        CompareFunction::NotEqual => new != stored,
+        CompareFunction::Always => true,
     }
 }

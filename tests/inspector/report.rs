@@ -149,7 +149,7 @@ fn scenes_are_headed_and_narrow_windows_have_plot_and_table_below_each_other() {
 fn odd_rows_and_errors_are_shown() {
     let mut report = one_scene();
     report.rows[0].frame_ms.median = f64::NAN;
-    report.rows[1].compared = 0;
+    report.rows[1].error.compared = 0;
     report.rows[2].settings = BTreeMap::from([("of".to_owned(), "the future".to_owned())]);
     report.rows[2].technique = "later".to_owned();
     report.mark_pareto();

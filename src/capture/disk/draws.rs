@@ -32,7 +32,7 @@ pub(super) fn write(
         entries.push(DrawStateEntry {
             name: draw.name.clone(),
             caster: draw.caster.clone(),
-            part: draw.part.name().to_owned(),
+            part: draw.part,
             files: state_files(folder, &format!("{stem}.draw{index:03}"), step, state, capture, written)?,
         });
     }

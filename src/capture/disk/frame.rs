@@ -6,12 +6,13 @@ use super::super::{files, npy::Element};
 use super::{Capture, CaptureError, Image};
 use crate::capture::PixelFormat;
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, ExtrudedCorner, FramePlan,
-    LightId, MakeImage, PlanLight, PlanTexture, StartContent, SurfaceData, lint,
+    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
+    PlanLight, PlanTexture, StartContent, SurfaceData, lint,
 };
 use crate::scene::TextureImage;
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::hash::BuildHasher;
 use std::path::Path;
@@ -109,29 +110,28 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
         let DrawMesh { name, vertices, indices, surface, extruded, kept } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
-            vertices: put.blob("vertices", vertices, |values| (values.as_flattened(), 4))?,
-            indices: put.blob("indices", indices, |values| (values, 3))?,
+            vertices: put.blob::<f32, _>("vertices", vertices, 4)?,
+            indices: put.blob::<u32, _>("indices", indices, 3)?,
             surface: match surface {
                 None => None,
                 Some(SurfaceData { normals, sides, uvs }) => Some(SurfaceEntry {
-                    normals: put.blob("normals", normals, |values| (values.as_flattened(), 4))?,
-                    sides: put.blob("sides", sides, |values| (values, 1))?,
+                    normals: put.blob::<f32, _>("normals", normals, 4)?,
+                    sides: put.blob::<u32, _>("sides", sides, 1)?,
                     uvs: match uvs {
                         None => None,
-                        Some(uvs) => Some(put.blob("uvs", uvs, |values| (values.as_flattened(), 2))?),
+                        Some(uvs) => Some(put.blob::<f32, _>("uvs", uvs, 2)?),
                     },
                 }),
             },
             extruded: match extruded {
                 None => None,
-                Some(Extruded { corners, carry }) => Some(ExtrudedEntry {
-                    corners: put.blob("corners", corners, |values| (bytemuck::cast_slice::<_, f32>(values), 8))?,
-                    carry: *carry,
-                }),
+                Some(Extruded { corners, carry }) => {
+                    Some(ExtrudedEntry { corners: put.blob::<f32, _>("corners", corners, 8)?, carry: *carry })
+                }
             },
             kept: match kept {
                 None => None,
-                Some(kept) => Some(put.blob("kept", kept, |values| (values.as_flattened(), 2))?),
+                Some(kept) => Some(put.blob::<u32, _>("kept", kept, 2)?),
             },
         });
     }
@@ -149,9 +149,9 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     for (pass, of) in plan.passes.iter().enumerate() {
         let Some(start) = of.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) else { continue };
         let mut put = ArrayWriter { folder, stem: format!("pass{pass:03}.start"), written: &mut written };
-        let depth = start.depth.as_ref().map(|depth| put.blob("depth", depth, |values| (values, 1))).transpose()?;
+        let depth = start.depth.as_ref().map(|depth| put.blob::<f32, _>("depth", depth, 1)).transpose()?;
         let stencil = start.stencil.as_ref();
-        let stencil = stencil.map(|stencil| put.blob("stencil", stencil, |values| (values, 1))).transpose()?;
+        let stencil = stencil.map(|stencil| put.blob::<u8, _>("stencil", stencil, 1)).transpose()?;
         entry.starts.push(StartEntry { pass, depth, stencil });
     }
     files::write(&folder.join(FRAME), |out| Ok(serde_json::to_writer(out, &entry)?))
@@ -166,19 +166,19 @@ struct ArrayWriter<'a> {
 }
 
 impl ArrayWriter<'_> {
-    fn blob<T: bytemuck::Pod, V: Element>(
+    /// As numbers, so many a row.
+    fn blob<N: Element, T: bytemuck::Pod>(
         &mut self,
         kind: &'static str,
         blob: &Blob<T>,
-        flat: impl FnOnce(&[T]) -> (&[V], u64),
+        columns: u64,
     ) -> Result<String, CaptureError> {
         let key = (kind, blob.hash(), blob.data().len());
         if let Some(file) = self.written.get(&key) {
             return Ok(file.clone());
         }
         let file = format!("{}.{kind}.npy", self.stem);
-        let (values, columns) = flat(blob.data());
-        files::write_values(&self.folder.join(&file), values, columns)?;
+        files::write_values::<N>(&self.folder.join(&file), bytemuck::cast_slice(blob.data()), columns)?;
         self.written.insert(key, file.clone());
         Ok(file)
     }
@@ -199,19 +199,20 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         let surface = match surface {
             None => None,
             Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
-                normals: get.rows(&normals)?,
-                sides: get.words(&sides, 1)?,
-                uvs: uvs.map(|file| get.pairs(&file)).transpose()?,
+                normals: get.blob::<f32, _>(&normals, 4)?,
+                sides: get.blob::<u32, _>(&sides, 1)?,
+                uvs: uvs.map(|file| get.blob::<f32, _>(&file, 2)).transpose()?,
             }),
         };
-        let indices = get.words(&indices, 3)?;
+        let indices = get.blob::<u32, _>(&indices, 3)?;
         plan.meshes.push(match extruded {
             None => {
-                let kept = kept.map(|file| kept_fragments(folder, &file)).transpose()?;
-                DrawMesh { surface, kept, ..DrawMesh::of_blobs(name, get.rows(&vertices)?, indices) }
+                let kept = kept.map(|file| get.kept_fragments(&file)).transpose()?;
+                let vertices = get.blob::<f32, _>(&vertices, 4)?;
+                DrawMesh { surface, kept, ..DrawMesh::of_blobs(name, vertices, indices) }
             }
             Some(ExtrudedEntry { corners, carry }) => {
-                let corners = get.corners(&corners)?;
+                let corners = get.blob::<f32, _>(&corners, 8)?;
                 DrawMesh::of_extruded(name, Extruded { corners, carry }, indices)
             }
         });
@@ -228,24 +229,13 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     for StartEntry { pass, depth, stencil } in entry.starts {
         let recorded = plan.passes.get_mut(pass).and_then(|pass| pass.recorded.as_mut());
         let recorded = recorded.ok_or_else(|| wrong("it names a pass that is not there".to_owned()))?;
-        let depth = depth.map(|file| files::read_values(&plain(folder, &file)?, 1).map(Blob::new)).transpose()?;
-        let stencil = stencil.map(|file| files::read_values(&plain(folder, &file)?, 1).map(Blob::new)).transpose()?;
+        let depth = depth.map(|file| get.blob::<f32, _>(&file, 1)).transpose()?;
+        let stencil = stencil.map(|file| get.blob::<u8, _>(&file, 1)).transpose()?;
         recorded.start = Some(StartContent { depth, stencil });
     }
     match inconsistency(&plan, capture) {
         Some(reason) => Err(wrong(reason)),
         None => Ok(Some(plan)),
-    }
-}
-
-/// The fragments that a shader has kept; they are searched, so that their order counts.
-fn kept_fragments(folder: &Path, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
-    let path = plain(folder, file)?;
-    let words: Vec<u32> = files::read_values(&path, 2)?;
-    let kept = words.as_chunks::<2>().0.to_vec();
-    match kept.is_sorted() {
-        true => Ok(Blob::new(kept)),
-        false => Err(CaptureError::Read { file: path, reason: "its fragments are not in order".to_owned() }),
     }
 }
 
@@ -263,10 +253,7 @@ fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> 
 /// Reads each array once.
 struct ArrayReader<'a> {
     folder: &'a Path,
-    rows: BTreeMap<String, Blob<[f32; 4]>>,
-    pairs: BTreeMap<String, Blob<[f32; 2]>>,
-    corners: BTreeMap<String, Blob<ExtrudedCorner>>,
-    words: BTreeMap<String, Blob<u32>>,
+    blobs: BTreeMap<String, Box<dyn Any>>,
     pictures: BTreeMap<String, Arc<TextureImage>>,
     /// How many more they may have.
     texels_left: u64,
@@ -276,25 +263,33 @@ impl ArrayReader<'_> {
     fn new(folder: &Path) -> ArrayReader<'_> {
         ArrayReader {
             folder,
-            rows: BTreeMap::new(),
-            pairs: BTreeMap::new(),
-            corners: BTreeMap::new(),
-            words: BTreeMap::new(),
+            blobs: BTreeMap::new(),
             pictures: BTreeMap::new(),
             texels_left: TextureImage::MOST_TOGETHER,
         }
     }
 
-    fn rows(&mut self, file: &str) -> Result<Blob<[f32; 4]>, CaptureError> {
-        floats(self.folder, &mut self.rows, file)
+    /// Of a file of numbers, so many a row.
+    fn blob<N: Element, T: bytemuck::Pod>(&mut self, file: &str, columns: u64) -> Result<Blob<T>, CaptureError> {
+        if let Some(known) = self.blobs.get(file).and_then(|known| known.downcast_ref::<Blob<T>>()) {
+            return Ok(known.clone());
+        }
+        let numbers: Vec<N> = files::read_values(&plain(self.folder, file)?, columns)?;
+        let blob = Blob::<T>::new(bytemuck::cast_slice(&numbers).to_vec());
+        self.blobs.insert(file.to_owned(), Box::new(blob.clone()));
+        Ok(blob)
     }
 
-    fn pairs(&mut self, file: &str) -> Result<Blob<[f32; 2]>, CaptureError> {
-        floats(self.folder, &mut self.pairs, file)
-    }
-
-    fn corners(&mut self, file: &str) -> Result<Blob<ExtrudedCorner>, CaptureError> {
-        floats(self.folder, &mut self.corners, file)
+    /// The fragments that a shader has kept; they are searched, so that their order counts.
+    fn kept_fragments(&mut self, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
+        let kept = self.blob::<u32, [u32; 2]>(file, 2)?;
+        match kept.data().is_sorted() {
+            true => Ok(kept),
+            false => {
+                let reason = "its fragments are not in order".to_owned();
+                Err(CaptureError::Read { file: self.folder.join(file), reason })
+            }
+        }
     }
 
     /// By the name that it was asked for by first.
@@ -310,30 +305,6 @@ impl ArrayReader<'_> {
         self.pictures.insert(file.to_owned(), Arc::clone(&picture));
         Ok(picture)
     }
-
-    fn words(&mut self, file: &str, columns: u64) -> Result<Blob<u32>, CaptureError> {
-        if let Some(known) = self.words.get(file) {
-            return Ok(known.clone());
-        }
-        let blob = Blob::new(files::read_values(&plain(self.folder, file)?, columns)?);
-        self.words.insert(file.to_owned(), blob.clone());
-        Ok(blob)
-    }
-}
-
-/// An array of rows of so many floats as a value has.
-fn floats<T: bytemuck::Pod>(
-    folder: &Path,
-    known: &mut BTreeMap<String, Blob<T>>,
-    file: &str,
-) -> Result<Blob<T>, CaptureError> {
-    if let Some(known) = known.get(file) {
-        return Ok(known.clone());
-    }
-    let values: Vec<f32> = files::read_values(&plain(folder, file)?, size_of::<T>() as u64 / 4)?;
-    let blob = Blob::new(bytemuck::cast_slice(&values).to_vec());
-    known.insert(file.to_owned(), blob.clone());
-    Ok(blob)
 }
 
 /// A picture that was made before.

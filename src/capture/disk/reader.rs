@@ -1,11 +1,12 @@
 //! Reads a capture folder. What it says is not trusted: every file, size and index is checked.
 
-use super::super::manifest::{self, LightEntry, Manifest, PassEntry, RegionEntry, StateFiles};
+use super::super::manifest::{self, LightEntry, Manifest, PassEntry, StateFiles};
 use super::super::{
-    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, FrameTarget, Image,
-    PixelFormat, Snapshot, Step, files,
+    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, FrameTarget, Image, PixelFormat,
+    Snapshot, Step, files,
 };
 use super::{CaptureError, MANIFEST, PLAN, SCENE, WholeFrame, frame};
+use crate::accuracy::WrongRegion;
 use crate::math::depth::DepthMapping;
 use crate::scene;
 use std::collections::BTreeMap;
@@ -43,7 +44,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         settings: manifest.settings,
         size: manifest.size,
         adapter: manifest.adapter,
-        camera: (&manifest.camera).into(),
+        camera: manifest.camera,
         depth: manifest.depth.unwrap_or_else(|| DepthMapping::ReversedInfinite.curve(manifest.camera.near, 0.0, 0.0)),
         steps,
         lights,
@@ -140,10 +141,7 @@ impl FolderReader<'_> {
     }
 
     fn step(&mut self, pass: &PassEntry, lights: &[CapturedLight]) -> Result<Step, CaptureError> {
-        let draws = pass.draw_list.iter().map(|draw| {
-            draw.to_summary().ok_or_else(|| self.wrong(MANIFEST, "it names a part of a draw that is not known"))
-        });
-        let mut draws = draws.collect::<Result<Vec<DrawSummary>, _>>()?;
+        let mut draws = pass.draw_list.clone();
         let files = &pass.files;
         let snapshot = match (files.map.as_ref().or(files.textures.as_ref()), pass.light) {
             (Some(_), Some(light)) => {
@@ -188,23 +186,18 @@ impl FolderReader<'_> {
         let (Some(labels), Some(findings), Some(error)) = (&entry.truth, &entry.error_picture, entry.error) else {
             return Ok(None);
         };
-        let is_known = |region: &RegionEntry| {
-            let [left, top, right, bottom] = region.bounds;
+        let is_possible = |WrongRegion { kind, bounds: [left, top, right, bottom], at, .. }: WrongRegion| {
             let is_inside = left <= right && right < self.size[0] && top <= bottom && bottom < self.size[1];
-            region.to_region().filter(|_| is_inside && region.at[0] <= right && region.at[1] <= bottom)
+            kind.is_wrong() && is_inside && at[0] <= right && at[1] <= bottom
         };
-        let worst = match &entry.worst_region {
-            None => None,
-            Some(region) => {
-                let wrong = || self.wrong(MANIFEST, "its worst region is outside the picture or of no known kind");
-                Some(is_known(region).ok_or_else(wrong)?)
-            }
-        };
+        if !entry.worst_region.is_none_or(is_possible) {
+            return Err(self.wrong(MANIFEST, "its worst region is outside the picture or of no known kind"));
+        }
         Ok(Some(CapturedTruth {
             labels: self.image(labels, PixelFormat::U8)?,
             findings: self.image(findings, PixelFormat::U8)?,
             error,
-            worst,
+            worst: entry.worst_region,
         }))
     }
 

@@ -238,10 +238,8 @@ impl<'a> PassBuilder<'a> {
         self.meshes.push(mesh_of(draw, name.clone()));
         let target = self.frame.textures[self.stage.target(place).texture].format.clone();
         let raster = states::raster(draw, cull, place != DrawTarget::Colors && target.has_stencil());
-        let program = Program::Recorded {
-            may_discard: states::may(draw.fragment.may_discard),
-            writes_depth: states::may(draw.fragment.writes_depth),
-        };
+        let program =
+            Program::Recorded { may_discard: draw.fragment.may_discard, writes_depth: draw.fragment.writes_depth };
         if let (Some(DrawState { snapshot: Snapshot::Frame(after), .. }), Snapshot::Frame(snapshot)) =
             (&after, &mut step.snapshot)
         {

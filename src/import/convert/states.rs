@@ -4,43 +4,30 @@
 //! the program's are not so. Which way round a triangle runs was told as it is seen, so that stays.
 
 use super::stage::DrawTarget;
-use crate::import::raw::{
-    RawBlend, RawCompare, RawCull, RawDepth, RawDraw, RawFill, RawShaderEffect, RawStencilFace, RawStencilOperation,
-};
-use crate::plan::{ColorWrite, CountedSide, FaceMasks, RasterState, ShaderEffect, StencilFace, Viewport};
-use wgpu::{CompareFunction, StencilOperation};
+use crate::import::raw::{RawBlend, RawCull, RawDepth, RawDraw, RawStencilFace};
+use crate::plan::{ColorWrite, CountedSide, RasterState, Viewport};
+use wgpu::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
 
 named_enum! {
     /// What a run of draws is for, as its states say.
-    pub enum DrawRole {
+    pub enum DrawRole(
+        /// One sentence for the learner.
+        purpose
+    ) {
         /// Draws surfaces: depth is written.
-        Surfaces = "surfaces",
+        Surfaces = "surfaces" ("Surfaces are drawn, and the nearest leave their depth."),
         /// Counts in the stencil, as shadow volumes do.
-        Counts = "volumes",
+        Counts = "volumes" ("Faces add to the stencil or take away from it, as those of shadow volumes do."),
         /// Marks the stencil with a value.
-        Marks = "marks",
+        Marks = "marks" ("The stencil is set to a value where these draws show."),
         /// Draws where the stencil test passes, as what a light adds.
-        Tests = "light",
+        Tests = "light" (
+            "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
+        ),
         /// Fills a depth map.
-        FillsMap = "map",
+        FillsMap = "map" ("Depth alone is drawn into a picture of its own: a shadow map."),
         /// Draws over what is there.
-        Overlays = "overlay",
-    }
-}
-
-impl DrawRole {
-    /// One sentence for the learner.
-    pub fn purpose(self) -> &'static str {
-        match self {
-            DrawRole::Surfaces => "Surfaces are drawn, and the nearest leave their depth.",
-            DrawRole::Counts => "Faces add to the stencil or take away from it, as those of shadow volumes do.",
-            DrawRole::Marks => "The stencil is set to a value where these draws show.",
-            DrawRole::Tests => {
-                "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
-            }
-            DrawRole::FillsMap => "Depth alone is drawn into a picture of its own: a shadow map.",
-            DrawRole::Overlays => "Colours are drawn over what is there; no depth is left.",
-        }
+        Overlays = "overlay" ("Colours are drawn over what is there; no depth is left."),
     }
 }
 
@@ -50,11 +37,12 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
         return DrawRole::FillsMap;
     }
     let faces = draw.stencil.as_ref().map_or(&[][..], |faces| &faces[..]);
-    let operations = |face: &RawStencilFace| [face.fail, face.depth_fail, face.pass];
-    let writing = faces.iter().filter(|face| face.write_mask != 0).flat_map(operations);
-    let writes: Vec<RawStencilOperation> = writing.filter(|op| *op != RawStencilOperation::Keep).collect();
-    let counts = writes.iter().any(|operation| steps(*operation) != 0);
-    let tests = faces.iter().any(|face| !matches!(face.compare, RawCompare::Always | RawCompare::Never));
+    let operations = |RawStencilFace { face, .. }: &RawStencilFace| [face.fail_op, face.depth_fail_op, face.pass_op];
+    let writing = faces.iter().filter(|face| face.masks.write != 0).flat_map(operations);
+    let writes: Vec<StencilOperation> = writing.filter(|op| *op != StencilOperation::Keep).collect();
+    let counts = writes.iter().any(|operation| counts(*operation));
+    let tests = |compare: CompareFunction| !matches!(compare, CompareFunction::Always | CompareFunction::Never);
+    let tests = faces.iter().any(|face| tests(face.face.compare));
     // What is drawn where a test lets it, and steps there so that nothing is drawn twice, is light and no volume.
     let draws = draw.blend.as_ref().is_some_and(|blend| blend.write.contains(&true));
     let counts = counts && !(tests && draws);
@@ -68,26 +56,19 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     }
 }
 
-/// What an operation adds.
-fn steps(operation: RawStencilOperation) -> i32 {
-    match operation {
-        RawStencilOperation::IncrementClamp | RawStencilOperation::IncrementWrap => 1,
-        RawStencilOperation::DecrementClamp | RawStencilOperation::DecrementWrap => -1,
-        _ => 0,
-    }
+/// Does an operation add, or take away?
+fn counts(operation: StencilOperation) -> bool {
+    matches!(
+        operation,
+        StencilOperation::IncrementClamp
+            | StencilOperation::IncrementWrap
+            | StencilOperation::DecrementClamp
+            | StencilOperation::DecrementWrap
+    )
 }
 
 /// On which side of the surface a counting state counts.
 pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
-    let counts = |operation: StencilOperation| {
-        matches!(
-            operation,
-            StencilOperation::IncrementClamp
-                | StencilOperation::IncrementWrap
-                | StencilOperation::DecrementClamp
-                | StencilOperation::DecrementWrap
-        )
-    };
     let faces = [&raster.stencil.front, &raster.stencil.back];
     let behind = faces.iter().any(|face| counts(face.depth_fail_op)).then_some(CountedSide::Behind);
     let in_front = faces.iter().any(|face| counts(face.pass_op)).then_some(CountedSide::InFront);
@@ -114,7 +95,7 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static st
     if !draw.shape.bias.iter().chain(&draw.view.depth_range).all(|value| value.is_finite()) {
         return Err("its depth bias or depth range is no number");
     }
-    if draw.shape.fill != RawFill::Solid {
+    if draw.shape.fill != PolygonMode::Fill {
         return Err("its triangles are not filled");
     }
     match draw.shape.cull {
@@ -158,7 +139,7 @@ pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool
     let shape = &draw.shape;
     let [constant, slope_scale, clamp] = shape.bias;
     let (depth_compare, depth_write) = match draw.depth {
-        Some(RawDepth { compare, write, .. }) => (compared(compare), write),
+        Some(RawDepth { compare, write, .. }) => (compare, write),
         None => (CompareFunction::Always, false),
     };
     let front_face = if shape.front_is_counter_clockwise { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
@@ -173,72 +154,25 @@ pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool
         ..RasterState::surface()
     };
     let Some([front, back]) = draw.stencil.filter(|_| has_stencil) else { return state };
-    let mut state = state.with_faces(face(&front), face(&back), front.reference);
-    state.stencil.read_mask = front.compare_mask.into();
-    state.stencil.write_mask = front.write_mask.into();
-    let masks = |face: &RawStencilFace| FaceMasks {
-        reference: face.reference,
-        read: face.compare_mask,
-        write: face.write_mask,
-    };
-    state.back = Some(masks(&back)).filter(|of_back| *of_back != masks(&front));
+    let mut state = state.with_faces(front.face, back.face, front.masks.reference);
+    state.stencil.read_mask = front.masks.read.into();
+    state.stencil.write_mask = front.masks.write.into();
+    state.back = Some(back.masks).filter(|of_back| *of_back != front.masks);
     state
-}
-
-fn face(face: &RawStencilFace) -> StencilFace {
-    StencilFace {
-        compare: compared(face.compare),
-        fail_op: operation(face.fail),
-        depth_fail_op: operation(face.depth_fail),
-        pass_op: operation(face.pass),
-    }
 }
 
 fn color(blend: &RawBlend) -> ColorWrite {
     if blend.write == [false; 4] {
         return ColorWrite::None;
     }
-    let Some([equation, _]) = &blend.equations else { return ColorWrite::Replace };
-    match (equation.source.as_str(), equation.target.as_str(), equation.operation.as_str()) {
-        ("One", "Zero", "Add") => ColorWrite::Replace,
-        ("One", "One", "Add") => ColorWrite::Add,
-        ("DstCol", "Zero", "Add") | ("Zero", "SrcCol", "Add") => ColorWrite::Multiply,
-        (_, _, "Minimum") => ColorWrite::Minimum,
+    let Some([equation, _]) = blend.equations else { return ColorWrite::Replace };
+    let Some(BlendComponent { src_factor, dst_factor, operation }) = equation else { return ColorWrite::Blend };
+    match (src_factor, dst_factor, operation) {
+        (BlendFactor::One, BlendFactor::Zero, BlendOperation::Add) => ColorWrite::Replace,
+        (BlendFactor::One, BlendFactor::One, BlendOperation::Add) => ColorWrite::Add,
+        (BlendFactor::Dst, BlendFactor::Zero, BlendOperation::Add)
+        | (BlendFactor::Zero, BlendFactor::Src, BlendOperation::Add) => ColorWrite::Multiply,
+        (_, _, BlendOperation::Min) => ColorWrite::Minimum,
         _ => ColorWrite::Blend,
-    }
-}
-
-/// In the plan's words.
-pub(super) fn may(may: RawShaderEffect) -> ShaderEffect {
-    match may {
-        RawShaderEffect::No => ShaderEffect::No,
-        RawShaderEffect::Yes => ShaderEffect::Yes,
-        RawShaderEffect::Unknown => ShaderEffect::Unknown,
-    }
-}
-
-fn compared(compare: RawCompare) -> CompareFunction {
-    match compare {
-        RawCompare::Never => CompareFunction::Never,
-        RawCompare::Less => CompareFunction::Less,
-        RawCompare::LessEqual => CompareFunction::LessEqual,
-        RawCompare::Equal => CompareFunction::Equal,
-        RawCompare::GreaterEqual => CompareFunction::GreaterEqual,
-        RawCompare::Greater => CompareFunction::Greater,
-        RawCompare::NotEqual => CompareFunction::NotEqual,
-        RawCompare::Always => CompareFunction::Always,
-    }
-}
-
-fn operation(operation: RawStencilOperation) -> StencilOperation {
-    match operation {
-        RawStencilOperation::Keep => StencilOperation::Keep,
-        RawStencilOperation::Zero => StencilOperation::Zero,
-        RawStencilOperation::Replace => StencilOperation::Replace,
-        RawStencilOperation::IncrementClamp => StencilOperation::IncrementClamp,
-        RawStencilOperation::DecrementClamp => StencilOperation::DecrementClamp,
-        RawStencilOperation::Invert => StencilOperation::Invert,
-        RawStencilOperation::IncrementWrap => StencilOperation::IncrementWrap,
-        RawStencilOperation::DecrementWrap => StencilOperation::DecrementWrap,
     }
 }

@@ -22,27 +22,21 @@ use std::sync::Arc;
 /// What the divider moves by a key press, in shares of the panel.
 pub const NUDGE: f32 = 0.02;
 
-/// Which side of the selected step or draw is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum StepPhase {
-    /// As it was before.
-    Before,
-    /// As it is now.
-    #[default]
-    After,
-    /// What changed.
-    Diff,
-}
-
-impl StepPhase {
-    /// In the order of their buttons.
-    pub const ALL: [StepPhase; 3] = [StepPhase::Before, StepPhase::After, StepPhase::Diff];
-    /// Labels and explanations of the buttons.
-    pub const LABELS: [(&'static str, &'static str); 3] = [
-        ("Before", "As it was before the selected step or draw (B goes there and back)"),
-        ("After", "As the selected step or draw left it"),
-        ("Diff", "What the selected step or draw changed (D)"),
-    ];
+named_enum! {
+    /// Which side of the selected step or draw is shown, in the order of their buttons.
+    #[derive(Default)]
+    pub enum StepPhase(
+        /// What its button does.
+        explanation
+    ) {
+        /// As it was before.
+        Before = "Before" ("As it was before the selected step or draw (B goes there and back)"),
+        /// As it is now.
+        #[default]
+        After = "After" ("As the selected step or draw left it"),
+        /// What changed.
+        Diff = "Diff" ("What the selected step or draw changed (D)"),
+    }
 }
 
 /// Why there is nothing to show of the time before.

@@ -1,8 +1,8 @@
 //! What is around the charts: heading, legend, notes.
 
 use super::{
-    LINE, LegendKey, Plot, PlotInk, PlotLine, PlotText, SMALL_SIZE, STYLES, TEXT_SIZE, TITLE_SIZE, TechniqueStyle,
-    style_of, text_width,
+    LINE, LegendKey, Plot, PlotInk, PlotLine, PlotText, SMALL_SIZE, STYLES, TEXT_SIZE, TechniqueStyle, style_of,
+    text_width,
 };
 use crate::report::{Report, ReportRow, table};
 
@@ -19,19 +19,12 @@ pub fn summary(report: &Report) -> String {
 
 /// Title and what it was measured on; where the charts begin.
 pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
-    let title = PlotText::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong();
     let adapter = &report.adapter;
     let sizes = table::sizes(report.rows.iter().map(|row| row.size));
     let facts = [adapter.name.as_str(), adapter.driver.as_str(), sizes.as_str()];
     let facts: Vec<&str> = facts.into_iter().filter(|fact| !fact.is_empty()).collect();
     let lines = wrapped(&facts.join(" · "), plot.size[0] - 16.0);
-    plot.texts.push(title);
-    let mut y = 38.0;
-    for line in lines {
-        plot.texts.push(PlotText::new([8.0, y], line, TEXT_SIZE, PlotInk::Dim));
-        y += LINE;
-    }
-    y + 4.0
+    plot.add_heading(&lines) + 4.0
 }
 
 /// Words in lines of at most `width` points.

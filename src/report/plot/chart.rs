@@ -1,12 +1,11 @@
 //! One scene's chart: axes, lines and marks of its rows.
 
+use super::axes::{Axes, BREAK, NONE_WRONG, Tick};
 use super::labels::{self, LabelObstacles, LabelRequest};
 use super::scale::{self, LogScale};
 use super::{
-    PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, RADIUS, SMALL_SIZE, SceneChart, TEXT_SIZE, TITLE_SIZE,
-    TextAnchor, style_of, text_width,
+    PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, RADIUS, SMALL_SIZE, SceneChart, TEXT_SIZE, style_of, text_width,
 };
-use crate::numbers;
 use crate::report::{Report, ReportRow};
 use std::collections::BTreeMap;
 
@@ -18,29 +17,19 @@ const BOTTOM: f64 = 38.0;
 const COMPACT_BOTTOM: f64 = 22.0;
 /// Right of the area, points: half of the last tick's words.
 const RIGHT: f64 = 22.0;
-/// Between area and band, points: a gap that no line of the axis crosses.
-const BREAK: f64 = 7.0;
 /// Height of a lane of the band, points.
 const LANE: f64 = 18.0;
-/// The axes where no row has a place on them: milliseconds, and per cent.
-const NO_TIMES: [f64; 2] = [1.0, 100.0];
-const NO_ERRORS: [f64; 2] = [0.01, 10.0];
-/// What the band says on the axis.
-const NONE_WRONG: &str = "none wrong";
+/// The axis that goes across where no row has a place on it, milliseconds.
+pub(super) const NO_TIMES: [f64; 2] = [1.0, 100.0];
 
 /// What all charts of a plot share: size and axes, relative to the chart's corner.
 #[derive(Debug)]
 pub struct ChartFrame {
     /// Width and height in points.
     pub size: [f64; 2],
-    area: PlotRect,
-    band: PlotRect,
+    axes: Axes,
     /// Milliseconds.
     across: LogScale,
-    /// Per cent.
-    up: LogScale,
-    x_ticks: Vec<f64>,
-    y_ticks: Vec<f64>,
     lanes: usize,
     compact: bool,
 }
@@ -52,7 +41,6 @@ impl ChartFrame {
         let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
         let times = rows().flat_map(|row| [row.frame_ms.median, row.frame_ms.min, row.frame_ms.max]);
         let times = scale::range(times, NO_TIMES);
-        let [low, high] = scale::range(rows().map(|row| row.wrong_fraction * 100.0), NO_ERRORS);
         let room = size[1] - top - below - BREAK;
         // More than half of the chart is not for rows that are all equally right.
         let most_lanes = ((room * 0.55 / LANE) as usize).max(1);
@@ -68,83 +56,39 @@ impl ChartFrame {
                 .map_or(1, |last| last + 1)
         });
         let lanes = lanes.max().unwrap_or(1);
-        let bottom = size[1] - below;
-        let band = PlotRect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
-        let area = PlotRect { min: [x0, top], max: [x1, band.min[1] - BREAK] };
-        let up = LogScale::new([low, high], [area.max[1], area.min[1]]);
-        let x_ticks = across.ticks(39.0);
-        let y_ticks = up.ticks(17.0).into_iter().filter(|percent| *percent <= 100.0).collect();
-        ChartFrame { size, area, band, across, up, x_ticks, y_ticks, lanes, compact }
-    }
-
-    fn grid(&self) -> Vec<PlotLine> {
-        let line =
-            |points: [[f64; 2]; 2]| PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false };
-        let [left, right] = [self.area.min[0], self.area.max[0]];
-        let level = self.y_ticks.iter().map(|tick| {
-            let y = self.up.position(*tick);
-            line([[left, y], [right, y]])
-        });
-        let upright = self.x_ticks.iter().flat_map(|tick| {
-            let x = self.across.position(*tick);
-            [&self.area, &self.band].map(|rect| line([[x, rect.min[1]], [x, rect.max[1]]]))
-        });
-        level.chain(upright).collect()
+        let x_ticks = Tick::along(&across, across.ticks(39.0), "ms");
+        let outer = PlotRect { min: [x0, top], max: [x1, size[1] - below] };
+        let percents = rows().map(|row| row.wrong_fraction * 100.0);
+        let axes = Axes::new(outer, (lanes, LANE), percents, 17.0, x_ticks);
+        ChartFrame { size, axes, across, lanes, compact }
     }
 
     fn texts(&self, title: &str) -> Vec<PlotText> {
-        let small = |at, text: String, ink| PlotText::new(at, text, SMALL_SIZE, ink);
         let mut texts = if self.compact {
-            let words = "wrong pixels against frame time".to_owned();
+            let words = "wrong pixels against frame time";
             let after = 8.0 + text_width(title, TEXT_SIZE) + 10.0;
-            let fits = after + text_width(&words, SMALL_SIZE) <= self.size[0];
-            let caption = fits.then(|| small([after, 9.0], words, PlotInk::Dim));
+            let fits = after + text_width(words, SMALL_SIZE) <= self.size[0];
+            let caption = fits.then(|| PlotText::small([after, 9.0], words));
             let title = PlotText::new([8.0, 9.0], title, TEXT_SIZE, PlotInk::Text).strong();
             [title].into_iter().chain(caption).collect()
         } else {
-            let at = [self.area.max[0], self.band.max[1] + 28.0];
-            vec![
-                PlotText::new([8.0, 10.0], title, TITLE_SIZE, PlotInk::Text).strong(),
-                small([8.0, 27.0], "wrong pixels, of those compared".to_owned(), PlotInk::Dim),
-                small(at, "frame time, median".to_owned(), PlotInk::Dim).anchored(TextAnchor::End),
-            ]
+            self.axes.captions(title, "frame time, median")
         };
-        let beside = self.area.min[0] - 6.0;
-        let levels =
-            self.y_ticks.iter().map(|percent| (self.up.position(*percent), format!("{}\u{a0}%", tick(*percent))));
-        let none = ((self.band.min[1] + self.band.max[1]) / 2.0, NONE_WRONG.to_owned());
-        texts.extend(
-            levels.chain([none]).map(|(y, text)| small([beside, y], text, PlotInk::Dim).anchored(TextAnchor::End)),
-        );
-        texts.extend(self.x_ticks.iter().map(|ms| {
-            let at = [self.across.position(*ms), self.band.max[1] + 11.0];
-            small(at, format!("{}\u{a0}ms", tick(*ms)), PlotInk::Dim).anchored(TextAnchor::Middle)
-        }));
+        texts.extend(self.axes.tick_texts());
         texts
     }
 
     fn place(&self, row: &ReportRow, lane: Option<&usize>) -> [f64; 2] {
-        let y = match lane {
-            Some(lane) => self.band.min[1] + 3.0 + (*lane as f64 + 0.5) * LANE,
-            None => self.up.position(row.wrong_fraction * 100.0),
-        };
+        let y = self.axes.height(row.wrong_fraction * 100.0, lane.copied().unwrap_or_default());
         [self.across.position(row.frame_ms.median), y]
-    }
-}
-
-/// A tick's number: as short as it is exact.
-fn tick(value: f64) -> String {
-    match value {
-        1e-5..1e3 => value.to_string(),
-        1e3..1e7 => numbers::count(value as u64),
-        _ => format!("{value:e}"),
     }
 }
 
 /// The chart of `rows` at a place of the page.
 pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, corner: [f64; 2]) -> SceneChart {
     let captions = captions(report, rows);
-    let sides = [frame.area.min[0], frame.area.max[0]];
+    let Axes { area, band, .. } = frame.axes;
+    let sides = [area.min[0], area.max[0]];
     let lanes = lanes(&band_rows(report, rows), &captions, &frame.across, sides, frame.lanes);
     let place = |index: usize| frame.place(&report.rows[index], lanes.get(&index));
     let mut spots: Vec<PlotPoint> = rows.iter().map(|index| spot(report, *index, place(*index), frame)).collect();
@@ -166,11 +110,10 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, c
     let (labels, leaders) = label(report, &spots, &captions, frame, &obstacles);
     over_grid.extend(leaders);
     spots.sort_by_key(|spot| spot.filled);
-    let mut lines = frame.grid();
+    let mut lines = frame.axes.grid();
     lines.extend(over_grid);
     let title = title.to_owned();
-    SceneChart { texts: frame.texts(&title), title, area: frame.area, band: frame.band, lines, spots, labels }
-        .moved(corner)
+    SceneChart { texts: frame.texts(&title), title, area, band, lines, spots, labels }.moved(corner)
 }
 
 /// Rows without a wrong pixel, those on the front first: they are nearest to the chart's area.
@@ -343,17 +286,11 @@ fn label(
             whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
             text: caption.text.clone(),
             ink: PlotInk::Technique(spot.style),
-            area: if report.rows[spot.row].wrong_fraction == 0.0 { frame.band } else { frame.area },
+            area: if report.rows[spot.row].wrong_fraction == 0.0 { frame.axes.band } else { frame.axes.area },
             must: caption.names_technique,
         })
         .collect();
-    let placed = labels::place(&wishes, obstacles);
-    let leaders = placed.iter().flatten().filter_map(|placed| {
-        let points = placed.leader?.to_vec();
-        Some(PlotLine { points, width: 0.8, ink: placed.text.ink, faint: true })
-    });
-    let leaders = leaders.collect();
-    (placed.into_iter().flatten().map(|placed| placed.text).collect(), leaders)
+    labels::words_and_leaders(&wishes, obstacles)
 }
 
 impl SceneChart {

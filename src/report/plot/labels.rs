@@ -4,7 +4,7 @@
 //! around its point. One that must be shown goes further away where nothing is free nearby, with
 //! a thin line back; any other is left out.
 
-use super::{PlotInk, PlotRect, PlotText, RADIUS, SMALL_SIZE, TextAnchor, text_width};
+use super::{PlotInk, PlotLine, PlotRect, PlotText, RADIUS, SMALL_SIZE, TextAnchor, text_width};
 
 /// A label to be placed.
 #[derive(Debug, Clone)]
@@ -60,6 +60,17 @@ const AROUND: [([f64; 2], f64); 8] = [
 const LINE_COST: f64 = 2.6;
 /// What is left free between words and a line, points.
 const LINE_GAP: f64 = 2.0;
+
+/// The words of [`place`], and the lines back from those that are far away.
+pub fn words_and_leaders(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> (Vec<PlotText>, Vec<PlotLine>) {
+    let placed: Vec<PlacedLabel> = place(wishes, obstacles).into_iter().flatten().collect();
+    let leader = |placed: &PlacedLabel| {
+        let points = placed.leader?.to_vec();
+        Some(PlotLine { points, width: 0.8, ink: placed.text.ink, faint: true })
+    };
+    let leaders = placed.iter().filter_map(leader).collect();
+    (placed.into_iter().map(|placed| placed.text).collect(), leaders)
+}
 
 /// Places labels in the order of `wishes`; `None` for those that are left out.
 pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<PlacedLabel>> {

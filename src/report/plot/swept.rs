@@ -1,10 +1,10 @@
 //! A sweep's page: the median time of a frame against the value that changes, one chart a scene, a line each technique with its
 //! settings. Hollow marks are values at which pixels are wrong.
 
+use super::chart::NO_TIMES;
 use super::scale::{self, LogScale};
 use super::{
-    Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SMALL_SIZE, SceneChart, TEXT_SIZE, TITLE_SIZE, TextAnchor,
-    style_of,
+    Plot, PlotInk, PlotLine, PlotPoint, PlotRect, PlotText, SMALL_SIZE, SceneChart, TITLE_SIZE, TextAnchor, style_of,
 };
 use crate::report::{Report, ReportRow, SweepValue};
 
@@ -23,8 +23,6 @@ const FPS: f64 = 8.0;
 const NAMES: f64 = 58.0;
 /// From a name to the next below it, points.
 const NAME_HEIGHT: f64 = 13.0;
-/// The axis where no row has a place on it, milliseconds.
-const NO_TIMES: [f64; 2] = [1.0, 100.0];
 
 /// Lays out the page of a report that is a sweep.
 pub fn sweep(report: &Report) -> Plot {
@@ -34,10 +32,8 @@ pub fn sweep(report: &Report) -> Plot {
     plot.title = format!("Frame time against {name}");
     plot.summary =
         format!("{} charts: the median time of a frame against {name}, a line each technique.", scenes.len());
-    let title = PlotText::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong();
     let facts = format!("{} · filled: right; hollow: pixels are wrong", report.adapter.name);
-    plot.texts = vec![title, PlotText::new([8.0, 38.0], facts, TEXT_SIZE, PlotInk::Dim)];
-    let mut top = 56.0;
+    let mut top = plot.add_heading(&[facts]);
     for scene in scenes {
         plot.charts.push(chart(report, scene, &name).moved([0.0, top]));
         top += HEIGHT;
@@ -73,21 +69,18 @@ fn chart(report: &Report, scene: &str, name: &str) -> SceneChart {
     let place = |row: &ReportRow| [across.position(values(row)), up.position(row.frame_ms.median)];
     let (mut lines, mut spots, mut names) = (Vec::new(), Vec::new(), Vec::new());
     let mut values_shown: Vec<&SweepValue> = Vec::new();
-    let grid =
-        |points: [[f64; 2]; 2]| PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false };
     let mut texts = vec![
         PlotText::new([8.0, 10.0], scene, TITLE_SIZE, PlotInk::Text).strong(),
-        PlotText::new([8.0, 28.0], "frame time, median", SMALL_SIZE, PlotInk::Dim),
-        PlotText::new([area.max[0] + FPS, 28.0], "frames a second", SMALL_SIZE, PlotInk::Dim),
-        PlotText::new([area.max[0], area.max[1] + 32.0], name, SMALL_SIZE, PlotInk::Dim).anchored(TextAnchor::End),
+        PlotText::small([8.0, 28.0], "frame time, median"),
+        PlotText::small([area.max[0] + FPS, 28.0], "frames a second"),
+        PlotText::small([area.max[0], area.max[1] + 32.0], name).anchored(TextAnchor::End),
     ];
     for tick in up.ticks(17.0) {
         let y = up.position(tick);
-        lines.push(grid([[area.min[0], y], [area.max[0], y]]));
-        let ms = PlotText::new([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms"), SMALL_SIZE, PlotInk::Dim);
-        texts.push(ms.anchored(TextAnchor::End));
+        lines.push(PlotLine::grid([[area.min[0], y], [area.max[0], y]]));
+        texts.push(PlotText::small([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms")).anchored(TextAnchor::End));
         let fps = (1000.0 / tick * 100.0).round() / 100.0;
-        texts.push(PlotText::new([area.max[0] + FPS, y], fps.to_string(), SMALL_SIZE, PlotInk::Dim));
+        texts.push(PlotText::small([area.max[0] + FPS, y], fps.to_string()));
     }
     for (caption, rows) in &lines_of {
         let style = style_of(&report.rows[rows[0]].technique);
@@ -113,9 +106,8 @@ fn chart(report: &Report, scene: &str, name: &str) -> SceneChart {
     let mut free_from = f64::NEG_INFINITY;
     for swept in values_shown {
         let x = across.position(swept.value);
-        lines.insert(0, grid([[x, area.min[1]], [x, area.max[1]]]));
-        let text = PlotText::new([x, area.max[1] + 13.0], swept.text.clone(), SMALL_SIZE, PlotInk::Dim)
-            .anchored(TextAnchor::Middle);
+        lines.insert(0, PlotLine::grid([[x, area.min[1]], [x, area.max[1]]]));
+        let text = PlotText::small([x, area.max[1] + 13.0], &*swept.text).anchored(TextAnchor::Middle);
         if text.rect().min[0] > free_from {
             free_from = text.rect().max[0] + 6.0;
             texts.push(text);

@@ -204,7 +204,7 @@ fn degenerate_reports_have_a_layout() {
 #[test]
 fn rows_that_cannot_be_drawn_are_noted() {
     let mut nothing = row("a", "planar", "", 0, 2.0);
-    nothing.compared = 0;
+    nothing.error.compared = 0;
     let rows = vec![row("a", "none", "", 5, f64::NAN), nothing, row("a", "z-fail", "", 0, 0.0)];
     let plot = layout(&report(rows), &PAGE);
     assert_eq!(chart(&plot).spots.len(), 1);

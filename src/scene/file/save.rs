@@ -3,12 +3,15 @@
 //! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
 //! read is the one that was written. Small meshes stand in the file itself; others become models.
 
+use super::tables::{
+    CameraTable, LightTable, MaterialTable, MeshSource, ObjectTable, OrbitTable, SceneTable, ShapeTable, SpannedTriple,
+    SwingTable, TechniqueTable, unplaced,
+};
 use crate::scene::{
-    Light, Material, MaterialTexture, Mesh, MeshGroup, Motion, Object, Projection, Scene, TextureImage,
+    Light, Material, MaterialTexture, Mesh, MeshGroup, Motion, Object, Projection, Scene, TechniqueRequest,
+    TextureImage,
 };
 use glam::{DVec3, Vec2, Vec3};
-use serde::Serialize;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -53,186 +56,100 @@ pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Resul
         Projection::Perspective | Projection::Orthographic { .. } => None,
     };
     let table = SceneTable {
-        name: &scene.name,
-        ambient: scene.ambient.map(short),
-        camera: CameraTable {
-            eye: camera.eye.to_array(),
-            target: camera.target.to_array(),
-            up: camera.up.to_array(),
-            projection: camera.is_parallel().then(|| camera.projection.name()),
-            half_height: camera.is_parallel().then(|| camera.half_height()),
-            oblique_angle_degrees: oblique.map(|(angle_degrees, _)| angle_degrees),
-            oblique_factor: oblique.map(|(_, factor)| factor),
-            fov_y_degrees: camera.fov_y_degrees,
-            near: camera.near,
-            far: camera.far,
-        },
+        name: Some(scene.name.clone()),
+        ambient: Some(unplaced(scene.ambient.map(short))),
+        camera: Some(CameraTable {
+            eye: triple(camera.eye),
+            target: triple(camera.target),
+            up: Some(triple(camera.up)),
+            projection: camera.is_parallel().then(|| unplaced(camera.projection.name().to_owned())),
+            half_height: camera.is_parallel().then(|| unplaced(camera.half_height())),
+            oblique_angle_degrees: oblique.map(|(angle_degrees, _)| unplaced(angle_degrees)),
+            oblique_factor: oblique.map(|(_, factor)| unplaced(factor)),
+            fov_y_degrees: Some(unplaced(camera.fov_y_degrees)),
+            near: Some(unplaced(camera.near)),
+            far: camera.far.map(unplaced),
+        }),
         lights: scene.lights.iter().map(light_table).collect(),
         objects,
-        technique: scene
-            .technique
-            .as_ref()
-            .map(|technique| TechniqueTable { name: &technique.name, settings: &technique.settings }),
+        technique: scene.technique.as_ref().map(technique_table),
     };
     Ok(SavedScene { toml: toml::to_string(&table)?, files: beside.files })
 }
 
-#[derive(Serialize)]
-struct SceneTable<'a> {
-    name: &'a str,
-    ambient: [f64; 3],
-    camera: CameraTable,
-    lights: Vec<LightTable>,
-    objects: Vec<ObjectTable<'a>>,
-    technique: Option<TechniqueTable<'a>>,
+fn triple(vector: DVec3) -> SpannedTriple {
+    unplaced(vector.to_array())
 }
 
-#[derive(Serialize)]
-struct CameraTable {
-    eye: [f64; 3],
-    target: [f64; 3],
-    up: [f64; 3],
-    projection: Option<&'static str>,
-    half_height: Option<f64>,
-    oblique_angle_degrees: Option<f64>,
-    oblique_factor: Option<f64>,
-    fov_y_degrees: f64,
-    near: f64,
-    far: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct LightTable {
-    kind: &'static str,
-    position: Option<[f64; 3]>,
-    towards: Option<[f64; 3]>,
-    color: [f64; 3],
-    intensity: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    on: Option<bool>,
-    range: Option<f64>,
-    orbit: Option<OrbitTable>,
-    swing: Option<SwingTable>,
-}
-
-#[derive(Serialize)]
-struct OrbitTable {
-    center: [f64; 3],
-    axis: [f64; 3],
-    degrees_per_second: f64,
-}
-
-#[derive(Serialize)]
-struct SwingTable {
-    pivot: [f64; 3],
-    axis: [f64; 3],
-    degrees: f64,
-    period_seconds: f64,
-}
-
-#[derive(Serialize)]
-struct ObjectTable<'a> {
-    name: &'a str,
-    translate: [f64; 3],
-    rotate_degrees: [f64; 3],
-    scale: [f64; 3],
-    spin_degrees_per_second: Option<[f64; 3]>,
-    casts: bool,
-    receives: bool,
-    visible: bool,
-    mesh: MeshSource,
-    orbit: Option<OrbitTable>,
-    swing: Option<SwingTable>,
-    material: MaterialTable,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum MeshSource {
-    File(String),
-    Triangles { shape: &'static str, points: Vec<[f64; 3]>, indices: Vec<[u32; 3]> },
-}
-
-#[derive(Serialize)]
-struct MaterialTable {
-    color: [f64; 3],
-    specular: f64,
-    shininess: f64,
-    shading: &'static str,
-    opacity: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    emission: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    checks: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    texture: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    texture_side: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    texture_clamps: Option<bool>,
-}
-
-#[derive(Serialize)]
-struct TechniqueTable<'a> {
-    name: &'a str,
-    settings: &'a BTreeMap<String, String>,
+fn technique_table(technique: &TechniqueRequest) -> TechniqueTable {
+    let setting = |(key, value): (&String, &String)| (key.clone(), unplaced(toml::Value::String(value.clone())));
+    TechniqueTable { name: technique.name.clone(), settings: technique.settings.iter().map(setting).collect() }
 }
 
 fn light_table(light: &Light) -> LightTable {
-    let at = light.position.truncate().to_array();
+    let at = triple(light.position.truncate());
     let (kind, position, towards) =
         if light.is_directional() { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
     let (orbit, swing) = motion(&light.motion);
-    let (color, intensity) = (light.color.map(short), short(light.intensity));
-    let on = (!light.is_on).then_some(false);
-    LightTable { kind, position, towards, color, intensity, on, range: light.range, orbit, swing }
+    LightTable {
+        kind: unplaced(kind.to_owned()),
+        position,
+        towards,
+        color: Some(unplaced(light.color.map(short))),
+        intensity: Some(unplaced(short(light.intensity))),
+        on: (!light.is_on).then_some(false),
+        range: light.range.map(unplaced),
+        orbit,
+        swing,
+    }
 }
 
 fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
     let orbit = motion.orbit.as_ref().map(|orbit| OrbitTable {
-        center: orbit.center.to_array(),
-        axis: orbit.axis.to_array(),
-        degrees_per_second: orbit.degrees_per_second,
+        center: triple(orbit.center),
+        axis: triple(orbit.axis),
+        degrees_per_second: unplaced(orbit.degrees_per_second),
     });
     let swing = motion.swing.as_ref().map(|swing| SwingTable {
-        pivot: swing.pivot.to_array(),
-        axis: swing.axis.to_array(),
-        degrees: swing.degrees,
-        period_seconds: swing.period_seconds,
+        pivot: triple(swing.pivot),
+        axis: triple(swing.axis),
+        degrees: unplaced(swing.degrees),
+        period_seconds: unplaced(swing.period_seconds),
     });
     (orbit, swing)
 }
 
 /// `texture`: the file of its picture.
-fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> ObjectTable<'_> {
+fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> ObjectTable {
     let lies = object.texture.as_ref();
     let (orbit, swing) = motion(&object.motion);
     let spin = object.motion.spin_degrees_per_second;
     let Material { color, specular, shininess, shading, opacity, emission, checks } = object.material;
+    let number = |value| Some(unplaced(short(value)));
     ObjectTable {
-        name: &object.name,
-        translate: object.pose.translate.to_array(),
-        rotate_degrees: object.pose.rotate_degrees.to_array(),
-        scale: object.pose.scale.to_array(),
-        spin_degrees_per_second: (spin != DVec3::ZERO).then(|| spin.to_array()),
-        casts: object.casts,
-        receives: object.receives,
-        visible: object.visible,
-        mesh,
+        name: Some(unplaced(object.name.clone())),
+        translate: Some(triple(object.pose.translate)),
+        rotate_degrees: Some(triple(object.pose.rotate_degrees)),
+        scale: Some(triple(object.pose.scale)),
+        spin_degrees_per_second: (spin != DVec3::ZERO).then(|| triple(spin)),
+        casts: Some(object.casts),
+        receives: Some(object.receives),
+        visible: Some(object.visible),
+        mesh: unplaced(mesh),
         orbit,
         swing,
-        material: MaterialTable {
-            color: color.map(short),
-            specular: short(specular),
-            shininess: short(shininess),
-            shading: shading.name(),
-            opacity: short(opacity),
-            emission: (emission != [0.0; 3]).then(|| emission.map(short)),
-            checks: (checks != 0.0).then(|| short(checks)),
-            texture,
-            texture_side: lies.and_then(|texture| texture.side).map(short),
-            texture_clamps: lies.filter(|texture| texture.clamps).map(|_| true),
-        },
+        material: Some(MaterialTable {
+            color: Some(unplaced(color.map(short))),
+            specular: number(specular),
+            shininess: number(shininess),
+            shading: Some(unplaced(shading.name().to_owned())),
+            opacity: number(opacity),
+            emission: (emission != [0.0; 3]).then(|| unplaced(emission.map(short))),
+            checks: number(checks).filter(|_| checks != 0.0),
+            texture: texture.map(unplaced),
+            texture_side: lies.and_then(|texture| texture.side).and_then(number),
+            texture_clamps: lies.filter(|texture| texture.clamps).map(|_| unplaced(true)),
+        }),
     }
 }
 
@@ -255,8 +172,19 @@ impl Beside<'_> {
         let has_parts = mesh.groups().iter().any(|group| group.material.is_some() || !group.name.is_empty());
         let has_more = has_parts || mesh.corner_normals().is_some() || mesh.corner_uvs().is_some();
         if mesh.triangles().len() <= MOST_INLINE && !has_more {
-            let points = mesh.positions().iter().map(|point| point.to_array()).collect();
-            return Ok(MeshSource::Triangles { shape: "triangles", points, indices: mesh.triangles().to_vec() });
+            return Ok(MeshSource::Shape(Box::new(ShapeTable {
+                shape: unplaced("triangles".to_owned()),
+                points: Some(unplaced(mesh.positions().iter().map(|point| point.to_array()).collect())),
+                indices: Some(unplaced(mesh.triangles().to_vec())),
+                size: None,
+                radius: None,
+                height: None,
+                major: None,
+                minor: None,
+                segments: None,
+                profile: None,
+                closed: None,
+            })));
         }
         let name = self.unused(&object.name, "obj");
         let pictures =
@@ -408,6 +336,7 @@ mod tests {
     use super::*;
     use crate::scene::builtin;
     use crate::scene::file::load;
+    use std::collections::BTreeMap;
     use std::path::Path;
 
     /// The scene as it is read again.
@@ -449,7 +378,7 @@ mod tests {
             assert_same(&scene, &again(&scene).0);
         }
         let mut scene = builtin::ALL[0].scene().expect("a scene");
-        scene.technique = Some(crate::scene::TechniqueRequest {
+        scene.technique = Some(TechniqueRequest {
             name: "z-fail".to_owned(),
             settings: BTreeMap::from([("casters".to_owned(), "all".to_owned())]),
         });

@@ -1,11 +1,11 @@
-//! The tables of a scene file as they are written: no value is checked yet.
+//! The tables of a scene file, which are read and written in this form and order: no value is checked yet.
 //!
-//! `Spanned` values know where they stand, for error lines.
+//! `Spanned` values know where they stand, for error lines; those that are to be written stand nowhere yet.
 
-use serde::Deserialize;
 use serde::de::{
     Deserializer, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer,
 };
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use toml::Spanned;
@@ -14,7 +14,12 @@ pub type SpannedNumber = Spanned<f64>;
 pub type SpannedTriple = Spanned<[f64; 3]>;
 pub type SpannedText = Spanned<String>;
 
-#[derive(Debug, Deserialize)]
+/// A value that is to be written.
+pub fn unplaced<T>(value: T) -> Spanned<T> {
+    Spanned::new(0..0, value)
+}
+
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneTable {
     pub name: Option<String>,
@@ -27,7 +32,7 @@ pub struct SceneTable {
     pub technique: Option<TechniqueTable>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
     pub eye: SpannedTriple,
@@ -42,7 +47,7 @@ pub struct CameraTable {
     pub far: Option<SpannedNumber>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LightTable {
     pub kind: SpannedText,
@@ -56,7 +61,7 @@ pub struct LightTable {
     pub swing: Option<SwingTable>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitTable {
     pub center: SpannedTriple,
@@ -64,7 +69,7 @@ pub struct OrbitTable {
     pub degrees_per_second: SpannedNumber,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SwingTable {
     pub pivot: SpannedTriple,
@@ -73,24 +78,24 @@ pub struct SwingTable {
     pub period_seconds: SpannedNumber,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectTable {
     pub name: Option<SpannedText>,
-    pub mesh: Spanned<MeshSource>,
     pub translate: Option<SpannedTriple>,
     pub rotate_degrees: Option<SpannedTriple>,
     pub scale: Option<SpannedTriple>,
     pub spin_degrees_per_second: Option<SpannedTriple>,
-    pub orbit: Option<OrbitTable>,
-    pub swing: Option<SwingTable>,
     pub casts: Option<bool>,
     pub receives: Option<bool>,
     pub visible: Option<bool>,
+    pub mesh: Spanned<MeshSource>,
+    pub orbit: Option<OrbitTable>,
+    pub swing: Option<SwingTable>,
     pub material: Option<MaterialTable>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialTable {
     pub color: Option<SpannedTriple>,
@@ -105,7 +110,7 @@ pub struct MaterialTable {
     pub texture_clamps: Option<Spanned<bool>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TechniqueTable {
     pub name: String,
@@ -114,14 +119,15 @@ pub struct TechniqueTable {
 }
 
 /// A model's path, or a shape.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
 pub enum MeshSource {
     File(String),
     Shape(Box<ShapeTable>),
 }
 
 /// A shape with the parameters of any; which belong to it is checked later.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeTable {
     pub shape: SpannedText,
@@ -138,7 +144,7 @@ pub struct ShapeTable {
 }
 
 /// `32`, or `[48, 24]`.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Segments(pub Vec<u32>);
 
 // Written out, and not `#[serde(untagged)]`, which would lose the places of what is inside.

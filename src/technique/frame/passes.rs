@@ -151,6 +151,12 @@ impl FrameBuilder<'_> {
         self.push_pass(light, "light", purpose, Some(self.kept_color()), draws);
     }
 
+    /// The mask and light passes of a light that arrives as far as `how` says.
+    pub fn mask_and_light_passes(&mut self, light: LightId, how: Visibility, purpose: &str) {
+        self.mask_pass(light, &[SurfaceDrawing::lit_by(how)]);
+        self.light_pass(light, purpose, &self.light_by(how));
+    }
+
     /// Blends draws over the picture, and tests depth and stencil without changing them.
     pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         self.push_pass(light, name, purpose, Some(self.kept_color()), draws);

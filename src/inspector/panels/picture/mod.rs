@@ -298,9 +298,10 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let auto = ButtonSegment::new("Auto", "What each step writes: colour, stencil, depth, or a light's map");
     let of_kind = |kind: &PictureKind| {
         let is_enabled = available.contains(kind);
-        let explanation = if is_enabled { kind.meaning(capture) } else { kind.why_missing(capture) };
+        let [name, meaning] = kind.label(capture);
+        let explanation = if is_enabled { meaning } else { kind.why_missing(capture) };
         let is_seen = shown == Some(*kind) && model.view.kind != Some(*kind);
-        ButtonSegment { is_enabled, is_seen, ..ButtonSegment::new(kind.name(capture), explanation) }
+        ButtonSegment { is_enabled, is_seen, ..ButtonSegment::new(name, explanation) }
     };
     let segments: Vec<ButtonSegment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
     let chosen =

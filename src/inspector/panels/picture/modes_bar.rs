@@ -32,12 +32,12 @@ pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
 /// They keep their place where a picture has no before and after.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
     let is_enabled = kind.is_some_and(has_phases);
-    let segment = |(label, explanation): (&'static str, &'static str)| {
-        let explanation = if is_enabled { explanation } else { "Of colour, stencil and depth only" };
-        ButtonSegment { is_enabled, ..ButtonSegment::new(label, explanation) }
+    let segment = |phase: StepPhase| {
+        let explanation = if is_enabled { phase.explanation() } else { "Of colour, stencil and depth only" };
+        ButtonSegment { is_enabled, ..ButtonSegment::new(phase.name(), explanation) }
     };
     let chosen = StepPhase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
-    if let Some(index) = segments_of(ui, &StepPhase::LABELS.map(segment), chosen) {
+    if let Some(index) = segments_of(ui, &StepPhase::ALL.map(segment), chosen) {
         model.modes.phase = StepPhase::ALL[index];
     }
 }

@@ -15,41 +15,24 @@ const STEP: f64 = 3e-4;
 /// A view straight down keeps this much from the pole, degrees, so that up stays up.
 const MOST_PITCH: f64 = 89.9;
 
-/// How depth is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum LensProjection {
-    /// Farther is smaller.
-    Perspective,
-    /// Depth is not seen.
-    Orthographic,
-    /// Oblique, depth at full length.
-    Cavalier,
-    /// Oblique, depth at half length.
-    Cabinet,
+named_enum! {
+    /// How depth is drawn.
+    pub enum LensProjection(
+        /// What one sees.
+        meaning
+    ) {
+        /// Farther is smaller.
+        Perspective = "perspective" ("Farther is smaller, as seen by an eye"),
+        /// Depth is not seen.
+        Orthographic = "orthographic" ("Lengths stay, depth is not seen"),
+        /// Oblique, depth at full length.
+        Cavalier = "cavalier" ("Oblique: the front keeps its shape, depth goes off at an angle at full length"),
+        /// Oblique, depth at half length.
+        Cabinet = "cabinet" ("Oblique: the front keeps its shape, depth goes off at an angle at half length"),
+    }
 }
 
 impl LensProjection {
-    /// All, with what each is.
-    pub const ALL: [(LensProjection, &'static str, &'static str); 4] = [
-        (LensProjection::Perspective, "perspective", "Farther is smaller, as seen by an eye"),
-        (LensProjection::Orthographic, "orthographic", "Lengths stay, depth is not seen"),
-        (
-            LensProjection::Cavalier,
-            "cavalier",
-            "Oblique: the front keeps its shape, depth goes off at an angle at full length",
-        ),
-        (
-            LensProjection::Cabinet,
-            "cabinet",
-            "Oblique: the front keeps its shape, depth goes off at an angle at half length",
-        ),
-    ];
-
-    /// In the chooser.
-    pub fn name(self) -> &'static str {
-        LensProjection::ALL.iter().find(|(one, ..)| *one == self).map_or("", |(_, name, _)| name)
-    }
-
     /// Is depth drawn at an angle?
     pub fn is_oblique(self) -> bool {
         matches!(self, LensProjection::Cavalier | LensProjection::Cabinet)
@@ -255,7 +238,7 @@ mod tests {
 
     #[test]
     fn the_middle_plane_is_drawn_to_scale_in_every_projection() {
-        for (projection, ..) in LensProjection::ALL {
+        for projection in LensProjection::ALL {
             let lens = pane(projection).lens(RECT);
             is_near(lens.place(DVec3::new(1.0, 2.0, 3.0)).expect("seen"), [300.0, 150.0]);
             is_near(lens.place(DVec3::new(2.0, 3.0, 3.0)).expect("seen"), [320.0, 130.0]);
@@ -284,7 +267,7 @@ mod tests {
 
     #[test]
     fn a_move_on_the_screen_is_a_move_in_the_world_at_any_depth() {
-        for (projection, ..) in LensProjection::ALL {
+        for projection in LensProjection::ALL {
             let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
             let at = DVec3::new(2.0, 1.0, 0.5);
             let by = vec2(17.0, -9.0);
@@ -298,7 +281,7 @@ mod tests {
 
     #[test]
     fn points_towards_the_viewer_are_at_the_same_place_of_the_screen() {
-        for (projection, ..) in LensProjection::ALL {
+        for projection in LensProjection::ALL {
             let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
             let at = DVec3::new(2.0, 1.0, 0.5);
             let viewer = lens.viewer();
@@ -310,7 +293,7 @@ mod tests {
 
     #[test]
     fn the_gpu_puts_a_place_where_the_lens_does_and_what_is_nearer_before_what_is_not() {
-        for (projection, ..) in LensProjection::ALL {
+        for projection in LensProjection::ALL {
             let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
             let origin = DVec3::new(0.5, 0.25, -0.75);
             let clip = lens.on_gpu(origin, 9.0).clip_from_stage.as_dmat4();

@@ -75,8 +75,9 @@ fn title(ui: &mut Ui, view: &mut SceneView, pane: Pane, rect: Rect) {
             let shown = view.view_mut(pane);
             let combo = egui::ComboBox::from_id_salt(("projection", pane.name())).width(96.0);
             let combo = combo.selected_text(shown.projection.name()).show_ui(ui, |ui| {
-                for (projection, name, meaning) in LensProjection::ALL {
-                    ui.selectable_value(&mut shown.projection, projection, name).on_hover_text(meaning);
+                for projection in LensProjection::ALL {
+                    let choice = ui.selectable_value(&mut shown.projection, projection, projection.name());
+                    choice.on_hover_text(projection.meaning());
                 }
             });
             combo.response.accessible_name(format!("Projection of the {} view", pane.name()));

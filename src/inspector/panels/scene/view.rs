@@ -13,33 +13,21 @@ use std::sync::Arc;
 /// Height of a view of all, in radii of what it shows.
 const MARGIN: f64 = 2.1;
 
-/// One of the views.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pane {
-    /// Turned by hand.
-    Free,
-    /// From above.
-    Top,
-    /// Along −z.
-    Front,
-    /// Along −x.
-    Right,
+named_enum! {
+    /// One of the views, as laid out in rows.
+    pub enum Pane {
+        /// From above.
+        Top = "Top",
+        /// Turned by hand.
+        Free = "Free",
+        /// Along −z.
+        Front = "Front",
+        /// Along −x.
+        Right = "Right",
+    }
 }
 
 impl Pane {
-    /// As laid out in rows.
-    pub const ALL: [Pane; 4] = [Pane::Top, Pane::Free, Pane::Front, Pane::Right];
-
-    /// On buttons and in names of widgets.
-    pub fn name(self) -> &'static str {
-        match self {
-            Pane::Free => "Free",
-            Pane::Top => "Top",
-            Pane::Front => "Front",
-            Pane::Right => "Right",
-        }
-    }
-
     fn first_view(self) -> PaneView {
         let (yaw, pitch, projection) = match self {
             Pane::Free => (0.0, 0.0, LensProjection::Perspective),

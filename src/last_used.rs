@@ -1,0 +1,58 @@
+//! A cache of what the newest plan, or the newest question, needs.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// Values by key. One that was not asked for between two calls of [`LastUsed::next_plan`] is forgotten.
+#[derive(Debug)]
+pub(crate) struct LastUsed<K, V> {
+    cached: HashMap<K, Cached<V>>,
+    /// Of all of them together.
+    weight: usize,
+}
+
+#[derive(Debug)]
+struct Cached<V> {
+    value: V,
+    weight: usize,
+    is_used: bool,
+}
+
+impl<K, V> Default for LastUsed<K, V> {
+    fn default() -> Self {
+        LastUsed { cached: HashMap::new(), weight: 0 }
+    }
+}
+
+impl<K: Eq + Hash, V: Clone> LastUsed<K, V> {
+    /// Forgets what was not asked for since the last call.
+    pub fn next_plan(&mut self) {
+        self.cached.retain(|_, cached| std::mem::take(&mut cached.is_used));
+        self.weight = self.cached.values().map(|cached| cached.weight).sum();
+    }
+
+    /// The value of a key, if it is cached.
+    pub fn get(&mut self, key: &K) -> Option<V> {
+        let cached = self.cached.get_mut(key)?;
+        cached.is_used = true;
+        Some(cached.value.clone())
+    }
+
+    /// The value of a key, made by `make` if it is not cached.
+    pub fn get_or_make(&mut self, key: K, make: impl FnOnce() -> V) -> V {
+        self.get_or_make_within(usize::MAX, key, || (make(), 0))
+    }
+
+    /// The same; a value that is made comes with its weight, and is cached only while all together weigh at most `most`.
+    pub fn get_or_make_within(&mut self, most: usize, key: K, make: impl FnOnce() -> (V, usize)) -> V {
+        if let Some(value) = self.get(&key) {
+            return value;
+        }
+        let (value, weight) = make();
+        if self.weight + weight <= most {
+            self.weight += weight;
+            self.cached.insert(key, Cached { value: value.clone(), weight, is_used: true });
+        }
+        value
+    }
+}
