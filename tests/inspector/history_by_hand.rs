@@ -1,8 +1,9 @@
 //! Histories of pixels of z-fail by hand: every event known.
 
+use super::*;
 use stencilscope::capture::FrameTarget;
 use stencilscope::history::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
-use stencilscope::plan::{Clip, CountBits, Part, Visibility};
+use stencilscope::plan::{Clip, CountBits, Visibility};
 use stencilscope::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
