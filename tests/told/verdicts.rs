@@ -3,9 +3,9 @@
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::{gaps, mask_of, number};
+use super::patterns::{all_but, find, gaps, mask_of, matching, number};
 use stencilscope::capture::FrameTarget;
-use stencilscope::history::{EventKind, PixelHistory};
+use stencilscope::history::{Event, EventKind, PixelHistory};
 use stencilscope::plan::{DecidedBy, Part, Program};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::reading::verdict::{Verdict, by_map, explained, verdict};
@@ -50,6 +50,21 @@ impl Here<'_> {
         self.frame.plan.passes.iter().rposition(is_one).expect("a pass that counts")
     }
 
+    /// Has the pixel this label, and is its light told?
+    fn is_of_light(&self, label: u8, told: &str) -> bool {
+        self.label() == is(label) && number(told) == (self.light + 1) as f64
+    }
+
+    /// Is this the count, and one that lights or one that darkens?
+    fn is_count_that(&self, lights: bool, told: &str) -> bool {
+        self.is_count(told) && (self.count() == 0.0) == lights
+    }
+
+    /// The light's events in the pass of the camera.
+    fn own_events(&self) -> impl Iterator<Item = &Event> {
+        self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_from_camera)
+    }
+
     fn is_count(&self, told: &str) -> bool {
         let told = told.split(" (").next().unwrap_or_default();
         number(told) == self.signed() || number(told) == self.count()
@@ -58,8 +73,7 @@ impl Here<'_> {
     /// Faces that counted, of the outside and of the inside of their volume.
     fn faces(&self) -> [f64; 2] {
         let mut faces = [0.0, 0.0];
-        for event in self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_from_camera)
-        {
+        for event in self.own_events() {
             let Some(one) = event.triangle().filter(|one| one.part.is_of_volume()) else { continue };
             if event.step() != 0 {
                 faces[usize::from(one.is_front == one.faces_inwards)] += 1.0;
@@ -72,8 +86,8 @@ impl Here<'_> {
     fn lie(&self, told: &str) -> bool {
         let is_nearer =
             |depth: f32, of: f32| if self.frame.plan.depth.mapping.is_reversed() { depth > of } else { depth < of };
-        let all = self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_from_camera);
-        let mut counted = all.filter(|event| event.is_of_volume() && event.step() != 0).filter_map(|event| {
+        let of_volumes = self.own_events().filter(|event| event.is_of_volume() && event.step() != 0);
+        let mut counted = of_volumes.filter_map(|event| {
             let one = event.triangle()?;
             Some((is_nearer(one.depth, event.before.depth), one.depth == event.before.depth))
         });
@@ -88,10 +102,9 @@ impl Here<'_> {
     /// May the count begin at another number than 0: of the volumes around the eye, or of those that parallel lines of
     /// sight end in?
     fn begins_elsewhere(&self) -> bool {
-        let starts_at_eye = self.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
         let is_point = self.frame.capture.lights[self.light].position.w != 0.0;
         let is_parallel = self.frame.capture.camera.is_parallel();
-        starts_at_eye || (is_parallel && is_point && !self.says_side("in front of"))
+        self.frame.starts_at_eye() || (is_parallel && is_point && !self.says_side("in front of"))
     }
 
     /// How often faces turned its bit over.
@@ -135,49 +148,42 @@ const TITLES: &[(&str, Check)] = &[
         let depth = here.frame.capture.frame_at(0).and_then(|frame| frame.depth.image.depth_at(here.at));
         here.label() == is(2) && (depth == Some(clear) || here.frame.capture.steps[0].light.is_some())
     }),
-    ("Turned away from light {}.", |here, told| here.label() == is(3) && number(told[0]) == (here.light + 1) as f64),
+    ("Turned away from light {}.", |here, told| here.is_of_light(3, told[0])),
     ("Dark under light {}: its stencil count is {}.", |here, told| {
-        here.label() == is(1)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() != 0.0
+        here.is_of_light(1, told[0]) && here.is_count_that(false, told[1])
     }),
     ("Lit by light {}: its stencil count is {}.", |here, told| {
-        here.label() == is(0)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() == 0.0
+        here.is_of_light(0, told[0]) && here.is_count_that(true, told[1])
     }),
     ("Dark under light {}: its count is {}.", |here, told| {
-        here.label() == is(1)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() != 0.0
+        here.is_of_light(1, told[0]) && here.is_count_that(false, told[1])
     }),
     ("Lit by light {}: its count is {}.", |here, told| {
-        here.label() == is(0)
-            && number(told[0]) == (here.light + 1) as f64
-            && here.is_count(told[1])
-            && here.count() == 0.0
+        here.is_of_light(0, told[0]) && here.is_count_that(true, told[1])
     }),
-    ("Dark under light {}.", |here, told| here.label() == is(1) && number(told[0]) == (here.light + 1) as f64),
-    ("Lit by light {}.", |here, told| here.label() == is(0) && number(told[0]) == (here.light + 1) as f64),
+    ("Dark under light {}.", |here, told| here.is_of_light(1, told[0])),
+    ("Lit by light {}.", |here, told| here.is_of_light(0, told[0])),
 ];
 
 fn dark_count(here: &Here, side: &str, count: &str) -> bool {
-    here.label() == is(1) && here.says_side(side) && here.is_count(count) && here.count() != 0.0
+    here.label() == is(1) && here.says_side(side) && here.is_count_that(false, count)
+}
+
+/// What a light pass does that leaves a pixel dark.
+fn darkens(does: &str) -> bool {
+    ["skips this pixel", "adds nothing"].contains(&does)
+}
+
+/// Is the shadow decided by this, and the pixel's label so?
+fn decided(here: &Here, by: DecidedBy, label: u8) -> bool {
+    here.decided_by() == by && here.label() == is(label)
 }
 
 const REASONS: &[(&str, Check)] = &[
     ("Nothing was drawn here, so there is nothing that a shadow could fall on.", |here, _| here.label() == is(2)),
     (
         "Light {} shines on the other side of this surface, so shading alone leaves it dark. Its count is {}.",
-        |here, told| {
-            number(told[0]) == (here.light + 1) as f64
-                && here.label() == is(3)
-                && here.is_count(told[1])
-                && !here.is_brighter()
-        },
+        |here, told| here.is_of_light(3, told[0]) && here.is_count(told[1]) && !here.is_brighter(),
     ),
     (
         "Light {} shines on the other side of this surface; wrapped, it reaches round to here unless a shadow keeps it away.{}",
@@ -185,17 +191,11 @@ const REASONS: &[(&str, Check)] = &[
             let count = gaps(" Its count is {}.", told[1])
                 .map(|told| here.is_count(told[0]) && here.is_brighter() == (here.count() == 0.0));
             let is_lit = !here.decided_by().counts_volumes();
-            number(told[0]) == (here.light + 1) as f64
-                && here.label() == is(3)
-                && here.frame.plan.wraps_diffuse
-                && count.unwrap_or(is_lit)
+            here.is_of_light(3, told[0]) && here.frame.plan.wraps_diffuse && count.unwrap_or(is_lit)
         },
     ),
     ("Light {} shines on the other side of this surface, so shading alone leaves it dark.", |here, told| {
-        number(told[0]) == (here.light + 1) as f64
-            && here.label() == is(3)
-            && !here.decided_by().counts_volumes()
-            && !here.is_brighter()
+        here.is_of_light(3, told[0]) && !here.decided_by().counts_volumes() && !here.is_brighter()
     }),
     ("The volume faces {} the surface leave {} in {}, not 0, so the light pass skips this pixel.", |here, told| {
         let mask = i64::from(mask_of(told[2]));
@@ -206,10 +206,7 @@ const REASONS: &[(&str, Check)] = &[
     }),
     (
         "What the count began with and the volume faces {} the surface leave {}, not 0, so the light pass {}.",
-        |here, told| {
-            let does = ["skips this pixel", "adds nothing"].contains(&told[2]);
-            here.begins_elsewhere() && dark_count(here, told[0], told[1]) && does
-        },
+        |here, told| here.begins_elsewhere() && dark_count(here, told[0], told[1]) && darkens(told[2]),
     ),
     ("The volume faces {} the surface leave {}, not 0, so the light pass adds nothing.", |here, told| {
         dark_count(here, told[0], told[1])
@@ -221,9 +218,8 @@ const REASONS: &[(&str, Check)] = &[
     (
         "{}More volumes were left than entered {} the surface. Not 0 is all that the light pass asks, so it {}.",
         |here, told| {
-            let does = ["skips this pixel", "adds nothing"].contains(&told[2]);
             let of_history = told[0].is_empty() || counted(here, told[0].trim_end().trim_end_matches('.'));
-            here.label() == is(1) && here.says_side(told[1]) && here.signed() < 0.0 && does && of_history
+            here.label() == is(1) && here.says_side(told[1]) && here.signed() < 0.0 && darkens(told[2]) && of_history
         },
     ),
     ("{}{} volumes contain the surface, which eight bits read as 0: the light pass adds the light.", |here, told| {
@@ -259,18 +255,22 @@ const REASONS: &[(&str, Check)] = &[
         |here, told| here.begins_elsewhere() && here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0,
     ),
     ("The light's map holds something nearer to the light here, so the light pass adds nothing.", |here, _| {
-        by_a_map(here, 1)
+        decided(here, DecidedBy::Map, 1)
     }),
-    ("The light's map holds nothing nearer to the light here, so the light pass adds it.", |here, _| by_a_map(here, 0)),
+    ("The light's map holds nothing nearer to the light here, so the light pass adds it.", |here, _| {
+        decided(here, DecidedBy::Map, 0)
+    }),
     ("Texel {}: {}.", |here, told| {
         let follows = match told[1] {
-            "it is nearer, so the light pass adds nothing" => by_a_map(here, 1),
-            "nothing nearer is stored, so the light pass adds the light" => by_a_map(here, 0),
-            "too close to tell by depths computed anew; the GPU's own say lit" => by_a_map(here, 0),
-            "too close to tell by depths computed anew; the GPU's own say in shadow" => by_a_map(here, 1),
+            "it is nearer, so the light pass adds nothing" => decided(here, DecidedBy::Map, 1),
+            "nothing nearer is stored, so the light pass adds the light" => decided(here, DecidedBy::Map, 0),
+            "too close to tell by depths computed anew; the GPU's own say lit" => decided(here, DecidedBy::Map, 0),
+            "too close to tell by depths computed anew; the GPU's own say in shadow" => {
+                decided(here, DecidedBy::Map, 1)
+            }
             many => gaps("of the {} texels read, {} hold nothing nearer to the light", many).is_some_and(|told| {
                 let [all, lit] = [number(told[0]), number(told[1])];
-                by_a_map(here, u8::from(2.0 * lit < all))
+                decided(here, DecidedBy::Map, u8::from(2.0 * lit < all))
             }),
         };
         follows
@@ -278,10 +278,12 @@ const REASONS: &[(&str, Check)] = &[
                 || told[0].contains(" holds a caster ")
                 || told[0].contains(" holds depth "))
     }),
-    ("A caster, flattened onto this flat receiver from the light, covers the pixel.", |here, _| flattened(here, 1)),
+    ("A caster, flattened onto this flat receiver from the light, covers the pixel.", |here, _| {
+        decided(here, DecidedBy::Flattened, 1)
+    }),
     (
         "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked.",
-        |here, _| flattened(here, 0),
+        |here, _| decided(here, DecidedBy::Flattened, 0),
     ),
     ("The flattened shadow of {} falls on the surface here, {}.", |here, told| {
         let names = told[0].split(" and ").all(|name| {
@@ -309,18 +311,18 @@ const REASONS: &[(&str, Check)] = &[
     ("{} over it left no fragment, so the light pass adds the light.", |here, told| flattened_triangles(here, told[0])),
     (
         "The texture of this flat receiver lets less than half of the light through here: a caster between it and the light was drawn there.",
-        |here, _| here.decided_by() == DecidedBy::ReceiverTextures && here.label() == is(1),
+        |here, _| decided(here, DecidedBy::ReceiverTextures, 1),
     ),
     (
         "No caster was drawn here into this receiver's texture. Surfaces that are not flat have none, and are lit.",
-        |here, _| here.decided_by() == DecidedBy::ReceiverTextures && here.label() == is(0),
+        |here, _| decided(here, DecidedBy::ReceiverTextures, 0),
     ),
     (
         "The silhouette of another object falls here. Nobody asks whether that object is nearer to the light, and translucent ones count as opaque for the mask.",
-        |here, _| here.decided_by() == DecidedBy::Silhouettes && here.label() == is(1),
+        |here, _| decided(here, DecidedBy::Silhouettes, 1),
     ),
     ("No silhouette of another object falls here; an object's own is never asked.", |here, _| {
-        here.decided_by() == DecidedBy::Silhouettes && here.label() == is(0)
+        decided(here, DecidedBy::Silhouettes, 0)
     }),
     ("No shadow of this light is made in this frame: it reaches every surface that faces it.", |here, _| {
         let asks = |draw: &stencilscope::plan::Draw| {
@@ -343,14 +345,6 @@ const REASONS: &[(&str, Check)] = &[
         counted(here, told[0]) && here.label() != is(1) && here.count() == 0.0
     }),
 ];
-
-fn by_a_map(here: &Here, label: u8) -> bool {
-    here.decided_by() == DecidedBy::Map && here.label() == Some(label)
-}
-
-fn flattened(here: &Here, label: u8) -> bool {
-    here.decided_by() == DecidedBy::Flattened && here.label() == Some(label)
-}
 
 fn flattened_triangles(here: &Here, told: &str) -> bool {
     let count = number(told);
@@ -431,21 +425,12 @@ pub fn patterns() -> Vec<&'static str> {
         "The texture of this flat receiver",
         "More volumes were left",
     ];
-    let all = TITLES.iter().chain(REASONS).map(|(pattern, _)| *pattern);
-    all.filter(|pattern| !rare.iter().any(|words| pattern.contains(words))).collect()
+    all_but(&rare, &[TITLES, REASONS])
 }
 
-fn find(all: &'static [(&'static str, Check)], here: &Here, text: &str, held: &mut Held) -> Option<String> {
-    let known: Vec<_> =
-        all.iter().filter_map(|(pattern, check)| Some((pattern, check, gaps(pattern, text)?))).collect();
-    if let Some((pattern, ..)) = known.iter().find(|(_, check, told)| check(here, told)) {
-        held.insert(pattern);
-        return None;
-    }
-    Some(match known.first() {
-        Some((pattern, ..)) => format!("is not so ({pattern}): {text}"),
-        None => format!("is known to no check: {text}"),
-    })
+/// Of any pattern that knows the text: some know the same ones.
+fn find_any(all: &'static [(&'static str, Check)], here: &Here, text: &str, held: &mut Held) -> Option<String> {
+    find(matching(all, text), text, held, |check, told| check(here, told))
 }
 
 pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
@@ -460,7 +445,7 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
             let mapped = map.map(|map| by_map(plain.clone(), &map, light));
             let all: Vec<Verdict> = [Some(plain), Some(told), mapped].into_iter().flatten().collect();
             for Verdict { title, reason, .. } in &all {
-                let told = [find(TITLES, &here, title, held), find(REASONS, &here, reason, held)];
+                let told = [find_any(TITLES, &here, title, held), find_any(REASONS, &here, reason, held)];
                 wrong.extend(
                     told.into_iter().flatten().map(|what| format!("of pixel {at:?} under light {}, {what}", light + 1)),
                 );
