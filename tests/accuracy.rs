@@ -2,31 +2,24 @@
 //! are wrong where they must be, and a wrong answer can't pass.
 
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, request, session, square};
+use crate::common::{
+    choice, cuboid, from_above, judged_by, last_frame, opened, pixels, request, session, square, under,
+};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::accuracy::{COLOR_TOLERANCE, ErrorCounts, Finding, WrongRegion, compare, wrong_colors};
 use stencilscope::capture::Capture;
 use stencilscope::progress::Progress;
-use stencilscope::scene::{Light, MeshBuilder, OpenSpec, Scene, open};
+use stencilscope::scene::{Light, MeshBuilder, Scene};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::Tracer;
 
 const SIZE: [u32; 2] = [96, 72];
 
-fn named(name: &str) -> Scene {
-    open(&OpenSpec::new(name)).expect("a scene")
-}
-
-fn judged(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> Capture {
-    let capture = session.capture(scene, request).expect("a capture");
-    session.judged(scene, &capture, &Progress::default()).expect("a truth")
-}
-
 /// The knot, torn: triangles are missing, some are turned round and some are there twice.
 fn torn_knot() -> Scene {
-    let mut scene = named("assets/models/knot.obj");
+    let mut scene = opened("assets/models/knot.obj");
     let mesh = &scene.objects[0].mesh;
     let mut triangles = Vec::new();
     for (index, [a, b, c]) in mesh.triangles().iter().enumerate() {
@@ -65,7 +58,7 @@ fn seen_from_anywhere(scene: &Scene, random: &mut Random) -> Scene {
 #[test]
 fn z_fail_has_no_wrong_pixel_on_any_scene_from_anywhere() {
     let mut session = session();
-    let scenes = [named("assets/models/knot.obj"), torn_knot(), named("tori"), named("table")];
+    let scenes = [opened("assets/models/knot.obj"), torn_knot(), opened("tori"), opened("table")];
     for scene in &scenes {
         let mut random = Random::new(5);
         let mut labels = [0; 4];
@@ -74,7 +67,7 @@ fn z_fail_has_no_wrong_pixel_on_any_scene_from_anywhere() {
             tries += 1;
             assert!(tries <= 60, "{}: {views} of {tries} views show light and shadow", scene.name);
             let scene = seen_from_anywhere(scene, &mut random);
-            let capture = judged(&mut session, &scene, &request(Technique::ZFail, SIZE));
+            let capture = judged_by(&mut session, &scene, &request(Technique::ZFail, SIZE));
             let error = capture.error().expect("judged");
             assert_eq!(error.wrong(), 0, "{}, view {views}: {error:?} {:?}", scene.name, scene.camera);
             // Excuses stay few: edges are lines.
@@ -90,15 +83,15 @@ fn z_fail_has_no_wrong_pixel_on_any_scene_from_anywhere() {
 
 fn error_of(session: &mut Session, scene: &Scene, choice: Choice) -> ErrorCounts {
     let request = CaptureRequest { choice, ..request(Technique::None, SIZE) };
-    judged(session, scene, &request).error().expect("judged")
+    judged_by(session, scene, &request).error().expect("judged")
 }
 
 /// A board over a floor, and the eye outside the board's shadow volume or inside it.
 #[test]
 fn z_pass_is_right_from_outside_a_volume_and_wrong_from_inside() {
     let mut session = session();
-    let mut scene = from_above(vec![cuboid("board", [-1.0, 2.0, -1.0], [1.0, 2.1, 1.0])]);
-    scene.lights = vec![Light::point(DVec3::new(0.3, 6.0, 0.2))];
+    let mut scene =
+        under(Light::point(DVec3::new(0.3, 6.0, 0.2)), vec![cuboid("board", [-1.0, 2.0, -1.0], [1.0, 2.1, 1.0])]);
     scene.camera.eye = DVec3::new(7.0, 4.0, 5.0);
     let [z_pass, z_fail] = [Technique::ZPass, Technique::ZFail].map(Choice::new);
     let outside = error_of(&mut session, &scene, z_pass.clone());
@@ -116,12 +109,9 @@ fn z_pass_is_right_from_outside_a_volume_and_wrong_from_inside() {
 #[test]
 fn a_shadow_map_errs_less_the_larger_it_is() {
     let mut session = session();
-    let scene = named("assets/models/knot.obj");
-    let errors = ["16", "48", "144"].map(|size| {
-        let mut choice = Choice::new(Technique::ShadowMap);
-        choice.set("size", size).expect("a size");
-        error_of(&mut session, &scene, choice).wrong()
-    });
+    let scene = opened("assets/models/knot.obj");
+    let errors = ["16", "48", "144"]
+        .map(|size| error_of(&mut session, &scene, choice(Technique::ShadowMap, &[("size", size)])).wrong());
     assert!(errors[0] > 2 * errors[1] && errors[1] > 2 * errors[2], "{errors:?}");
 }
 
@@ -129,22 +119,18 @@ fn a_shadow_map_errs_less_the_larger_it_is() {
 #[test]
 fn the_ray_traced_technique_is_the_truth_and_looks_like_z_fail() {
     let mut session = session();
-    for scene in [named("assets/models/knot.obj"), named("table")] {
-        let traced = judged(&mut session, &scene, &request(Technique::RayTraced, SIZE));
+    for scene in [opened("assets/models/knot.obj"), opened("table")] {
+        let traced = judged_by(&mut session, &scene, &request(Technique::RayTraced, SIZE));
         let error = traced.error().expect("judged");
         assert_eq!((error.wrong(), error.edge_band), (0, 0));
-        let z_fail = judged(&mut session, &scene, &request(Technique::ZFail, SIZE));
-        let [a, b] = [&traced, &z_fail].map(|capture| {
-            let last = capture.frame_at(capture.steps.len() - 1).expect("a frame");
-            last.color.image.clone()
-        });
+        let z_fail = judged_by(&mut session, &scene, &request(Technique::ZFail, SIZE));
+        let [a, b] = [&traced, &z_fail].map(|capture| last_frame(capture).color.image.clone());
         // Pictures differ only where labels do.
         let labels = |capture: &Capture| capture.lights[0].shadow.clone().expect("labels");
         let (by_rays, by_counts) = (labels(&traced), labels(&z_fail));
-        for (x, y) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))) {
-            let is_same = a.rgba_at([x, y]) == b.rgba_at([x, y]);
-            let at = [x, y];
-            assert!(is_same || by_rays.byte_at(at) != by_counts.byte_at(at), "{}: pixel {x},{y}", scene.name);
+        for at in pixels(SIZE) {
+            let is_same = a.rgba_at(at) == b.rgba_at(at);
+            assert!(is_same || by_rays.byte_at(at) != by_counts.byte_at(at), "{}: pixel {at:?}", scene.name);
         }
     }
 }

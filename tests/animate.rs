@@ -1,7 +1,7 @@
 //! `animate` from outside: its files are decoded again and held against captures, pixel by pixel.
 
-use crate::commands::{assert_fails, folder, run, text};
-use crate::common::{names, request, session};
+use crate::commands::{assert_fails, done, folder, run, text};
+use crate::common::{names, opened, pixels, request, session};
 use glam::DVec3;
 use std::fs::File;
 use std::io::BufReader;
@@ -11,7 +11,6 @@ use stencilscope::film::LightRound;
 use stencilscope::glam;
 use stencilscope::picture::{Picture, apng, colors};
 use stencilscope::reading::steps;
-use stencilscope::scene::{Scene, builtin::Builtin};
 use stencilscope::technique::Technique;
 
 /// A file as a viewer shows it.
@@ -44,14 +43,6 @@ impl Film {
     }
 }
 
-/// Runs the program, which must succeed, and gives its standard output.
-#[track_caller]
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
-    text(&output.stdout)
-}
-
 /// The picture without the bar below it.
 fn without_bar(picture: &Picture, size: [u32; 2]) -> Picture {
     Picture::drawn(size, |at| picture.at(at).expect("a pixel"))
@@ -67,10 +58,6 @@ fn color_of(capture: &Capture, step: usize, at: [u32; 2]) -> colors::Rgb {
 /// The finished picture.
 fn finished(capture: &Capture) -> Picture {
     Picture::drawn(capture.size, |at| color_of(capture, capture.steps.len() - 1, at))
-}
-
-fn table() -> Scene {
-    Builtin::named("table").and_then(|table| table.scene().ok()).expect("a scene")
 }
 
 #[test]
@@ -115,7 +102,7 @@ fn a_folder_is_shown_as_it_is_and_a_map_as_large_as_fits_in() {
     // A texel is two pixels wide and high, in the middle of the picture: 32 columns are free on each side of it.
     let map = without_bar(&film.pictures[0], [96, 64]);
     let in_texel = |texel: [u32; 2], [x, y]: [u32; 2]| map.at([16 + texel[0] * 2 + x, texel[1] * 2 + y]);
-    for texel in (0..32).flat_map(|y| (0..32).map(move |x| [x, y])) {
+    for texel in pixels([32, 32]) {
         assert_eq!(in_texel(texel, [0, 0]), in_texel(texel, [1, 1]), "{texel:?}");
     }
     assert_eq!([map.at([15, 30]), map.at([80, 30])], [Some(colors::BACKGROUND); 2]);
@@ -134,7 +121,7 @@ fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
     assert!(said.starts_with("round.png: table, z-fail, 96x64, 5 pictures of 100 ms, "), "{said}");
     let [exact, rounded] = ["exact.png", "round.png"].map(|name| Film::open(&folder.path().join(name)));
     assert_eq!((exact.plays, exact.delays), (0, vec![100; 5]));
-    let round = LightRound::new(table(), 0, 5).expect("a way round");
+    let round = LightRound::new(opened("table"), 0, 5).expect("a way round");
     let mut session = session();
     for (place, (exact, rounded)) in (0..5).zip(exact.pictures.iter().zip(&rounded.pictures)) {
         let capture = session.capture(&round.scene(place), &request(Technique::ZFail, [96, 64])).expect("a frame");
@@ -148,7 +135,7 @@ fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
 /// From the last place to the first it is as far as between any others.
 #[test]
 fn the_way_round_is_closed() {
-    let round = LightRound::new(table(), 0, 24).expect("a way round");
+    let round = LightRound::new(opened("table"), 0, 24).expect("a way round");
     let at = |place: u32| -> DVec3 { round.scene(place).lights[0].position.truncate() };
     let steps: Vec<f64> = (0..24).map(|place| at(place).distance(at((place + 1) % 24))).collect();
     assert!(steps[0] > 0.1 && steps.iter().all(|step| (step - steps[0]).abs() < 1e-9), "{steps:?}");

@@ -6,11 +6,11 @@ mod kept;
 mod range;
 mod unseen;
 
-use crate::common::{apart, cuboid, from_above, judged, mesh, request, session, square};
+use crate::common::{apart, cuboid, from_above, judged, labels, mesh, request, request_with, session, square, under};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::accuracy::ErrorCounts;
-use stencilscope::capture::{Capture, CapturedLight, FrameTarget, Snapshot, Step};
+use stencilscope::capture::{Capture, FrameTarget, Snapshot, Step};
 use stencilscope::plan::Decision;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Camera, Light, Material, Mesh, Object, Scene};
@@ -21,14 +21,7 @@ use stencilscope::technique::Technique;
 const SIZE: [u32; 2] = [96, 72];
 
 fn auto(leave_out: &str) -> CaptureRequest {
-    let mut request = request(Technique::Auto, SIZE);
-    request.choice.set("leave-out", leave_out).expect("a setting");
-    request
-}
-
-fn labels(capture: &Capture) -> Vec<Vec<u8>> {
-    let of = |light: &CapturedLight| light.shadow.as_ref().expect("labels").rows().flatten().copied().collect();
-    capture.lights.iter().map(of).collect()
+    request_with(Technique::Auto, &[("leave-out", leave_out)], SIZE)
 }
 
 /// The finished picture.
@@ -106,19 +99,7 @@ fn closed_box(name: &str, low: [f64; 3], high: [f64; 3]) -> Object {
 }
 
 fn looking(scene: Scene, eye: [f64; 3], target: [f64; 3]) -> Scene {
-    let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
-    Scene {
-        camera: Camera {
-            eye,
-            target,
-            up: DVec3::Y,
-            projection: stencilscope::scene::Projection::Perspective,
-            fov_y_degrees: 50.0,
-            near: 0.1,
-            far: None,
-        },
-        ..scene
-    }
+    Scene { camera: Camera { fov_y_degrees: 50.0, near: 0.1, ..Camera::looking(eye, target) }, ..scene }
 }
 
 fn carried(mut scene: Scene, by: DVec3) -> Scene {
@@ -144,9 +125,8 @@ fn a_floor_with_nothing_behind_it_has_no_volume() {
 #[test]
 fn a_volume_that_misses_the_view_is_not_drawn() {
     let aside = |towards: f64| {
-        let mut scene = from_above(vec![closed_box("box", [20.0, 1.0, -0.5], [21.0, 2.0, 0.5])]);
-        scene.lights = vec![Light::directional(DVec3::new(towards, 1.0, 0.0))];
-        scene
+        let far = closed_box("box", [20.0, 1.0, -0.5], [21.0, 2.0, 0.5]);
+        under(Light::directional(DVec3::new(towards, 1.0, 0.0)), vec![far])
     };
     // Away from the view, and into it.
     assert_decides(Decision::View, "volume of box", &aside(-2.0), &aside(9.0));
@@ -176,9 +156,7 @@ fn a_part_in_the_umbra_of_another_part_casts_nothing_more() {
         let both = shapes::joined([(&outer, DVec3::ZERO), (&inner, DVec3::new(offset, 0.0, 0.0))]).expect("two boxes");
         let mut boxes = Object::new("boxes", Arc::new(both), Material::default());
         boxes.pose.translate = DVec3::new(0.0, 1.5, 0.0);
-        let mut scene = from_above(vec![boxes]);
-        scene.lights = vec![Light::directional(DVec3::Y)];
-        scene
+        under(Light::directional(DVec3::Y), vec![boxes])
     };
     // The inner one's; where its side is in the outer one's, it casts.
     let what = "volume of parts (12 triangles) of boxes";
@@ -218,8 +196,7 @@ fn a_closed_mesh_casts_with_what_faces_the_light_alone() {
 fn a_wall_that_is_edge_on_keeps_all_triangles() {
     let mut room = cuboid("room", [-3.0, -3.0, -3.0], [3.0, 3.0, 3.0]);
     room.pose.rotate_degrees = DVec3::new(90.0, 0.0, 0.0);
-    let mut scene = from_above(vec![room]);
-    scene.lights = vec![Light::directional(DVec3::Y)];
+    let scene = under(Light::directional(DVec3::Y), vec![room]);
     let scene = looking(scene, [0.5, 1.0, 2.0], [0.0, 0.5, -2.0]);
     let found = left_out(&mut session(), &scene);
     assert!(!found.iter().any(|left| left == "triangles that face away of room"), "{found:?}");
@@ -232,11 +209,7 @@ fn other_depths_leave_out_nothing_that_asks_for_depth() {
     let mut session = session();
     let scene = from_above(vec![ball(10, 1.0, [2.0, 2.0, 0.0])]);
     for depth in ["standard-infinite", "standard-finite", "standard-finite-clamp"] {
-        let with = |leave_out: &str| {
-            let mut request = auto(leave_out);
-            request.choice.set("depth", depth).expect("a setting");
-            request
-        };
+        let with = |leave_out: &str| request_with(Technique::Auto, &[("leave-out", leave_out), ("depth", depth)], SIZE);
         let [all, none] = ["all", "none"].map(|what| session.capture(&scene, &with(what)).expect("a capture"));
         assert_eq!(labels(&all), labels(&none), "{depth}");
         assert!(picture(&all) == picture(&none), "{depth}");
@@ -310,19 +283,14 @@ fn a_light_is_not_added_to_what_faces_away_from_it() {
     let mut session = session();
     let unlit = |left: &String| left.ends_with("face away of the pass of light 1");
     assert!(left_out(&mut session, &scene).iter().any(unlit));
-    let mut wrapped = auto("all");
-    wrapped.choice.set("diffuse", "wrapped").expect("a setting");
+    let wrapped = request_with(Technique::Auto, &[("leave-out", "all"), ("diffuse", "wrapped")], SIZE);
     let capture = session.capture(&scene, &wrapped).expect("a capture");
     assert!(!capture.left_out.iter().any(|left| unlit(&left.to_string())));
 }
 
 #[test]
 fn a_light_that_all_in_view_faces_away_from_has_no_passes() {
-    let sun = |y: f64| {
-        let mut scene = from_above(vec![]);
-        scene.lights = vec![Light::directional(DVec3::new(0.3, y, 0.1))];
-        scene
-    };
+    let sun = |y: f64| under(Light::directional(DVec3::new(0.3, y, 0.1)), vec![]);
     assert_decides(Decision::Light, "all passes of light 1", &sun(-1.0), &sun(1.0));
 }
 

@@ -1,5 +1,6 @@
 //! Capture folders of real frames, and hostile ones. (What holds for any capture is tested beside the code.)
 
+use crate::commands::read_json;
 use crate::common::{cuboid, from_above, names, request, session, square};
 use glam::DVec3;
 use std::fs;
@@ -59,8 +60,7 @@ fn files_are_named_by_pass_and_shared_where_nothing_changed() {
         "plan.txt",
     ];
     assert_eq!(names(&folder), expected);
-    let manifest: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.join("manifest.json")).expect("text")).expect("JSON");
+    let manifest = read_json(&folder.join("manifest.json"));
     assert_eq!(manifest["passes"][0]["unchanged"], serde_json::json!(["stencil"]));
     assert_eq!(manifest["passes"][1]["unchanged"], serde_json::json!(["color", "depth"]));
     assert_eq!(manifest["passes"][1]["color"], "000-ambient.color.png");

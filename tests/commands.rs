@@ -1,6 +1,7 @@
 //! The program from outside: exit codes, error lines, and what it leaves behind.
 
 use crate::common::names;
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -37,6 +38,24 @@ fn program(folder: &Path, arguments: &[&str]) -> Command {
 
 pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     program(folder, arguments).output().expect("the program runs")
+}
+
+/// Runs the program, which must succeed, and gives its standard output.
+#[track_caller]
+pub fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// The JSON that the program prints.
+pub fn printed_json(folder: &Path, arguments: &[&str]) -> Value {
+    serde_json::from_slice(&run(folder, arguments).stdout).expect("JSON")
+}
+
+/// The JSON that a file holds.
+pub fn read_json(file: &Path) -> Value {
+    serde_json::from_slice(&fs::read(file).expect("a file")).expect("JSON")
 }
 
 pub fn text(bytes: &[u8]) -> String {
@@ -175,16 +194,13 @@ fn pixel_tells_its_history_as_text_and_as_json() {
     {
         assert!(story.contains(words), "`{words}` is not in\n{story}");
     }
-    let json = |more: &[&str]| -> serde_json::Value {
-        let output = run(folder.path(), &[&arguments, more].concat());
-        serde_json::from_slice(&output.stdout).expect("JSON")
-    };
+    let json = |more: &[&str]| printed_json(folder.path(), &[&arguments, more].concat());
     let one = json(&["--json"]);
     assert_eq!(one["pixel"], serde_json::json!([160, 120]));
     assert_eq!((&one["agrees"], &one["final"]), (&true.into(), &one["captured"]));
     assert!(one["milliseconds"].as_f64().is_some_and(|ms| ms > 0.0));
     let events = one["events"].as_array().expect("events");
-    assert_eq!((&events[0]["name"], &events[0]["primitive"]), (&"clear depth".into(), &serde_json::Value::Null));
+    assert_eq!((&events[0]["name"], &events[0]["primitive"]), (&"clear depth".into(), &Value::Null));
     let side = events.iter().find(|event| event["part"] == "side").expect("a side");
     let expected = serde_json::json!({
         "pass": 1, "draw": 0, "name": "volumes", "caster": "tetrahedron", "part": "side", "front_facing": false,
@@ -208,8 +224,7 @@ fn a_model_with_z_up_is_turned_and_nothing_else_is() {
     let folder = folder();
     let height = |more: &[&str]| {
         let arguments = [&["capture", "triangle.obj", "--size", "32x24", "-o", "out", "--overwrite"], more].concat();
-        let output = run(folder.path(), &arguments);
-        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        done(folder.path(), &arguments);
         let scene = stencilscope::scene::file::load(&folder.path().join("out/scene.toml")).expect("a scene");
         let heights = scene.objects[0].world_positions().into_iter().map(|at| at.y);
         heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)])
@@ -256,28 +271,21 @@ fn without_an_adapter_it_says_what_to_install() {
 fn captures_are_written_and_replaced_only_on_request() {
     let folder = folder();
     let capture = ["capture", "triangle.obj", "--size", "48x32", "-o", "out"];
-    let output = run(folder.path(), &capture);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).starts_with("out: triangle, auto, 48x32"));
-    let manifest = || -> serde_json::Value {
-        let text = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
-        serde_json::from_str(&text).expect("JSON")
-    };
+    assert!(done(folder.path(), &capture).starts_with("out: triangle, auto, 48x32"));
+    let manifest = || read_json(&folder.path().join("out/manifest.json"));
     assert_eq!(manifest()["technique"], "auto");
     let is_timed = |key: &str| manifest()["timing"][key].as_f64().is_some_and(|ms| ms > 0.0);
     let keys = ["write_ms", "setup_ms", "frame_ms", "captured_ms"];
     assert_eq!(keys.map(is_timed), [true, true, false, false], "a frame that is not timed runs once");
     assert!(manifest()["timing"]["frame_ms"].is_null());
-    let timed = run(folder.path(), &[&capture[..], &["--overwrite", "--timing"]].concat());
-    assert_eq!(timed.status.code(), Some(0), "{}", text(&timed.stderr));
+    done(folder.path(), &[&capture[..], &["--overwrite", "--timing"]].concat());
     assert_eq!(keys.map(is_timed), [true; 4]);
     let again = run(folder.path(), &capture);
     assert_eq!(again.status.code(), Some(2));
     assert!(text(&again.stderr).contains("--overwrite"));
     let options =
         ["-t", "planar", "--overwrite", "--eye", "-3,2,4", "--target", "0,0,0", "--sun", "-1,2,1", "--no-floor"];
-    let replaced = run(folder.path(), &[&capture[..], &options[..]].concat());
-    assert_eq!(replaced.status.code(), Some(0), "{}", text(&replaced.stderr));
+    done(folder.path(), &[&capture[..], &options[..]].concat());
     let manifest = manifest();
     assert_eq!(manifest["technique"], "planar");
     assert_eq!(manifest["camera"]["eye"], serde_json::json!([-3.0, 2.0, 4.0]));
@@ -289,10 +297,8 @@ fn captures_are_written_and_replaced_only_on_request() {
 fn every_draw_is_captured_on_request() {
     let folder = folder();
     let capture = ["capture", "triangle.obj", "--size", "48x32", "-o", "out", "--every", "draw"];
-    let output = run(folder.path(), &capture);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    let manifest = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
-    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    done(folder.path(), &capture);
+    let manifest = read_json(&folder.path().join("out/manifest.json"));
     for pass in manifest["passes"].as_array().expect("passes") {
         let captured = pass["draws_captured"].as_array().expect("draws").len();
         assert_eq!(captured as u64, pass["draws"].as_u64().expect("a number"), "{}", pass["name"]);
@@ -311,9 +317,8 @@ fn a_scene_file_chooses_its_technique_and_the_command_line_another() {
     let folder = folder();
     for (options, technique) in [(&[][..], "planar"), (&["-t", "z-pass"][..], "z-pass")] {
         let capture = ["capture", "good.toml", "--size", "16x16", "-o", "out", "--overwrite"];
-        let output = run(folder.path(), &[&capture[..], options].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-        assert!(text(&output.stdout).contains(technique), "{}", text(&output.stdout));
+        let printed = done(folder.path(), &[&capture[..], options].concat());
+        assert!(printed.contains(technique), "{printed}");
     }
 }
 
@@ -339,19 +344,15 @@ fn scenes_lists_names_first_and_as_json() {
     let lines = text(&output.stdout);
     let first_words: Vec<&str> = lines.lines().filter_map(|line| line.split_whitespace().next()).collect();
     assert_eq!(first_words[..2], ["tori", "rings"]);
-    assert_eq!(run(folder.path(), &["scenes", "--json", "list.json"]).status.code(), Some(0));
-    let json: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.path().join("list.json")).expect("a file")).expect("JSON");
-    assert_eq!(json["scenes"][0]["name"], "tori");
+    done(folder.path(), &["scenes", "--json", "list.json"]);
+    assert_eq!(read_json(&folder.path().join("list.json"))["scenes"][0]["name"], "tori");
     assert_fails(&["scenes", "--json", "missing/list.json"], 2, &["missing/list.json", "choose another file"]);
 }
 
 #[test]
 fn bench_capture_prints_ratios() {
     let folder = folder();
-    let output = run(folder.path(), &["bench", "capture", "--scene", "triangle.obj", "--size", "64x64"]);
-    let lines = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let lines = done(folder.path(), &["bench", "capture", "--scene", "triangle.obj", "--size", "64x64"]);
     for word in ["frame_ms", "captured_ms", "captured/frame", "bytes moved", "plain copy"] {
         assert!(lines.contains(word), "{word} is not in {lines}");
     }
@@ -360,9 +361,7 @@ fn bench_capture_prints_ratios() {
 #[test]
 fn bench_panels_steps_in_the_next_frame_and_rests_when_idle() {
     let folder = folder();
-    let output = run(folder.path(), &["bench", "panels", "--scene", "triangle.obj", "--size", "64x64"]);
-    let printed = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let printed = done(folder.path(), &["bench", "panels", "--scene", "triangle.obj", "--size", "64x64"]);
     for part in ["picture ", "scene ", "explain ", "idle: 0 of 60", "stepping: 60 of 60", "light moved"] {
         assert!(printed.contains(part), "`{part}` is not in {printed}");
     }
@@ -384,8 +383,7 @@ fn a_word_that_no_picture_s_name_has_is_wrong_usage_and_the_names_are_told() {
 #[test]
 fn pictures_of_the_window_are_taken_without_a_display() {
     let folder = folder();
-    let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "state"]);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    done(folder.path(), &["pictures", "-o", "shots", "--only", "state"]);
     let file = fs::read(folder.path().join("shots/state.png")).expect("a picture");
     let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
     let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
@@ -399,9 +397,7 @@ fn pictures_of_the_window_are_taken_without_a_display() {
 #[test]
 fn bench_truth_prints_rays_a_second() {
     let folder = folder();
-    let output = run(folder.path(), &["bench", "truth", "--scene", "triangle.obj", "--size", "64x64"]);
-    let lines = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let lines = done(folder.path(), &["bench", "truth", "--scene", "triangle.obj", "--size", "64x64"]);
     for word in ["3 triangles, 64x64", "sorting_ms", "following_ms", "million rays a second", "sorting/following"] {
         assert!(lines.contains(word), "{word} is not in {lines}");
     }
@@ -412,16 +408,14 @@ fn a_capture_with_truth_tells_errors_in_text_manifest_and_arrays() {
     let folder = folder();
     let capture = ["capture", "triangle.obj", "--size", "80x60", "-o", "out", "--truth"];
     for (technique, is_right) in [("none", false), ("z-fail", true)] {
-        let output = run(folder.path(), &[&capture[..], &["-t", technique, "--overwrite"][..]].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-        let manifest = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
-        let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+        let printed = done(folder.path(), &[&capture[..], &["-t", technique, "--overwrite"][..]].concat());
+        let manifest = read_json(&folder.path().join("out/manifest.json"));
         let light = &manifest["lights"][0];
         let count = |key: &str| light["error"][key].as_u64().expect(key);
         let missing = count("missing_shadow");
         assert_eq!((missing == 0, count("false_shadow"), count("wrong_surface")), (is_right, 0, 0));
         assert!(count("compared") > 1000 && light["error"]["edge_band"].is_u64());
-        assert!(text(&output.stdout).contains(&format!("wrong pixels: {missing} of {}", count("compared"))));
+        assert!(printed.contains(&format!("wrong pixels: {missing} of {}", count("compared"))));
         let read = |key: &str| {
             let file = folder.path().join("out").join(light[key].as_str().expect(key));
             let bytes = fs::read(file).expect("an array");

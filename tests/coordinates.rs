@@ -1,12 +1,11 @@
 //! A pixel's point and vertices in every space: the chain leads back to the pixel, and the depth is the one that was stored.
 
 use crate::commands::{assert_fails, folder, run, text};
-use crate::common::{mesh, request, session};
+use crate::common::{mesh, opened, request, request_with, session};
 use glam::{DMat4, DVec3, DVec4};
 use stencilscope::capture::Capture;
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::reading::coordinates::{NoVertex, PixelCoordinates, TransformStep, VertexCoordinates, VertexPlaces};
-use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::{Object, Projection, Scene, SceneBuilder};
 use stencilscope::technique::Technique;
 
@@ -19,10 +18,9 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
     let mut session = session();
     let mut points = 0;
     for (name, mapping) in [("tori", 0), ("table", 1), ("steps", 2), ("inside", 3)] {
-        let scene = Builtin::named(name).expect(name).scene().expect("a scene");
+        let scene = opened(name);
         let mapping = DepthMapping::ALL[mapping];
-        let mut frame = request(Technique::None, [200, 150]);
-        frame.choice.set("depth", mapping.name()).expect("a setting");
+        let frame = request_with(Technique::None, &[("depth", mapping.name())], [200, 150]);
         let capture = session.capture(&scene, &frame).expect("a capture");
         let [width, height] = capture.size;
         for pixel in [[0, 0], [width / 2, height / 2], [width / 3, height - 1], [width - 1, height / 4]] {
@@ -81,7 +79,7 @@ fn the_corners_of_a_pixel_s_triangle_go_the_same_way() {
         ("steps", Projection::Orthographic { half_height: 3.0 }),
         ("table", Projection::Oblique { half_height: 2.0, angle_degrees: 45.0, factor: 0.5 }),
     ] {
-        let mut scene = Builtin::named(name).expect(name).scene().expect("a scene");
+        let mut scene = opened(name);
         scene.camera.projection = projection;
         let (capture, plan) =
             session.capture_with_plan(&scene, &request(Technique::ZFail, [80, 60])).expect("a capture");
@@ -142,8 +140,7 @@ fn what_is_not_before_the_eye_is_not_divided_and_says_so() {
     let scene = wedge(Projection::Perspective);
     let mut session = session();
     for mapping in DepthMapping::ALL {
-        let mut frame = request(Technique::None, [64, 64]);
-        frame.choice.set("depth", mapping.name()).expect("a setting");
+        let frame = request_with(Technique::None, &[("depth", mapping.name())], [64, 64]);
         let capture = session.capture(&scene, &frame).expect("a capture");
         let [before, beside, behind, right, too_near] =
             <[VertexCoordinates; 5]>::try_from(vertices(&capture, &scene)).expect("five");

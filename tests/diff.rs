@@ -1,7 +1,7 @@
 //! Two captures compared: folders with one bit flipped, passes that only one has, two techniques, and the command.
 
-use crate::commands::{assert_fails, run, text};
-use crate::common::{cuboid, from_above, judged, mesh, names, request, session, square};
+use crate::commands::{assert_fails, done, read_json, run, text};
+use crate::common::{cuboid, from_above, judged, mesh, names, request, request_with, session, square};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use stencilscope::difference::{
 };
 use stencilscope::scene::{Light, Material, Object, Scene};
 use stencilscope::session::SnapshotInterval;
-use stencilscope::technique::{Choice, Technique};
+use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [61, 37];
 
@@ -30,10 +30,6 @@ fn flip(file: &Path, from_end: usize) {
     assert!(at >= header, "within the data");
     bytes[at] ^= 1;
     fs::write(file, bytes).expect("written");
-}
-
-fn json(file: &Path) -> serde_json::Value {
-    serde_json::from_str(&fs::read_to_string(file).expect("text")).expect("JSON")
 }
 
 /// Indexes of the passes that name a file.
@@ -59,7 +55,7 @@ fn one_flipped_bit_in_any_array_is_found() {
         let folder = parent.path().join(technique.name());
         write(&capture, &folder, false).expect("written");
         let good = read(&folder).expect("read");
-        let manifest = json(&folder.join("manifest.json"));
+        let manifest = read_json(&folder.join("manifest.json"));
         for file in names(&folder).iter().filter(|name| name.ends_with(".npy")) {
             let path = folder.join(file);
             let kept = fs::read(&path).expect("an array");
@@ -161,10 +157,7 @@ fn each_aspect_tells_its_values() {
 fn a_difference_that_goes_on_is_told_as_carried() {
     let mut session = session();
     let [good, other] = ["all", "light-facing"].map(|casters| {
-        let mut choice = Choice::new(Technique::ZFail);
-        choice.set("casters", casters).expect("a setting");
-        let mut request = request(Technique::ZFail, SIZE);
-        request.choice = choice;
+        let request = request_with(Technique::ZFail, &[("casters", casters)], SIZE);
         // A square that faces away from the light casts only among all.
         let corners = [[-1.0, 2.0, -1.0], [-1.0, 2.0, 1.0], [1.0, 2.0, 1.0], [1.0, 2.0, -1.0]];
         let turned = mesh(&corners, &[[0, 2, 1], [0, 3, 2]]);
@@ -278,8 +271,7 @@ fn conditions_count_and_what_was_asked_does_not() {
 fn the_command_tells_in_every_form_and_by_its_exit_code() {
     let folder = crate::commands::folder();
     let capture = |name: &str, technique: &str| {
-        let arguments = ["capture", "triangle.obj", "--size", "48x32", "-o", name, "-t", technique];
-        assert_eq!(run(folder.path(), &arguments).status.code(), Some(0));
+        done(folder.path(), &["capture", "triangle.obj", "--size", "48x32", "-o", name, "-t", technique]);
     };
     capture("a", "z-fail");
     capture("b", "z-fail");
@@ -315,7 +307,7 @@ fn the_command_tells_in_every_form_and_by_its_exit_code() {
     crate::help::assert_json_is_explained("diff", &document);
     let output = run(folder.path(), &["diff", "a", "b", "--json", "d.json"]);
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(1), String::new()));
-    assert_eq!(json(&folder.path().join("d.json")), document);
+    assert_eq!(read_json(&folder.path().join("d.json")), document);
 }
 
 #[test]
@@ -360,8 +352,7 @@ fn what_can_not_be_compared_is_refused_in_one_line_with_the_mend() {
     }
     let folder = crate::commands::folder();
     let capture = |name: &str, size: &str| {
-        let output = run(folder.path(), &["capture", "triangle.obj", "--size", size, "-o", name]);
-        assert_eq!(output.status.code(), Some(0));
+        done(folder.path(), &["capture", "triangle.obj", "--size", size, "-o", name]);
     };
     capture("a", "48x32");
     capture("b", "32x32");

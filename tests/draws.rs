@@ -1,13 +1,14 @@
 //! The state after each draw: what it is, what it shares, and how it lies in a capture folder.
 
-use crate::common::{cuboid, from_above, names, request, session, square};
+use crate::commands::read_json;
+use crate::common::{cuboid, from_above, names, opened, request, session, square};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::disk::{CaptureError, read, write};
 use stencilscope::capture::{Capture, DrawState, FrameSnapshot, Image, Snapshot};
-use stencilscope::scene::{Light, OpenSpec, Scene, open};
+use stencilscope::scene::{Light, Scene};
 use stencilscope::session::{CaptureRequest, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
@@ -95,7 +96,7 @@ fn passes_are_those_of_a_capture_without_draws_and_end_as_their_last_draw() {
 fn the_stencil_after_a_draw_is_what_a_plan_with_only_the_draws_so_far_leaves() {
     let mut session = session();
     for name in ["tetrahedron", "tori"] {
-        let scene = open(&OpenSpec::new(name)).expect("a built-in scene");
+        let scene = opened(name);
         let split = session.capture(&scene, &by_draw(Technique::ZFail)).expect("a capture");
         let plan = session.plan(&scene, &request(Technique::ZFail, SIZE)).expect("a plan");
         let volumes = plan.passes.iter().position(|pass| pass.name == "volumes").expect("volumes");
@@ -249,10 +250,6 @@ fn a_frame_whose_snapshots_do_not_fit_at_once_is_timed_without_them() {
     assert_eq!(less.snapshot_bytes, cost.snapshot_bytes);
 }
 
-fn manifest(folder: &Path) -> serde_json::Value {
-    serde_json::from_str(&fs::read_to_string(folder.join("manifest.json")).expect("a manifest")).expect("JSON")
-}
-
 /// A capture in a folder of its own.
 fn written(capture: &Capture, parent: &Path, name: &str) -> std::path::PathBuf {
     let folder = parent.join(name);
@@ -285,7 +282,7 @@ fn a_folder_with_draws_is_read_back_the_same_for_every_technique() {
 fn a_folder_with_draws_has_all_files_of_one_without_and_those_of_draws_beside_them() {
     let mut session = session();
     let parent = tempfile::tempdir().expect("a folder");
-    let scene = open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
+    let scene = opened("tetrahedron");
     let plain = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
     let split = session.capture(&scene, &by_draw(Technique::ZFail)).expect("a capture");
     let [plain, split_folder] = [(&plain, "plain"), (&split, "split")].map(|(c, name)| written(c, parent.path(), name));
@@ -296,7 +293,7 @@ fn a_folder_with_draws_has_all_files_of_one_without_and_those_of_draws_beside_th
     }
     assert!(split_names.len() > plain_names.len());
     assert!(split_names.difference(&plain_names).all(|name| name.contains(".draw0")), "{split_names:?}");
-    let passes = manifest(&split_folder)["passes"].clone();
+    let passes = read_json(&split_folder.join("manifest.json"))["passes"].clone();
     let volumes = passes.as_array().expect("passes").iter().find(|pass| pass["name"] == "volumes").expect("volumes");
     let draws = volumes["draws_captured"].as_array().expect("draws");
     assert_eq!(draws.len() as u64, volumes["draws"].as_u64().expect("a number"));
@@ -307,7 +304,7 @@ fn a_folder_with_draws_has_all_files_of_one_without_and_those_of_draws_beside_th
     assert_eq!(first["unchanged"], serde_json::json!(["color", "depth"]));
     assert_eq!(first["color"], volumes["color"], "named again");
     assert_eq!(draws[draws.len() - 1]["stencil"], volumes["stencil"], "named again");
-    assert!(manifest(&plain)["passes"][0].get("draws_captured").is_none());
+    assert!(read_json(&plain.join("manifest.json"))["passes"][0].get("draws_captured").is_none());
 }
 
 #[test]
@@ -318,7 +315,7 @@ fn faces_of_maps_and_labels_have_files_until_the_lights_own_say_the_same() {
     scene.lights.drain(..1);
     let capture = session.capture(&scene, &by_draw(Technique::ShadowMap)).expect("a capture");
     let folder = written(&capture, parent.path(), "out");
-    let passes = manifest(&folder)["passes"].clone();
+    let passes = read_json(&folder.join("manifest.json"))["passes"].clone();
     let of = |name: &str| {
         let found = passes.as_array().expect("passes").iter().find(|pass| pass[name].is_string());
         found.expect("a pass").clone()
@@ -342,7 +339,7 @@ fn broken_states_of_draws_are_refused_with_a_reason() {
     let parent = tempfile::tempdir().expect("a folder");
     let capture = session.capture(&scene(), &by_draw(Technique::ShadowMap)).expect("a capture");
     let folder = written(&capture, parent.path(), "out");
-    let whole = manifest(&folder);
+    let whole = read_json(&folder.join("manifest.json"));
     let map = whole["passes"].as_array().expect("passes").iter().position(|pass| pass["map"].is_string());
     let map = map.expect("a map pass");
     let frame = whole["passes"].as_array().expect("passes").len() - 1;

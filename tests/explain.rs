@@ -1,13 +1,13 @@
 //! What Explain says of a step, held against plan, labels and counts of the frame.
 
-use crate::common::{request, session};
+use crate::common::{opened, request, request_with, session};
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Snapshot, Step};
 use stencilscope::plan::CountOf;
 use stencilscope::reading::explain_facts::{ExplainContext, ExplainFact, facts};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::scene::Scene;
-use stencilscope::scene::builtin::{self, Builtin};
+use stencilscope::scene::builtin;
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [160, 120];
@@ -60,9 +60,8 @@ fn what_the_light_pass_says_of_a_pixel_is_what_its_label_says() {
 #[test]
 fn light_that_asks_no_stencil_is_not_said_to() {
     let mut session = session();
-    let scene = Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
-    let mut request = request(Technique::Planar, SIZE);
-    request.choice.set("blend", "twice").expect("a setting");
+    let scene = opened("two-lights");
+    let request = request_with(Technique::Planar, &[("blend", "twice")], SIZE);
     let capture = session.capture(&scene, &request).expect("a capture");
     for (index, _) in capture.steps.iter().enumerate().filter(|(_, step)| step.name == "light") {
         let told = of_step(&scene, &capture, index, Some([80, 60])).remove(0);
@@ -77,8 +76,7 @@ fn a_box_has_the_parts_of_the_textbooks_volume() {
     scene.objects[0].casts = false;
     let mut session = session();
     let mut told = |scene: &Scene, settings: &[(&str, &str)]| {
-        let mut request = request(Technique::ZFail, SIZE);
-        settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
+        let request = request_with(Technique::ZFail, settings, SIZE);
         let capture = session.capture(scene, &request).expect("a capture");
         let lines: Vec<String> =
             of_step(scene, &capture, named(&capture, "volumes"), None).into_iter().flat_map(|fact| fact.here).collect();
@@ -109,10 +107,9 @@ fn a_box_has_the_parts_of_the_textbooks_volume() {
 #[test]
 fn the_lights_formula_is_the_one_in_use() {
     let mut session = session();
-    let mut scene = Builtin::named("rings").expect("rings").scene().expect("a scene");
+    let mut scene = opened("rings");
     let mut told = |scene: &Scene, settings: &[(&str, &str)]| {
-        let mut request = request(Technique::ZFail, SIZE);
-        settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
+        let request = request_with(Technique::ZFail, settings, SIZE);
         let capture = session.capture(scene, &request).expect("a capture");
         of_step(scene, &capture, named(&capture, "light"), None).remove(0).here.remove(0)
     };
@@ -129,7 +126,7 @@ fn what_one_lights_map_stores_is_no_reason_under_another() {
     use stencilscope::history::Verdict;
     use stencilscope::reading::map_readers::MapReaders;
     let mut session = session();
-    let scene = Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
+    let scene = opened("two-lights");
     let (capture, plan) = session.capture_with_plan(&scene, &request(Technique::ShadowMap, SIZE)).expect("a capture");
     let readers = MapReaders::new(&capture, Some(&Arc::new(plan)), 0).expect("readers");
     let mut told = 0;

@@ -1,7 +1,7 @@
 //! Volumes that a vertex shader carries: counted as the CPU's, told as they were drawn.
 
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, request, session, square};
+use crate::common::{cuboid, from_above, labels, opened, request_with, session, square};
 use stencilscope::accuracy;
 use stencilscope::capture::disk::{read_whole, write};
 use stencilscope::capture::{Capture, Snapshot};
@@ -16,20 +16,13 @@ const SIZE: [u32; 2] = [96, 72];
 const BY_SHADER: (&str, &str) = ("extruded-by", "vertex-shader");
 
 fn with(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
-    let mut request = request(technique, SIZE);
-    settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
-    request
+    request_with(technique, settings, SIZE)
 }
 
 /// The same, carried by the CPU and by the vertex shader.
 fn both(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> [Capture; 2] {
     [settings.to_vec(), [settings, &[BY_SHADER]].concat()]
         .map(|settings| session.capture(scene, &with(technique, &settings)).expect("a capture"))
-}
-
-fn labels(capture: &Capture) -> Vec<Vec<u8>> {
-    let lights = capture.lights.iter();
-    lights.map(|light| light.shadow.as_ref().expect("labels").rows().flatten().copied().collect()).collect()
 }
 
 /// Pixels at which the stencil differs after any pass of volumes, and how many have a count there.
@@ -93,7 +86,7 @@ fn every_other_setting_does_what_it_does() {
     ];
     let mut seen = 0;
     for name in ["inside", "two-lights", "teapot-like"] {
-        let scene = builtin::Builtin::named(name).expect("a name").scene().expect("a scene");
+        let scene = opened(name);
         for (technique, settings) in forms
             .iter()
             .flat_map(|settings| [Technique::ZPass, Technique::ZFail].map(|technique| (technique, settings)))
@@ -171,7 +164,7 @@ fn a_folder_that_lies_about_corners_is_no_panic() {
 fn a_light_that_moves_changes_no_vertex_that_is_uploaded() {
     let mut session = session();
     let mut at = |x: f64, settings: &[(&str, &str)]| {
-        let mut scene = builtin::Builtin::named("tori").expect("a name").scene().expect("a scene");
+        let mut scene = opened("tori");
         scene.lights[0].position.x += x;
         let frame = session.render(scene, with(Technique::ZFail, settings)).expect("a frame");
         let volumes = frame.plan.meshes.iter().filter(|mesh| mesh.name.starts_with("volume of"));
@@ -197,7 +190,7 @@ fn a_light_that_moves_changes_no_vertex_that_is_uploaded() {
 #[test]
 fn parallel_lines_of_sight_are_left_to_the_cpu() {
     let mut session = session();
-    let mut scene = builtin::Builtin::named("tori").expect("a name").scene().expect("a scene");
+    let mut scene = opened("tori");
     let half_height = scene.camera.half_height_at_target();
     scene.camera = Camera { projection: Projection::Orthographic { half_height }, ..scene.camera };
     let told = |capture: &Capture| {

@@ -1,6 +1,6 @@
 //! A frame is the same whatever was drawn before it, and whatever of it is left out.
 
-use crate::common::{cuboid, from_above, request, session, square};
+use crate::common::{cuboid, from_above, request_with, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::scene::{Light, Object, Projection, Scene};
@@ -17,9 +17,7 @@ fn boxes(height: f64) -> Scene {
 }
 
 fn asked(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
-    let mut request = request(technique, SIZE);
-    settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
-    request
+    request_with(technique, settings, SIZE)
 }
 
 /// Colour, depth and stencil after every pass, and the labels of each light.

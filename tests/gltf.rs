@@ -1,6 +1,6 @@
 //! glTF scenes: samples that the Khronos validator accepts (`assets/gltf`), files that lie, and what is said of both.
 
-use crate::commands::{assert_fails, folder, run, text};
+use crate::commands::{assert_fails, done, folder, read_json};
 use crate::common::{is_closed, judged, session, volume};
 use glam::{DQuat, DVec3};
 use std::fs;
@@ -319,10 +319,8 @@ fn a_scene_file_s_pointer_names_a_mesh_or_is_a_line() {
 fn commands_take_gltf_and_say_what_is_not_shown() {
     let folder = folder();
     let file = sample("not-done.glb").display().to_string();
-    let made = run(folder.path(), &["capture", &file, "-t", "none", "--size", "32x24", "-o", "out"]);
-    assert!(made.status.success(), "{}", text(&made.stderr));
-    let manifest = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
-    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    done(folder.path(), &["capture", &file, "-t", "none", "--size", "32x24", "-o", "out"]);
+    let manifest = read_json(&folder.path().join("out/manifest.json"));
     let left_out = manifest["left_out"].as_array().expect("a list");
     let named = left_out.iter().find(|one| one["decision"] == "scene-file" && one["what"] == "the cone of `spot`");
     assert_eq!(named.expect("it is named")["of"], "not-done");

@@ -1,6 +1,6 @@
 //! `help` from outside: what it explains is held against the program itself, so that no page goes stale.
 
-use crate::commands::{assert_fails, folder, run, text};
+use crate::commands::{assert_fails, done, folder, printed_json, read_json, run, text};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -137,10 +137,9 @@ fn every_key_of_a_manifest_and_every_file_is_explained() {
     let mut sections = [("manifest.json", BTreeSet::new()), ("A pass", BTreeSet::new()), ("A light", BTreeSet::new())];
     for options in captures {
         let capture = ["capture", "two-lights", "--size", "32x24", "--truth", "-o", "out", "--overwrite"];
-        let output = run(folder.path(), &[&capture[..], options].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-        let bytes = std::fs::read(folder.path().join("out/manifest.json")).expect("a manifest");
-        let Value::Object(mut manifest) = serde_json::from_slice(&bytes).expect("JSON") else { panic!("no object") };
+        done(folder.path(), &[&capture[..], options].concat());
+        let manifest = read_json(&folder.path().join("out/manifest.json"));
+        let Value::Object(mut manifest) = manifest else { panic!("no object") };
         for (key, (_, keys)) in ["", "passes", "lights"].into_iter().zip(&mut sections) {
             let of_section = if key.is_empty() {
                 let mut rest = manifest.clone();
@@ -215,8 +214,7 @@ fn fields_that_are_written_only_at_times_are_explained_too() {
 #[test]
 fn the_list_of_scenes_is_explained() {
     let folder = folder();
-    let output = run(folder.path(), &["scenes", "--json"]);
-    assert_json_is_explained("scenes", &serde_json::from_slice(&output.stdout).expect("JSON"));
+    assert_json_is_explained("scenes", &printed_json(folder.path(), &["scenes", "--json"]));
 }
 
 #[test]
@@ -255,9 +253,7 @@ fn help_says_formula_and_source_and_every_command_leads_to_it() {
     let calls: Vec<Vec<&str>> =
         commands.into_iter().map(|command| vec![command, "--help"]).chain([vec!["--help"]]).collect();
     for call in calls {
-        let output = run(folder.path(), &call);
-        assert_eq!(output.status.code(), Some(0), "{call:?}");
-        let said = text(&output.stdout);
+        let said = done(folder.path(), &call);
         let words: BTreeSet<&str> = said.split([' ', ',', ':', '\n']).collect();
         let settings = Technique::ALL.into_iter().flat_map(|of| of.settings()).map(|spec| spec.key);
         let names = Technique::ALL.into_iter().map(Technique::name).chain(settings);

@@ -4,12 +4,12 @@
 mod agreement;
 mod closed_form;
 
-use crate::common::{cuboid, from_above};
+use crate::common::{cuboid, from_above, request_with};
 use stencilscope::capture::Capture;
 use stencilscope::plan::FramePlan;
-use stencilscope::scene::{OpenSpec, Scene, open};
-use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::{Choice, Technique};
+use stencilscope::scene::Scene;
+use stencilscope::session::Session;
+use stencilscope::technique::Technique;
 
 /// Ten pixels a unit of the floor from 10 above.
 const SIZE: [u32; 2] = [200, 200];
@@ -21,17 +21,7 @@ fn frame(
     settings: &[(&str, &str)],
     size: [u32; 2],
 ) -> (Capture, FramePlan) {
-    session.capture_with_plan(scene, &CaptureRequest::new(choice(technique, settings), size)).expect("a capture")
-}
-
-fn choice(technique: Technique, settings: &[(&str, &str)]) -> Choice {
-    let mut choice = Choice::new(technique);
-    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-    choice
-}
-
-fn builtin(name: &str) -> Scene {
-    open(&OpenSpec::new(name)).expect("a built-in scene")
+    session.capture_with_plan(scene, &request_with(technique, settings, size)).expect("a capture")
 }
 
 /// Three boxes in each other that are not drawn, above a floor that casts nothing: seen from above,

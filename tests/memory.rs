@@ -1,7 +1,6 @@
 //! Frames leave nothing behind, and hold little while they run.
 
-use crate::common::apart;
-use stencilscope::scene::{OpenSpec, open};
+use crate::common::{apart, opened};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
 
@@ -31,7 +30,7 @@ fn memory(line: &str) -> u64 {
 fn captures_keep_no_memory() {
     apart("memory::captures_keep_no_memory", &["z-fail", "shadow-map", "planar-texture", "auto"], |part| {
         let technique = Technique::ALL.into_iter().find(|technique| technique.name() == part).expect("a technique");
-        let scene = open(&OpenSpec::new("tori")).expect("a built-in scene");
+        let scene = opened("tori");
         let mut session = Session::new(None).expect("an adapter");
         let request = CaptureRequest::new(Choice::new(technique), [64, 48]);
         let mut run = |frames: usize| {
@@ -54,7 +53,7 @@ fn captures_keep_no_memory() {
 #[test]
 fn draws_hold_few_pictures_at_once() {
     apart("memory::draws_hold_few_pictures_at_once", &["planar-texture"], |_| {
-        let scene = open(&OpenSpec::new("rings")).expect("a built-in scene");
+        let scene = opened("rings");
         let mut session = Session::new(None).expect("an adapter");
         let request = CaptureRequest::new(Choice::new(Technique::PlanarTexture), [1280, 800]);
         let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");

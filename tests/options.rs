@@ -9,21 +9,19 @@ mod planar;
 mod shading;
 mod textures;
 
-use crate::common::{from_above, square};
+use crate::common::shade::linear;
+use crate::common::{from_above, judged_by, last_frame, request_with, square};
 use glam::DVec3;
 use stencilscope::capture::Capture;
-use stencilscope::progress::Progress;
 use stencilscope::scene::{Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::{Choice, Technique};
+use stencilscope::technique::Technique;
 
 /// The eye 10 above the floor sees 20 × 20 units: ten pixels a unit.
 const SIZE: [u32; 2] = [200, 200];
 
 fn request(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
-    let mut choice = Choice::new(technique);
-    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-    CaptureRequest::new(choice, SIZE)
+    request_with(technique, settings, SIZE)
 }
 
 fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> Capture {
@@ -32,8 +30,7 @@ fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings:
 
 /// Wrong pixels: false shadow and missing shadow.
 fn wrong(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> [u64; 2] {
-    let capture = capture(session, scene, technique, settings);
-    let capture = session.judged(scene, &capture, &Progress::default()).expect("a truth");
+    let capture = judged_by(session, scene, &request(technique, settings));
     let error = capture.error().expect("an error");
     assert!(error.compared > 500 && error.wrong_surface == 0, "{error:?}");
     [error.false_shadow, error.missing_shadow]
@@ -61,17 +58,8 @@ fn over_floor(half: f64, objects: Vec<Object>) -> Scene {
 
 /// Linear brightness of the red channel of the final picture, pixel by pixel.
 fn brightness(capture: &Capture) -> Vec<f64> {
-    let frame = capture.frame_at(capture.steps.len() - 1).expect("a frame");
-    let linear = |byte: u8| {
-        let encoded = f64::from(byte) / 255.0;
-        if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-    };
-    frame
-        .color
-        .image
-        .rows()
-        .flat_map(|row| row.chunks_exact(4).map(|texel| linear(texel[0])).collect::<Vec<_>>())
-        .collect()
+    let rows = last_frame(capture).color.image.rows();
+    rows.flat_map(|row| row.chunks_exact(4).map(|texel| linear(texel[0])).collect::<Vec<_>>()).collect()
 }
 
 /// How many pixels are as bright as that, within one step of an eight-bit picture.

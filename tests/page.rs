@@ -1,21 +1,16 @@
 //! Pages of frames, as files: what stands in them, how large they are, and the command that makes them. What they do in a
 //! browser is in `pages.rs`.
 
-use crate::commands::{assert_fails, folder, run, text};
-use crate::common::{names, request, session};
+use crate::commands::{assert_fails, done, folder, run, text};
+use crate::common::{frame, names, opened, request, session};
 use std::fs;
 use std::path::Path;
 use stencilscope::capture::disk;
 use stencilscope::page;
-use stencilscope::scene::builtin::Builtin;
-use stencilscope::session::{CaptureRequest, RunFrame, Session, SnapshotInterval};
+use stencilscope::session::{CaptureRequest, RunFrame, SnapshotInterval};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [96, 64];
-
-fn frame(session: &mut Session, scene: &str, request: CaptureRequest) -> RunFrame {
-    session.render(Builtin::named(scene).expect("a scene").scene().expect("its objects"), request).expect("a frame")
-}
 
 fn html(frame: &RunFrame) -> String {
     page::html(&frame.capture, &frame.plan).expect("a page")
@@ -23,9 +18,8 @@ fn html(frame: &RunFrame) -> String {
 
 /// The bytes of a file that the program made.
 fn made(folder: &Path, arguments: &[&str], file: &str) -> Vec<u8> {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
-    assert!(text(&output.stdout).contains(file), "{arguments:?}: {}", text(&output.stdout));
+    let printed = done(folder, arguments);
+    assert!(printed.contains(file), "{arguments:?}: {printed}");
     fs::read(folder.join(file)).expect("a file")
 }
 
@@ -85,7 +79,7 @@ fn no_address_is_in_it() {
 #[test]
 fn text_of_a_scene_ends_no_element() {
     let mut session = session();
-    let mut scene = Builtin::named("tori").expect("a scene").scene().expect("its objects");
+    let mut scene = opened("tori");
     scene.name = "</script></title>{{script}}<b>".to_owned();
     let frame = session.render(scene, request(Technique::ZFail, SIZE)).expect("a frame");
     let page = html(&frame);

@@ -1,11 +1,12 @@
 //! Cameras whose lines of sight are parallel: every volume counted right, from anywhere.
 
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, request, session, square};
+use crate::common::{
+    cuboid, from_above, judged, judged_by, labels, request, request_with, session, square, under, wrong,
+};
 use glam::DVec3;
 use std::collections::BTreeSet;
 use stencilscope::accuracy;
-use stencilscope::capture::{Capture, CapturedLight};
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::plan::{Decision, DrawPart, FramePlan};
 use stencilscope::progress::Progress;
@@ -24,10 +25,6 @@ fn parallel(camera: Camera) -> [Camera; 2] {
     [Projection::Orthographic { half_height }, cabinet].map(|projection| Camera { projection, ..camera })
 }
 
-fn wrong(judged: &Capture) -> u64 {
-    judged.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error.wrong()).sum()
-}
-
 fn seen_by(scene: &Scene, camera: Camera) -> Scene {
     Scene { camera, ..scene.clone() }
 }
@@ -35,8 +32,7 @@ fn seen_by(scene: &Scene, camera: Camera) -> Scene {
 /// Pixels that z-fail or `auto` has wrong.
 fn faults(session: &mut Session, scene: &Scene) -> Vec<String> {
     // Counts of 256 read as none in eight bits, which is no matter here.
-    let mut z_fail = request(Technique::ZFail, SIZE);
-    z_fail.choice.set("counter", "float").expect("a setting");
+    let z_fail = request_with(Technique::ZFail, &[("counter", "float")], SIZE);
     let counted = session.capture(scene, &z_fail).expect("a capture");
     let auto = session.capture(scene, &request(Technique::Auto, SIZE)).expect("a capture");
     let tracer = Tracer::new(scene, SIZE).expect("rays");
@@ -51,11 +47,6 @@ fn faults(session: &mut Session, scene: &Scene) -> Vec<String> {
         (wrong > 0).then(|| format!("{}, {projection}: {name} has {wrong} wrong", scene.name))
     });
     judged.collect()
-}
-
-fn labels(capture: &Capture) -> Vec<Vec<u8>> {
-    let of = |light: &CapturedLight| light.shadow.as_ref().expect("labels").rows().flatten().copied().collect();
-    capture.lights.iter().map(of).collect()
 }
 
 #[test]
@@ -126,8 +117,7 @@ fn the_count_begins_at_what_the_lamps_ray_along_the_view_meets() {
     let mut session = session();
     let scene = over_a_box();
     let mut began = |casters: &str, scene: &Scene| {
-        let mut request = request(Technique::ZFail, SIZE);
-        request.choice.set("casters", casters).expect("a setting");
+        let request = request_with(Technique::ZFail, &[("casters", casters)], SIZE);
         let (capture, plan) = session.capture_with_plan(scene, &request).expect("a capture");
         let judged = session.judged(scene, &capture, &Progress::default()).expect("a truth");
         assert_eq!(wrong(&judged), 0, "{casters}");
@@ -156,10 +146,7 @@ fn z_pass_plus_counts_what_parallel_lines_of_sight_begin_in() {
     let mut z_pass_is_wrong = 0;
     for camera in parallel(scene.camera) {
         let scene = seen_by(&scene, camera);
-        let mut wrong = |technique: Technique| {
-            let capture = session.capture(&scene, &request(technique, SIZE)).expect("a capture");
-            wrong(&session.judged(&scene, &capture, &Progress::default()).expect("a truth"))
-        };
+        let mut wrong = |technique: Technique| wrong(&judged(&mut session, &scene, technique, SIZE));
         let [z_pass, plus, z_fail] = [Technique::ZPass, Technique::ZPassPlus, Technique::ZFail].map(&mut wrong);
         assert_eq!((plus, z_fail), (0, 0), "{:?}", camera.projection);
         z_pass_is_wrong += usize::from(z_pass > 0);
@@ -201,11 +188,10 @@ fn every_mapping_that_clips_nothing_counts_right() {
         let scene = seen_by(&tori, camera);
         for mapping in DepthMapping::ALL {
             for technique in [Technique::Auto, Technique::ZFail, Technique::ZPass] {
-                let mut request = request(technique, SIZE);
-                request.choice.set("depth", mapping.name()).expect("a setting");
-                let capture = session.capture(&scene, &request).expect("a capture");
+                let request = request_with(technique, &[("depth", mapping.name())], SIZE);
+                let capture = judged_by(&mut session, &scene, &request);
                 let clips = mapping == DepthMapping::StandardFinite && technique != Technique::ZPass;
-                let wrong = wrong(&session.judged(&scene, &capture, &Progress::default()).expect("a truth"));
+                let wrong = wrong(&capture);
                 assert!(capture.depth.is_linear);
                 assert!(wrong == 0 || clips, "{mapping:?} {technique:?}: {wrong} wrong");
             }
@@ -217,8 +203,7 @@ fn every_mapping_that_clips_nothing_counts_right() {
 #[test]
 fn a_highlight_is_seen_from_one_direction() {
     let mut session = session();
-    let mut scene = from_above(Vec::new());
-    scene.lights = vec![Light::directional([0.4, 1.0, 0.3])];
+    let mut scene = under(Light::directional([0.4, 1.0, 0.3]), Vec::new());
     scene.objects[0].material.specular = 0.8;
     scene.objects[0].material.shininess = 20.0;
     let mut colors = |scene: &Scene| {
@@ -272,13 +257,12 @@ fn z_pass_begins_with_the_volumes_around_the_middle_of_the_near_plane() {
     };
     scene.lights = vec![Light::point([0.2, 9.0, 0.1])];
     let mut wrong_from = |start: &str| {
-        let mut request = request(Technique::ZPass, SIZE);
-        request.choice.set("start", start).expect("a setting");
-        let capture = session.capture(&scene, &request).expect("a capture");
+        let request = request_with(Technique::ZPass, &[("start", start)], SIZE);
+        let capture = judged_by(&mut session, &scene, &request);
         let told =
             capture.steps.iter().any(|step| step.purpose.contains("1, for the volumes around the middle of the near"));
         assert_eq!(told, start == "eye-count");
-        wrong(&session.judged(&scene, &capture, &Progress::default()).expect("a truth"))
+        wrong(&capture)
     };
     assert_eq!(wrong_from("eye-count"), 0);
     assert!(wrong_from("zero") > 1000);

@@ -1,6 +1,6 @@
 //! Plans as data: their text, their checks, and shaders, all without a GPU.
 
-use crate::common::{cuboid, from_above, square};
+use crate::common::{cuboid, from_above, opened, square};
 use glam::Vec3;
 use std::sync::Arc;
 use stencilscope::geometry::GeometryCache;
@@ -216,8 +216,7 @@ fn of_one_pass_only_that_one_is_split_and_nothing_runs_after_it() {
 /// Files count from 0, sentences from 1: a light has its one name wherever a plan is told.
 #[test]
 fn a_light_has_one_name_in_the_plans_text() {
-    let scene =
-        stencilscope::scene::builtin::Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
+    let scene = opened("two-lights");
     let request = crate::common::request(Technique::ZFail, [64, 48]);
     let text = crate::common::session().plan(&scene, &request).expect("a plan").to_string();
     assert!(!text.contains("light 0"), "{text}");

@@ -23,16 +23,8 @@ fn soup(seed: u64) -> Scene {
         let scale = random.within(1.0).map(|s| if s.abs() < 0.2 { 0.2 } else { s });
         scene.objects[1].pose = Pose { rotate_degrees: random.within(180.0), scale, ..Pose::default() };
     }
-    let eye = random.within(3.0);
-    scene.camera = Camera {
-        eye,
-        target: random.within(0.5),
-        up: DVec3::Y,
-        projection: stencilscope::scene::Projection::Perspective,
-        fov_y_degrees: 70.0,
-        near: 0.02 + random.unit() * 0.5,
-        far: None,
-    };
+    let camera = Camera::looking(random.within(3.0), random.within(0.5));
+    scene.camera = Camera { up: DVec3::Y, fov_y_degrees: 70.0, near: 0.02 + random.unit() * 0.5, ..camera };
     let light = random.within(3.0);
     let is_directional = seed.is_multiple_of(4);
     scene.lights = vec![if is_directional { Light::directional(light) } else { Light::point(light) }];

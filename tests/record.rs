@@ -1,6 +1,7 @@
 //! Frames of a wgpu program that knows nothing of us but its instance.
 
 mod errors;
+mod gpu;
 mod renderer;
 mod states;
 mod ways;

@@ -1,15 +1,14 @@
 //! Plans as another program's frame needs them: clip-space vertices, viewports, either front face, masks of each face,
 //! depths in 16 and 24 bits, targets that hold something before. Against closed forms, and history against the GPU.
 
+use crate::common::plans::{self, OPERATIONS};
 use crate::common::random::Random;
-use crate::common::{from_above, session};
-use glam::{DVec3, Mat4};
-use std::collections::BTreeMap;
+use crate::common::{from_above, pixels, session};
 use stencilscope::capture::Capture;
+use stencilscope::math::depth::DepthMapping;
 use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawMesh, DrawPart,
-    FaceMasks, FramePlan, Pass, PlanView, Program, RasterState, RecordedPass, ShaderEffect, StartContent, StencilFace,
-    ViewId, Viewport, lint,
+    Blob, ColorWrite, Draw, DrawMesh, DrawPart, FaceMasks, FramePlan, Pass, Program, RasterState, RecordedPass,
+    ShaderEffect, StartContent, StencilFace, Viewport, lint,
 };
 use wgpu::{CompareFunction as Compare, StencilOperation as Operation, TextureFormat};
 
@@ -22,53 +21,13 @@ fn of_program(raster: RasterState, mesh: usize, triangles: u32) -> Draw {
 }
 
 fn pass(viewport: Viewport, start: Option<StartContent>, draws: Vec<Draw>) -> Pass {
-    Pass {
-        name: "recorded".to_owned(),
-        image: None,
-        recorded: Some(Box::new(RecordedPass { viewport, groups: vec!["frame".to_owned()], start })),
-        scissor: None,
-        purpose: String::new(),
-        light: None,
-        timed: true,
-        view: ViewId(0),
-        color: None,
-        depth_stencil: Some(DepthStencilTarget {
-            attachment: AttachmentId(0),
-            layer: 0,
-            clear_depth: None,
-            clear_stencil: None,
-        }),
-        draws,
-    }
+    let recorded = Some(Box::new(RecordedPass { viewport, groups: vec!["frame".to_owned()], start }));
+    Pass { recorded, ..plans::pass("recorded", None, draws) }
 }
 
 fn plan(format: TextureFormat, meshes: Vec<DrawMesh>, passes: Vec<Pass>) -> FramePlan {
-    FramePlan {
-        depth: stencilscope::math::depth::DepthMapping::StandardFinite.curve(1.0, 100.0, 0.0),
-        wraps_diffuse: false,
-        technique: "recorded".to_owned(),
-        settings: BTreeMap::new(),
-        size: SIZE,
-        attachments: vec![Attachment {
-            name: "depth and stencil".to_owned(),
-            role: AttachmentRole::DepthStencil,
-            format,
-            size: SIZE,
-            layers: 1,
-        }],
-        views: vec![PlanView {
-            name: "camera".to_owned(),
-            origin: DVec3::ZERO,
-            eye: PlanView::at_origin(),
-            clip_from_relative: Mat4::IDENTITY,
-        }],
-        lights: Vec::new(),
-        ambient: [0.0; 3],
-        meshes,
-        textures: Vec::new(),
-        passes,
-        left_out: Vec::new(),
-    }
+    let depth = DepthMapping::StandardFinite.curve(1.0, 100.0, 0.0);
+    plans::plan("recorded", depth, (format, SIZE), meshes, passes)
 }
 
 fn run(plan: &FramePlan) -> Capture {
@@ -109,11 +68,9 @@ fn a_viewport_moves_scales_and_maps_depth_and_the_rest_keeps_what_was_there() {
     let viewport = Viewport { area: [10.0, 5.0, 20.0, 10.0], depth: [0.25, 0.75] };
     let draws = vec![of_program(counting(), 0, 1)];
     let capture = run(&plan(FORMAT, vec![sheet(0.5, true)], vec![pass(viewport, content(0.125, 7), draws)]));
-    for y in 0..SIZE[1] {
-        for x in 0..SIZE[0] {
-            let is_in = (10..30).contains(&x) && (5..15).contains(&y);
-            assert_eq!(stored(&capture, [x, y]), if is_in { (0.5, 1) } else { (0.125, 7) }, "{x},{y}");
-        }
+    for [x, y] in pixels(SIZE) {
+        let is_in = (10..30).contains(&x) && (5..15).contains(&y);
+        assert_eq!(stored(&capture, [x, y]), if is_in { (0.5, 1) } else { (0.125, 7) }, "{x},{y}");
     }
 }
 
@@ -166,16 +123,6 @@ fn integer_depths_are_stored_as_the_nearest_of_their_format() {
 fn chance(random: &mut Random) -> FramePlan {
     const COMPARES: [Compare; 5] =
         [Compare::Less, Compare::LessEqual, Compare::Greater, Compare::Always, Compare::NotEqual];
-    const OPERATIONS: [Operation; 8] = [
-        Operation::Keep,
-        Operation::Zero,
-        Operation::Replace,
-        Operation::Invert,
-        Operation::IncrementClamp,
-        Operation::DecrementClamp,
-        Operation::IncrementWrap,
-        Operation::DecrementWrap,
-    ];
     let formats = [FORMAT, TextureFormat::Depth24PlusStencil8];
     let mut byte = {
         let mut bytes = Random::new(random.below(1 << 30).into());

@@ -1,13 +1,12 @@
 //! `report` from outside: all its forms, and what it refuses.
 
-use crate::commands::{assert_fails, folder, run, text};
-use crate::common::{from_above, session, square};
+use crate::commands::{assert_fails, done, folder, read_json, run, text};
+use crate::common::{choice, from_above, opened, session, square};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use stencilscope::progress::Progress;
-use stencilscope::report::Report;
-use stencilscope::scene::builtin::Builtin;
+use stencilscope::report::{Report, ReportRow};
 use stencilscope::scene::{Light, Object, Scene};
 use stencilscope::session::{MeasuredTechnique, Measurement};
 use stencilscope::technique::{Choice, Technique};
@@ -73,17 +72,20 @@ fn parts_merge_into_the_rows_of_one_run() {
     assert_fails(&["report", "triangle.obj", "--shard", "0/4"], 2, &["counted from 1"]);
 }
 
+/// A report's rows from its file, of which help explains every key.
+fn explained_rows(file: &Path) -> Vec<ReportRow> {
+    crate::help::assert_json_is_explained("report", &read_json(file));
+    Report::from_json(&fs::read_to_string(file).expect("rows")).expect("a report").rows
+}
+
 /// Each value of a sweep is a block of rows: with frames a second, and a plot of time against the value.
 #[test]
 fn a_sweep_measures_every_value() {
     let folder = folder();
     let sweep = |what: &str, more: &[&str]| {
         let words = ["report", "triangle.obj", "--size", "40x30", "--runs", "1", "--sweep", what, "--json", "s.json"];
-        let output = run(folder.path(), &[&words[..], more].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-        let json = fs::read_to_string(folder.path().join("s.json")).expect("rows");
-        crate::help::assert_json_is_explained("report", &serde_json::from_str(&json).expect("JSON"));
-        Report::from_json(&json).expect("a report").rows
+        done(folder.path(), &[&words[..], more].concat());
+        explained_rows(&folder.path().join("s.json"))
     };
     let z_fail = ["-t", "z-fail", "--markdown", "s.md", "--plot", "s.svg"];
     let finer = sweep("triangles=10..1000", &z_fail);
@@ -94,7 +96,7 @@ fn a_sweep_measures_every_value() {
     assert!(table.contains("| of casters | wrong pixels |") && table.contains("| fps |"), "{table}");
     let plot = fs::read_to_string(folder.path().join("s.svg")).expect("a plot");
     assert!(plot.contains("Frame time against triangles") && plot.contains("frames a second"));
-    let values = |rows: &[stencilscope::report::ReportRow]| -> Vec<String> {
+    let values = |rows: &[ReportRow]| -> Vec<String> {
         rows.iter().filter_map(|row| Some(row.sweep.as_ref()?.text.clone())).collect()
     };
     assert_eq!(values(&sweep("lights=1..3", &["-t", "auto"])), ["1", "2", "3"]);
@@ -121,11 +123,8 @@ fn frames_that_move_are_counted_with_their_set_up() {
     let folder = folder();
     let words = ["report", "tetrahedron", "--size", "80x60", "-t", "z-fail", "-t", "none", "--json", "m.json"];
     let rows = |time: &str| {
-        let output = run(folder.path(), &[&words[..], &["--time", time]].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-        let json = fs::read_to_string(folder.path().join("m.json")).expect("rows");
-        crate::help::assert_json_is_explained("report", &serde_json::from_str(&json).expect("JSON"));
-        Report::from_json(&json).expect("a report").rows
+        done(folder.path(), &[&words[..], &["--time", time]].concat());
+        explained_rows(&folder.path().join("m.json"))
     };
     let [still, moving] = ["0.5", "0..1:4"].map(rows);
     for (still, moving) in still.iter().zip(&moving) {
@@ -152,11 +151,7 @@ fn frames_that_move_are_counted_with_their_set_up() {
     assert!(color("z-fail") == Some(0) && color("none") > Some(0));
     // Where nothing moves the first frame's set-up serves all; else each has its own.
     let of_none = |moves: &str| {
-        let words = [&words[..], &["--time", "0.5..1:3", "--moves", moves]].concat();
-        assert_eq!(run(folder.path(), &words).status.code(), Some(0));
-        let json = fs::read_to_string(folder.path().join("m.json")).expect("rows");
-        let rows = Report::from_json(&json).expect("a report").rows;
-        let row = rows.into_iter().find(|row| row.technique == "none").expect("none");
+        let row = row_of_none(folder.path(), &[&words[..], &["--time", "0.5..1:3", "--moves", moves]].concat());
         (row.moving.expect("it moves").setup_ms > 0.0, row.error.compared, row.error.missing_shadow)
     };
     let of_first = still_at_0(folder.path(), &words);
@@ -175,12 +170,17 @@ fn frames_that_move_are_counted_with_their_set_up() {
     assert_fails(&["capture", "tetrahedron", "--time", "0..1", "-o", "out"], 2, &["for `report`", "one moment"]);
 }
 
-/// Compared and missing pixels of `none`.
-fn still_at_0(folder: &Path, words: &[&str]) -> [u64; 2] {
-    assert_eq!(run(folder, words).status.code(), Some(0));
+/// The row of `none` that a command writes.
+fn row_of_none(folder: &Path, words: &[&str]) -> ReportRow {
+    done(folder, words);
     let json = fs::read_to_string(folder.join("m.json")).expect("rows");
     let rows = Report::from_json(&json).expect("a report").rows;
-    let row = rows.into_iter().find(|row| row.technique == "none").expect("none");
+    rows.into_iter().find(|row| row.technique == "none").expect("none")
+}
+
+/// Compared and missing pixels of `none`.
+fn still_at_0(folder: &Path, words: &[&str]) -> [u64; 2] {
+    let row = row_of_none(folder, words);
     [row.error.compared, row.error.missing_shadow]
 }
 
@@ -191,7 +191,7 @@ fn a_report_is_written_in_every_form() {
     let output = run(folder.path(), &[&SMALL[..], &["--json", "r.json", "--plot", "r.svg"][..]].concat());
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), String::new()), "{}", text(&output.stderr));
     let report = Report::from_json(&file("r.json")).expect("a report");
-    crate::help::assert_json_is_explained("report", &serde_json::from_str(&file("r.json")).expect("JSON"));
+    crate::help::assert_json_is_explained("report", &read_json(&folder.path().join("r.json")));
     assert_eq!(report.rows.len(), Choice::report_grid().expect("a grid").len());
     let labels: BTreeSet<&str> = report.rows.iter().map(|row| row.label.as_str()).collect();
     assert!(labels.contains("1024") && labels.contains("256, bias-slope 0"), "{labels:?}");
@@ -232,9 +232,8 @@ fn a_report_is_written_in_every_form() {
 #[test]
 fn rows_for_which_there_is_no_room_are_left_out_and_the_others_are_as_they_were() {
     let mut session = session();
-    let scene = Builtin::named("table").expect("a name").scene().expect("a scene");
-    let mut large = Choice::new(Technique::ShadowMap);
-    large.set("size", "4096").expect("a size");
+    let scene = opened("table");
+    let large = choice(Technique::ShadowMap, &[("size", "4096")]);
     let choices = vec![Choice::new(Technique::ZFail), large, Choice::new(Technique::Planar)];
     let what = Measurement { choices, size: [80, 60], runs: 2 };
     let mut measured = |room| {
@@ -262,11 +261,7 @@ fn under_a_low_sun(floor: Object, casters: &[[f64; 2]]) -> Scene {
 
 /// Wrong labels and wrong colours of a technique with settings.
 fn wrong(scene: &Scene, size: [u32; 2], rows: &[(Technique, &[(&str, &str)])]) -> Vec<[u64; 2]> {
-    let choice = |(technique, settings): &(Technique, &[(&str, &str)])| {
-        let mut choice = Choice::new(*technique);
-        settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-        choice
-    };
+    let choice = |(technique, settings): &(Technique, &[(&str, &str)])| choice(*technique, settings);
     let what = Measurement { choices: rows.iter().map(choice).collect(), size, runs: 1 };
     let measured = session().measure(scene, &what, &Progress::default()).expect("rows");
     measured.iter().map(|row| [row.error.wrong(), row.wrong_color]).collect()
@@ -296,7 +291,7 @@ fn a_shadow_that_is_blended_twice_has_right_labels_and_wrong_colours() {
 #[test]
 fn colours_are_wrong_where_labels_are() {
     for name in ["tori", "table", "inside", "two-lights", "glass", "spheres"] {
-        let scene = Builtin::named(name).expect("a name").scene().expect("a scene");
+        let scene = opened(name);
         for shading in ["as-given", "gouraud"] {
             let same = ("shading", shading);
             let right = [Technique::ZFail, Technique::Auto, Technique::RayTraced];

@@ -3,10 +3,11 @@
 mod builtin;
 mod motion;
 
+use crate::common::opened;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use stencilscope::scene::shapes;
-use stencilscope::scene::{Camera, Light, Mesh, MeshBuilder, Object, OpenSpec, Scene, UpAxis, model_scene, open};
+use stencilscope::scene::{Camera, Light, Mesh, MeshBuilder, Object, Scene, UpAxis, model_scene};
 
 /// How often each directed edge is used, less how often its reverse is: all zero when closed.
 fn open_edges(mesh: &Mesh) -> usize {
@@ -194,10 +195,10 @@ fn flat_thin_far_and_tiny_models_can_be_looked_at() {
 #[test]
 fn what_ships_can_be_opened() {
     let asset = |path: &str| format!("{}/assets/{path}", env!("CARGO_MANIFEST_DIR"));
-    let model = open(&OpenSpec::new(asset("models/knot.obj"))).expect("the model");
+    let model = opened(&asset("models/knot.obj"));
     assert_eq!(open_edges(&model.objects[0].mesh), 0, "closed");
     assert!(volume(&model.objects[0].mesh) > 0.0, "faces look outward");
-    let scene = open(&OpenSpec::new(asset("scenes/knot.toml"))).expect("the scene");
+    let scene = opened(&asset("scenes/knot.toml"));
     assert_eq!(scene.lights.len(), 2);
     assert!(scene.is_animated());
 }

@@ -1,31 +1,17 @@
 //! The terms of shading that a pixel is told, held against the picture that the GPU made of them.
 
-use crate::commands::{assert_fails, folder, run, text};
+use crate::commands::{assert_fails, folder, printed_json, run, text};
+use crate::common::shade::{shaded, srgb};
+use crate::common::{choice, last_frame, opened};
 use std::f64::consts::FRAC_1_SQRT_2;
-use stencilscope::reading::shading::SurfaceShading;
-use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::{Light, Material, Object, Projection, Scene, SceneBuilder, Shading, shapes};
-use stencilscope::technique::{Choice, Technique};
+use stencilscope::technique::Technique;
 use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [96, 72];
 
 fn rendered(scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> Rendered {
-    let mut choice = Choice::new(technique);
-    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-    Rendered::new(scene, choice, SIZE).expect("a frame")
-}
-
-fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<SurfaceShading> {
-    let history = frame.at(at).history().clone();
-    SurfaceShading::of(frame.capture(), frame.plan(), &history)
-}
-
-/// As a picture stores it.
-fn srgb(linear: f64) -> f64 {
-    let linear = linear.clamp(0.0, 1.0);
-    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    encoded * 255.0
+    Rendered::new(scene, choice(technique, settings), SIZE).expect("a frame")
 }
 
 /// Every pixel that was looked at has the colour that its terms add up to.
@@ -34,8 +20,7 @@ fn assert_terms_make_the_picture(frame: &mut Rendered, what: &str) {
     let mut compared = 0;
     for [x, y] in (2..SIZE[1]).step_by(5).flat_map(|y| (2..SIZE[0]).step_by(7).map(move |x| [x, y])) {
         let Some(found) = shaded(frame, [x, y]) else { continue };
-        let last = frame.capture().frame_at(frame.capture().steps.len() - 1).expect("a picture");
-        let stored = last.color.image.rgba_at([x, y]).expect("a pixel");
+        let stored = last_frame(frame.capture()).color.image.rgba_at([x, y]).expect("a pixel");
         let arriving = found.lights.iter().filter(|light| light.label == Some(PixelLabel::Lit));
         let lights: Vec<[f64; 3]> = arriving.map(|light| light.adds).collect();
         for channel in 0..3 {
@@ -52,14 +37,13 @@ fn assert_terms_make_the_picture(frame: &mut Rendered, what: &str) {
 
 #[test]
 fn the_terms_of_a_pixel_add_up_to_its_colour() {
-    let scene = |name: &str| Builtin::named(name).expect("a name").scene().expect("a scene");
     for shading in ["as-given", "flat", "gouraud", "phong"] {
         for diffuse in ["lambert", "wrapped"] {
             let settings = [("shading", shading), ("diffuse", diffuse)];
             for name in ["spheres", "two-lights"] {
                 // A count of wrapped light is another matter where a surface faces away: none is asked here.
                 let technique = if diffuse == "wrapped" { Technique::None } else { Technique::ZFail };
-                let mut frame = rendered(&scene(name), technique, &settings);
+                let mut frame = rendered(&opened(name), technique, &settings);
                 if diffuse == "lambert" {
                     assert_terms_make_the_picture(&mut frame, &format!("{name} {settings:?}"));
                 } else {
@@ -69,7 +53,7 @@ fn the_terms_of_a_pixel_add_up_to_its_colour() {
         }
     }
     // A range, and a checkerboard.
-    assert_terms_make_the_picture(&mut rendered(&scene("tiger-cage"), Technique::ZFail, &[]), "tiger-cage");
+    assert_terms_make_the_picture(&mut rendered(&opened("tiger-cage"), Technique::ZFail, &[]), "tiger-cage");
     let board = Material { checks: 0.5, specular: 0.6, shininess: 2.0, ..Material::default() };
     for shading in Shading::ALL {
         let board = Object {
@@ -95,8 +79,7 @@ fn assert_wrapped(frame: &mut Rendered, what: &str) {
     let mut away = 0;
     for [x, y] in (2..SIZE[1]).step_by(5).flat_map(|y| (2..SIZE[0]).step_by(7).map(move |x| [x, y])) {
         let Some(found) = shaded(frame, [x, y]) else { continue };
-        let last = frame.capture().frame_at(frame.capture().steps.len() - 1).expect("a picture");
-        let stored = last.color.image.rgba_at([x, y]).expect("a pixel");
+        let stored = last_frame(frame.capture()).color.image.rgba_at([x, y]).expect("a pixel");
         away += u32::from(found.lights.iter().any(|light| light.cosine < 0.0 && light.diffuse > 0.0));
         for channel in 0..3 {
             let sum = found.unlit[channel] + found.lights.iter().map(|light| light.adds[channel]).sum::<f64>();
@@ -139,56 +122,39 @@ fn a_light_at_45_degrees_has_the_cosine_of_45_degrees() {
 #[test]
 fn pixel_tells_the_cosine_and_explains_each_key() {
     let folder = folder();
-    let mut frame = rendered(
-        &Builtin::named("spheres").expect("a name").scene().expect("a scene"),
-        Technique::ZFail,
-        &[("shading", "gouraud")],
-    );
+    let mut frame = rendered(&opened("spheres"), Technique::ZFail, &[("shading", "gouraud")]);
     let [x, y] = frame.first_labelled(0, PixelLabel::Lit).expect("light");
     let found = shaded(&mut frame, [x, y]).expect("a surface");
     let at = format!("{x},{y}");
     let arguments = ["pixel", "spheres", "-t", "z-fail", "--set", "shading=gouraud", "--size", "96x72", "--at", &at];
     let told = text(&run(folder.path(), &arguments).stdout);
     assert!(told.contains(&found.text()), "{}\nis not in\n{told}", found.text());
-    let document = text(&run(folder.path(), &[&arguments[..], &["--json"]].concat()).stdout);
-    let document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    let document = printed_json(folder.path(), &[&arguments[..], &["--json"]].concat());
     assert_eq!(document["shading"]["lights"][0]["cosine"].as_f64(), Some(found.lights[0].cosine));
     assert!(document["shading"]["lights"][0]["corner_cosines"].is_array());
     crate::help::assert_json_is_explained("pixel", &document);
     let nothing = ["pixel", "triangle.obj", "--no-floor", "-t", "z-fail", "--size", "96x72", "--at", "0,0", "--json"];
-    let nothing: serde_json::Value = serde_json::from_slice(&run(folder.path(), &nothing).stdout).expect("JSON");
-    assert!(nothing["shading"].is_null());
+    assert!(printed_json(folder.path(), &nothing)["shading"].is_null());
 }
 
 #[test]
 fn a_light_that_is_off_adds_nothing_and_keeps_its_place() {
-    let whole = Builtin::named("two-lights").expect("a name").scene().expect("a scene");
+    let whole = opened("two-lights");
     let mut off = whole.clone();
     off.lights[0].is_on = false;
     let mut alone = whole.clone();
     alone.lights.remove(0);
     let picture = |scene: &Scene| {
         let frame = rendered(scene, Technique::ZFail, &[]);
-        let capture = frame.capture();
-        (
-            capture.lights.len(),
-            capture
-                .frame_at(capture.steps.len() - 1)
-                .expect("a picture")
-                .color
-                .image
-                .rows()
-                .map(<[u8]>::to_vec)
-                .collect::<Vec<_>>(),
-        )
+        let rows = last_frame(frame.capture()).color.image.rows().map(<[u8]>::to_vec);
+        (frame.capture().lights.len(), rows.collect::<Vec<_>>())
     };
     let [(count, without), (_, removed), (_, both)] = [&off, &alone, &whole].map(picture);
     assert_eq!(count, 2, "numbers of lights stay");
     assert!(without == removed && without != both);
     let folder = folder();
     let pixel = ["pixel", "two-lights", "-t", "z-fail", "--size", "96x72", "--at", "48,40", "--json"];
-    let document = text(&run(folder.path(), &[&pixel[..], &["--off", "1"]].concat()).stdout);
-    let document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    let document = printed_json(folder.path(), &[&pixel[..], &["--off", "1"]].concat());
     let color = |light: usize| document["shading"]["lights"][light]["color"].clone();
     assert_eq!(color(0), serde_json::json!([0.0, 0.0, 0.0]));
     assert_ne!(color(1), color(0));

@@ -1,13 +1,10 @@
 //! The stencil machine against the GPU: one pixel a combination, read back and compared.
 
+use crate::common::plans::{self, OPERATIONS};
 use crate::common::{from_above, session};
-use glam::{DVec3, Mat4};
-use std::collections::BTreeMap;
 use stencilscope::capture::{Capture, Snapshot};
-use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, DrawPart,
-    FramePlan, MeshId, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
-};
+use stencilscope::math::depth::DepthMapping;
+use stencilscope::plan::{ColorWrite, Draw, DrawMesh, DrawPart, FramePlan, MeshId, Pass, RasterState, StencilFace};
 use stencilscope::stencil_machine::{DepthStencil, IncomingFragment, test};
 use wgpu::{CompareFunction as Compare, StencilOperation as Operation};
 
@@ -20,16 +17,6 @@ const COMPARES: [Compare; 8] = [
     Compare::NotEqual,
     Compare::GreaterEqual,
     Compare::Always,
-];
-const OPERATIONS: [Operation; 8] = [
-    Operation::Keep,
-    Operation::Zero,
-    Operation::Replace,
-    Operation::Invert,
-    Operation::IncrementClamp,
-    Operation::DecrementClamp,
-    Operation::IncrementWrap,
-    Operation::DecrementWrap,
 ];
 const VALUES: [u8; 5] = [0, 1, 127, 254, 255];
 const MASKS: [u32; 4] = [0, 1, 0x0f, 0xff];
@@ -107,39 +94,11 @@ fn push_pixel(
 }
 
 fn draw(raster: RasterState, mesh: usize, triangles: std::ops::Range<u32>) -> Draw {
-    Draw {
-        name: "quads".to_owned(),
-        caster: None,
-        part: DrawPart::Surface,
-        program: Program::Position,
-        raster,
-        mesh: MeshId(mesh),
-        triangles,
-        base_vertex: 0,
-        faces_inwards: false,
-        constants: DrawConstants::default(),
-    }
+    Draw { triangles, ..Draw::of_positions("quads", DrawPart::Surface, MeshId(mesh), 0, raster) }
 }
 
 fn pass(name: &str, clear: bool, draws: Vec<Draw>) -> Pass {
-    Pass {
-        name: name.to_owned(),
-        image: None,
-        recorded: None,
-        scissor: None,
-        purpose: String::new(),
-        light: None,
-        timed: true,
-        view: ViewId(0),
-        color: None,
-        depth_stencil: Some(DepthStencilTarget {
-            attachment: AttachmentId(0),
-            layer: 0,
-            clear_depth: clear.then_some(STORED_DEPTH),
-            clear_stencil: clear.then_some(0),
-        }),
-        draws,
-    }
+    plans::pass(name, clear.then_some((STORED_DEPTH, 0)), draws)
 }
 
 fn mesh(name: &str, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
@@ -178,32 +137,11 @@ fn plan(cases: &[Case]) -> FramePlan {
         }
         tests.push(draw(case.state.clone(), 1, start..indices.len() as u32 / 3));
     }
-    FramePlan {
-        depth: stencilscope::math::depth::DepthMapping::ReversedInfinite.curve(1.0, 0.0, 0.0),
-        wraps_diffuse: false,
-        technique: "stencil test".to_owned(),
-        settings: BTreeMap::new(),
-        size,
-        attachments: vec![Attachment {
-            name: "depth and stencil".to_owned(),
-            role: AttachmentRole::DepthStencil,
-            format: wgpu::TextureFormat::Depth32FloatStencil8,
-            size,
-            layers: 1,
-        }],
-        views: vec![PlanView {
-            name: "clip".to_owned(),
-            origin: DVec3::ZERO,
-            eye: PlanView::at_origin(),
-            clip_from_relative: Mat4::IDENTITY,
-        }],
-        lights: Vec::new(),
-        ambient: [0.0; 3],
-        meshes: vec![stored, mesh("tested", vertices, indices)],
-        textures: Vec::new(),
-        passes: vec![pass("store", true, prepare), pass("test", false, tests)],
-        left_out: Vec::new(),
-    }
+    let meshes = vec![stored, mesh("tested", vertices, indices)];
+    let passes = vec![pass("store", true, prepare), pass("test", false, tests)];
+    let depth = DepthMapping::ReversedInfinite.curve(1.0, 0.0, 0.0);
+    let format = wgpu::TextureFormat::Depth32FloatStencil8;
+    plans::plan("stencil test", depth, (format, size), meshes, passes)
 }
 
 fn stencil_after(capture: &Capture, step: usize, pixel: usize) -> u8 {

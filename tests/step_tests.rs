@@ -3,7 +3,6 @@
 use crate::common;
 use stencilscope::capture::StepTests;
 use stencilscope::history::{FragmentOutcome, PixelHistory};
-use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -33,7 +32,7 @@ fn counted(history: &PixelHistory, step: usize, draw: Option<usize>) -> [u8; 4] 
 /// verdicts were unknown.
 fn agrees(scene: &str, technique: Technique) -> [u64; 3] {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new(scene)).expect("a scene");
+    let scene = common::opened(scene);
     let request = common::request(technique, SIZE);
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
     let mut asked: Vec<StepTests> = Vec::new();
@@ -85,7 +84,7 @@ fn counts_of_z_pass_and_shadow_maps_are_those_of_histories() {
 #[test]
 fn a_step_that_draws_nothing_into_the_picture_says_so() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("a scene");
+    let scene = common::opened("tori");
     let plan = session.plan(&scene, &common::request(Technique::ShadowMap, SIZE)).expect("a plan");
     let map = plan.passes.iter().position(|pass| pass.view.0 != 0).expect("a map pass");
     let error = session.step_tests(&plan, map, None).expect_err("no pixels of the picture");

@@ -3,7 +3,7 @@
 mod command;
 mod faults;
 
-use crate::commands::{assert_fails, folder, run, text};
+use crate::commands::{assert_fails, done, folder, run, text};
 use crate::common::faults::draws;
 use crate::common::{apart, session};
 use glam::DVec4;

@@ -2,17 +2,17 @@
 
 mod files;
 
-use crate::common::{request, session};
+use crate::common::shade::{linear, shaded, srgb};
+use crate::common::{last_frame, opened, pixels, request, session};
 use glam::{DVec3, Vec2};
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::disk::{read_whole, write};
 use stencilscope::plan::{Blob, FramePlan};
 use stencilscope::reading::pick_ray::sight;
-use stencilscope::reading::shading::SurfaceShading;
 use stencilscope::scene::{
-    Camera, Light, Material, MaterialTexture, Mesh, MeshBuilder, Object, OpenSpec, Projection, Scene, SceneBuilder,
-    Shading, TextureImage, obj, open, shapes,
+    Camera, Light, Material, MaterialTexture, Mesh, MeshBuilder, Object, Projection, Scene, SceneBuilder, Shading,
+    TextureImage, obj, shapes,
 };
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::{Choice, Technique};
@@ -21,8 +21,7 @@ use stencilscope::testing::{PixelLabel, Rendered};
 const SIZE: [u32; 2] = [96, 72];
 
 fn picture(size: [u32; 2], of: impl Fn(u32, u32) -> [u8; 3]) -> Arc<TextureImage> {
-    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    let texels = texels.map(|(x, y)| of(x, y)).map(|[r, g, b]| [r, g, b, 255]).collect();
+    let texels = pixels(size).map(|[x, y]| of(x, y)).map(|[r, g, b]| [r, g, b, 255]).collect();
     Arc::new(TextureImage::new("a picture", size, texels).expect("a picture"))
 }
 
@@ -56,25 +55,8 @@ fn rendered(scene: &Scene, technique: Technique) -> Rendered {
     Rendered::new(scene, Choice::new(technique), SIZE).expect("a frame")
 }
 
-fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<SurfaceShading> {
-    let history = frame.at(at).history().clone();
-    SurfaceShading::of(frame.capture(), frame.plan(), &history)
-}
-
 fn last_color(frame: &Rendered, at: [u32; 2]) -> [u8; 4] {
-    let capture = frame.capture();
-    let last = capture.frame_at(capture.steps.len() - 1).expect("a picture");
-    last.color.image.rgba_at(at).expect("a pixel")
-}
-
-fn linear(byte: u8) -> f64 {
-    let value = f64::from(byte) / 255.0;
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-}
-
-fn srgb(linear: f64) -> f64 {
-    let linear = linear.clamp(0.0, 1.0);
-    255.0 * if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    last_frame(frame.capture()).color.image.rgba_at(at).expect("a pixel")
 }
 
 fn asset(path: &str) -> String {
@@ -82,7 +64,7 @@ fn asset(path: &str) -> String {
 }
 
 fn pattern() -> Scene {
-    open(&OpenSpec::new(asset("scenes/pattern.toml"))).expect("a scene")
+    opened(&asset("scenes/pattern.toml"))
 }
 
 /// The plan with every picture taken off.

@@ -1,10 +1,13 @@
 //! Techniques on scenes whose answers are known in closed form.
 
-use crate::common::{cuboid, from_above, label_counts, request, session, square};
+use crate::common::{
+    cuboid, from_above, label_counts, labels, opened, pixels, remeshed, request, request_with, session, square,
+    stencil, under,
+};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::Decision;
-use stencilscope::scene::{Light, Object, OpenSpec, Pose, Projection, Scene, open};
+use stencilscope::scene::{Light, Object, Pose, Projection, Scene};
 use stencilscope::session::{CaptureRequest, Session, SnapshotInterval};
 use stencilscope::technique::Technique;
 
@@ -25,7 +28,7 @@ fn label_at(capture: &Capture, x: f64, z: f64) -> u8 {
 fn stencil_after(capture: &Capture, name: &str) -> Vec<u8> {
     let step = capture.steps.iter().find(|step| step.name == name).expect("the pass");
     let Snapshot::Frame(frame) = &step.snapshot else { panic!("a frame") };
-    frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
+    stencil(frame)
 }
 
 /// Of half-width 1 at height 2, halfway to the light, it throws a square of half-width 2: 40 × 40
@@ -35,8 +38,8 @@ fn a_square_halfway_to_the_light_throws_a_square_twice_its_size() {
     let mut session = session();
     let scene = from_above(vec![square("caster", 2.0, 1.0)]);
     for technique in SHADOWING {
-        let [lit, shadow, background, away] = label_counts(&capture(&mut session, &scene, technique));
-        assert_eq!([lit, shadow, background, away], [200 * 200 - 975, 40 * 40 - 25 * 25, 0, 0], "{technique:?}");
+        let counts = label_counts(&capture(&mut session, &scene, technique));
+        assert_eq!(counts, [200 * 200 - 975, 40 * 40 - 25 * 25, 0, 0], "{technique:?}");
     }
 }
 
@@ -50,8 +53,7 @@ fn without_shadows_everything_that_faces_the_light_is_lit() {
 #[test]
 fn a_directional_light_throws_a_shadow_of_the_same_size() {
     let mut session = session();
-    let mut scene = from_above(vec![square("caster", 5.0, 1.0)]);
-    scene.lights = vec![Light::directional(DVec3::new(-1.0, 1.0, 0.0))];
+    let scene = under(Light::directional(DVec3::new(-1.0, 1.0, 0.0)), vec![square("caster", 5.0, 1.0)]);
     for technique in SHADOWING {
         let capture = capture(&mut session, &scene, technique);
         assert_eq!(label_counts(&capture), [200 * 200 - 400, 400, 0, 0], "{technique:?}");
@@ -65,12 +67,10 @@ fn winding_and_holes_do_not_change_a_shadow() {
     let mut session = session();
     let reference = cuboid("caster", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]);
     let turned = |keep: fn(usize) -> bool, turn: fn(usize) -> bool| {
-        let mesh = &reference.mesh;
-        let positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
-        let triangles = mesh.triangles().iter().enumerate().filter(|(index, _)| keep(*index));
+        let triangles = reference.mesh.triangles().iter().enumerate().filter(|(index, _)| keep(*index));
         let triangles: Vec<[u32; 3]> =
             triangles.map(|(index, &[a, b, c])| if turn(index) { [a, c, b] } else { [a, b, c] }).collect();
-        Object { mesh: crate::common::mesh(&positions, &triangles), ..reference.clone() }
+        remeshed(&reference, &triangles)
     };
     let mirrored = Pose { scale: DVec3::new(-1.0, 1.0, 1.0), ..Pose::default() };
     let variants = [
@@ -105,8 +105,7 @@ fn z_pass_and_z_fail_leave_the_same_count_where_the_eye_is_outside() {
 #[test]
 fn z_fail_holds_with_the_eye_inside_a_volume_and_z_pass_does_not() {
     let mut session = session();
-    let mut scene = from_above(vec![square("roof", 12.0, 1.0)]);
-    scene.lights = vec![Light::point(DVec3::new(0.0, 14.0, 0.0))];
+    let scene = under(Light::point(DVec3::new(0.0, 14.0, 0.0)), vec![square("roof", 12.0, 1.0)]);
     // The roof's shadow on the floor: half-width 1 · 14 / 2 = 7.
     let right = [200 * 200 - 140 * 140, 140 * 140, 0, 0];
     for technique in [Technique::ZFail, Technique::Planar, Technique::ShadowMap] {
@@ -138,8 +137,7 @@ fn what_does_not_receive_is_lit_as_if_nothing_stood_between() {
         let capture = capture(&mut session, &scene, technique);
         assert_eq!(label_counts(&capture), [200 * 200, 0, 0, 0], "{technique:?}");
         let unshadowed = self::capture(&mut session, &scene, Technique::None);
-        let last = |capture: &Capture| capture.frame_at(capture.steps.len() - 1).expect("a frame").color.image.clone();
-        assert_eq!(last(&capture), last(&unshadowed), "{technique:?}");
+        assert_eq!(color_after_all(&capture), color_after_all(&unshadowed), "{technique:?}");
     }
 }
 
@@ -191,12 +189,9 @@ fn the_shadow_map_bias_pushes_away_from_the_light() {
     let mut plate = square("plate", 0.0, 3.0);
     plate.pose.rotate_degrees.z = 40.0;
     plate.pose.translate.y = 3.0;
-    let mut scene = from_above(vec![plate]);
-    scene.lights = vec![Light::point(DVec3::new(-2.0, 9.0, 0.0))];
-    let mut request = request(Technique::ShadowMap, SIZE);
+    let scene = under(Light::point(DVec3::new(-2.0, 9.0, 0.0)), vec![plate]);
     let mut shadow_with = |bias: &str| {
-        request.choice.set("bias-slope", bias).expect("a bias");
-        request.choice.set("size", "128").expect("a size");
+        let request = request_with(Technique::ShadowMap, &[("bias-slope", bias), ("size", "128")], SIZE);
         let capture = session.capture(&scene, &request).expect("a capture");
         // Pixels of the plate around its middle, where nothing is above it.
         (-10..10)
@@ -219,14 +214,12 @@ fn pictures_of_any_width_are_symmetric_like_their_scene() {
         let labels = capture.lights[0].shadow.as_ref().expect("labels");
         let depth = &capture.frame_at(0).expect("a frame").depth.image;
         let mut shadow = 0;
-        for y in 0..size[1] {
-            for x in 0..size[0] {
-                let mirrored = [size[0] - 1 - x, y];
-                assert_eq!(labels.byte_at([x, y]), labels.byte_at(mirrored), "{size:?} {x} {y}");
-                assert!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), "{size:?} {x} {y}");
-                assert_eq!(frame.color.image.rgba_at([x, y]).map(|c| c[3]), Some(255), "{size:?} {x} {y}");
-                shadow += u64::from(labels.byte_at([x, y]) == Some(1));
-            }
+        for [x, y] in pixels(size) {
+            let mirrored = [size[0] - 1 - x, y];
+            assert_eq!(labels.byte_at([x, y]), labels.byte_at(mirrored), "{size:?} {x} {y}");
+            assert!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), "{size:?} {x} {y}");
+            assert_eq!(frame.color.image.rgba_at([x, y]).map(|c| c[3]), Some(255), "{size:?} {x} {y}");
+            shadow += u64::from(labels.byte_at([x, y]) == Some(1));
         }
         assert!(size == [1, 1] || shadow > 0, "{size:?}");
     }
@@ -283,7 +276,7 @@ fn a_snapshot_after_each_draw_ends_like_one_after_each_pass() {
 #[test]
 fn a_frame_that_copies_much_is_the_same_in_parts() {
     let mut session = session();
-    let scene = open(&OpenSpec::new("tori")).expect("a built-in scene");
+    let scene = opened("tori");
     let plan = session.plan(&scene, &request(Technique::ZFail, [1600, 1000])).expect("a plan");
     let by_pass = session.capture_plan(&scene, &plan).expect("a capture");
     let split = plan.split_at_draws();
@@ -350,8 +343,7 @@ fn maps_of_points_and_suns_agree_with_volumes_but_for_edges() {
     let mut session = session();
     let lights = [Light::point(DVec3::new(1.0, 5.0, 0.5)), Light::directional(DVec3::new(0.4, 1.0, -0.3))];
     for light in lights {
-        let mut scene = from_above(vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
-        scene.lights = vec![light];
+        let scene = under(light, vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
         let by_map = capture(&mut session, &scene, Technique::ShadowMap);
         let by_volumes = capture(&mut session, &scene, Technique::ZFail);
         let labels = |capture: &Capture| capture.lights[0].shadow.clone().expect("labels");
@@ -390,8 +382,8 @@ fn a_scene_of_any_size_has_the_same_labels() {
 fn a_direction_of_any_length_is_one_direction() {
     let mut session = session();
     let mut counts_under = |length: f64| {
-        let mut scene = from_above(vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
-        scene.lights = vec![Light::directional(DVec3::new(0.25, 1.0, -0.5) * length)];
+        let sun = Light::directional(DVec3::new(0.25, 1.0, -0.5) * length);
+        let scene = under(sun, vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
         SHADOWING.map(|technique| label_counts(&capture(&mut session, &scene, technique)))
     };
     let expected = counts_under(1.0);
@@ -422,9 +414,8 @@ fn what_single_precision_can_not_hold_is_refused() {
 fn coinciding_surfaces_are_lit_once() {
     let mut session = session();
     let single = octahedron("caster", [0.0, 2.0, 0.0], 1.0);
-    let positions: Vec<[f64; 3]> = single.mesh.positions().iter().map(|p| p.to_array()).collect();
     let twice = [single.mesh.triangles(), single.mesh.triangles()].concat();
-    let doubled = Object { mesh: crate::common::mesh(&positions, &twice), ..single.clone() };
+    let doubled = remeshed(&single, &twice);
     for technique in Technique::ALL {
         let [one, two] = [&single, &doubled].map(|object| {
             let mut scene = from_above(vec![object.clone()]);
@@ -467,11 +458,8 @@ fn z_fail_draws_no_volume_of_what_darkens_nothing() {
     ];
     for (index, scene) in scenes.iter().enumerate() {
         let mut with = |settings: &[(&str, &str)]| {
-            let mut asked = request(Technique::ZFail, SIZE);
-            settings.iter().for_each(|(key, value)| asked.choice.set(key, value).expect("a setting"));
-            let capture = session.capture(scene, &asked).expect("a capture");
-            let labels = capture.lights[0].shadow.as_ref().expect("labels").rows().flatten().copied().collect();
-            (capture.left_out.iter().any(|one| one.is(Decision::Caster, "floor")), labels)
+            let capture = session.capture(scene, &request_with(Technique::ZFail, settings, SIZE)).expect("a capture");
+            (capture.left_out.iter().any(|one| one.is(Decision::Caster, "floor")), labels(&capture).remove(0))
         };
         let (is_left_out, labels): (bool, Vec<u8>) = with(&[]);
         assert!(is_left_out, "{index}");

@@ -1,29 +1,24 @@
 //! The texels that `pixel` names for a light, held against what `testing` reads and against the GPU's labels.
 
-use crate::commands::{folder, run, text};
+use crate::commands::{done, folder};
+use crate::common::{choice, opened, pixels};
 use serde_json::Value;
 use std::sync::Arc;
 use stencilscope::reading::fragments::SurfaceFragments;
 use stencilscope::reading::texels_read::TexelReaders;
 use stencilscope::reading::texture_decision::TextureDecision;
-use stencilscope::scene::builtin::Builtin;
-use stencilscope::technique::{Choice, Technique};
+use stencilscope::technique::Technique;
 use stencilscope::testing::{PixelLabel, Rendered};
 
 const SIZE: [u32; 2] = [160, 120];
 
 fn rendered(scene: &str, technique: Technique, settings: &[(&str, &str)]) -> Rendered {
-    let scene = Builtin::named(scene).expect("a name").scene().expect("a scene");
-    let mut choice = Choice::new(technique);
-    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-    Rendered::new(&scene, choice, SIZE).expect("a frame")
+    Rendered::new(&opened(scene), choice(technique, settings), SIZE).expect("a frame")
 }
 
 fn told(arguments: &[&str]) -> String {
     let folder = folder();
-    let output = run(folder.path(), &[&["pixel"], arguments, &["--size", "160x120"]].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    text(&output.stdout)
+    done(folder.path(), &[&["pixel"], arguments, &["--size", "160x120"]].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
@@ -37,8 +32,7 @@ fn pixel_names_the_texel_that_testing_reads_with_both_depths_bias_and_side() {
         for label in [PixelLabel::Shadow, PixelLabel::Lit] {
             // Not the first: that one lies on an edge.
             let mask = frame.capture().lights[0].shadow.clone().expect("a mask");
-            let all = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
-            let found: Vec<[u32; 2]> = all.filter(|at| mask.byte_at(*at) == Some(label as u8)).collect();
+            let found: Vec<[u32; 2]> = pixels(SIZE).filter(|at| mask.byte_at(*at) == Some(label as u8)).collect();
             let [x, y] = found[found.len() / 2];
             let expected = frame.at([x, y]).map_texel(0).expect("the map shows it");
             let depth = format!("depth={mapping}");
@@ -112,7 +106,7 @@ fn what_textures_let_through_is_what_labels_say() {
         for light in 0..capture.lights.len() {
             let fragments = SurfaceFragments::new(capture, Some(&plan), light).expect("a picture");
             let mask = capture.lights[light].shadow.as_ref().expect("a mask");
-            for pixel in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
+            for pixel in pixels(SIZE) {
                 let Some(found) = TextureDecision::of(capture, &fragments, light, pixel) else { continue };
                 for layer in &found.layers {
                     let sum: f64 = layer.texels.iter().map(|texel| texel.share).sum();

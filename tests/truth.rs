@@ -1,6 +1,6 @@
 //! The ground truth where the answer is known in closed form.
 
-use crate::common::{cuboid, from_above, mesh, square};
+use crate::common::{cuboid, from_above, mesh, pixels, square, under};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::progress::Progress;
@@ -30,14 +30,12 @@ fn on_floor(x: u32, y: u32) -> [f64; 2] {
 fn assert_floor(scene: &Scene, expected: impl Fn(f64, f64) -> Option<u8>) -> [usize; 4] {
     let truth = truth(scene);
     let mut counts = [0; 4];
-    for y in 0..SIZE[1] {
-        for x in 0..SIZE[0] {
-            let [floor_x, floor_z] = on_floor(x, y);
-            let label = truth.label(0, [x, y]);
-            counts[usize::from(label)] += 1;
-            if let Some(expected) = expected(floor_x, floor_z) {
-                assert_eq!(label, expected, "pixel {x},{y} at {floor_x},{floor_z}");
-            }
+    for [x, y] in pixels(SIZE) {
+        let [floor_x, floor_z] = on_floor(x, y);
+        let label = truth.label(0, [x, y]);
+        counts[usize::from(label)] += 1;
+        if let Some(expected) = expected(floor_x, floor_z) {
+            assert_eq!(label, expected, "pixel {x},{y} at {floor_x},{floor_z}");
         }
     }
     counts
@@ -94,12 +92,10 @@ fn a_light_in_a_closed_box_lights_nothing_outside_and_everything_inside() {
     let mut scene = from_above(vec![closed]);
     let truth = truth(&scene);
     let inside_box = |x: f64, z: f64| x.abs() < 2.0 && z.abs() < 2.0; // its top, 5 below the eye
-    for y in 0..SIZE[1] {
-        for x in 0..SIZE[0] {
-            let [floor_x, floor_z] = on_floor(x, y);
-            let expected = if inside_box(floor_x, floor_z) { FACES_AWAY } else { SHADOW };
-            assert_eq!(truth.label(0, [x, y]), expected, "pixel {x},{y}");
-        }
+    for [x, y] in pixels(SIZE) {
+        let [floor_x, floor_z] = on_floor(x, y);
+        let expected = if inside_box(floor_x, floor_z) { FACES_AWAY } else { SHADOW };
+        assert_eq!(truth.label(0, [x, y]), expected, "pixel {x},{y}");
     }
     scene.camera.eye = DVec3::new(0.0, 4.9, 0.0);
     assert_floor(&scene, |_, _| Some(LIT));
@@ -136,8 +132,8 @@ fn what_does_not_cast_or_receive_is_left_out() {
 fn a_grazing_light_finds_the_smallest_occluder() {
     let fin =
         mesh(&[[0.0, 0.0, -30.0], [0.0, 0.0, 30.0], [0.0, 1e-6, 30.0], [0.0, 1e-6, -30.0]], &[[0, 1, 2], [0, 2, 3]]);
-    let mut scene = from_above(vec![unseen(Object::new("fin", fin, Material::default()))]);
-    scene.lights = vec![Light::directional(DVec3::new(-1.0, 1e-6, 0.0))];
+    let fin = unseen(Object::new("fin", fin, Material::default()));
+    let mut scene = under(Light::directional(DVec3::new(-1.0, 1e-6, 0.0)), vec![fin]);
     assert_floor(&scene, |x, _| shadow_if(x > 0.0 && x < 1.0));
     // The same from a point light at the end of that line.
     scene.lights = vec![Light::point(DVec3::new(-1000.0, 1e-3 + 1e-6, 0.0))];

@@ -1,10 +1,12 @@
 //! Shadow volumes: every setting right where it is right, and its famous wrong form counted.
 
 use crate::common::ray_cast::difference;
-use crate::common::{cuboid, from_above, label_counts, mesh, request, session, square};
+use crate::common::{
+    cuboid, from_above, label_counts, remeshed, request, request_with, session, square, stencil_before_mask, under,
+};
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::capture::{Capture, Snapshot};
+use stencilscope::capture::Capture;
 use stencilscope::plan::{CountOf, DrawPart, FramePlan, StencilFace};
 use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Mesh, Object, Scene};
@@ -18,9 +20,7 @@ const SIZE: [u32; 2] = [200, 200];
 const ALL_PIXELS: u64 = 200 * 200;
 
 fn with(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
-    let mut request = request(technique, SIZE);
-    settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
-    request
+    request_with(technique, settings, SIZE)
 }
 
 fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> Capture {
@@ -29,13 +29,6 @@ fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings:
 
 fn counts(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> [u64; 4] {
     label_counts(&capture(session, scene, technique, settings))
-}
-
-/// The stencil before the mask, which reads it.
-fn stencil(capture: &Capture) -> Vec<u8> {
-    let mask = capture.steps.iter().position(|step| step.name == "mask").expect("a mask");
-    let Snapshot::Frame(frame) = &capture.steps[mask - 1].snapshot else { panic!("a frame") };
-    frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
 }
 
 fn object(name: &str, mesh: Mesh) -> Object {
@@ -55,10 +48,9 @@ fn nested(count: u32) -> Vec<Object> {
 }
 
 fn of_mesh(object: &Object, change: impl Fn(usize, [u32; 3]) -> Vec<[u32; 3]>) -> Object {
-    let positions: Vec<[f64; 3]> = object.mesh.positions().iter().map(|p| p.to_array()).collect();
     let triangles = object.mesh.triangles().iter().enumerate();
     let triangles: Vec<[u32; 3]> = triangles.flat_map(|(index, corners)| change(index, *corners)).collect();
-    Object { mesh: mesh(&positions, &triangles), ..object.clone() }
+    remeshed(object, &triangles)
 }
 
 /// Flipped, doubled and missing triangles, and fins: three faces on an edge.
@@ -100,8 +92,7 @@ fn settings_that_are_right_for_a_box_throw_its_exact_shadow() {
 #[test]
 fn a_suns_volume_may_be_finite_too() {
     let mut session = session();
-    let mut scene = from_above(vec![square("caster", 5.0, 1.0)]);
-    scene.lights = vec![Light::directional(DVec3::new(-1.0, 1.0, 0.0))];
+    let scene = under(Light::directional(DVec3::new(-1.0, 1.0, 0.0)), vec![square("caster", 5.0, 1.0)]);
     for technique in VOLUMES {
         let shadow = |session: &mut Session, k: &str| counts(session, &scene, technique, &[("extrusion", k)])[1];
         assert_eq!(shadow(&mut session, "finite:10"), 400, "{technique:?}");
@@ -116,8 +107,7 @@ fn a_suns_volume_may_be_finite_too() {
 #[test]
 fn a_finite_volume_ends_early_under_a_close_light() {
     let mut session = session();
-    let mut scene = from_above(vec![square("caster", 2.0, 0.1)]);
-    scene.lights = vec![Light::point(DVec3::new(0.0, 2.1, 0.0))];
+    let scene = under(Light::point(DVec3::new(0.0, 2.1, 0.0)), vec![square("caster", 2.0, 0.1)]);
     for technique in VOLUMES {
         let right = counts(&mut session, &scene, technique, &[]);
         assert!(right[1] > 1000, "{right:?}");
@@ -239,8 +229,8 @@ fn two_sided_and_two_pass_leave_the_same_counts() {
     let mut session = session();
     let scene = from_above(vec![torn(&torus(2.0)), cuboid("box", [-3.0, 1.0, -1.0], [-1.5, 2.0, 0.5])]);
     for technique in VOLUMES {
-        let one = stencil(&capture(&mut session, &scene, technique, &[]));
-        let two = stencil(&capture(&mut session, &scene, technique, &[("faces", "two-pass")]));
+        let one = stencil_before_mask(&capture(&mut session, &scene, technique, &[]));
+        let two = stencil_before_mask(&capture(&mut session, &scene, technique, &[("faces", "two-pass")]));
         let differing: Vec<_> = one.iter().zip(&two).enumerate().filter(|(_, (one, two))| one != two).collect();
         assert!(differing.is_empty(), "{technique:?}: {} pixels, {:?}", differing.len(), differing.first());
         assert!(one.iter().any(|count| *count > 1), "{technique:?}");
@@ -260,7 +250,7 @@ fn clamped_counts_depend_on_order_and_end_at_255() {
     // 300 squares: behind the last, a ray has entered 300 volumes and is inside them all. Wrapped,
     // the count is 300 − 256; clamped, it stops at 255. 256 wrap to 0.
     let most = |session: &mut Session, count: u32, settings: &[(&str, &str)]| {
-        stencil(&capture(session, &from_above(nested(count)), Technique::ZFail, settings)).into_iter().max()
+        stencil_before_mask(&capture(session, &from_above(nested(count)), Technique::ZFail, settings)).into_iter().max()
     };
     // The floor's own volume, below it, adds one more and takes it away again, after the limit.
     assert_eq!(most(&mut session, 300, &ordered), Some(254));
@@ -307,7 +297,8 @@ fn all_three_counts_agree_where_the_eye_is_outside() {
     let scene = from_above(vec![torn(&torus(2.0)), cuboid("box", [-3.0, 1.0, -1.0], [-1.5, 2.0, 0.5])]);
     for light in [Light::point(DVec3::new(0.5, 5.0, 0.2)), Light::directional(DVec3::new(0.3, 1.0, 0.2))] {
         let scene = Scene { lights: vec![light], ..scene.clone() };
-        let [z_pass, z_fail, plus] = VOLUMES.map(|technique| stencil(&capture(&mut session, &scene, technique, &[])));
+        let [z_pass, z_fail, plus] =
+            VOLUMES.map(|technique| stencil_before_mask(&capture(&mut session, &scene, technique, &[])));
         assert!(z_pass == z_fail && plus == z_fail);
     }
 }
@@ -324,9 +315,9 @@ fn z_pass_plus_is_right_with_the_eye_inside_a_volume() {
         Light::directional(DVec3::new(0.0, 1.0, 0.0)),
     ];
     for light in lights {
-        let mut scene = from_above(vec![square("roof", 12.0, 3.0), torn(&torus(2.0))]);
-        scene.lights = vec![light];
-        let [z_pass, z_fail, plus] = VOLUMES.map(|technique| stencil(&capture(&mut session, &scene, technique, &[])));
+        let scene = under(light, vec![square("roof", 12.0, 3.0), torn(&torus(2.0))]);
+        let [z_pass, z_fail, plus] =
+            VOLUMES.map(|technique| stencil_before_mask(&capture(&mut session, &scene, technique, &[])));
         assert!(plus == z_fail, "{} pixels differ", plus.iter().zip(&z_fail).filter(|(a, b)| a != b).count());
         assert!(z_pass != z_fail);
     }
@@ -349,8 +340,9 @@ fn a_closed_volume_counts_to_zero_when_nothing_hides_it() {
     for light in [Light::point(DVec3::new(0.5, 5.0, 0.2)), Light::directional(DVec3::new(0.3, 1.0, 0.2))] {
         scene.lights = vec![light];
         let plan = session.plan(&scene, &request(Technique::ZFail, SIZE)).expect("a plan");
-        let counted =
-            |session: &mut Session, plan: &FramePlan| stencil(&session.capture_plan(&scene, plan).expect("a capture"));
+        let counted = |session: &mut Session, plan: &FramePlan| {
+            stencil_before_mask(&session.capture_plan(&scene, plan).expect("a capture"))
+        };
         let mut all = always(plan);
         assert!(counted(&mut session, &all).iter().all(|count| *count == 0));
         // Every part was drawn: without one, what it closes is open.
@@ -383,8 +375,7 @@ fn always(mut plan: FramePlan) -> FramePlan {
 fn all_casters_leave_no_leak_on_any_mesh() {
     let mut session = session();
     for caster in [torus(2.0), torn(&torus(2.0))] {
-        let mut scene = from_above(vec![caster]);
-        scene.lights = vec![Light::point(DVec3::new(1.3, 4.1, 0.4))];
+        let mut scene = under(Light::point(DVec3::new(1.3, 4.1, 0.4)), vec![caster]);
         for eye in [DVec3::new(3.0, 5.0, 4.0), DVec3::new(0.4, 1.1, 0.3), DVec3::new(90.0, 60.0, 70.0)] {
             scene.camera.eye = eye;
             scene.camera.target = DVec3::new(0.1, 0.7, 0.0);

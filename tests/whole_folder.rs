@@ -1,6 +1,6 @@
 //! Capture folders that hold the frame and its scene: what was asked of the run can be asked of the folder.
 
-use crate::commands::{folder as work_folder, run, text};
+use crate::commands::{folder as work_folder, read_json, run, text};
 use crate::common::random::Random;
 use crate::common::{cuboid, from_above, request, session, square};
 use glam::DVec3;
@@ -205,8 +205,7 @@ fn what_two_meshes_share_is_one_file() {
     let (parent, mut session) = (tempfile::tempdir().expect("a folder"), session());
     let folder = parent.path().join("out");
     let frame = written(&mut session, Technique::ZFail, &folder);
-    let entry: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.join("frame.json")).expect("text")).expect("JSON");
+    let entry = read_json(&folder.join("frame.json"));
     let meshes = entry["meshes"].as_array().expect("meshes");
     for (a, of_a) in frame.plan.meshes.iter().zip(meshes) {
         for (b, of_b) in frame.plan.meshes.iter().zip(meshes) {

@@ -2,7 +2,7 @@
 
 use super::{SIZE, all_but, assert_decides, assert_differs_by_labels, auto, left_out, looking};
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, judged, mesh, session, square};
+use crate::common::{cuboid, from_above, judged, mesh, session, square, under};
 use glam::{DVec3, DVec4};
 use stencilscope::plan::Decision;
 use stencilscope::scene::{Camera, Light, Object, Projection, Scene, shapes};
@@ -13,8 +13,7 @@ const WHAT: &str = "far part of the volume of box";
 
 fn box_under(light: Light, others: Vec<Object>) -> Scene {
     let caster = cuboid("box", [-0.5, 1.0, -0.5], [0.5, 2.0, 0.5]);
-    let mut scene = from_above([vec![caster], others].concat());
-    scene.lights = vec![light];
+    let scene = under(light, [vec![caster], others].concat());
     looking(scene, [4.0, 5.0, 6.0], [0.0, 0.5, 0.0])
 }
 
@@ -114,9 +113,8 @@ fn it_ends_no_nearer_than_the_eye() {
 #[test]
 fn what_ends_before_it_is_in_view_is_not_drawn() {
     let aside = |lower: Vec<Object>| {
-        let mut scene = from_above([vec![cuboid("box", [14.5, 1.0, -0.5], [15.5, 2.0, 0.5])], lower].concat());
-        scene.lights = vec![Light::directional([0.0, 1.0, 0.0])];
-        scene
+        let high = cuboid("box", [14.5, 1.0, -0.5], [15.5, 2.0, 0.5]);
+        under(Light::directional([0.0, 1.0, 0.0]), [vec![high], lower].concat())
     };
     let beside = aside(vec![]);
     assert_decides(Decision::View, "volume of box", &beside, &aside(vec![square("lower floor", -3.0, 90.0)]));

@@ -1,7 +1,7 @@
 //! Maps and textures that stay from frame to frame.
 
 use super::{labels, picture};
-use crate::common::{cuboid, from_above, request, session};
+use crate::common::{cuboid, from_above, request_with, session};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::Decision;
@@ -14,9 +14,7 @@ fn scene() -> Scene {
 }
 
 fn asked(technique: Technique, redraw: &str) -> CaptureRequest {
-    let mut request = request(technique, [96, 72]);
-    request.choice.set("redraw", redraw).expect("a setting");
-    request
+    request_with(technique, &[("redraw", redraw)], [96, 72])
 }
 
 fn maps(capture: &Capture) -> Vec<Vec<u8>> {

@@ -1,7 +1,7 @@
 //! Lamps whose light ends somewhere: what lies beyond is left out.
 
 use super::{assert_decides, auto, labels, left_out, looking};
-use crate::common::{cuboid, from_above, judged, request, session};
+use crate::common::{cuboid, judged, request_with, session, under};
 use glam::DVec3;
 use stencilscope::capture::Capture;
 use stencilscope::plan::{Decision, FramePlan};
@@ -11,9 +11,8 @@ use stencilscope::truth::{FACES_AWAY, LIT, SHADOW};
 
 /// A lamp that reaches `range` metres, above a box on the floor, seen from above.
 fn lamp(range: f64) -> Scene {
-    let mut scene = from_above(vec![cuboid("box", [-0.5, 0.0, -0.5], [0.5, 1.0, 0.5])]);
-    scene.lights = vec![Light { range: Some(range), ..Light::point(DVec3::new(1.0, 3.0, 0.0)) }];
-    scene
+    let lamp = Light { range: Some(range), ..Light::point(DVec3::new(1.0, 3.0, 0.0)) };
+    under(lamp, vec![cuboid("box", [-0.5, 0.0, -0.5], [0.5, 1.0, 0.5])])
 }
 
 fn scissors(plan: &FramePlan) -> Vec<(String, Option<[u32; 4]>)> {
@@ -47,8 +46,7 @@ fn passes_of_a_lamp_are_cut_to_its_range() {
 fn all_volumes_are_right_within_a_range() {
     let mut session = session();
     let mut with = |technique, leave_out: &str| {
-        let mut request = request(technique, super::SIZE);
-        request.choice.set("leave-out", leave_out).expect("a setting");
+        let request = request_with(technique, &[("leave-out", leave_out)], super::SIZE);
         labels(&session.capture(&lamp(4.0), &request).expect("a capture"))
     };
     for technique in [Technique::ZPass, Technique::ZFail, Technique::ZPassPlus, Technique::Auto] {

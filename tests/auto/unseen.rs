@@ -1,7 +1,7 @@
 //! What no sample of the last frame showed, and what a device is not asked for.
 
 use super::{labels, picture};
-use crate::common::{cuboid, from_above, request, session};
+use crate::common::{cuboid, from_above, request_with, session};
 use glam::DVec3;
 use stencilscope::capture::Capture;
 use stencilscope::plan::Decision;
@@ -24,10 +24,7 @@ fn behind_a_wall(x: f64) -> Scene {
 }
 
 fn asked(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
-    let mut request = request(technique, SIZE);
-    let set = |(key, value): &(&str, &str)| request.choice.set(key, value).expect("a setting");
-    settings.iter().for_each(set);
-    request
+    request_with(technique, settings, SIZE)
 }
 
 /// The frame with what the queries left out, held against the frame without queries.

@@ -2,10 +2,12 @@
 
 mod apart;
 pub mod faults;
+pub mod plans;
 pub mod random;
 pub mod ray_cast;
 #[cfg(feature = "inspector")]
 pub mod report;
+pub mod shade;
 
 pub use apart::apart;
 use glam::DMat3;
@@ -13,10 +15,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
-use stencilscope::capture::Capture;
+use stencilscope::capture::{Capture, CapturedLight, FrameSnapshot, Snapshot};
 use stencilscope::progress::Progress;
-use stencilscope::scene::{Camera, Light, Mesh, Object, Scene, SceneBuilder, shapes};
-use stencilscope::session::{CaptureRequest, Session};
+use stencilscope::scene::{Camera, Light, Mesh, Object, OpenSpec, Scene, SceneBuilder, open, shapes};
+use stencilscope::session::{CaptureRequest, RunFrame, Session};
 use stencilscope::technique::{Choice, Technique};
 
 /// A session on the reference adapter; without one the test fails.
@@ -27,6 +29,33 @@ pub fn session() -> Session {
 /// A technique with its defaults, untimed.
 pub fn request(technique: Technique, size: [u32; 2]) -> CaptureRequest {
     CaptureRequest::new(Choice::new(technique), size)
+}
+
+/// A technique with settings, and the rest of them as they are by default.
+pub fn choice(technique: Technique, settings: &[(&str, &str)]) -> Choice {
+    let mut choice = Choice::new(technique);
+    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
+    choice
+}
+
+/// The same, untimed.
+pub fn request_with(technique: Technique, settings: &[(&str, &str)], size: [u32; 2]) -> CaptureRequest {
+    CaptureRequest::new(choice(technique, settings), size)
+}
+
+/// A scene by the name that it is opened by: a built-in scene's, or a file.
+pub fn opened(name: &str) -> Scene {
+    open(&OpenSpec::new(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// A frame of a scene by its name, with its plan.
+pub fn frame(session: &mut Session, name: &str, request: CaptureRequest) -> RunFrame {
+    session.render(opened(name), request).expect("a frame")
+}
+
+/// All pixels of a picture, row by row.
+pub fn pixels([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
 }
 
 /// A mesh from points and triangles.
@@ -61,6 +90,17 @@ pub fn from_above(objects: Vec<Object>) -> Scene {
         .build()
 }
 
+/// The same under another light.
+pub fn under(light: Light, objects: Vec<Object>) -> Scene {
+    Scene { lights: vec![light], ..from_above(objects) }
+}
+
+/// An object with other triangles of the same corners.
+pub fn remeshed(object: &Object, triangles: &[[u32; 3]]) -> Object {
+    let positions: Vec<[f64; 3]> = object.mesh.positions().iter().map(|at| at.to_array()).collect();
+    Object { mesh: mesh(&positions, triangles), ..object.clone() }
+}
+
 /// Is each edge used as often one way as the other?
 pub fn is_closed(mesh: &Mesh) -> bool {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
@@ -84,6 +124,24 @@ pub fn volume(scene: &Scene, name: &str) -> f64 {
     object.mesh.triangles().iter().map(six).sum()
 }
 
+/// What a technique says of every pixel, light by light.
+pub fn labels(capture: &Capture) -> Vec<Vec<u8>> {
+    let of = |light: &CapturedLight| light.shadow.as_ref().expect("labels").rows().flatten().copied().collect();
+    capture.lights.iter().map(of).collect()
+}
+
+/// The stencil of a frame, pixel by pixel.
+pub fn stencil(frame: &FrameSnapshot) -> Vec<u8> {
+    frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
+}
+
+/// The stencil before the mask, which reads it.
+pub fn stencil_before_mask(capture: &Capture) -> Vec<u8> {
+    let mask = capture.steps.iter().position(|step| step.name == "mask").expect("a mask");
+    let Snapshot::Frame(frame) = &capture.steps[mask - 1].snapshot else { panic!("a frame") };
+    stencil(frame)
+}
+
 /// How many pixels of light 0 have each label.
 pub fn label_counts(capture: &Capture) -> [u64; 4] {
     let histogram = capture.lights[0].shadow.as_ref().expect("labels").histogram();
@@ -101,6 +159,20 @@ pub fn names(folder: &Path) -> Vec<String> {
 
 /// A capture held against the ground truth.
 pub fn judged(session: &mut Session, scene: &Scene, technique: Technique, size: [u32; 2]) -> Capture {
-    let capture = session.capture(scene, &request(technique, size)).expect("a capture");
+    judged_by(session, scene, &request(technique, size))
+}
+
+pub fn judged_by(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> Capture {
+    let capture = session.capture(scene, request).expect("a capture");
     session.judged(scene, &capture, &Progress::default()).expect("a truth")
+}
+
+/// Wrong pixels of all lights.
+pub fn wrong(judged: &Capture) -> u64 {
+    judged.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error.wrong()).sum()
+}
+
+/// The finished picture.
+pub fn last_frame(capture: &Capture) -> &FrameSnapshot {
+    capture.frame_at(capture.steps.len() - 1).expect("a picture")
 }

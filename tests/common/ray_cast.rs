@@ -4,6 +4,7 @@
 //! within an eighth of a pixel, or whose visible triangle changes within 1/256 (what rasterisers
 //! snap to), has no certain answer.
 
+use super::pixels;
 use glam::{DVec3, DVec4};
 use stencilscope::capture::Capture;
 use stencilscope::math::projection::view_from_world_rotation;
@@ -41,30 +42,27 @@ pub fn difference(scene: &Scene, capture: &Capture, light: usize) -> Difference 
         .collect();
     let labels = capture.lights[light].shadow.as_ref().expect("labels");
     let light = scene.lights[light].position;
-    let [width, height] = capture.size;
     let mut difference = Difference::default();
-    for y in 0..height {
-        for x in 0..width {
-            let at = |dx: f64, dy: f64| {
-                seen(scene, &triangles, light, capture.size, f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy)
-            };
-            let truth = at(0.0, 0.0);
-            difference.labels[usize::from(truth.label)] += 1;
-            if truth.label > 1 {
-                continue;
-            }
-            difference.compared += 1;
-            if labels.byte_at([x, y]) == Some(truth.label) {
-                continue;
-            }
-            let around = |step: f64| {
-                let offsets = [-step, 0.0, step];
-                offsets.into_iter().flat_map(move |dx| offsets.into_iter().map(move |dy| (dx, dy)))
-            };
-            let excused = around(0.125).any(|(dx, dy)| at(dx, dy).label != truth.label)
-                || around(1.0 / 256.0).any(|(dx, dy)| at(dx, dy).triangle != truth.triangle);
-            difference.wrong += u64::from(!excused);
+    for [x, y] in pixels(capture.size) {
+        let at = |dx: f64, dy: f64| {
+            seen(scene, &triangles, light, capture.size, f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy)
+        };
+        let truth = at(0.0, 0.0);
+        difference.labels[usize::from(truth.label)] += 1;
+        if truth.label > 1 {
+            continue;
         }
+        difference.compared += 1;
+        if labels.byte_at([x, y]) == Some(truth.label) {
+            continue;
+        }
+        let around = |step: f64| {
+            let offsets = [-step, 0.0, step];
+            offsets.into_iter().flat_map(move |dx| offsets.into_iter().map(move |dy| (dx, dy)))
+        };
+        let excused = around(0.125).any(|(dx, dy)| at(dx, dy).label != truth.label)
+            || around(1.0 / 256.0).any(|(dx, dy)| at(dx, dy).triangle != truth.triangle);
+        difference.wrong += u64::from(!excused);
     }
     difference
 }

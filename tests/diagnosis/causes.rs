@@ -1,7 +1,8 @@
 //! Each cause in scenes of its own.
 
-use super::provoke::{CAUSES, PlanFault, Provocation, provoke, set};
+use super::provoke::{CAUSES, PlanFault, Provocation, provoke};
 use super::{SMALL, diagnose, faults, first, session, told};
+use crate::common::{choice, opened, request_with};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof};
 use stencilscope::plan::DrawPart;
@@ -89,7 +90,7 @@ fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_mended_by_it() {
     for (cause, settings, mend) in cases {
         let provoked = |seed| {
             let of = if settings == [("caps", "none")] { Cause::MissingDarkCap } else { cause };
-            Provocation { choice: set(Technique::ZFail, settings), fault: None, ..provoke(of, seed) }
+            Provocation { choice: choice(Technique::ZFail, settings), fault: None, ..provoke(of, seed) }
         };
         let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoked(seed))).find(|found| found.is_bad());
         let found = found.expect("a wrong pixel");
@@ -104,7 +105,7 @@ fn a_silhouette_that_does_not_fit_its_picture_is_outside_the_map() {
     let mut session = session();
     let provoked = |seed| {
         let mut provoked = provoke(Cause::Aliasing, seed);
-        provoked.choice = set(Technique::Projective, &[("fit", "off"), ("size", "2048")]);
+        provoked.choice = choice(Technique::Projective, &[("fit", "off"), ("size", "2048")]);
         // So near that it covers more than ninety degrees.
         let caster = provoked.scene.objects[1].pose.translate;
         provoked.scene.lights = vec![Light::point(caster + glam::DVec3::new(0.05, 0.25, 0.0))];
@@ -124,7 +125,7 @@ fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
     let provoked = |technique| Provocation {
         cause: Cause::F32Limit,
         scene: scene(0.0).expect("a scene"),
-        choice: set(technique, &[]),
+        choice: choice(technique, &[]),
         fault: None,
     };
     let mut session = session();
@@ -152,7 +153,7 @@ fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
 fn what_is_cut_beside_the_border_is_told_with_the_length_of_what_is_cut() {
     let case = StressCase::named("long-edge").expect("a case");
     let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
-    let request = CaptureRequest::new(set(Technique::ZFail, &[]), [640, 480]);
+    let request = request_with(Technique::ZFail, &[], [640, 480]);
     let mut session = session();
     let mut diagnose = |metres| {
         let scene = scene(metres).expect("a scene");
@@ -180,7 +181,7 @@ fn what_is_cut_beside_the_border_is_told_with_the_length_of_what_is_cut() {
 #[test]
 fn counting_from_the_eyes_own_count_is_right_until_the_near_plane_is_cut() {
     let mut session = session();
-    let starting = set(Technique::ZPass, &[("start", "eye-count")]);
+    let starting = choice(Technique::ZPass, &[("start", "eye-count")]);
     let eye = Provocation { choice: starting.clone(), ..provoke(Cause::EyeInVolume, 1) };
     let zero = diagnose(&mut session, &provoke(Cause::EyeInVolume, 1));
     let found = diagnose(&mut session, &eye);
@@ -194,8 +195,8 @@ fn counting_from_the_eyes_own_count_is_right_until_the_near_plane_is_cut() {
 /// A closed slat counts one, and so it is told.
 #[test]
 fn a_body_that_the_near_plane_cuts_is_one_volume() {
-    let scene = builtin::Builtin::named("inside").expect("inside").scene().expect("a scene");
-    let choice = set(Technique::ZPass, &[]);
+    let scene = opened("inside");
+    let choice = choice(Technique::ZPass, &[]);
     let provoked = Provocation { cause: Cause::NearPlaneCut, scene, choice, fault: None };
     let told = told(&diagnose(&mut session(), &provoked));
     assert!(told.contains("cuts 1 shadow volume of slat"), "{told}");
@@ -211,8 +212,12 @@ fn a_right_frame_has_no_cause() {
             if technique == Technique::ZFail && builtin.name == "gate" {
                 continue;
             }
-            let provoked =
-                Provocation { cause: Cause::Undrawn, scene: scene.clone(), choice: set(technique, &[]), fault: None };
+            let provoked = Provocation {
+                cause: Cause::Undrawn,
+                scene: scene.clone(),
+                choice: choice(technique, &[]),
+                fault: None,
+            };
             let diagnosis = diagnose(&mut session, &provoked);
             assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, told(&diagnosis));
             assert_eq!(diagnosis.error.wrong(), 0);
@@ -224,8 +229,8 @@ fn a_right_frame_has_no_cause() {
 #[test]
 fn the_eye_in_the_shadow_of_the_sun_is_named_too() {
     let mut session = session();
-    let scene = builtin::Builtin::named("inside").expect("a scene").scene().expect("a scene");
-    let choice = set(Technique::ZPass, &[]);
+    let scene = opened("inside");
+    let choice = choice(Technique::ZPass, &[]);
     let diagnosis = diagnose(&mut session, &Provocation { cause: Cause::EyeInVolume, scene, choice, fault: None });
     assert!(diagnosis.regions.len() > 3, "{}", told(&diagnosis));
     for region in &diagnosis.regions {
@@ -241,7 +246,7 @@ fn flags_are_told_of_with_what_they_take_away() {
     let mut session = session();
     for cause in [Cause::NotReceiving, Cause::NotCasting, Cause::Undrawn] {
         let mut provoked = provoke(Cause::DoubleBlend, 0);
-        provoked.choice = set(Technique::ZFail, &[]);
+        provoked.choice = choice(Technique::ZFail, &[]);
         let object = usize::from(cause != Cause::NotReceiving);
         let flagged = &mut provoked.scene.objects[object];
         match cause {
@@ -273,7 +278,7 @@ fn advice_mends_the_whole_frame() {
 fn what_there_is_no_room_for_is_told_and_not_tried() {
     let mut session = session();
     let coarse = |seed| Provocation {
-        choice: set(Technique::PlanarTexture, &[("size", "64")]),
+        choice: choice(Technique::PlanarTexture, &[("size", "64")]),
         ..provoke(Cause::Aliasing, seed)
     };
     let found = |diagnosis: &Diagnosis| diagnosis.regions.first().map(|region| region.causes[0].clone());
@@ -283,7 +288,7 @@ fn what_there_is_no_room_for_is_told_and_not_tried() {
         found.is_some_and(|found| found.mend.is_some_and(|mend| mend.settings.get("size").is_some_and(|n| n == "256")))
     };
     let provoked = (0..SEEDS).map(coarse).find(|one| needs_four(one, &mut session)).expect("too coarse a texture");
-    let larger = CaptureRequest::new(set(Technique::PlanarTexture, &[("size", "256")]), SMALL);
+    let larger = request_with(Technique::PlanarTexture, &[("size", "256")], SMALL);
     let too_little = session.plan(&provoked.scene, &larger).expect("a plan").bytes() - 1;
     session.set_room(Some(too_little));
     let diagnosis = diagnose(&mut session, &provoked);
@@ -300,7 +305,7 @@ fn meshes_are_told_of_with_places() {
     let mut session = session();
     for (cause, count) in [(Cause::OpenMesh, 4), (Cause::SplitVertices, 36), (Cause::NonManifold, 4)] {
         let mut provoked = provoke(cause, 0);
-        (provoked.choice, provoked.fault) = (set(Technique::ZFail, &[]), None);
+        (provoked.choice, provoked.fault) = (choice(Technique::ZFail, &[]), None);
         let diagnosis = diagnose(&mut session, &provoked);
         assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
         let of_caster = diagnosis.mesh_findings.iter().filter(|found| found.object == "caster");

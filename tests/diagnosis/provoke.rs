@@ -1,6 +1,7 @@
 //! Scenes, settings and plans in which one thing is wrong, from a seed.
 
 use super::faults;
+use crate::common::choice;
 use crate::common::random::Random;
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
@@ -32,12 +33,6 @@ pub const CAUSES: [Cause; 36] = {
     }
     causes
 };
-
-pub fn set(technique: Technique, settings: &[(&str, &str)]) -> Choice {
-    let mut choice = Choice::new(technique);
-    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-    choice
-}
 
 pub fn cuboid(name: &str, at: [f64; 3], size: [f64; 3]) -> Object {
     Object::of(name, shapes::cuboid(size).expect("a box")).at(at)
@@ -142,103 +137,103 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
     let dice = &mut Dice(Random::new(seed.wrapping_mul(64) + cause as u64 + 1));
     let facing = [("casters", "light-facing")];
     let (scene, choice, fault): (Scene, Choice, Option<PlanFault>) = match cause {
-        Cause::EyeInVolume => (eye_in_shadow(dice), set(Technique::ZPass, &[]), None),
-        Cause::NearPlaneCut => (near_in_shadow(dice), set(Technique::ZPass, &[]), None),
-        Cause::NearPlaneCrack => (near_through_roof(dice), set(Technique::ZPassPlus, &[]), None),
+        Cause::EyeInVolume => (eye_in_shadow(dice), choice(Technique::ZPass, &[]), None),
+        Cause::NearPlaneCut => (near_in_shadow(dice), choice(Technique::ZPass, &[]), None),
+        Cause::NearPlaneCrack => (near_through_roof(dice), choice(Technique::ZPassPlus, &[]), None),
         Cause::MissingDarkCap => {
-            (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(DrawPart::DarkCap)))
+            (beside_the_lamp(dice), choice(Technique::ZFail, &[]), Some(faults::without(DrawPart::DarkCap)))
         }
         Cause::MissingLightCap => {
-            (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::without(DrawPart::LightCap)))
+            (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::without(DrawPart::LightCap)))
         }
-        Cause::FarClip => (dice.any_scene(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
+        Cause::FarClip => (dice.any_scene(), choice(Technique::ZFail, &[("depth", "standard-finite")]), None),
         Cause::FiniteExtrusion => {
             let reach = format!("finite:{:.2}", dice.between(0.05, 0.2));
-            (dice.any_scene(), set(Technique::ZFail, &[("extrusion", &reach)]), None)
+            (dice.any_scene(), choice(Technique::ZFail, &[("extrusion", &reach)]), None)
         }
         Cause::OpenMesh => {
             let open = open_box(dice);
             let fault = (dice.one_of(2) == 1).then(faults::textbook_silhouettes);
-            (dice.with(open), set(Technique::ZFail, &facing), fault)
+            (dice.with(open), choice(Technique::ZFail, &facing), fault)
         }
         Cause::NonManifold => {
             let mesh = walled_box(dice);
-            (dice.with(mesh), set(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
+            (dice.with(mesh), choice(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
         }
         Cause::InconsistentWinding => {
             let mesh = dice.closed();
             let mut scene = dice.with(mesh);
             let light = scene.lights[0].homogeneous().truncate();
             flip_some(&mut scene.objects[1], light, dice.between(0.2, 0.6));
-            (scene, set(Technique::ZFail, &facing), None)
+            (scene, choice(Technique::ZFail, &facing), None)
         }
         Cause::SplitVertices => {
             let mesh = dice.seams(0.0).build_unwelded().expect("a mesh");
-            (dice.with(mesh), set(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
+            (dice.with(mesh), choice(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
         }
         Cause::NearVertices => {
             let mesh = dice.seams(2e-8).build().expect("a mesh");
-            (dice.with(mesh), set(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
+            (dice.with(mesh), choice(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
         }
         Cause::LightInside => {
             let mut scene = dice.still_life();
             let [x, y, z] = scene.lights[0].position.truncate().to_array();
             scene.objects.push(cuboid("lantern", [x, y, z], [dice.between(0.3, 0.5); 3]));
-            (scene, set(Technique::ZFail, &facing), None)
+            (scene, choice(Technique::ZFail, &facing), None)
         }
         Cause::Clamped => {
-            (before_many(dice), set(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]), None)
+            (before_many(dice), choice(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]), None)
         }
-        Cause::Wrap256 => (under_panes(dice, 256), set(Technique::ZFail, &[]), None),
+        Cause::Wrap256 => (under_panes(dice, 256), choice(Technique::ZFail, &[]), None),
         Cause::LightNotAdded => (
             dice.any_scene(),
-            set(Technique::ZFail, &[("extrusion", "finite:100"), ("far-vertices", "from-origin")]),
+            choice(Technique::ZFail, &[("extrusion", "finite:100"), ("far-vertices", "from-origin")]),
             None,
         ),
         Cause::CarriedInF32 => {
-            (lamp_on_a_sheet(dice), set(Technique::ZFail, &[("extruded-by", "vertex-shader")]), None)
+            (lamp_on_a_sheet(dice), choice(Technique::ZFail, &[("extruded-by", "vertex-shader")]), None)
         }
         Cause::FewBits => {
             let bits = dice.one_of(3);
             let count = [2, 4, 16][bits];
-            (under_panes(dice, count), set(Technique::ZFail, &[("stencil-bits", ["1", "2", "4"][bits])]), None)
+            (under_panes(dice, count), choice(Technique::ZFail, &[("stencil-bits", ["1", "2", "4"][bits])]), None)
         }
-        Cause::Parity => (under_panes(dice, 2), set(Technique::ZFail, &[("operations", "invert")]), None),
+        Cause::Parity => (under_panes(dice, 2), choice(Technique::ZFail, &[("operations", "invert")]), None),
         Cause::EdgeSmear => {
-            (lone_sphere(dice), set(Technique::Projective, &[("size", "2048"), ("border", "off")]), None)
+            (lone_sphere(dice), choice(Technique::Projective, &[("size", "2048"), ("border", "off")]), None)
         }
-        Cause::OperationOrder => (dice.any_scene(), set(Technique::ZFail, &[("operations", "clamp")]), None),
-        Cause::CapFighting => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::turned_caps())),
-        Cause::DoubleBlend => (flat_scene(dice), set(Technique::Planar, &[("blend", "twice")]), None),
-        Cause::ZFighting => (flat_scene(dice), set(Technique::Planar, &[("z-fighting", "none")]), None),
-        Cause::OffReceiver => (over_a_table(dice), set(Technique::Planar, &[("stencil", "off")]), None),
-        Cause::AntiShadow => (beyond_the_lamp(dice), set(Technique::Planar, &[("clip", "off")]), None),
-        Cause::FalseShadow => (through_the_floor(dice), set(Technique::Planar, &[("clip", "off")]), None),
+        Cause::OperationOrder => (dice.any_scene(), choice(Technique::ZFail, &[("operations", "clamp")]), None),
+        Cause::CapFighting => (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::turned_caps())),
+        Cause::DoubleBlend => (flat_scene(dice), choice(Technique::Planar, &[("blend", "twice")]), None),
+        Cause::ZFighting => (flat_scene(dice), choice(Technique::Planar, &[("z-fighting", "none")]), None),
+        Cause::OffReceiver => (over_a_table(dice), choice(Technique::Planar, &[("stencil", "off")]), None),
+        Cause::AntiShadow => (beyond_the_lamp(dice), choice(Technique::Planar, &[("clip", "off")]), None),
+        Cause::FalseShadow => (through_the_floor(dice), choice(Technique::Planar, &[("clip", "off")]), None),
         Cause::NotPlanar => {
             let technique = [Technique::Planar, Technique::PlanarTexture][dice.one_of(2)];
-            (round_receiver(dice), set(technique, &[]), None)
+            (round_receiver(dice), choice(technique, &[]), None)
         }
         Cause::Acne => {
-            (dice.any_scene(), set(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)
+            (dice.any_scene(), choice(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)
         }
         Cause::PeterPanning => {
             let slope = format!("{:.0}", dice.between(100.0, 400.0));
-            (dice.any_scene(), set(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
+            (dice.any_scene(), choice(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
         }
         Cause::Aliasing => {
             let size = ["16", "32", "64"][dice.one_of(3)];
             let technique = [Technique::ShadowMap, Technique::Projective, Technique::PlanarTexture][dice.one_of(3)];
-            (lone_sphere(dice), set(technique, &[("size", size)]), None)
+            (lone_sphere(dice), choice(technique, &[("size", size)]), None)
         }
         Cause::OutsideMap => {
             let factor = dice.between(1.6, 3.0);
-            (dice.any_scene(), set(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
+            (dice.any_scene(), choice(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
         }
-        Cause::ReverseProjection => (wall_behind_lamp(dice), set(Technique::Projective, &[("reverse", "on")]), None),
-        Cause::Between => (shelf_between(dice), set(Technique::Projective, &[("size", "2048")]), None),
-        Cause::SelfShadow => (ring_alone(dice), set(Technique::Projective, &[("size", "2048")]), None),
-        Cause::SubpixelEdges => (far_mesh(), set(Technique::ZFail, &[]), None),
-        _ => (low_sun(dice), set(Technique::ZFail, &[]), None),
+        Cause::ReverseProjection => (wall_behind_lamp(dice), choice(Technique::Projective, &[("reverse", "on")]), None),
+        Cause::Between => (shelf_between(dice), choice(Technique::Projective, &[("size", "2048")]), None),
+        Cause::SelfShadow => (ring_alone(dice), choice(Technique::Projective, &[("size", "2048")]), None),
+        Cause::SubpixelEdges => (far_mesh(), choice(Technique::ZFail, &[]), None),
+        _ => (low_sun(dice), choice(Technique::ZFail, &[]), None),
     };
     let mut scene = scene;
     // A floor is a mesh with an edge too, and a silhouette that falls on what stands on it.

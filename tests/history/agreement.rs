@@ -1,8 +1,8 @@
 //! What the events make against what the GPU stored, and tampered histories.
 
-use super::{SIZE, builtin, frame, nested_boxes};
+use super::{SIZE, frame, nested_boxes};
 use crate::common::random::Random;
-use crate::common::session;
+use crate::common::{opened, session};
 use stencilscope::history::{PixelHistory, TriangleEvent};
 use stencilscope::plan::DrawPart;
 use stencilscope::scene::Scene;
@@ -39,7 +39,7 @@ fn agreeing(
 fn two_hundred_pixels_of_each_scene_agree_by_volumes_and_by_flattening() {
     let mut session = session();
     for name in ["tori", "inside", "gate"] {
-        let scene = builtin(name);
+        let scene = opened(name);
         for technique in [Technique::ZPass, Technique::ZFail, Technique::ZPassPlus, Technique::Planar] {
             let with_volumes = agreeing(&mut session, &scene, technique, &[], 200);
             assert!(with_volumes >= 50, "{name} {technique:?}: {with_volumes}");
@@ -76,7 +76,7 @@ fn pixels_agree_by_every_technique_and_setting_that_draws_otherwise() {
         ("steps", Technique::ZFail, &[("extruded-by", "vertex-shader"), ("extrusion", "finite:20")]),
     ];
     for (name, technique, settings) in forms {
-        agreeing(&mut session, &builtin(name), *technique, settings, 30);
+        agreeing(&mut session, &opened(name), *technique, settings, 30);
     }
 }
 
@@ -85,7 +85,7 @@ fn pixels_agree_by_every_technique_and_setting_that_draws_otherwise() {
 fn every_pixel_of_a_small_picture_agrees() {
     let mut session = session();
     let size = [32, 24];
-    let (capture, plan) = frame(&mut session, &builtin("tetrahedron"), Technique::ZFail, &[], size);
+    let (capture, plan) = frame(&mut session, &opened("tetrahedron"), Technique::ZFail, &[], size);
     for at in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y])) {
         let history = session.history(&plan, &capture, at).expect("a history");
         assert!(history.agrees(), "{:?}\n{}", history.disagreements(), history.story(&capture.depth));

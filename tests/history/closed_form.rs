@@ -1,12 +1,12 @@
 //! Scenes whose every event is known.
 
-use super::{SIZE, builtin, choice, frame, nested_boxes};
-use crate::common::{cuboid, from_above, session, square};
+use super::{SIZE, frame, nested_boxes};
+use crate::common::{cuboid, from_above, opened, request_with, session, square};
 use glam::DVec3;
 use stencilscope::history::{Rung, VolumeCount};
 use stencilscope::plan::{Coverage, DrawPart};
 use stencilscope::scene::{Light, Scene};
-use stencilscope::session::{CaptureRequest, SessionError};
+use stencilscope::session::SessionError;
 use stencilscope::technique::Technique;
 use stencilscope::testing::{PixelLabel, Rendered};
 
@@ -15,7 +15,7 @@ const INSIDE: [u32; 2] = [103, 95];
 const OUTSIDE: [u32; 2] = [160, 95];
 
 fn rendered(technique: Technique, settings: &[(&str, &str)]) -> Rendered {
-    let request = CaptureRequest::new(choice(technique, settings), SIZE);
+    let request = request_with(technique, settings, SIZE);
     Rendered::on(session(), &nested_boxes(), &request).expect("a frame")
 }
 
@@ -140,7 +140,7 @@ fn the_ladder_runs_from_infinity_to_the_surface() {
 fn z_pass_plus_begins_with_the_count_of_the_near_plane() {
     let mut scene = nested_boxes();
     scene.camera.near = 8.5;
-    let request = CaptureRequest::new(choice(Technique::ZPassPlus, &[ALL]), SIZE);
+    let request = request_with(Technique::ZPassPlus, &[ALL], SIZE);
     let mut frame = Rendered::on(session(), &scene, &request).expect("a frame");
     let curve = frame.capture().depth;
     let pixel = frame.at(INSIDE);
@@ -162,7 +162,7 @@ fn z_pass_plus_begins_with_the_count_of_the_near_plane() {
 fn a_flattened_box_raises_its_receivers_mark_once() {
     let mut scene = nested_boxes();
     scene.objects.truncate(2);
-    let request = CaptureRequest::new(choice(Technique::Planar, &[]), SIZE);
+    let request = request_with(Technique::Planar, &[], SIZE);
     let mut frame = Rendered::on(session(), &scene, &request).expect("a frame");
     let pixel = frame.at(INSIDE);
     pixel.agrees().label(0, PixelLabel::Shadow).stencil_after("receivers", 2).stencil_after("shadows", 3);
@@ -265,7 +265,7 @@ fn why_names_the_test_that_failed_and_what_nobody_asked() {
     let text = why(&to_the_sky, Technique::ZFail, &[ALL], OUTSIDE);
     assert_eq!(text, "no surface is here that a shadow could fall on");
     // What takes away comes last in one draw with what adds, and finds nothing to take from.
-    let text = why(&builtin("inside"), Technique::ZFail, &[("operations", "clamp")], [100, 150]);
+    let text = why(&opened("inside"), Technique::ZFail, &[("operations", "clamp")], [100, 150]);
     assert!(text.contains("6 back, 6 front, of which 2 found the count at its limit; count 2"), "{text}");
 }
 

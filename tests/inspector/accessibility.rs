@@ -7,16 +7,11 @@ use super::*;
 use crate::common::report::one_scene;
 use egui::accesskit::{self, NodeId};
 use egui_kittest::Node;
-use egui_kittest::kittest::NodeT;
-use std::collections::{BTreeMap, BTreeSet};
-use stencilscope::ask::{AnatomyOf, DiagnosisOf, HistoryOf, ReportOf, StressOf};
-use stencilscope::progress::Progress;
+use stencilscope::ask::{DiagnosisOf, StressOf};
 use stencilscope::report::MeasuredReport;
-use stencilscope::scene::OpenSpec;
 use stencilscope::stress::StressRows;
 
 const TORI: [u32; 2] = [64, 48];
-const WINDOW: [f32; 2] = [1280.0, 800.0];
 /// More widgets than are shown at a time.
 const MOST_TABS: usize = 600;
 
@@ -32,18 +27,16 @@ const ARRANGEMENTS: [&[&str]; 3] = [
 
 /// The panels over a real frame, with everything that can be known of it.
 pub fn known(technique: Technique) -> Inspector {
-    let scene = stencilscope::scene::open(&OpenSpec::new("tori")).expect("a built-in scene");
     let mut session = common::session();
-    let request = common::request(technique, TORI);
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let capture = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
+    let mut frame = common::frame(&mut session, "tori", common::request(technique, TORI));
+    let judged = session.judged(frame.scene().expect("a scene"), &frame.capture, &Progress::default());
+    frame.capture = Arc::new(judged.expect("a truth"));
     let pick = [TORI[0] / 2, TORI[1] * 2 / 3];
-    let history = session.history(&plan, &capture, pick).expect("a history");
-    let anatomy = session.anatomy(&scene, Some(&request.choice), &plan);
-    let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture), pick);
-    inspector.set_plan(Arc::new(plan));
+    let history = session.history(&frame.plan, &frame.capture, pick).expect("a history");
+    let mut inspector = pictures::inspector(&frame, pick);
+    inspector.set_plan(frame.plan.clone());
     inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));
-    inspector.tell(AnatomyOf {}, Ok(Arc::new(anatomy)));
+    inspector.tell(AnatomyOf {}, Ok(pictures::anatomy(&mut session, &frame)));
     let measured = MeasuredReport { report: one_scene(), left_out: Vec::new() };
     inspector.tell(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
     inspector.tell(DiagnosisOf {}, Ok(Arc::new(found())));
@@ -136,8 +129,7 @@ fn unreachable(harness: &mut Harness<Seen>) -> Vec<String> {
 
 fn show(harness: &mut Harness<Seen>, tabs: &[&str]) {
     for tab in tabs {
-        harness.get_by_role_and_label(Role::Tab, tab).click();
-        harness.run_steps(3);
+        show_tab(harness, tab);
     }
     harness.remove_cursor();
     harness.run_steps(3);
@@ -148,7 +140,7 @@ fn every_widget_of_every_panel_has_a_name_of_its_own_and_tab_comes_to_it() {
     let mut wrong = Vec::new();
     for technique in [Technique::ZFail, Technique::ShadowMap] {
         for tabs in ARRANGEMENTS {
-            let mut harness = harness_of(known(technique), WINDOW);
+            let mut harness = harness_of(known(technique));
             show(&mut harness, tabs);
             let mut found = |what: &str, list: Vec<String>| {
                 wrong.extend(list.into_iter().map(|one| format!("{technique:?} {tabs:?} {what}: {one}")));
@@ -166,29 +158,25 @@ fn what_menus_and_dialogs_hold_has_names() {
     let dialogs: [(&str, Opens); 9] = [
         ("open", &|harness| click_button(harness, "Open…")),
         ("export", &|harness| {
-            harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-            harness.run_steps(3);
+            press_with(harness, Modifiers::COMMAND, Key::S);
         }),
         ("help", &|harness| click_button(harness, "Help")),
         ("export menu", &|harness| click_button(harness, "Export")),
         ("recent", &|harness| click_button(harness, "What is open: tori")),
         ("overlays", &|harness| press(harness, Key::O)),
         ("go to", &|harness| {
-            harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
-            harness.run_steps(3);
+            press_with(harness, Modifiers::COMMAND, Key::G);
         }),
         ("find", &|harness| {
-            harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
-            harness.run_steps(3);
+            press_with(harness, Modifiers::COMMAND, Key::F);
         }),
         ("compare", &|harness| {
-            harness.state_mut().inspector.compare_with(Technique::ShadowMap);
-            harness.run_steps(3);
+            change(harness, |inspector| inspector.compare_with(Technique::ShadowMap));
         }),
     ];
     let mut wrong = Vec::new();
     for (name, open) in dialogs {
-        let mut harness = harness_of(known(Technique::ZFail), WINDOW);
+        let mut harness = harness_of(known(Technique::ZFail));
         let before = nodes(&harness).count();
         open(&mut harness);
         harness.run_steps(3);
@@ -201,12 +189,10 @@ fn what_menus_and_dialogs_hold_has_names() {
 #[test]
 fn tab_goes_on_from_the_picture_and_shift_tab_goes_back() {
     let mut harness = harness(z_fail(SIZE));
-    harness.get_by_label("Picture canvas").focus();
-    harness.run_steps(2);
+    focus(&mut harness, "Picture canvas");
     let picture = focused(&harness);
     for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
-        harness.key_press_modifiers(modifiers, Key::Tab);
-        harness.run_steps(2);
+        press_with(&mut harness, modifiers, Key::Tab);
         assert!(harness.query_by_label_contains("Walking:").is_none(), "the pointer is elsewhere");
         assert_eq!(focused(&harness) == picture, modifiers == Modifiers::SHIFT);
     }
@@ -256,14 +242,11 @@ fn space_plays_and_t_animates_while_the_picture_has_the_focus_and_space_presses_
 
 #[test]
 fn escape_leaves_a_field_or_a_button_before_it_takes_the_pick_away() {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.pick([3, 4]);
-    let mut harness = harness_of(inspector, WINDOW);
+    let mut harness = picked(z_fail(SIZE), [3, 4]);
     focus_on(&mut harness, Role::Button, "Depth");
     press(&mut harness, Key::Escape);
     assert_eq!(harness.state().inspector.picked(), Some([3, 4]));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
-    harness.run_steps(2);
+    press_with(&mut harness, Modifiers::COMMAND, Key::F);
     press(&mut harness, Key::Escape);
     assert_eq!(harness.state().inspector.picked(), Some([3, 4]));
     press(&mut harness, Key::Escape);

@@ -1,20 +1,11 @@
 //! The shown picture with overlays and the compared half as a file, read back.
 
-use super::by_hand::{layered, z_fail};
-use super::{SIZE, Seen, click_button, harness, harness_of, inspector, press};
-use crate::common;
-use egui::Key;
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use stencilscope::ask::{AnatomyOf, TestsOf};
-use stencilscope::capture::{Image, PixelFormat, StepTests};
-use stencilscope::inspector::{Action, ExportData, ExportKind, Overlay, ThemeChoice};
+use super::by_hand::layered;
+use super::*;
+use stencilscope::ask::TestsOf;
+use stencilscope::capture::StepTests;
+use stencilscope::inspector::{Overlay, ThemeChoice};
 use stencilscope::reading::TestOutcomes;
-use stencilscope::reading::shown::{PictureKind, TexelZoom};
-use stencilscope::scene::{OpenSpec, open};
-use stencilscope::technique::Technique;
 
 type Rgb = [u8; 3];
 const PASSED: Rgb = [0x2f, 0xb5, 0x8a];
@@ -61,7 +52,7 @@ fn at_volumes() -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.select_step(1);
     inspector.set_picture_kind(PictureKind::Stencil);
-    harness_of(inspector, [1280.0, 800.0])
+    harness_of(inspector)
 }
 
 #[test]
@@ -84,8 +75,7 @@ fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
     assert_eq!([flipped.at([3, 4]), flipped.at([36, 4])], [COUNTS[1], COUNTS[0]]);
     assert!(is_near(flipped.at([19, 10]), [255; 3], 120), "a light line between: {:?}", flipped.at([19, 10]));
     // Zoomed to the left quarter, the divider stands over column 10.
-    harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(40.0), [10.0, 15.0]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_zoom(TexelZoom::Pixels(40.0), [10.0, 15.0]));
     let zoomed = exported(&mut harness, ExportKind::AsShown);
     assert_eq!(zoomed.size, SIZE, "the whole picture all the same");
     assert_eq!([zoomed.at([3, 4]), zoomed.at([15, 4])], [COUNTS[1], COUNTS[0]]);
@@ -96,12 +86,12 @@ fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
 #[test]
 fn tints_of_overlays_are_in_it() {
     let mut harness = at_volumes();
-    harness.state_mut().inspector.lay_over(Overlay::Tests);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.lay_over(Overlay::Tests));
     let image = |value| Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[value]));
     let tests = StepTests { step: 1, draw: None, fragments: image(1), depth_passes: image(1), stencil: image(0) };
-    harness.state_mut().inspector.tell(TestsOf { step: 1, draw: None }, Ok(Arc::new(TestOutcomes::new(tests))));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| {
+        inspector.tell(TestsOf { step: 1, draw: None }, Ok(Arc::new(TestOutcomes::new(tests))))
+    });
     let shown = exported(&mut harness, ExportKind::AsShown);
     for (x, count) in [(3, COUNTS[1]), (30, COUNTS[0])] {
         let mixed: Rgb = [0, 1, 2]
@@ -141,32 +131,27 @@ fn it_is_chosen_in_the_menu_of_exports() {
 #[test]
 fn edges_that_count_twice_have_their_number() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("table")).expect("table");
-    let letters = |casters: &str, session: &mut stencilscope::session::Session| {
-        let mut request = common::request(Technique::ZFail, [640, 360]);
-        request.choice.set("casters", casters).expect("a setting");
-        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-        let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
+    let mut letters = |casters: &str| {
+        let request = common::request_with(Technique::ZFail, &[("casters", casters)], [640, 360]);
+        let frame = common::frame(&mut session, "table", request);
+        let anatomy = pictures::anatomy(&mut session, &frame);
         let many = anatomy.silhouettes.iter().flat_map(|silhouette| &silhouette.edges);
         let many = many.filter(|edge| edge.multiplicity.unsigned_abs() > 1).count();
-        let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
-        let mut harness = harness_of(inspector, [1280.0, 800.0]);
-        harness.state_mut().inspector.lay_over(Overlay::Silhouettes);
-        harness.run_steps(2);
-        harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
-        harness.run_steps(2);
+        let mut harness = harness_of(pictures::inspector(&frame, [10, 10]));
+        change(&mut harness, |inspector| inspector.lay_over(Overlay::Silhouettes));
+        change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy)));
         let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
         if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
             let window = harness.render().expect("a picture");
-            window.save(std::path::Path::new(&folder).join(format!("numbers-{casters}.png"))).expect("written");
+            window.save(Path::new(&folder).join(format!("numbers-{casters}.png"))).expect("written");
         }
         let is_letter = |pixel: Rgb| is_near(pixel, [0xd9, 0xdc, 0xe3], 24);
         let new = plain.pixels().zip(shown.pixels()).filter(|(before, now)| !is_letter(*before) && is_letter(*now));
         (many, new.count())
     };
-    let (many, written) = letters("all", &mut session);
+    let (many, written) = letters("all");
     assert!(many > 0 && written > 10, "{many} edges, {written} pixels of letters");
-    let (many, written) = letters("by-topology", &mut session);
+    let (many, written) = letters("by-topology");
     assert!(many == 0 && written == 0, "{many} edges, {written} pixels of letters");
 }
 
@@ -174,21 +159,17 @@ fn edges_that_count_twice_have_their_number() {
 #[test]
 fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("tori");
     let size = [640, 360];
-    let mut request = common::request(Technique::ZFail, size);
     // Every triangle casts, so edges of silhouettes count twice.
-    request.choice.set("casters", "all").expect("a setting");
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
-    let mut harness =
-        harness_of(super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]), [1280.0, 800.0]);
+    let request = common::request_with(Technique::ZFail, &[("casters", "all")], size);
+    let frame = common::frame(&mut session, "tori", request);
+    let anatomy = pictures::anatomy(&mut session, &frame);
+    let mut harness = harness_of(pictures::inspector(&frame, [10, 10]));
     for overlay in [Overlay::Silhouettes, Overlay::Names, Overlay::Receivers, Overlay::Volumes] {
         harness.state_mut().inspector.lay_over(overlay);
     }
     harness.run_steps(2);
-    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy)));
     let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
     assert_eq!((plain.size, shown.size), (size, size));
     let differing = plain.pixels().zip(shown.pixels()).filter(|(a, b)| a != b).count();
@@ -200,15 +181,13 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     let letters = shown.pixels().filter(|pixel| is_near(*pixel, [0xd9, 0xdc, 0xe3], 16)).count();
     assert!(plates > 400 && letters > 30, "names are written: {plates}, {letters}");
     let window = harness.render().expect("a picture");
-    harness.state_mut().inspector.set_theme(ThemeChoice::Light);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_theme(ThemeChoice::Light));
     let light = exported(&mut harness, ExportKind::AsShown);
     assert_ne!(light.bytes, shown.bytes, "in the window's theme");
     if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
-        let folder = std::path::Path::new(&folder);
+        let folder = Path::new(&folder);
         window.save(folder.join("as-shown-window.png")).expect("written");
-        harness.state_mut().inspector.set_theme(ThemeChoice::Dark);
-        harness.run_steps(2);
+        change(&mut harness, |inspector| inspector.set_theme(ThemeChoice::Dark));
         let start = std::time::Instant::now();
         let Some(ExportData::AsShown(drawing)) = harness.state_mut().inspector.export(ExportKind::AsShown) else {
             panic!("a drawing")

@@ -1,34 +1,23 @@
 //! Captures made by hand: no GPU, and every value known.
 
-use super::SIZE;
-use glam::{DMat4, DVec3, DVec4};
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use super::*;
+use glam::{DMat4, DVec4};
 use stencilscope::accuracy::{ErrorCounts, Finding, WrongRegion};
 use stencilscope::capture::{
-    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawState, DrawSummary, FrameSnapshot,
-    FrameTarget, Image, PixelFormat, Snapshot, Step, Timing,
+    AdapterInfo, Aspect, CapturedLight, CapturedMap, CapturedTruth, DrawState, DrawSummary, FrameSnapshot, FrameTarget,
+    Snapshot, Step, Timing,
 };
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::math::projection::perspective;
-use stencilscope::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
+use stencilscope::plan::{CountedSide, DecidedBy, Decision, LeftOut};
 use stencilscope::scene::Camera;
 
 fn camera() -> Camera {
-    Camera {
-        eye: DVec3::Z,
-        target: DVec3::ZERO,
-        up: DVec3::Y,
-        projection: stencilscope::scene::Projection::Perspective,
-        fov_y_degrees: 45.0,
-        near: 0.1,
-        far: None,
-    }
+    Camera { near: 0.1, ..Camera::looking([0.0, 0.0, 1.0], [0.0; 3]) }
 }
 
 fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; N]) -> Arc<Image> {
-    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    let bytes: Vec<u8> = texels.flat_map(|(x, y)| texel(x, y)).collect();
+    let bytes: Vec<u8> = common::pixels(size).flat_map(|[x, y]| texel(x, y)).collect();
     Arc::new(Image::packed(format, size, bytes))
 }
 

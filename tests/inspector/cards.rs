@@ -1,22 +1,12 @@
 //! What lies over the picture's corners, and the tools above it: nothing hides or moves another.
 
-use super::by_hand::{with_truth, z_fail};
-use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, press};
-use crate::common;
-use egui::accesskit::Role;
-use egui::{Key, Rect, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use stencilscope::ask::{AnatomyOf, HistoryOf};
+use super::by_hand::with_truth;
+use super::pictures::{self, Gallery, View};
+use super::*;
 use stencilscope::inspector::ThemeChoice;
-use stencilscope::reading::shown::{PictureKind, TexelZoom};
 
 const FINDINGS: [&str; 6] =
     ["false shadow", "missing shadow", "wrong surface", "edge, excused", "agrees", "not compared"];
-
-/// Brings the panels into a state to be looked at.
-type View = fn(&mut Harness<Seen>);
 
 fn rect(harness: &Harness<Seen>, label: &str) -> Rect {
     harness.get_by_label(label).rect()
@@ -27,8 +17,7 @@ fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() 
     let mut harness = harness(with_truth(z_fail(SIZE)));
     click_button(&mut harness, "Error");
     let canvas = rect(&harness, "Picture canvas");
-    let rows: std::collections::BTreeSet<i32> =
-        FINDINGS.iter().map(|name| rect(&harness, name).center().y.round() as i32).collect();
+    let rows: BTreeSet<i32> = FINDINGS.iter().map(|name| rect(&harness, name).center().y.round() as i32).collect();
     assert_eq!(rows.len(), 2, "{rows:?}");
     let all = FINDINGS.iter().fold(rect(&harness, "Error, light 1"), |all, name| all.union(rect(&harness, name)));
     assert!(canvas.contains_rect(all), "{all:?} in {canvas:?}");
@@ -37,8 +26,7 @@ fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() 
     // With counts it is larger, and says more; it stays so for other frames, and goes back.
     click_button(&mut harness, "Counts");
     assert!(rect(&harness, "5 not compared").bottom() > all.bottom());
-    harness.state_mut().inspector.set_capture(Arc::new(with_truth(z_fail(SIZE))));
-    harness.run_steps(2);
+    show_capture(&mut harness, with_truth(z_fail(SIZE)));
     harness.get_by_label("5 not compared");
     click_button(&mut harness, "Counts");
     assert!(harness.query_by_label("5 not compared").is_none());
@@ -67,8 +55,7 @@ fn the_banner_of_walking_and_the_legend_are_beside_each_other() {
 #[test]
 fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
-    harness.state_mut().inspector.select_step(1);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_step(1));
     let fixed = ["Compare", "Overlay", "Fit", "1:1", "Walk", "Picture canvas"];
     let places = |harness: &Harness<Seen>| fixed.map(|label| rect(harness, label));
     let before = places(&harness);
@@ -78,8 +65,7 @@ fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
         assert_eq!(places(&harness), before, "{kind}");
         assert!(harness.query_by_label("Before").is_none_or(|found| found.rect() == phases), "{kind}");
     }
-    harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(3.0), [20.0, 15.0]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_zoom(TexelZoom::Pixels(3.0), [20.0, 15.0]));
     harness.get_by_label("300 %");
     assert_eq!(places(&harness), before, "zoomed");
     click_button(&mut harness, "Compare");
@@ -89,15 +75,14 @@ fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
     assert_eq!((places(&harness), rect(&harness, "Compare with")), (before, with), "comparing counts");
     press(&mut harness, Key::O);
     harness.run_steps(2);
-    harness.get_by_role_and_label(Role::CheckBox, "Receivers").click();
-    harness.run_steps(2);
+    click_role(&mut harness, Role::CheckBox, "Receivers");
     press(&mut harness, Key::Escape);
     assert_eq!(rect(&harness, "Overlay · 1"), before[1], "the menu's button keeps its width");
 }
 
 #[test]
 fn of_several_faces_none_is_compared_and_the_buttons_keep_their_place() {
-    let mut harness = harness_of(inspector(super::by_hand::cube_map()), [1280.0, 800.0]);
+    let mut harness = harness_of(inspector(cube_map()));
     press(&mut harness, Key::Home);
     let buttons = |harness: &Harness<Seen>| ["Compare", "Overlay", "All"].map(|label| rect(harness, label));
     let one = buttons(&harness);
@@ -118,7 +103,7 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
         inspector.set_picture_kind(PictureKind::Stencil);
         inspector.set_theme(theme);
         inspector.pick([30, 15]);
-        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        let mut harness = harness_of(inspector);
         let canvas = rect(&harness, "Picture canvas");
         let picture = harness.render().expect("a picture");
         let corner = canvas.left_bottom() + vec2(12.0, -12.0 - 5.0 * 26.0);
@@ -139,13 +124,12 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
 
 #[test]
 fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
-    let history = super::history_by_hand::history([3, 4], &super::history_by_hand::FACES);
+    let history = history_by_hand::history([3, 4], &history_by_hand::FACES);
     for height in [800.0, 900.0, 1000.0, 1080.0] {
         let mut inspector = inspector(with_truth(z_fail(SIZE)));
         inspector.pick([3, 4]);
-        let mut harness = harness_of(inspector, [1280.0, height]);
-        harness.state_mut().inspector.tell(HistoryOf { at: [3, 4] }, Ok(Arc::new(history.clone())));
-        harness.run_steps(4);
+        let mut harness = harness_in(inspector, [1280.0, height]);
+        change(&mut harness, |inspector| inspector.tell(HistoryOf { at: [3, 4] }, Ok(Arc::new(history.clone()))));
         let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
         // Down to the status bar.
         assert!(ladder.height() >= 120.0 && ladder.bottom() <= height - 24.0, "{ladder:?} in {height}");
@@ -158,16 +142,14 @@ fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_cards` writes them.
 #[test]
 fn pictures_of_cards_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(std::path::PathBuf::from);
+    let gallery = Gallery::open();
     let mut session = common::session();
-    let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("inside")).expect("a built-in scene");
-    let request = common::request(stencilscope::technique::Technique::ZPass, [640, 360]);
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let capture = session.judged(&scene, &capture, &Default::default()).expect("a truth");
-    let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
-    let capture = Arc::new(capture);
+    let mut frame = common::frame(&mut session, "inside", common::request(Technique::ZPass, [640, 360]));
+    let judged = session.judged(frame.scene().expect("a scene"), &frame.capture, &Progress::default());
+    frame.capture = Arc::new(judged.expect("a truth"));
+    let anatomy = pictures::anatomy(&mut session, &frame);
     let pick = [330, 225];
-    let history = Arc::new(session.history(&plan, &capture, pick).expect("a history"));
+    let history = Arc::new(session.history(&frame.plan, &frame.capture, pick).expect("a history"));
     let views: [(&str, View); 5] = [
         ("error", |_| ()),
         ("error-counts", |harness| click_button(harness, "Counts")),
@@ -178,22 +160,21 @@ fn pictures_of_cards_can_be_drawn() {
         }),
         ("help", |harness| press(harness, Key::F1)),
     ];
-    let sizes: &[[u32; 2]] = if folder.is_some() { &[[1280, 800], [1920, 1080]] } else { &[[640, 400]] };
+    let sizes: &[[u32; 2]] = if gallery.folder.is_some() { &[[1280, 800], [1920, 1080]] } else { gallery.sizes() };
     for (name, view) in views {
-        for size in sizes {
-            for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
-                let mut inspector = super::pictures::inspector(&scene, &request, &capture, pick);
+        for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+            let inspector = || {
+                let mut inspector = pictures::inspector(&frame, pick);
                 inspector.tell(AnatomyOf {}, Ok(anatomy.clone()));
                 inspector.set_picture_kind(PictureKind::Error);
                 inspector.set_theme(theme);
-                let outer = size.map(|side| (side + 2 * super::pictures::MARGIN) as f32);
-                let mut harness = harness_of(inspector, outer);
+                inspector
+            };
+            gallery.show(&format!("cards-{name}-{theme:?}").to_lowercase(), sizes, inspector, |harness| {
                 harness.state_mut().inspector.tell(HistoryOf { at: pick }, Ok(history.clone()));
-                view(&mut harness);
-                harness.run_steps(3);
-                let name = format!("cards-{name}-{theme:?}").to_lowercase();
-                super::pictures::draw(&mut harness, folder.as_deref(), &name, *size);
-            }
+                view(harness);
+                harness.run_steps(1);
+            });
         }
     }
 }

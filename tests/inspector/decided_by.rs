@@ -1,20 +1,8 @@
 //! What decides a light's shadow, in the panels: where volumes are counted there are a ladder, a sum and a legend of
 //! counts, whatever the technique is called; elsewhere the sentence says what decided instead.
 
-use super::{Seen, click_button, harness_of};
-use crate::common;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::collections::BTreeSet;
-use std::sync::Arc;
-use stencilscope::ask::HistoryOf;
-use stencilscope::ask::RunRequest;
-use stencilscope::capture::Capture;
-use stencilscope::inspector::Inspector;
+use super::*;
 use stencilscope::plan::{CountOf, CountedSide, DecidedBy};
-use stencilscope::scene::{OpenSpec, Scene, open};
-use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::SHADOW;
 
 const SIZE: [u32; 2] = [64, 36];
@@ -23,33 +11,19 @@ const SIZE: [u32; 2] = [64, 36];
 fn panels(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> (Harness<'static, Seen>, Capture) {
     let (capture, plan) = session.capture_with_plan(scene, request).expect("a frame");
     let labels = capture.lights[0].shadow.clone().expect("labels");
-    let pixels = || (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
     let counted = capture.steps.iter().position(|step| step.name == "volumes").and_then(|step| capture.frame_at(step));
     let counts = counted.and_then(|frame| frame.stencil.as_ref());
     let depth = |at: &[u32; 2]| counts.and_then(|counts| counts.image.byte_at(*at));
-    let dark = pixels().filter(|at| labels.byte_at(*at) == Some(SHADOW)).max_by_key(depth).unwrap_or([32, 30]);
+    let in_shadow = common::pixels(SIZE).filter(|at| labels.byte_at(*at) == Some(SHADOW));
+    let dark = in_shadow.max_by_key(depth).unwrap_or([32, 30]);
     let history = session.history(&plan, &capture, dark).expect("a history");
     let mut inspector = Inspector::new(Vec::new());
-    let run = RunRequest {
-        choice: request.choice.clone(),
-        size: SIZE,
-        camera: scene.camera,
-        lights: scene.lights.clone(),
-        time: 0.0,
-        off: BTreeSet::new(),
-        objects: Default::default(),
-    };
-    inspector.set_scene(scene, run);
+    inspector.set_scene(scene, RunRequest::of(scene, request.choice.clone(), SIZE));
     inspector.set_capture(Arc::new(capture.clone()));
     inspector.pick(dark);
-    let mut harness = harness_of(inspector, [1280.0, 2000.0]);
-    harness.state_mut().inspector.tell(HistoryOf { at: dark }, Ok(Arc::new(history)));
-    harness.run_steps(3);
+    let mut harness = harness_in(inspector, TALL);
+    change(&mut harness, |inspector| inspector.tell(HistoryOf { at: dark }, Ok(Arc::new(history))));
     (harness, capture)
-}
-
-fn says(harness: &Harness<Seen>, text: &str) -> bool {
-    harness.query_all_by_label_contains(text).next().is_some()
 }
 
 /// The legend of the stencil picture, if there is one.
@@ -62,9 +36,9 @@ fn stencil_legend(harness: &mut Harness<Seen>, capture: &Capture) -> Option<&'st
 #[test]
 fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("a built-in scene");
+    let scene = common::opened("tori");
     for technique in Technique::ALL {
-        let request = CaptureRequest::new(Choice::new(technique), SIZE);
+        let request = common::request(technique, SIZE);
         let (mut harness, capture) = panels(&mut session, &scene, &request);
         let side = capture.lights[0].decided_by.counted_side();
         let name = technique.name();
@@ -108,7 +82,7 @@ fn a_pixel_whose_volumes_count_on_both_sides_has_one_ladder_of_them_all() {
     let roof = common::cuboid("roof", [-6.0, 12.0, -1.0], [-2.0, 12.5, 1.0]);
     let mut scene = common::from_above(vec![slab, roof]);
     scene.lights[0].position = glam::DVec4::new(-12.0, 20.0, 0.2, 1.0);
-    let request = CaptureRequest::new(Choice::new(Technique::Auto), SIZE);
+    let request = common::request(Technique::Auto, SIZE);
     let (harness, capture) = panels(&mut session, &scene, &request);
     assert_eq!(capture.lights[0].decided_by, DecidedBy::StencilCount { side: CountedSide::AsNeeded });
     for text in ["on either side of the surface", "Counted along the whole ray", "its stencil count is 2."] {
@@ -121,7 +95,7 @@ fn a_light_that_nothing_is_drawn_for_is_decided_by_nothing() {
     let mut session = common::session();
     let mut scene = common::from_above(Vec::new());
     scene.lights[0].position.y = -4.0;
-    let request = CaptureRequest::new(Choice::new(Technique::Auto), SIZE);
+    let request = common::request(Technique::Auto, SIZE);
     let (harness, capture) = panels(&mut session, &scene, &request);
     assert_eq!(capture.lights[0].decided_by, DecidedBy::Nothing);
     assert!(!says(&harness, "Ladder"));

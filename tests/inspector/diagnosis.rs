@@ -1,26 +1,14 @@
 //! The Diagnosis tab.
 
-use super::pictures::{self, MARGIN, draw, sizes};
-use super::{
-    SIZE, Seen, asks, click, click_button, harness_of, inspector, last_asked, press, reply, run_request, scene, z_fail,
-};
-use crate::common;
-use egui::Key;
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
+use super::pictures::{self, Gallery};
+use super::*;
 use stencilscope::accuracy::{ErrorCounts, Finding};
-use stencilscope::ask::{DiagnosisOf, HistoryOf, TruthOf};
+use stencilscope::ask::DiagnosisOf;
 use stencilscope::diagnosis::{
     Advice, Cause, CauseFound, Diagnosis, Fix, FixWithinTechnique, MeshDefect, MeshFinding, ObjectChange, Proof,
     RegionFound, RegionKind, RemainingRegions,
 };
-use stencilscope::inspector::{Action, Inspector};
-use stencilscope::progress::Progress;
-use stencilscope::scene::{OpenSpec, open};
 use stencilscope::session::InjectedFault;
-use stencilscope::technique::{Choice, Technique};
 
 fn cause(cause: Cause, mend: Fix, proof: Proof, left: u64) -> CauseFound {
     let evidence = format!("evidence of {cause}");
@@ -97,9 +85,8 @@ fn opened(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.set_scene(&scene(), run_request(Technique::ZPass));
     tell(&mut inspector);
-    let mut harness = harness_of(inspector, [1280.0, 900.0]);
-    click(&mut harness, "Diagnosis");
-    harness.run_steps(2);
+    let mut harness = harness_in(inspector, [1280.0, 900.0]);
+    show_tab(&mut harness, "Diagnosis");
     harness
 }
 
@@ -120,7 +107,7 @@ fn before_anything_is_diagnosed_it_says_what_it_does() {
 
 #[test]
 fn without_a_scene_nothing_can_be_diagnosed() {
-    let mut harness = harness_of(Inspector::default(), [1280.0, 800.0]);
+    let mut harness = harness_of(Inspector::default());
     click(&mut harness, "Diagnosis");
     harness.get_by_label_contains("Open a scene to find out");
     click_button(&mut harness, "Diagnose");
@@ -146,15 +133,13 @@ fn a_region_goes_to_its_pixel_its_history_and_the_step_that_decided() {
     let mut harness = with_regions();
     harness.get_by_label_contains("by hand, z-pass: 100 of 1\u{2009}200 compared pixels are wrong");
     harness.get_by_label("and 2 smaller of 5 pixels");
-    harness.get_by_role_and_label(Role::Row, FIRST).click();
-    harness.run_steps(3);
+    click_role(&mut harness, Role::Row, FIRST);
     let seen = harness.state();
     assert_eq!((seen.inspector.picked(), seen.inspector.step()), (Some([5, 6]), 1), "after the volumes");
     assert!(asks::<HistoryOf>(&harness).contains(&HistoryOf { at: [5, 6] }));
     assert!(!asks::<TruthOf>(&harness).is_empty(), "the error picture is wished for");
     // By keyboard alike.
-    harness.get_by_role_and_label(Role::Row, SECOND).focus();
-    harness.run_steps(2);
+    focus_role(&mut harness, Role::Row, SECOND);
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().inspector.picked(), Some([9, 4]));
     harness.get_by_label("evidence of split-vertices");
@@ -196,8 +181,7 @@ fn another_scene_forgets_what_was_found() {
     let mut harness = with_regions();
     let mut other = scene();
     other.name = "another".to_owned();
-    harness.state_mut().inspector.set_scene(&other, run_request(Technique::ZFail));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_scene(&other, run_request(Technique::ZFail)));
     assert!(harness.state().inspector.answers().last::<DiagnosisOf>().is_none());
     assert!(harness.query_by_role_and_label(Role::Row, FIRST).is_none());
 }
@@ -217,31 +201,31 @@ fn a_right_frame_says_so_and_small_windows_hold_it() {
     for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
         let mut inspector = inspector(z_fail(SIZE));
         tell(&mut inspector, found());
-        harness_of(inspector, size);
+        harness_in(inspector, size);
     }
 }
 
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them.
 #[test]
 fn pictures_of_a_diagnosis_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(std::path::PathBuf::from);
-    let size = if folder.is_some() { [1280, 720] } else { [160, 90] };
+    let gallery = Gallery::open();
+    let size = if gallery.folder.is_some() { [1280, 720] } else { [160, 90] };
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("assets/scenes/shade.toml")).expect("a scene");
     for technique in [Technique::ZPass, Technique::Planar] {
-        let request = common::request(technique, size);
-        let capture = session.capture(&scene, &request).expect("a capture");
+        let mut frame = common::frame(&mut session, "assets/scenes/shade.toml", common::request(technique, size));
+        let (scene, request) = frame.made().expect("a scene");
         let progress = Progress::default();
-        let capture = session.judged(&scene, &capture, &progress).expect("a truth");
-        let diagnosis = session.diagnose(&scene, &request, InjectedFault::None, &progress).expect("a diagnosis");
+        let judged = session.judged(scene, &frame.capture, &progress).expect("a truth");
+        let diagnosis = session.diagnose(scene, request, InjectedFault::None, &progress).expect("a diagnosis");
         assert!(diagnosis.is_bad(), "{}", technique.name());
-        for shown in sizes(folder.is_some()) {
-            let at = diagnosis.regions[0].at;
-            let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture.clone()), at);
+        frame.capture = Arc::new(judged);
+        let inspector = || {
+            let mut inspector = pictures::inspector(&frame, diagnosis.regions[0].at);
             tell(&mut inspector, diagnosis.clone());
-            let mut harness = harness_of(inspector, shown.map(|side| (side + 2 * MARGIN) as f32));
-            click(&mut harness, "Diagnosis");
-            harness.run_steps(2);
+            inspector
+        };
+        gallery.show(&format!("diagnosis-{}", technique.name()), gallery.sizes(), inspector, |harness| {
+            show_tab(harness, "Diagnosis");
             let first = harness.query_all_by_role(Role::Row).find(|row| {
                 row.rect().width() > 0.0 && {
                     let label = row.accesskit_node().label().unwrap_or_default();
@@ -249,9 +233,8 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
                 }
             });
             first.expect("the first region").click();
-            harness.run_steps(3);
-            draw(&mut harness, folder.as_deref(), &format!("diagnosis-{}", technique.name()), *shown);
-        }
+            harness.run_steps(1);
+        });
     }
 }
 
@@ -267,9 +250,8 @@ fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.set_scene(&scene(), run_request(Technique::ShadowMap));
     tell(&mut inspector, diagnosis);
-    let mut harness = harness_of(inspector, [1280.0, 1400.0]);
-    click(&mut harness, "Diagnosis");
-    harness.run_steps(2);
+    let mut harness = harness_in(inspector, [1280.0, 1400.0]);
+    show_tab(&mut harness, "Diagnosis");
     let stay =
         harness.get_by_role_and_label(Role::Button, "Stay with shadow-map, 1 pixel left: set bias-slope = 4").rect();
     let change = harness.get_by_role_and_label(Role::Button, "Apply the mend: use z-fail").rect();

@@ -1,13 +1,8 @@
 //! Docking: wherever a tab is dropped, every panel stays, under its own name, large enough to be used.
 
-use super::by_hand::z_fail;
-use super::{SIZE, Seen, harness, harness_of, inspector, press};
+use super::*;
 use crate::common::random::Random;
-use egui::accesskit::Role;
-use egui::{Key, Pos2, Rect, pos2, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use stencilscope::inspector::{Inspector, PanelKind, StoredSettings};
+use stencilscope::inspector::{PanelKind, StoredSettings};
 
 /// A panel may be made no smaller by hand or by a drop, points.
 const LEAST: [f32; 2] = [96.0, 48.0];
@@ -20,17 +15,20 @@ fn titles() -> Vec<String> {
 
 /// Titles and places of all tabs, those that are scrolled away too.
 fn tabs(harness: &Harness<Seen>) -> Vec<(String, Rect)> {
-    let name = |node: &egui_kittest::Node| node.accesskit_node().label().unwrap_or_default();
-    harness.query_all_by_role(Role::Tab).map(|node| (name(&node), node.rect())).collect()
+    of_role(harness, Role::Tab)
 }
 
 /// Names and places of the panels that are shown.
 fn shown(harness: &Harness<Seen>) -> Vec<(String, Rect)> {
-    let name = |node: &egui_kittest::Node| node.accesskit_node().label().unwrap_or_default();
-    harness.query_all_by_role(Role::TabPanel).map(|node| (name(&node), node.rect())).collect()
+    of_role(harness, Role::TabPanel)
 }
 
-fn drag(harness: &mut Harness<Seen>, from: Pos2, to: Pos2) {
+fn of_role(harness: &Harness<Seen>, role: Role) -> Vec<(String, Rect)> {
+    let name = |node: &egui_kittest::Node| node.accesskit_node().label().unwrap_or_default();
+    harness.query_all_by_role(role).map(|node| (name(&node), node.rect())).collect()
+}
+
+pub fn drag_tab(harness: &mut Harness<Seen>, from: Pos2, to: Pos2) {
     harness.drag_at(from);
     harness.run_steps(2);
     harness.hover_at(from + (to - from) * 0.5);
@@ -68,14 +66,14 @@ fn a_dropped_panel_shares_the_place_where_it_is_dropped() {
     let before = place(&harness, "Pixel");
     let from = harness.get_by_role_and_label(Role::Tab, "State").rect().center();
     // Into the lower half of the group it is of.
-    drag(&mut harness, from, pos2(before.center().x, before.bottom() - before.height() / 4.0));
+    drag_tab(&mut harness, from, pos2(before.center().x, before.bottom() - before.height() / 4.0));
     assert_usable(&harness, "State below Pixel");
     let [pixel, state] = ["Pixel", "State"].map(|name| place(&harness, name));
     assert!(state.top() > pixel.bottom() && (state.height() - pixel.height()).abs() < 4.0, "{pixel}, {state}");
     // To the left edge of the window.
     let from = harness.get_by_role_and_label(Role::Tab, "Report").rect().center();
     let passes = place(&harness, "Passes");
-    drag(&mut harness, from, pos2(passes.left() + 2.0, passes.center().y));
+    drag_tab(&mut harness, from, pos2(passes.left() + 2.0, passes.center().y));
     assert_usable(&harness, "Report beside Passes");
     assert!(place(&harness, "Report").width() > 120.0, "{}", place(&harness, "Report"));
 }
@@ -98,17 +96,17 @@ fn wherever_tabs_are_dropped_and_borders_are_dragged_every_panel_stays_and_can_b
             let told = if turn % 5 == 3 {
                 // A whole group, by the end of its bar of tabs.
                 let (name, place) = &panels[random.below(panels.len() as u32) as usize];
-                drag(&mut harness, place.right_top() + vec2(-4.0, -14.0), to);
+                drag_tab(&mut harness, place.right_top() + vec2(-4.0, -14.0), to);
                 format!("seed {seed}, turn {turn}: the group of {name} to {to}")
             } else if turn % 5 == 4 {
                 // A border: between a panel and what is beside or below it.
                 let (name, place) = &panels[random.below(panels.len() as u32) as usize];
                 let border = if turn % 2 == 0 { place.right_center() } else { place.center_bottom() } + vec2(0.5, 0.5);
-                drag(&mut harness, border, to);
+                drag_tab(&mut harness, border, to);
                 format!("seed {seed}, turn {turn}: a border of {name} to {to}")
             } else {
                 let (name, place) = &in_view[random.below(in_view.len() as u32) as usize];
-                drag(&mut harness, place.center(), to);
+                drag_tab(&mut harness, place.center(), to);
                 format!("seed {seed}, turn {turn}: {name} to {to}")
             };
             assert_usable(&harness, &told);
@@ -122,7 +120,7 @@ fn wherever_tabs_are_dropped_and_borders_are_dragged_every_panel_stays_and_can_b
         assert_eq!((harness.state().inspector.remembered(), shown(&harness)), before, "seed {seed}");
         let mut again = inspector(z_fail(SIZE));
         again.recall(before.0);
-        let mut places = [shown(&harness_of(again, [1280.0, 800.0])), before.1];
+        let mut places = [shown(&harness_of(again)), before.1];
         places.iter_mut().for_each(|places| places.sort_by(|a, b| a.0.cmp(&b.0)));
         let names = |places: &[(String, Rect)]| places.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
         assert_eq!(names(&places[0]), names(&places[1]), "seed {seed}");
@@ -154,7 +152,7 @@ fn a_layout_that_was_broken_before_is_mended_when_it_is_opened() {
     });
     let mut inspector: Inspector = inspector(z_fail(SIZE));
     inspector.recall(StoredSettings { layout: Some(stored), ..StoredSettings::default() });
-    let harness = harness_of(inspector, [1280.0, 800.0]);
+    let harness = harness_of(inspector);
     assert!(harness.state().inspector.remembered().layout.is_some(), "it is taken");
     assert_usable(&harness, "mended");
 }
@@ -162,7 +160,7 @@ fn a_layout_that_was_broken_before_is_mended_when_it_is_opened() {
 #[test]
 fn the_window_of_keys_stands_still_and_the_layout_is_reset_where_the_pointer_was() {
     for size in [[1280.0, 800.0], [1920.0, 1080.0], [640.0, 400.0]] {
-        let mut harness = harness_of(inspector(z_fail(SIZE)), size);
+        let mut harness = harness_in(inspector(z_fail(SIZE)), size);
         press(&mut harness, Key::F1);
         let reset = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::Button, "Reset layout").rect();
         let first = reset(&harness);
@@ -180,7 +178,7 @@ fn in_a_wide_window_the_scene_is_beside_the_picture_until_the_user_arranges_pane
         let is_there = |name| harness.query_by_role_and_label(Role::TabPanel, name).is_some();
         [is_there("Picture"), is_there("Scene"), is_there("Shadow map")]
     };
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [2560.0, 1440.0]);
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [2560.0, 1440.0]);
     assert_eq!(panels(&harness), [true, true, false]);
     let [picture, pixel] =
         ["Picture", "Pixel"].map(|name| harness.get_by_role_and_label(Role::TabPanel, name).rect().width());
@@ -192,7 +190,7 @@ fn in_a_wide_window_the_scene_is_beside_the_picture_until_the_user_arranges_pane
 
 #[test]
 fn a_tab_is_drawn_once_more_when_it_is_shown_as_it_knows_its_width_by_then() {
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 800.0]);
+    let mut harness = harness_of(inspector(z_fail(SIZE)));
     harness.get_by_role_and_label(Role::Tab, "Explain").click();
     harness.step();
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;

@@ -1,14 +1,8 @@
 //! Draw by draw: selecting, stepping, asking for states that are not there, and what is shown.
 
-use super::by_hand::{cube_map, with_draws};
-use super::{SIZE, Seen, asks, click, click_button, harness, harness_of, inspector, press, reply, z_fail};
-use egui::Key;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
+use super::by_hand::with_draws;
+use super::*;
 use stencilscope::ask::DrawsOf;
-use stencilscope::capture::Capture;
-use stencilscope::reading::shown::PictureKind;
 
 fn at(harness: &Harness<Seen>) -> (usize, Option<usize>) {
     (harness.state().inspector.step(), harness.state().inspector.draw())
@@ -25,8 +19,7 @@ fn ones(harness: &Harness<Seen>) -> u64 {
 }
 
 fn update(harness: &mut Harness<Seen>, capture: Capture) {
-    harness.state_mut().inspector.update_capture(Arc::new(capture));
-    harness.run_steps(2);
+    change(harness, |inspector| inspector.update_capture(Arc::new(capture)));
 }
 
 #[test]
@@ -99,7 +92,7 @@ fn picture_pixel_and_status_bar_show_the_state_after_the_draw() {
     inspector.pick([3, 20]);
     inspector.select_step(1);
     inspector.set_picture_kind(PictureKind::Stencil);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     assert_eq!(ones(&harness), 599);
     harness.get_by_label("0000 0001");
     // The sides count the upper half only; the dark cap the rest.
@@ -146,19 +139,15 @@ fn the_last_draw_of_a_pass_is_known_without_asking() {
 #[test]
 fn another_frame_keeps_the_draw_and_asks_for_its_state() {
     let mut harness = harness(with_draws(z_fail(SIZE)));
-    harness.state_mut().inspector.select_draw(1, 0);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_draw(1, 0));
     let mut other = z_fail([20, 10]);
     other.steps[1].draws.swap(0, 1);
     let dark_cap_first = Arc::new(other.clone());
-    harness.state_mut().inspector.set_capture(dark_cap_first);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_capture(dark_cap_first));
     assert_eq!((at(&harness), asked(&harness)), ((1, Some(1)), vec![]), "sides are last now");
-    harness.state_mut().inspector.select_draw(1, 0);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_draw(1, 0));
     assert_eq!(asked(&harness), [1]);
-    harness.state_mut().inspector.set_capture(Arc::new(other));
-    harness.run_steps(2);
+    show_capture(&mut harness, other);
     assert_eq!((at(&harness), asked(&harness)), ((1, Some(0)), vec![1, 1]));
 }
 
@@ -177,15 +166,12 @@ fn why_there_are_no_states_is_said_and_selecting_again_asks_again() {
 
 #[test]
 fn a_folder_without_draws_says_why_and_how() {
-    let mut without = inspector(z_fail(SIZE));
-    without.open_folder(None);
-    let mut harness = harness_of(without, [1280.0, 800.0]);
+    let mut harness = of_folder();
     click(&mut harness, "2 · volumes");
     click(&mut harness, "sides of box");
     harness.get_by_label_contains("capture it with --every draw");
     assert_eq!(asked(&harness), [0; 0]);
-    harness.state_mut().inspector.set_capture(Arc::new(with_draws(z_fail(SIZE))));
-    harness.run_steps(2);
+    show_capture(&mut harness, with_draws(z_fail(SIZE)));
     assert!(harness.query_by_label_contains("--every draw").is_none());
     assert_eq!(at(&harness), (1, Some(0)));
 }
@@ -214,17 +200,15 @@ fn a_map_pass_shows_the_face_after_the_draw() {
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Map));
     let depth = |harness: &Harness<Seen>| harness.state().inspector.shown_images()[0].depth_at([3, 3]);
     assert_eq!(depth(&harness), Some(0.25));
-    harness.state_mut().inspector.select_draw(0, 0);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_draw(0, 0));
     assert_eq!(depth(&harness), Some(0.125));
     harness.get_by_label_contains("shadow map of light 1, face −x after draw 1 of step 1");
 }
 
 #[test]
 fn sides_that_graze_their_caster_are_called_so() {
-    let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("tori")).expect("a built-in scene");
-    let request = crate::common::request(stencilscope::technique::Technique::Auto, [64, 36]);
-    let capture = crate::common::session().capture(&scene, &request).expect("a capture");
-    let names: Vec<&str> = capture.steps[1].draws.iter().map(|draw| draw.name.as_str()).collect();
+    let request = common::request(Technique::Auto, [64, 36]);
+    let frame = common::frame(&mut common::session(), "tori", request);
+    let names: Vec<&str> = frame.capture.steps[1].draws.iter().map(|draw| draw.name.as_str()).collect();
     assert!(names.contains(&"grazing sides of blue torus"), "{names:?}");
 }

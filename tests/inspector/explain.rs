@@ -1,39 +1,36 @@
 //! The State tab, the Explain tab and the guided tours, over real frames.
 
 use super::*;
-use stencilscope::scene::OpenSpec;
-use stencilscope::session::{CaptureRequest, Session};
 
 /// The panels over a frame of a built-in scene, with its plan.
 pub fn over(name: &str, technique: Technique) -> Inspector {
-    let scene = stencilscope::scene::open(&OpenSpec::new(name)).expect("a built-in scene");
-    let request = CaptureRequest::new(Choice::new(technique), [160, 120]);
-    let mut session = Session::new(None).expect("an adapter");
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let draft = RunRequest {
-        choice: Choice::new(technique),
-        size: [160, 120],
-        camera: scene.camera,
-        lights: scene.lights.clone(),
-        time: 0.0,
-        off: std::collections::BTreeSet::new(),
-        objects: Default::default(),
-    };
+    let frame = common::frame(&mut common::session(), name, common::request(technique, [160, 120]));
+    let (scene, request) = frame.made().expect("a scene");
     let mut inspector = Inspector::new(Vec::new());
-    inspector.open_scene(&scene, draft, Some(name.to_owned()));
-    inspector.set_capture(Arc::new(capture));
-    inspector.set_plan(Arc::new(plan));
+    inspector.open_scene(scene, RunRequest::of(scene, request.choice.clone(), request.size), Some(name.to_owned()));
+    inspector.set_capture(frame.capture);
+    inspector.set_plan(frame.plan);
     inspector
+}
+
+fn touring() -> Harness<'static, Seen> {
+    let mut harness = harness_in(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    show_tab(&mut harness, "Explain");
+    harness
+}
+
+/// The state of the first draw of the volumes.
+fn state_of_volumes() -> Harness<'static, Seen> {
+    let mut inspector = over("tori", Technique::ZFail);
+    inspector.select_draw(1, 0);
+    let mut harness = harness_in(inspector, [1600.0, 1600.0]);
+    show_tab(&mut harness, "State");
+    harness
 }
 
 #[test]
 fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
-    let mut inspector = over("tori", Technique::ZFail);
-    inspector.select_draw(1, 0);
-    let mut harness = harness_of(inspector, [1600.0, 1600.0]);
-    click(&mut harness, "State");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = state_of_volumes();
     harness.get_by_label_contains("one that fails the depth test adds 1 (255 becomes 0)");
     harness.get_by_label_contains("depthFailOp: \"increment-wrap\"");
     click_button(&mut harness, "OpenGL");
@@ -46,12 +43,7 @@ fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
 
 #[test]
 fn what_an_api_has_unless_told_otherwise_is_marked_and_what_was_set_is_not() {
-    let mut inspector = over("tori", Technique::ZFail);
-    inspector.select_draw(1, 0);
-    let mut harness = harness_of(inspector, [1600.0, 1600.0]);
-    click(&mut harness, "State");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = state_of_volumes();
     for (api, defaults, set) in [
         (
             "WebGPU",
@@ -90,10 +82,8 @@ fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
     inspector.open_folder(None);
     inspector.set_capture(capture);
     inspector.select_step(1);
-    let mut harness = harness_of(inspector, [1600.0, 1200.0]);
-    click(&mut harness, "State");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = harness_in(inspector, [1600.0, 1200.0]);
+    show_tab(&mut harness, "State");
     harness.get_by_label("As the capture's plan tells it");
     harness.get_by_label_contains("depth fail IncrementWrap");
 }
@@ -102,10 +92,8 @@ fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
 fn each_pass_is_explained_with_the_scenes_own_numbers() {
     let mut inspector = over("rings", Technique::ZFail);
     inspector.pick([80, 60]);
-    let mut harness = harness_of(inspector, [1600.0, 1600.0]);
-    click(&mut harness, "Explain");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = harness_in(inspector, [1600.0, 1600.0]);
+    show_tab(&mut harness, "Explain");
     press(&mut harness, Key::Home);
     harness.get_by_label("stored depth = offset + scale / distance along the view");
     harness.get_by_label_contains("pixel 80, 60: 0 + ");
@@ -116,8 +104,7 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     assert!(harness.query_all_by_label("Left out").count() > 0);
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label("light is added where count = 0");
-    harness.get_by_role_and_label(Role::Tab, "Passes").click();
-    harness.run_steps(2);
+    show_tab(&mut harness, "Passes");
     click(&mut harness, "mask");
     assert!(harness.query_all_by_label_contains(" in shadow, ").count() > 0);
 }
@@ -126,20 +113,15 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
 fn what_was_left_out_stands_there_with_its_reason() {
     let inspector = over("tori", Technique::Auto);
     let left = inspector.capture().expect("a capture").left_out.first().cloned().expect("auto leaves something out");
-    let mut harness = harness_of(inspector, [1600.0, 3000.0]);
-    click(&mut harness, "Explain");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = harness_in(inspector, [1600.0, 3000.0]);
+    show_tab(&mut harness, "Explain");
     assert!(harness.query_all_by_label(&left.to_string()).count() > 0);
     assert!(harness.query_all_by_label(&left.because).count() > 0);
 }
 
 #[test]
 fn a_tour_drives_the_panels_stop_by_stop() {
-    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
-    click(&mut harness, "Explain");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = touring();
     click_button(&mut harness, "Tour of z-fail");
     harness.run_steps(3);
     harness.get_by_label("What every pixel shows");
@@ -171,16 +153,12 @@ fn a_tour_drives_the_panels_stop_by_stop() {
 /// The worker says why, and that it is done.
 fn fail(harness: &mut Harness<Seen>, reason: &str) {
     harness.state_mut().inspector.push_failure(reason.to_owned());
-    harness.state_mut().inspector.set_job(None);
-    harness.run_steps(3);
+    change(harness, |inspector| inspector.set_job(None));
 }
 
 #[test]
 fn a_stop_whose_frame_can_not_be_made_says_why_and_is_tried_again_or_skipped() {
-    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
-    click(&mut harness, "Explain");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = touring();
     click_button(&mut harness, "Tour of planar");
     harness.get_by_label("The frame is being made …");
     // Its scene can't be opened.
@@ -194,7 +172,7 @@ fn a_stop_whose_frame_can_not_be_made_says_why_and_is_tried_again_or_skipped() {
     click_button(&mut harness, "Try this stop again");
     assert_eq!(harness.state().actions[before..], [opened]);
     harness.get_by_label("The frame is being made …");
-    let scene = stencilscope::scene::open(&OpenSpec::new("rings")).expect("a built-in scene");
+    let scene = common::opened("rings");
     let shown = over("rings", Technique::Planar);
     let draft = *shown.draft().expect("a draft");
     harness.state_mut().inspector.open_scene(&scene, draft, Some("rings".to_owned()));
@@ -207,18 +185,14 @@ fn a_stop_whose_frame_can_not_be_made_says_why_and_is_tried_again_or_skipped() {
     harness.get_by_label_contains("stop 2 of");
     let asked = &harness.state().actions[before..];
     assert!(matches!(asked, [Action::Run(_)]), "the next stop tries again: {asked:?}");
-    harness.state_mut().inspector.set_capture(Arc::clone(shown.capture().expect("a capture")));
-    harness.run_steps(3);
+    change(&mut harness, |inspector| inspector.set_capture(Arc::clone(shown.capture().expect("a capture"))));
     assert!(harness.query_by_label_contains("can't be made").is_none());
     assert!(harness.query_by_label("The frame is being made …").is_none(), "the tour went on");
 }
 
 #[test]
 fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
-    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
-    click(&mut harness, "Explain");
-    // A tab has its sizes a frame after it is shown.
-    harness.run_steps(3);
+    let mut harness = touring();
     click_button(&mut harness, "Tour of planar");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("rings".to_owned())));
     harness.get_by_label("The frame is being made …");
@@ -226,7 +200,7 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     let mut opened = over("rings", Technique::ZFail);
     let capture = Arc::clone(opened.capture().expect("a capture"));
     let draft = *opened.draft().expect("a draft");
-    let rings = stencilscope::scene::open(&OpenSpec::new("rings")).expect("a built-in scene");
+    let rings = common::opened("rings");
     let inspector = &mut harness.state_mut().inspector;
     inspector.open_scene(&rings, draft, Some("rings".to_owned()));
     inspector.set_capture(capture);
@@ -235,8 +209,7 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     assert_eq!(request.choice.technique(), Technique::Planar);
     harness.get_by_label("The frame is being made …");
     opened = over("rings", Technique::Planar);
-    harness.state_mut().inspector.set_capture(Arc::clone(opened.capture().expect("a capture")));
-    harness.run_steps(3);
+    change(&mut harness, |inspector| inspector.set_capture(Arc::clone(opened.capture().expect("a capture"))));
     harness.get_by_label_contains("Planar shadows know one kind of receiver");
     let inspector = &harness.state().inspector;
     assert_eq!(inspector.capture().expect("a capture").steps[inspector.step()].name, "receivers");
@@ -244,12 +217,12 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
 
 #[test]
 fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
-    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    let mut harness = harness_in(over("tori", Technique::ZFail), [1600.0, 1000.0]);
     harness.get_by_label("Counting behind the surface: right for any camera: 7 stops with z-fail.");
     click_button(&mut harness, "Take the tour");
     harness.run_steps(3);
     harness.get_by_label("tour of z-fail, stop 1 of 7");
     let mut picked = over("tori", Technique::ZFail);
     picked.pick([80, 60]);
-    assert!(harness_of(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());
+    assert!(harness_in(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());
 }

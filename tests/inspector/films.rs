@@ -1,12 +1,7 @@
 //! A frame pass by pass and a light going round, from the Export menu: what is asked for, how far it is, how it ends.
 
-use super::by_hand::z_fail;
-use super::{SIZE, Seen, asks, click_button, harness, harness_of, inspector, last_asked, reply};
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use super::*;
 use stencilscope::ask::{FilmOf, FilmSubject, Filmed};
-use stencilscope::inspector::{Action, ExportData, ExportKind};
 
 /// As the app does where a film is to be exported.
 fn started() -> Harness<'static, Seen> {
@@ -22,8 +17,7 @@ fn started() -> Harness<'static, Seen> {
 fn is_offered(harness: &mut Harness<Seen>, name: &str) -> bool {
     click_button(harness, "Export");
     let is_offered = !harness.get_by_role_and_label(Role::Button, name).accesskit_node().is_disabled();
-    harness.key_press(egui::Key::Escape);
-    harness.run_steps(2);
+    press(harness, Key::Escape);
     is_offered
 }
 
@@ -55,7 +49,7 @@ fn the_film_is_of_the_frame_that_is_shown_and_of_the_scene_as_it_is_run() {
         panic!("steps")
     };
     assert_eq!(shown.technique, "z-fail", "the next frame is not there yet");
-    assert!(std::sync::Arc::ptr_eq(&shown, &capture));
+    assert!(Arc::ptr_eq(&shown, &capture));
     let draft = inspector.draft();
     let Some(ExportData::Film(FilmSubject::LightRound { request, light: 0 })) =
         inspector.export(ExportKind::LightRound)
@@ -106,9 +100,9 @@ fn one_that_fails_says_why() {
 fn without_a_scene_no_light_goes_round_and_the_menu_says_why() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.open_folder(None);
-    inspector.set_capture(std::sync::Arc::new(z_fail(SIZE)));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
     assert!(inspector.export(ExportKind::LightRound).is_none());
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     assert_eq!([is_offered(&mut harness, STEPS), is_offered(&mut harness, ROUND)], [true, false]);
     click_button(&mut harness, "Export");
     harness.get_by_role_and_label(Role::Button, ROUND).hover();

@@ -1,13 +1,6 @@
 //! The picture *Auto*: it shows what each step writes, and masks are no steps of the frame.
 
-use super::by_hand::cube_map;
-use super::{SIZE, Seen, click, click_button, harness, press, z_fail};
-use egui::Key;
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
-use stencilscope::reading::shown::PictureKind;
+use super::*;
 
 fn kind(harness: &Harness<Seen>) -> PictureKind {
     harness.state().inspector.picture_kind().expect("a picture")
@@ -52,8 +45,7 @@ fn no_two_steps_show_the_same_picture() {
 fn a_step_that_the_next_frame_does_not_have_gives_way_to_the_whole_frame() {
     let mut harness = harness(z_fail(SIZE));
     harness.state_mut().inspector.select_step(1);
-    harness.state_mut().inspector.set_capture(Arc::new(cube_map()));
-    harness.run_steps(2);
+    show_capture(&mut harness, cube_map());
     assert_eq!((harness.state().inspector.step(), kind(&harness)), (3, PictureKind::Color), "no map pass instead");
 }
 
@@ -82,8 +74,7 @@ fn a_kind_that_was_chosen_stays_until_auto_is_chosen_again() {
 #[test]
 fn before_and_after_a_step_are_of_one_kind() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.select_step(1);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_step(1));
     click_button(&mut harness, "Before");
     assert_eq!(kind(&harness), PictureKind::Stencil);
     harness.get_by_label_contains("stencil before step 2");
@@ -96,11 +87,11 @@ fn buttons_keep_their_place_from_step_to_step_and_from_technique_to_technique() 
     let mut harness = harness(z_fail(SIZE));
     let place = |harness: &Harness<Seen>, label: &str| harness.get_by_role_and_label(Role::Button, label).rect();
     let labels = ["Auto", "Colour", "Stencil", "Depth", "Mask", "Truth", "Error", "Overdraw"];
-    let first: Vec<egui::Rect> = labels.iter().map(|label| place(&harness, label)).collect();
+    let first: Vec<Rect> = labels.iter().map(|label| place(&harness, label)).collect();
     let check = |harness: &mut Harness<Seen>, steps: usize| {
         press(harness, Key::Home);
         for step in 0..steps {
-            let now: Vec<egui::Rect> = labels.iter().map(|label| place(harness, label)).collect();
+            let now: Vec<Rect> = labels.iter().map(|label| place(harness, label)).collect();
             assert_eq!(now, first, "step {step}");
             press(harness, Key::ArrowRight);
         }
@@ -108,6 +99,6 @@ fn buttons_keep_their_place_from_step_to_step_and_from_technique_to_technique() 
     check(&mut harness, 3);
     harness.state_mut().inspector.set_capture(Arc::new(cube_map()));
     check(&mut harness, 4);
-    harness.state_mut().inspector.set_capture(Arc::new(super::by_hand::counted_in_floats()));
+    harness.state_mut().inspector.set_capture(Arc::new(by_hand::counted_in_floats()));
     check(&mut harness, 3);
 }

@@ -1,24 +1,11 @@
 //! Handles of lights and camera, in the Scene tab and over the picture.
 
-use super::scene_view::{box_scene, draft_of, drag, farther, over, show, shown};
-use super::{Seen, click, harness_of, press};
-use egui::{Key, PointerButton, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use glam::{DVec3, DVec4};
-use stencilscope::ask::RunRequest;
-use stencilscope::inspector::Action;
+use super::scene_view::{box_scene, draft_of, farther, over, show, shown};
+use super::*;
+use glam::DVec4;
 use stencilscope::scene::Light;
 
-fn asked<'a>(harness: &'a Harness<'_, Seen>) -> &'a RunRequest {
-    let run = harness.state().actions.iter().rev().find_map(|action| match action {
-        Action::Run(request) => Some(request),
-        _ => None,
-    });
-    run.expect("a run")
-}
-
-fn drag_handle(harness: &mut Harness<Seen>, name: &str, by: egui::Vec2) {
+fn drag_handle(harness: &mut Harness<Seen>, name: &str, by: Vec2) {
     let at = harness.get_by_label(name).rect().center();
     drag(harness, at, by, PointerButton::Primary);
 }
@@ -29,11 +16,11 @@ fn a_dragged_light_moves_in_the_plane_of_the_view_and_the_numbers_follow() {
     click(&mut harness, "Front");
     drag_handle(&mut harness, "Light 1 in the Front view", vec2(40.0, -20.0));
     let first = box_scene();
-    let light = asked(&harness).lights[0].position;
+    let light = last_run(&harness).lights[0].position;
     let moved = light - first.lights[0].position;
     assert!(moved.x > 0.1 && (moved.y / moved.x - 0.5).abs() < 0.1, "{moved}");
     assert!(moved.z.abs() < 1e-9 && moved.w == 0.0, "{moved}");
-    assert_eq!(asked(&harness).camera, first.camera);
+    assert_eq!(last_run(&harness).camera, first.camera);
     click(&mut harness, "Scene settings");
     let shown = harness.get_by_label("light 1 position x").value().expect("a number");
     let shown: f64 = shown.parse().expect("a number");
@@ -45,20 +32,18 @@ fn arrow_keys_move_what_has_the_focus_along_the_nearest_axis() {
     let mut harness = shown();
     click(&mut harness, "Top");
     farther(&mut harness, "Top view of the scene");
-    harness.get_by_label("Camera in the Top view").focus();
-    harness.run_steps(2);
+    focus(&mut harness, "Camera in the Top view");
     let first = box_scene().camera;
     press(&mut harness, Key::ArrowRight);
-    let moved = asked(&harness).camera.eye - first.eye;
+    let moved = last_run(&harness).camera.eye - first.eye;
     assert!(moved.x > 0.0 && moved.y == 0.0 && moved.z == 0.0, "{moved}");
     press(&mut harness, Key::ArrowUp);
-    let moved = asked(&harness).camera.eye - first.eye;
+    let moved = last_run(&harness).camera.eye - first.eye;
     assert!(moved.z < 0.0 && moved.y == 0.0, "{moved}");
-    assert_eq!(asked(&harness).camera.target, first.target);
-    harness.get_by_label("Camera target in the Top view").focus();
-    harness.run_steps(2);
+    assert_eq!(last_run(&harness).camera.target, first.target);
+    focus(&mut harness, "Camera target in the Top view");
     press(&mut harness, Key::ArrowLeft);
-    assert!(asked(&harness).camera.target.x < first.target.x);
+    assert!(last_run(&harness).camera.target.x < first.target.x);
 }
 
 #[test]
@@ -66,15 +51,13 @@ fn an_axis_moves_along_itself_alone() {
     let mut harness = shown();
     farther(&mut harness, "Free view of the scene");
     assert!(harness.query_by_label("Light 1 along y in the Free view").is_none(), "axes are of the chosen one");
-    harness.get_by_label("Light 1 in the Free view").focus();
-    harness.run_steps(3);
+    focus(&mut harness, "Light 1 in the Free view");
     drag_handle(&mut harness, "Light 1 along y in the Free view", vec2(15.0, -30.0));
-    let moved = asked(&harness).lights[0].position - box_scene().lights[0].position;
+    let moved = last_run(&harness).lights[0].position - box_scene().lights[0].position;
     assert!(moved.y > 0.05 && moved.x == 0.0 && moved.z == 0.0, "{moved}");
-    harness.get_by_label("Light 1 along x in the Free view").focus();
-    harness.run_steps(2);
+    focus(&mut harness, "Light 1 along x in the Free view");
     press(&mut harness, Key::ArrowUp);
-    let after = asked(&harness).lights[0].position - box_scene().lights[0].position;
+    let after = last_run(&harness).lights[0].position - box_scene().lights[0].position;
     assert!(after.x > 0.0 && after.y == moved.y, "{after}");
 }
 
@@ -82,11 +65,11 @@ fn an_axis_moves_along_itself_alone() {
 fn a_direction_is_turned_and_stays_one() {
     let mut scene = box_scene();
     scene.lights[0] = Light::directional(DVec3::new(0.0, 2.0, 0.0));
-    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&scene));
     show(&mut harness);
     click(&mut harness, "Front");
     drag_handle(&mut harness, "Light 1 in the Front view", vec2(60.0, 0.0));
-    let towards = asked(&harness).lights[0].position;
+    let towards = last_run(&harness).lights[0].position;
     assert!(towards.w == 0.0 && towards.x > 0.1 && towards.z.abs() < 1e-9, "{towards}");
     assert!((towards.length() - 2.0).abs() < 1e-9, "its length means nothing and stays: {towards}");
 }
@@ -97,14 +80,7 @@ fn a_dragged_light_s_handle_is_under_the_pointer_in_the_next_frame() {
     let mut harness = shown();
     let name = "Light 1 in the Free view";
     let from = harness.get_by_label(name).rect().center();
-    harness.hover_at(from);
-    harness.run_steps(1);
-    let (button, modifiers) = (PointerButton::Primary, egui::Modifiers::NONE);
-    harness.event(egui::Event::PointerButton { pos: from, button, pressed: true, modifiers });
-    harness.run_steps(1);
-    let runs = |harness: &Harness<Seen>| {
-        harness.state().actions.iter().filter(|action| matches!(action, Action::Run(_))).count()
-    };
+    press_left(&mut harness, from);
     for (index, by) in [vec2(12.0, 4.0), vec2(30.0, 16.0), vec2(34.0, 40.0)].into_iter().enumerate() {
         harness.hover_at(from + by);
         harness.step();
@@ -112,7 +88,7 @@ fn a_dragged_light_s_handle_is_under_the_pointer_in_the_next_frame() {
         harness.step();
         let at = harness.get_by_label(name).rect().center();
         assert!((at - from - by).length() < 2.0, "{at} is not {}", from + by);
-        assert_eq!(runs(&harness), index + 1, "each move asks for a run");
+        assert_eq!(runs(&harness).len(), index + 1, "each move asks for a run");
     }
 }
 
@@ -129,33 +105,32 @@ fn without_gizmos_there_are_no_handles() {
 fn a_light_in_view_is_dragged_over_the_picture() {
     let mut scene = box_scene();
     scene.lights = vec![Light::point(DVec3::new(0.5, 1.5, 1.0)), Light::point(DVec3::new(0.0, 1.0, 20.0))];
-    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&scene));
     let before = harness.get_by_label("Light 1 in the picture").rect().center();
     drag_handle(&mut harness, "Light 1 in the picture", vec2(50.0, 0.0));
-    let request = asked(&harness);
+    let request = last_run(&harness);
     assert_eq!(request.lights[1], draft_of(&scene).lights[1]);
     let moved = request.lights[0].position - scene.lights[0].position;
     let ahead = (scene.camera.target - scene.camera.eye).normalize();
     assert!(moved.x > 0.05 && moved.truncate().dot(ahead).abs() < 1e-9, "parallel to the picture: {moved}");
     let after = harness.get_by_label("Light 1 in the picture").rect().center();
     assert!((after - before - vec2(50.0, 0.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
-    harness.get_by_label("Light 1 in the picture").focus();
-    harness.run_steps(2);
-    let before: DVec4 = asked(&harness).lights[0].position;
+    focus(&mut harness, "Light 1 in the picture");
+    let before: DVec4 = last_run(&harness).lights[0].position;
     press(&mut harness, Key::ArrowUp);
-    assert!(asked(&harness).lights[0].position.y > before.y);
+    assert!(last_run(&harness).lights[0].position.y > before.y);
 }
 
 #[test]
 fn a_light_out_of_view_has_its_handle_at_the_border_and_comes_in_by_it() {
     let mut scene = box_scene();
     scene.lights = vec![Light::point(DVec3::new(40.0, 1.5, 1.0))];
-    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&scene));
     let handle = harness.get_by_label("Light 1 in the picture").rect().center();
     let canvas = harness.get_by_label("Picture canvas").rect();
     assert!(canvas.contains(handle) && canvas.right() - handle.x < 60.0, "{handle} in {canvas}");
     drag_handle(&mut harness, "Light 1 in the picture", vec2(-50.0, 0.0));
-    assert!(asked(&harness).lights[0].position.x < 40.0);
+    assert!(last_run(&harness).lights[0].position.x < 40.0);
     click(&mut harness, "Gizmos");
     assert!(harness.query_by_label("Light 1 in the picture").is_none());
 }
@@ -167,16 +142,16 @@ fn a_light_behind_the_eye_has_its_handle_at_the_border_on_its_side_and_follows_t
     let right = ahead.cross(DVec3::Y).normalize();
     let behind = scene.camera.eye - ahead * 3.0;
     scene.lights = vec![Light::point(behind - right), Light::point(behind)];
-    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&scene));
     let handle = harness.get_by_label("Light 1 in the picture").rect().center();
     let canvas = harness.get_by_label("Picture canvas").rect();
     assert!(canvas.contains(handle) && handle.x - canvas.left() < canvas.right() - handle.x, "{handle} in {canvas}");
     let other = harness.get_by_label("Light 2 in the picture").rect().center();
     assert!(canvas.contains(other), "right behind the eye it has one too: {other}");
     drag_handle(&mut harness, "Light 1 in the picture", vec2(50.0, 0.0));
-    let moved = asked(&harness).lights[0].position - scene.lights[0].position;
+    let moved = last_run(&harness).lights[0].position - scene.lights[0].position;
     assert!(moved.truncate().dot(right) > 0.05 && moved.truncate().dot(ahead).abs() < 1e-9, "{moved}");
-    assert_eq!(asked(&harness).lights[1], draft_of(&scene).lights[1]);
+    assert_eq!(last_run(&harness).lights[1], draft_of(&scene).lights[1]);
 }
 
 #[test]
@@ -191,12 +166,11 @@ fn objects_are_dragged_in_the_scene_tab_where_that_is_wished() {
     let target = "Camera target in the Front view";
     assert!(harness.query_by_label(target).is_none(), "the camera looks at its middle");
     drag_handle(&mut harness, &handle, vec2(30.0, -20.0));
-    let pose = asked(&harness).objects.moved[&0];
+    let pose = last_run(&harness).objects.moved[&0];
     let moved = pose.translate - box_scene().objects[0].pose.translate;
     assert!(moved.x > 0.05 && moved.y > 0.02 && moved.z.abs() < 1e-9, "{moved}");
     let after = harness.get_by_label(&handle).rect().center();
     assert!((after - before - vec2(30.0, -20.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
-    harness.run_steps(3);
-    assert!(asked(&harness).objects.moved.is_empty());
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(last_run(&harness).objects.moved.is_empty());
 }

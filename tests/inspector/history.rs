@@ -2,31 +2,20 @@
 //! triangle shows elsewhere.
 
 use super::history_by_hand::{FACES, Face, history};
-use super::{SIZE, Seen, asks, click, harness_of, inspector, last_asked, press, reply, z_fail};
-use crate::common;
-use egui::Key;
-use egui::accesskit::{Role, Toggled};
-use egui_kittest::kittest::{NodeT, Queryable};
-use egui_kittest::{Harness, Node};
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
-use stencilscope::ask::{Answer, HistoryOf};
+use super::*;
+use egui::accesskit::Toggled;
+use egui_kittest::Node;
 use stencilscope::history::{PixelEvent, PixelHistory};
-use stencilscope::plan::DrawPart;
 use stencilscope::reading::coordinates::{PixelCoordinates, vector};
 use stencilscope::reading::shading::SurfaceShading;
-use stencilscope::scene::{OpenSpec, open};
-use stencilscope::technique::Technique;
 
 /// Inside the volume: its count is 1.
 pub const DARK: [u32; 2] = [3, 4];
-/// A panel that shows everything.
-const TALL: [f32; 2] = [1280.0, 2000.0];
 
 fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.pick(at);
-    harness_of(inspector, TALL)
+    harness_in(inspector, TALL)
 }
 
 pub fn answer(harness: &mut Harness<Seen>, history: PixelHistory) {
@@ -34,8 +23,7 @@ pub fn answer(harness: &mut Harness<Seen>, history: PixelHistory) {
     // An answer to what is asked no more is dropped.
     let is_asked = asked.is_some_and(|asked| asked.at == history.pixel);
     let ticket = if is_asked { last_asked::<HistoryOf>(harness).ticket } else { 0 };
-    harness.state_mut().inspector.answer(ticket, Ok(Answer::HistoryOf(Arc::new(history))), true);
-    harness.run_steps(2);
+    change(harness, |inspector| inspector.answer(ticket, Ok(Answer::HistoryOf(Arc::new(history))), true));
 }
 
 fn answered(faces: &[Face]) -> Harness<'static, Seen> {
@@ -66,21 +54,18 @@ fn a_pick_is_asked_about_once_and_again_when_it_moves_or_the_frame_changes() {
     let mut harness = picked(DARK);
     harness.run_steps(3);
     assert_eq!(asked(&harness), [DARK]);
-    harness.state_mut().inspector.pick([4, 4]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.pick([4, 4]));
     answer(&mut harness, history([4, 4], &FACES));
     assert_eq!(asked(&harness), [DARK, [4, 4]]);
-    harness.state_mut().inspector.update_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.update_capture(Arc::new(z_fail(SIZE))));
     assert_eq!(asked(&harness).len(), 2, "the same frame, of which more is known");
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(2);
+    show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(asked(&harness), [DARK, [4, 4], [4, 4]]);
 }
 
 #[test]
 fn without_a_pick_nothing_is_asked() {
-    let harness = harness_of(inspector(z_fail(SIZE)), TALL);
+    let harness = harness_in(inspector(z_fail(SIZE)), TALL);
     assert_eq!(asked(&harness), [[0; 2]; 0]);
 }
 
@@ -155,12 +140,10 @@ fn the_menu_of_an_event_goes_to_its_step_and_to_its_triangle_in_the_scene() {
 #[test]
 fn the_selected_event_is_gone_to_by_keys_alone() {
     let mut harness = answered(&FACES);
-    harness.get_by_label("pass 2: side of box, front; depth ✗, stencil always; −1; 0 → −1").focus();
-    harness.run_steps(2);
+    focus(&mut harness, "pass 2: side of box, front; depth ✗, stencil always; −1; 0 → −1");
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().inspector.selected_event(), Some(5));
-    harness.get_by_role_and_label(Role::Button, "Go to draw 1 of step 2, volumes").focus();
-    harness.run_steps(2);
+    focus_role(&mut harness, Role::Button, "Go to draw 1 of step 2, volumes");
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().inspector.step(), 1);
 }
@@ -183,12 +166,10 @@ fn a_rung_selects_its_row_and_a_row_its_rung() {
 fn the_selected_triangle_stays_where_the_next_pixel_has_it_too() {
     let mut harness = answered(&FACES);
     click(&mut harness, "rung: side of box, triangle 4, back, at 10.000 m: +1, count 2");
-    harness.state_mut().inspector.pick([4, 4]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.pick([4, 4]));
     answer(&mut harness, history([4, 4], &FACES));
     assert_eq!(harness.state().inspector.selected_event(), Some(6));
-    harness.state_mut().inspector.pick([5, 4]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.pick([5, 4]));
     answer(&mut harness, history([5, 4], &[]));
     assert_eq!(harness.state().inspector.selected_event(), None);
 }
@@ -218,8 +199,7 @@ fn the_sentence_on_top_counts_the_faces() {
         "3 volume faces behind the surface fail the depth test: 2 back, 1 front; count 1, so the light pass skips it.";
     harness.get_by_label(why);
     let lit = [30, 4];
-    harness.state_mut().inspector.pick(lit);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.pick(lit));
     harness.get_by_label("The volume faces behind the surface cancel out, so the light pass adds the light.");
     answer(&mut harness, history(lit, &[]));
     harness.get_by_label("Lit by light 1: its stencil count is 0.");
@@ -250,8 +230,7 @@ fn what_failed_is_said_and_not_asked_again_until_the_pick_moves() {
     harness.run_steps(3);
     harness.get_by_label("× There is no history: the GPU was lost: open the scene again");
     assert_eq!(asked(&harness).len(), 1);
-    harness.state_mut().inspector.pick([4, 4]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.pick([4, 4]));
     assert_eq!(asked(&harness).len(), 2);
     assert!(harness.query_by_label_contains("There is no history").is_none());
 }
@@ -261,7 +240,7 @@ fn a_folder_says_what_histories_need() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.open_folder(None);
     inspector.pick(DARK);
-    let mut harness = harness_of(inspector, TALL);
+    let mut harness = harness_in(inspector, TALL);
     assert_eq!(asked(&harness), [[0; 2]; 0]);
     answer(&mut harness, history(DARK, &FACES));
     assert!(rows(&harness).is_empty(), "an answer that was on its way");
@@ -311,8 +290,7 @@ fn folded_rungs_open_by_a_click_or_by_enter_and_fold_again() {
     };
     assert_eq!(rungs(&harness), 4);
     let enter = |harness: &mut Harness<Seen>, button: &str| {
-        harness.get_by_role_and_label(Role::Button, button).focus();
-        harness.run_steps(2);
+        focus_role(harness, Role::Button, button);
         press(harness, Key::Enter);
     };
     click(&mut harness, "+296 more, adding 0");
@@ -323,8 +301,7 @@ fn folded_rungs_open_by_a_click_or_by_enter_and_fold_again() {
     assert_eq!(rungs(&harness), 4);
     enter(&mut harness, "+296 more, adding 0");
     assert_eq!(rungs(&harness), 104);
-    harness.state_mut().inspector.pick([3, 5]);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.pick([3, 5]));
     answer(&mut harness, history([3, 5], &faces));
     assert_eq!(rungs(&harness), 4, "another pixel has other faces");
     assert!(harness.query_by_label("Fold").is_none());
@@ -395,16 +372,14 @@ fn behind_the_surface_back_faces_add_and_before_it_front_faces() {
     ];
     let mut of_technique: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for (scene, technique, front) in cases {
-        let scene = open(&OpenSpec::new(scene)).expect("a built-in scene");
-        let request = common::request(technique, [64, 36]);
-        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let frame = common::frame(&mut session, scene, common::request(technique, [64, 36]));
         let parts = of_technique.entry(technique.name()).or_default();
-        for at in (0..36).flat_map(|y| (0..64).step_by(3).map(move |x| [x, y])) {
-            let history = session.history(&plan, &capture, at).expect("a history");
+        for at in common::pixels([64, 36]).filter(|[x, _]| x % 3 == 0) {
+            let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
             let faces = history.triangles().filter(|(event, _)| event.is_of_volume() && event.is_from_camera);
             for (event, one) in faces.filter(|(event, _)| event.counted() != 0) {
                 let expected = if one.shows_outside() { front } else { -front };
-                assert_eq!(event.counted(), expected, "{} {technique:?} {at:?}: {one:?}", scene.name);
+                assert_eq!(event.counted(), expected, "{scene} {technique:?} {at:?}: {one:?}");
                 parts.insert(one.part.name());
             }
         }
@@ -429,14 +404,12 @@ fn coordinates_unfold_into_every_space_and_matrix() {
 #[test]
 fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_back() {
     let (mut session, at) = (common::session(), [80, 60]);
-    let scene = open(&OpenSpec::new("tetrahedron")).expect("a scene");
-    let request = common::request(Technique::ZFail, [160, 120]);
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let history = session.history(&plan, &capture, at).expect("a history");
-    let place = PixelCoordinates::of(&capture, at).with_vertices(&capture, &plan, &history);
-    let mut inspector = super::explain::over("tetrahedron", Technique::ZFail);
+    let frame = common::frame(&mut session, "tetrahedron", common::request(Technique::ZFail, [160, 120]));
+    let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
+    let place = PixelCoordinates::of(&frame.capture, at).with_vertices(&frame.capture, &frame.plan, &history);
+    let mut inspector = explain::over("tetrahedron", Technique::ZFail);
     inspector.pick(at);
-    let mut harness = harness_of(inspector, TALL);
+    let mut harness = harness_in(inspector, TALL);
     harness.get_by_label("Coordinates").click();
     harness.run_steps(20);
     assert!(harness.query_by_label("the point").is_none(), "until the history tells of the triangle");
@@ -445,12 +418,10 @@ fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_
     let [.., corner] = &place.vertices[..] else { panic!("three corners") };
     let clip = vector(&corner.clip, 4);
     assert!(harness.query_by_label(&clip).is_none());
-    harness.get_by_label(&format!("vertex {}", corner.index)).click();
-    harness.run_steps(4);
+    click(&mut harness, &format!("vertex {}", corner.index));
     harness.get_by_label(&clip);
     harness.get_by_label("in view");
-    harness.get_by_label("the point").click();
-    harness.run_steps(4);
+    click(&mut harness, "the point");
     harness.get_by_label(&vector(&place.point.expect("a point").clip, 4));
     assert!(harness.query_by_label(&clip).is_none());
 }
@@ -458,18 +429,16 @@ fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_
 /// The floor of `pattern` is tiled: the texel is among the terms.
 #[test]
 fn shading_unfolds_into_its_terms_with_the_texel() {
-    let pattern = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
+    let pattern = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
     let name = pattern.display().to_string();
-    let mut inspector = super::explain::over(&name, Technique::ZFail);
+    let mut inspector = explain::over(&name, Technique::ZFail);
     let (mut session, at) = (common::session(), [100, 100]);
-    let scene = open(&OpenSpec::new(name)).expect("a scene");
-    let request = common::request(Technique::ZFail, [160, 120]);
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let history = session.history(&plan, &capture, at).expect("a history");
-    let shaded = SurfaceShading::of(&capture, &plan, &history).expect("a surface");
+    let frame = common::frame(&mut session, &name, common::request(Technique::ZFail, [160, 120]));
+    let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
+    let shaded = SurfaceShading::of(&frame.capture, &frame.plan, &history).expect("a surface");
     let [column, row] = shaded.texture.expect("a picture").texel;
     inspector.pick(at);
-    let mut harness = harness_of(inspector, TALL);
+    let mut harness = harness_in(inspector, TALL);
     answer(&mut harness, history);
     assert!(harness.query_by_label("texture").is_none(), "folded at first");
     harness.get_by_label("Shading").click();
@@ -484,17 +453,12 @@ fn shading_unfolds_into_its_terms_with_the_texel() {
 #[test]
 fn the_bench_pushes_fragments_through_the_selected_draws_tests() {
     let mut harness = picked(DARK);
-    harness.get_by_role_and_label(Role::Tab, "Bench").click();
-    harness.run_steps(4);
-    harness.get_by_label("Push a back face").click();
-    harness.run_steps(4);
+    show_tab(&mut harness, "Bench");
+    click(&mut harness, "Push a back face");
     harness.get_by_label_contains("1. back face at 0.25: the stencil test (always) passes, the depth test (0.25 > 0.5) fails; increment-wrap: stencil 0 to 1");
-    harness.get_by_label("Take the selected draw's state").click();
-    harness.run_steps(4);
-    harness.get_by_label("Push a front face").click();
-    harness.run_steps(4);
+    click(&mut harness, "Take the selected draw's state");
+    click(&mut harness, "Push a front face");
     harness.get_by_label_contains("2. front face at 0.25");
-    harness.get_by_label("Start again").click();
-    harness.run_steps(4);
+    click(&mut harness, "Start again");
     assert!(harness.query_by_label_contains("1. back face").is_none());
 }

@@ -1,10 +1,11 @@
 //! Histories of pixels of z-fail by hand: every event known.
 
+use super::*;
 use stencilscope::capture::FrameTarget;
 use stencilscope::history::{
     CapturedAfter, FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues, TestResult, TriangleEvent,
 };
-use stencilscope::plan::{ClipPlane, CountBits, DrawPart, Visibility};
+use stencilscope::plan::{ClipPlane, CountBits, Visibility};
 use stencilscope::stencil_machine::DepthStencil;
 use wgpu::StencilOperation;
 

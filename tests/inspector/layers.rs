@@ -1,14 +1,7 @@
 //! Textures of receivers and silhouettes of casters: colours in layers, where a shadow map has depths.
 
 use super::by_hand::layered;
-use super::{Seen, click, click_button, harness, harness_of, inspector, mouse, place_of, press};
-use egui::accesskit::Role;
-use egui::{Key, PointerButton};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use stencilscope::capture::{Image, PixelFormat};
-use stencilscope::reading::shown::PictureKind;
+use super::*;
 
 /// The tab of shadow maps is there whatever is shown.
 fn says(harness: &Harness<Seen>, text: &str) -> bool {
@@ -45,8 +38,7 @@ fn layers_are_named_by_the_passes_that_drew_them() {
     click_button(&mut harness, "layer 3");
     harness.get_by_label("textures of light 1: layer 3 · 16×16 · Rgba8Unorm");
     harness.get_by_label("not drawn: all light arrives");
-    click(&mut harness, "Layer of the picture");
-    click_button(&mut harness, "All 3");
+    choose(&mut harness, "Layer of the picture", "All 3");
     harness.get_by_label("textures of light 1 · 16×16 · Rgba8Unorm");
 }
 
@@ -64,20 +56,16 @@ fn a_step_that_draws_a_layer_shows_it_and_the_step_after_what_was_shown_before()
 
 #[test]
 fn the_picked_texel_says_what_it_lets_through() {
-    let mut inspector = inspector(layered("planar-texture", "texture"));
-    inspector.pick([3, 3]);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = picked(layered("planar-texture", "texture"), [3, 3]);
     press(&mut harness, Key::Home);
-    let at = place_of(&harness, [2, 3], [16, 16]);
-    mouse(&mut harness, at, PointerButton::Secondary);
+    pick_by_mouse(&mut harness, [2, 3], [16, 16]);
     harness.get_by_label("floor, flat piece 1");
     harness.get_by_label("20 %  0 %  0 %");
     harness.get_by_label("51 0 0, alpha 0");
     harness.get_by_label("blocked");
     harness.get_by_label("texel 2, 3   lets through 20 %  0 %  0 %");
     assert!(!says(&harness, "map texel") && !says(&harness, "map distance"));
-    let at = place_of(&harness, [12, 3], [16, 16]);
-    mouse(&mut harness, at, PointerButton::Secondary);
+    pick_by_mouse(&mut harness, [12, 3], [16, 16]);
     harness.get_by_label("100 %  100 %  100 %");
     harness.get_by_label("255 255 255, alpha 255");
     harness.get_by_label("arrives");
@@ -89,9 +77,7 @@ fn the_sentence_tells_what_these_techniques_ask() {
         ("planar-texture", "The texture of this flat receiver lets less than half of the light through here"),
         ("projective", "The silhouette of another object falls here."),
     ] {
-        let mut inspector = inspector(layered(technique, "texture"));
-        inspector.pick([3, 3]);
-        let harness = harness_of(inspector, [1280.0, 800.0]);
+        let harness = picked(layered(technique, "texture"), [3, 3]);
         harness.get_by_label("Dark under light 1.");
         harness.get_by_label_contains(reason);
     }
@@ -120,7 +106,6 @@ fn another_technique_with_fewer_layers_shows_them_all() {
     let map = other.lights[0].map.as_mut().expect("a map");
     map.faces.truncate(2);
     map.clip_from_light.truncate(2);
-    harness.state_mut().inspector.set_capture(Arc::new(other));
-    harness.run_steps(3);
+    show_capture(&mut harness, other);
     harness.get_by_label_contains("textures of light 1 ·");
 }

@@ -1,19 +1,8 @@
 //! Scenes made in the window: what is added, moved and deleted is how the scene is run next, and can be undone.
 
-use super::by_hand::z_fail;
-use super::{SIZE, Seen, asks, click, click_button, harness_of, run_request};
-use egui::accesskit::Role;
-use egui::{Key, Modifiers};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use glam::DVec3;
-use std::path::Path;
-use std::sync::Arc;
-use stencilscope::ask::{MeshesOf, RunRequest};
-use stencilscope::glam;
-use stencilscope::inspector::{Action, Inspector};
-use stencilscope::scene::{Light, Object, OpenSpec, Pose, Scene, SceneBuilder, UpAxis, model_scene, open, shapes};
-use stencilscope::technique::{Choice, Technique};
+use super::*;
+use stencilscope::ask::MeshesOf;
+use stencilscope::scene::{Light, Object, Pose, SceneBuilder, UpAxis, model_scene, shapes};
 
 /// A floor and a box, seen from two metres away.
 fn scene() -> Scene {
@@ -25,58 +14,48 @@ fn scene() -> Scene {
         .build()
 }
 
-fn opened() -> Harness<'static, Seen> {
+/// The settings of a scene that was opened.
+fn settings_of(scene: &Scene, source: &str) -> Harness<'static, Seen> {
     let mut inspector = Inspector::new(Vec::new());
-    let request = RunRequest::of(&scene(), Choice::new(Technique::ZFail), SIZE);
-    inspector.open_scene(&scene(), request, Some("a box".to_owned()));
+    let request = RunRequest::of(scene, Choice::new(Technique::ZFail), SIZE);
+    inspector.open_scene(scene, request, Some(source.to_owned()));
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    let mut harness = harness_in(inspector, [1280.0, 3000.0]);
     click(&mut harness, "Scene settings");
+    harness
+}
+
+/// With all that makes and changes objects unfolded.
+fn making(scene: &Scene) -> Harness<'static, Seen> {
+    let mut harness = settings_of(scene, "a box");
     click(&mut harness, "Make: add, move, delete");
     harness.run_steps(12);
     harness
 }
 
-fn last_run(harness: &Harness<Seen>) -> RunRequest {
-    let run = harness.state().actions.iter().rev().find_map(|action| match action {
-        Action::Run(request) => Some(RunRequest::clone(request)),
-        _ => None,
-    });
-    run.expect("a run was asked for")
+fn opened() -> Harness<'static, Seen> {
+    making(&scene())
 }
 
 fn undo(harness: &mut Harness<Seen>) {
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(2);
+    press_with(harness, Modifiers::COMMAND, Key::Z);
 }
 
-/// Chooses the object that is edited.
-fn choose(harness: &mut Harness<Seen>, name: &str) {
-    harness.get_by_role_and_label(Role::ComboBox, "Object").click();
-    harness.run_steps(3);
+/// Chooses the object that is edited: its entry may lie below what is seen of the list.
+fn choose_object(harness: &mut Harness<Seen>, name: &str) {
+    click_role(harness, Role::ComboBox, "Object");
+    harness.run_steps(1);
     harness.get_all_by_role_and_label(Role::Button, name).last().expect("an entry").click_accesskit();
     harness.run_steps(3);
-}
-
-fn set(harness: &mut Harness<Seen>, name: &str, value: f64) {
-    harness.get_by_role_and_label(Role::SpinButton, name).set_value_accesskit(value);
-    harness.run_steps(2);
 }
 
 #[test]
 fn what_an_object_shows_is_told_with_how_it_lies() {
     let pattern = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
-    let scene = open(&OpenSpec::new(pattern.display().to_string())).expect("a scene");
+    let scene = common::opened(&pattern.display().to_string());
     let edited = |name: &str| {
-        let mut inspector = Inspector::new(Vec::new());
-        let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-        inspector.open_scene(&scene, request, Some("pattern".to_owned()));
-        inspector.set_capture(Arc::new(z_fail(SIZE)));
-        let mut harness = harness_of(inspector, [1280.0, 3000.0]);
-        click(&mut harness, "Scene settings");
-        click(&mut harness, "Make: add, move, delete");
-        harness.run_steps(12);
-        choose(&mut harness, name);
+        let mut harness = making(&scene);
+        choose_object(&mut harness, name);
         harness
     };
     edited("floor").get_by_label("shows tiles.png, 64×64, 1.2 m along X and Z");
@@ -126,20 +105,20 @@ fn lights_are_added_and_deleted() {
 #[test]
 fn objects_of_the_scene_and_new_ones_are_moved_turned_and_scaled() {
     let mut harness = opened();
-    choose(&mut harness, "floor");
-    set(&mut harness, "object position y", -0.5);
-    set(&mut harness, "object turn z", 10.0);
+    choose_object(&mut harness, "floor");
+    set_value(&mut harness, "object position y", -0.5);
+    set_value(&mut harness, "object turn z", 10.0);
     let run = last_run(&harness);
     let pose = run.objects.moved[&0];
     assert_eq!((pose.translate.y, pose.rotate_degrees.z, pose.scale), (-0.5, 10.0, DVec3::ONE));
     assert_eq!(run.applied_to(&scene()).objects[0].pose, pose);
-    set(&mut harness, "object scale x", 0.0);
+    set_value(&mut harness, "object scale x", 0.0);
     assert_eq!(last_run(&harness).objects.moved[&0].scale, DVec3::ONE, "it would be flat");
-    set(&mut harness, "object turn z", 0.0);
-    set(&mut harness, "object position y", 0.0);
+    set_value(&mut harness, "object turn z", 0.0);
+    set_value(&mut harness, "object position y", 0.0);
     assert!(last_run(&harness).objects.moved.is_empty(), "it is where it was loaded");
     click_button(&mut harness, "cylinder");
-    set(&mut harness, "object scale y", 2.0);
+    set_value(&mut harness, "object scale y", 2.0);
     assert_eq!(last_run(&harness).objects.added[0].pose.scale.y, 2.0);
     click_button(&mut harness, "Z is up");
     let turned = last_run(&harness).objects.added[0].pose;
@@ -154,7 +133,7 @@ fn a_deleted_object_is_gone_and_those_after_it_keep_what_was_changed() {
         click_button(&mut harness, name);
     }
     let delete = |harness: &mut Harness<Seen>, name: &str| {
-        choose(harness, name);
+        choose_object(harness, name);
         click_button(harness, "Delete");
     };
     delete(&mut harness, "torus");
@@ -172,7 +151,7 @@ fn a_deleted_object_is_gone_and_those_after_it_keep_what_was_changed() {
 #[test]
 fn the_eye_turns_to_an_object_and_sees_all_of_it() {
     let mut harness = opened();
-    choose(&mut harness, "box");
+    choose_object(&mut harness, "box");
     click_button(&mut harness, "Look at it");
     let camera = last_run(&harness).camera;
     assert_eq!(camera.target, DVec3::new(3.0, 1.0, 0.0));
@@ -200,17 +179,10 @@ fn what_can_not_be_run_says_why() {
 
 #[test]
 fn lights_go_back_to_what_they_were_opened_with_though_others_were_added_and_deleted() {
-    let mut inspector = Inspector::new(Vec::new());
     let mut scene = scene();
     scene.lights.push(Light::point([5.0, 6.0, 7.0]));
-    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    inspector.open_scene(&scene, request, Some("a box".to_owned()));
-    inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
-    click(&mut harness, "Scene settings");
-    click(&mut harness, "Make: add, move, delete");
-    harness.run_steps(12);
-    set(&mut harness, "light 2 intensity", 3.0);
+    let mut harness = making(&scene);
+    set_value(&mut harness, "light 2 intensity", 3.0);
     click_button(&mut harness, "point light");
     click_button(&mut harness, "Delete light 1");
     assert_eq!(last_run(&harness).lights.len(), 2);
@@ -233,7 +205,7 @@ fn meshes_of_objects_that_are_added_are_asked_for_with_the_scene_s() {
     let asked = asks::<MeshesOf>(&harness);
     let last = asked.last().expect("meshes are asked for");
     assert_eq!(last.added.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["torus"]);
-    set(&mut harness, "object position x", 0.7);
+    set_value(&mut harness, "object position x", 0.7);
     assert_eq!(asks::<MeshesOf>(&harness).len(), asked.len(), "where it is changes nothing of its mesh");
 }
 
@@ -243,7 +215,7 @@ fn a_far_plane_is_set_and_taken_away() {
     click(&mut harness, "Has a far plane");
     let far = last_run(&harness).camera.far.expect("a far plane");
     assert!(far > last_run(&harness).camera.near);
-    set(&mut harness, "Far plane", 25.0);
+    set_value(&mut harness, "Far plane", 25.0);
     assert_eq!(last_run(&harness).camera.far, Some(25.0));
     click_button(&mut harness, "Reset far plane");
     assert_eq!(last_run(&harness).camera.far, None);
@@ -251,14 +223,7 @@ fn a_far_plane_is_set_and_taken_away() {
 
 #[test]
 fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
-    let mesh = shapes::cuboid([1.0, 2.0, 6.0]).expect("a box");
-    let scene = model_scene("tower", mesh, true, UpAxis::Y).expect("a model's scene");
-    let mut inspector = Inspector::new(Vec::new());
-    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    inspector.open_scene(&scene, request.clone(), Some("tower.obj".to_owned()));
-    inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
-    click(&mut harness, "Scene settings");
+    let (scene, mut harness) = settings_over(UpAxis::Y, |_| {});
     click_button(&mut harness, "z up");
     let run = last_run(&harness);
     let turned = run.applied_to(&scene);
@@ -272,7 +237,7 @@ fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
     assert!((gap(&turned) - gap(&scene)).abs() < 1e-9 && gap(&scene) > 0.0, "as near above the floor as before");
     assert!((run.camera.target.y - (low + high) / 2.0).abs() < 1e-9 && run.lights[0].position.y > high);
     click_button(&mut harness, "y up");
-    assert_eq!(last_run(&harness), request);
+    assert_eq!(last_run(&harness), RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE));
 }
 
 /// The settings over a model's scene, opened with an axis up.
@@ -280,12 +245,7 @@ fn settings_over(up: UpAxis, change: impl FnOnce(&mut Scene)) -> (Scene, Harness
     let mesh = shapes::cuboid([1.0, 2.0, 6.0]).expect("a box");
     let mut scene = model_scene("tower", mesh, true, up).expect("a model's scene");
     change(&mut scene);
-    let mut inspector = Inspector::new(Vec::new());
-    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    inspector.open_scene(&scene, request, Some("tower.obj".to_owned()));
-    inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
-    click(&mut harness, "Scene settings");
+    let harness = settings_of(&scene, "tower.obj");
     (scene, harness)
 }
 

@@ -38,18 +38,28 @@ mod walk;
 use crate::common;
 use by_hand::{cube_map, z_fail};
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
-use egui_kittest::{Harness, kittest::NodeT, kittest::Queryable};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stencilscope::ask::{Answer, Ask, PendingQuestion, Question, RunRequest};
+use stencilscope::ask::{AnatomyOf, Answer, Ask, HistoryOf, PendingQuestion, Question, ReportOf, RunRequest, TruthOf};
 use stencilscope::capture::{Capture, Image, PixelFormat};
-use stencilscope::inspector::{Action, Inspector, SceneEntry};
+use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector, SceneEntry};
+use stencilscope::plan::DrawPart;
+use stencilscope::progress::Progress;
 use stencilscope::reading::shown::{PictureKind, TexelZoom};
-use stencilscope::scene::Scene;
+use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::session::{CaptureRequest, RunFrame, Session};
 use stencilscope::technique::{Choice, Technique};
 
 const SIZE: [u32; 2] = [40, 30];
+/// The window that most tests look at, points.
+const WINDOW: [f32; 2] = [1280.0, 800.0];
+/// A window that shows all of a long panel, points.
+const TALL: [f32; 2] = [1280.0, 2000.0];
 
 /// What a test looks at: the panels, and everything they asked for.
 struct Seen {
@@ -60,16 +70,7 @@ struct Seen {
 }
 
 fn run_request(technique: Technique) -> RunRequest {
-    let scene = scene();
-    RunRequest {
-        choice: Choice::new(technique),
-        size: SIZE,
-        camera: scene.camera,
-        lights: scene.lights,
-        time: 0.0,
-        off: std::collections::BTreeSet::new(),
-        objects: Default::default(),
-    }
+    RunRequest::of(&scene(), Choice::new(technique), SIZE)
 }
 
 fn scene() -> Scene {
@@ -84,7 +85,12 @@ fn inspector(capture: Capture) -> Inspector {
     inspector
 }
 
-fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
+/// The panels in a window of the size that most tests look at.
+fn harness_of(inspector: Inspector) -> Harness<'static, Seen> {
+    harness_in(inspector, WINDOW)
+}
+
+fn harness_in(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
     let seen = Seen { inspector, actions: Vec::new(), asked: None };
     let ui = |ui: &mut egui::Ui, seen: &mut Seen| {
         for action in seen.inspector.ui(ui) {
@@ -135,13 +141,82 @@ fn reply<Q: Question>(harness: &mut Harness<Seen>, result: Result<Q::Answer, Str
     harness.run_steps(2);
 }
 
+/// The panels over a capture folder.
+fn of_folder() -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.open_folder(None);
+    harness_of(inspector)
+}
+
 fn harness(capture: Capture) -> Harness<'static, Seen> {
-    harness_of(inspector(capture), [1280.0, 800.0])
+    harness_of(inspector(capture))
+}
+
+/// The panels over a capture of which a pixel is picked.
+fn picked(capture: Capture, at: [u32; 2]) -> Harness<'static, Seen> {
+    let mut inspector = inspector(capture);
+    inspector.pick(at);
+    harness_of(inspector)
+}
+
+/// Every run that was asked for, in order.
+fn runs(harness: &Harness<Seen>) -> Vec<RunRequest> {
+    let run = |action: &Action| match action {
+        Action::Run(request) => Some(RunRequest::clone(request)),
+        _ => None,
+    };
+    harness.state().actions.iter().filter_map(run).collect()
+}
+
+fn last_run(harness: &Harness<Seen>) -> RunRequest {
+    runs(harness).pop().expect("a run was asked for")
+}
+
+/// Does any widget's name contain these words?
+fn says(harness: &Harness<Seen>, words: &str) -> bool {
+    harness.query_all_by_label_contains(words).next().is_some()
+}
+
+/// Changes what the panels look at, as the app does.
+fn change(harness: &mut Harness<Seen>, change: impl FnOnce(&mut Inspector)) {
+    change(&mut harness.state_mut().inspector);
+    harness.run_steps(3);
+}
+
+/// Another frame is there.
+fn show_capture(harness: &mut Harness<Seen>, capture: Capture) {
+    change(harness, |inspector| inspector.set_capture(Arc::new(capture)));
 }
 
 fn press(harness: &mut Harness<Seen>, key: Key) {
-    harness.key_press(key);
+    press_with(harness, Modifiers::NONE, key);
+}
+
+fn press_with(harness: &mut Harness<Seen>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
     harness.run_steps(2);
+}
+
+/// Types a number into a field.
+fn set_value(harness: &mut Harness<Seen>, label: &str, value: f64) {
+    harness.get_by_role_and_label(Role::SpinButton, label).set_value_accesskit(value);
+    harness.run_steps(2);
+}
+
+fn focus(harness: &mut Harness<Seen>, label: &str) {
+    harness.get_by_label(label).focus();
+    harness.run_steps(2);
+}
+
+fn focus_role(harness: &mut Harness<Seen>, role: Role, label: &str) {
+    harness.get_by_role_and_label(role, label).focus();
+    harness.run_steps(2);
+}
+
+/// Shows a panel by its tab. It has its sizes a frame after it is shown, and asks for what it shows.
+fn show_tab(harness: &mut Harness<Seen>, title: &str) {
+    harness.get_by_role_and_label(Role::Tab, title).click();
+    harness.run_steps(4);
 }
 
 fn click(harness: &mut Harness<Seen>, label: &str) {
@@ -154,9 +229,13 @@ fn is_disabled(harness: &Harness<Seen>, label: &str) -> bool {
     harness.get_by_role_and_label(Role::Button, label).accesskit_node().is_disabled()
 }
 
-fn click_button(harness: &mut Harness<Seen>, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
+fn click_role(harness: &mut Harness<Seen>, role: Role, label: &str) {
+    harness.get_by_role_and_label(role, label).click();
     harness.run_steps(2);
+}
+
+fn click_button(harness: &mut Harness<Seen>, label: &str) {
+    click_role(harness, Role::Button, label);
 }
 
 /// The middle of a texel on the screen while the whole picture fits.
@@ -167,12 +246,63 @@ fn place_of(harness: &Harness<Seen>, texel: [u32; 2], size: [u32; 2]) -> Pos2 {
     canvas.center() + (vec2(texel[0] as f32 + 0.5, texel[1] as f32 + 0.5) - whole / 2.0) * scale
 }
 
+fn button_event(pos: Pos2, button: PointerButton, pressed: bool) -> Event {
+    Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE }
+}
+
 fn mouse(harness: &mut Harness<Seen>, at: Pos2, button: PointerButton) {
     harness.hover_at(at);
     harness.run_steps(1);
     for pressed in [true, false] {
-        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        harness.event(button_event(at, button, pressed));
     }
+    harness.run_steps(3);
+}
+
+/// Picks a texel with the right button while the whole picture fits.
+fn pick_by_mouse(harness: &mut Harness<Seen>, texel: [u32; 2], size: [u32; 2]) {
+    let at = place_of(harness, texel, size);
+    mouse(harness, at, PointerButton::Secondary);
+}
+
+/// Presses the left button at a place, so that moves drag from there.
+fn press_left(harness: &mut Harness<Seen>, at: Pos2) {
+    harness.hover_at(at);
+    harness.run_steps(1);
+    harness.event(button_event(at, PointerButton::Primary, true));
+    harness.run_steps(1);
+}
+
+/// Presses at a place, moves, and lets go.
+fn drag(harness: &mut Harness<Seen>, from: Pos2, by: Vec2, button: PointerButton) {
+    harness.hover_at(from);
+    harness.run_steps(1);
+    harness.event(button_event(from, button, true));
+    harness.run_steps(1);
+    for share in [0.5, 1.0] {
+        harness.hover_at(from + by * share);
+        harness.run_steps(1);
+    }
+    harness.event(button_event(from + by, button, false));
+    harness.run_steps(2);
+}
+
+/// Turns the wheel where the pointer is, by points.
+fn wheel(harness: &mut Harness<Seen>, by: f32) {
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, by),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(3);
+}
+
+/// Chooses an entry of a list that unfolds.
+fn choose(harness: &mut Harness<Seen>, list: &str, entry: &str) {
+    click_role(harness, Role::ComboBox, list);
+    harness.get_all_by_role_and_label(Role::Button, entry).last().expect("an entry").click();
     harness.run_steps(3);
 }
 
@@ -214,8 +344,7 @@ fn buttons_scrubber_and_tree_select_steps() {
 fn a_light_in_the_tree_selects_its_last_pass() {
     let mut harness = harness(z_fail(SIZE));
     press(&mut harness, Key::Home);
-    harness.get_by_role_and_label(Role::TreeItem, "Light 1 · point").click();
-    harness.run_steps(2);
+    click_role(&mut harness, Role::TreeItem, "Light 1 · point");
     assert_eq!(harness.state().inspector.step(), 3);
 }
 
@@ -246,14 +375,12 @@ fn space_plays_to_the_end_and_stops() {
 #[test]
 fn control_g_goes_to_a_number_and_control_f_finds_a_pass() {
     let mut harness = harness(z_fail(SIZE));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
-    harness.run_steps(2);
+    press_with(&mut harness, Modifiers::COMMAND, Key::G);
     harness.get_by_label("Go to step").type_text("2");
     harness.run_steps(2);
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().inspector.step(), 1);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
-    harness.run_steps(2);
+    press_with(&mut harness, Modifiers::COMMAND, Key::F);
     harness.get_by_label("Find a pass").type_text("mask");
     harness.run_steps(2);
     assert!(harness.query_by_label("2 · volumes").is_none(), "passes without the word are hidden");
@@ -267,8 +394,7 @@ fn control_g_goes_to_a_number_and_control_f_finds_a_pass() {
 fn a_right_click_picks_and_arrows_step_all_the_same() {
     let mut harness = harness(z_fail(SIZE));
     harness.get_by_label("No pixel is picked.");
-    let at = place_of(&harness, [12, 7], SIZE);
-    mouse(&mut harness, at, PointerButton::Secondary);
+    pick_by_mouse(&mut harness, [12, 7], SIZE);
     assert_eq!(harness.state().inspector.picked(), Some([12, 7]));
     press(&mut harness, Key::ArrowLeft);
     assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some([12, 7])));
@@ -277,8 +403,7 @@ fn a_right_click_picks_and_arrows_step_all_the_same() {
         (Modifiers::SHIFT, Key::ArrowUp, [13, 6]),
         (Modifiers::COMMAND | Modifiers::SHIFT, Key::ArrowDown, [13, 16]),
     ] {
-        harness.key_press_modifiers(modifiers, key);
-        harness.run_steps(2);
+        press_with(&mut harness, modifiers, key);
         assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some(expected)));
     }
     harness.get_by_label("13, 16");
@@ -291,7 +416,7 @@ fn the_read_out_says_why_a_pixel_is_dark_and_how_its_values_ran() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.pick([3, 4]);
     inspector.select_step(1);
-    let harness = harness_of(inspector, [1280.0, 800.0]);
+    let harness = harness_of(inspector);
     harness.get_by_label("Dark under light 1: its stencil count is 1.");
     harness.get_by_label("0000 0001");
     harness.get_by_label("shadow");
@@ -301,9 +426,7 @@ fn the_read_out_says_why_a_pixel_is_dark_and_how_its_values_ran() {
 
 #[test]
 fn a_count_below_zero_is_shown_with_its_sign() {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.pick([0, 0]);
-    let harness = harness_of(inspector, [1280.0, 800.0]);
+    let harness = picked(z_fail(SIZE), [0, 0]);
     harness.get_by_label("Dark under light 1: its stencil count is −1 (255).");
     harness.get_by_label("1111 1111");
 }
@@ -312,10 +435,10 @@ fn a_count_below_zero_is_shown_with_its_sign() {
 fn every_label_has_its_own_sentence() {
     let mut with_background = inspector(z_fail(SIZE));
     with_background.pick([39, 4]);
-    harness_of(with_background, [1280.0, 800.0]).get_by_label("Background: no surface is at this pixel.");
+    harness_of(with_background).get_by_label("Background: no surface is at this pixel.");
     let mut lit = inspector(z_fail(SIZE));
     lit.pick([30, 4]);
-    harness_of(lit, [1280.0, 800.0]).get_by_label("Lit by light 1: its stencil count is 0.");
+    harness_of(lit).get_by_label("Lit by light 1: its stencil count is 0.");
 }
 
 #[test]
@@ -349,12 +472,7 @@ fn the_depth_range_is_set_by_handles_and_fitted_again() {
     assert_eq!(ends(&harness), [true, true]);
     let slider = harness.get_all_by_label("Depth range").next().expect("a slider").rect();
     let from = pos2(slider.right() - 4.0, slider.center().y);
-    harness.drag_at(from);
-    harness.run_steps(2);
-    harness.hover_at(slider.center());
-    harness.run_steps(2);
-    harness.drop_at(slider.center());
-    harness.run_steps(2);
+    drag(&mut harness, from, slider.center() - from, PointerButton::Primary);
     assert_eq!(ends(&harness), [true, false], "the far end was dragged");
     click_button(&mut harness, "Autofit");
     assert_eq!(ends(&harness), [true, true]);
@@ -381,14 +499,8 @@ fn the_wheel_zooms_at_the_pointer_and_the_buttons_go_back() {
     let at = place_of(&harness, [10, 10], SIZE);
     harness.hover_at(at);
     harness.run_steps(2);
-    harness.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: vec2(0.0, 400.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::NONE,
-    });
-    harness.run_steps(12);
+    wheel(&mut harness, 400.0);
+    harness.run_steps(9);
     assert!(matches!(harness.state().inspector.zoom(), TexelZoom::Pixels(pixels) if pixels > 30.0));
     mouse(&mut harness, at, PointerButton::Secondary);
     assert_eq!(harness.state().inspector.picked(), Some([10, 10]), "the texel under the pointer stayed there");
@@ -423,8 +535,7 @@ fn lights_camera_and_size_by_number_ask_for_a_run() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Scene settings");
     for (name, value) in [("light 1 position x", 2.5), ("camera eye y", 12.0), ("Picture width", 64.0)] {
-        harness.get_by_label(name).set_value_accesskit(value);
-        harness.run_steps(2);
+        set_value(&mut harness, name, value);
     }
     let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
     assert_eq!(request.lights[0].position.x, 2.5);
@@ -437,8 +548,7 @@ fn what_cannot_be_run_is_said_and_not_run() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Scene settings");
     // Where the target is: the eye of the scene looks straight down from 10 above.
-    harness.get_by_label("camera eye y").set_value_accesskit(0.0);
-    harness.run_steps(2);
+    set_value(&mut harness, "camera eye y", 0.0);
     assert!(!harness.state().actions.iter().any(|action| matches!(action, Action::Run(_))));
     harness.get_by_label_contains("the camera's eye equals its target");
 }
@@ -451,8 +561,7 @@ fn the_dialog_opens_built_in_scenes_and_paths() {
     click(&mut harness, "table");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("table".to_owned())));
     assert!(harness.query_by_label("what table teaches").is_none(), "it closes");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
-    harness.run_steps(2);
+    press_with(&mut harness, Modifiers::COMMAND, Key::O);
     harness.get_by_role(Role::TextInput).type_text("models/bunny.obj");
     harness.run_steps(2);
     click(&mut harness, "Open this");
@@ -489,8 +598,7 @@ fn a_dropped_file_is_opened() {
 #[test]
 fn an_error_stays_until_dismissed_and_so_does_the_picture() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.push_error("nothing.obj: no such file: check the path".to_owned());
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.push_error("nothing.obj: no such file: check the path".to_owned()));
     harness.get_by_label("nothing.obj: no such file: check the path");
     harness.get_by_label("step 3 of 3");
     click(&mut harness, "Dismiss");
@@ -506,15 +614,14 @@ fn why_a_scene_could_not_be_opened_goes_once_one_is_and_other_errors_stay() {
     inspector.push_error("out.png can't be written: choose another place".to_owned());
     harness.run_steps(2);
     harness.get_by_label("nothing.obj: no such file: check the path");
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(2);
+    show_capture(&mut harness, z_fail(SIZE));
     assert!(harness.query_by_label_contains("no such file").is_none());
     harness.get_by_label("out.png can't be written: choose another place");
 }
 
 #[test]
 fn with_nothing_open_it_says_what_to_do() {
-    let harness = harness_of(Inspector::default(), [1280.0, 800.0]);
+    let harness = harness_of(Inspector::default());
     harness.get_by_label("Nothing is open yet.");
     harness.get_by_label_contains("Press Open…");
     harness.get_by_label_contains("Open a scene, a model or a capture folder");
@@ -522,15 +629,12 @@ fn with_nothing_open_it_says_what_to_do() {
 
 #[test]
 fn a_capture_folder_is_looked_at_but_not_run() {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.open_folder(None);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = of_folder();
     harness.get_by_label("technique z-fail");
     click(&mut harness, "Scene settings");
     harness.get_by_label_contains("This is a capture folder");
     press(&mut harness, Key::Home);
-    harness.get_by_role_and_label(Role::Tab, "Passes").click();
-    harness.run_steps(2);
+    show_tab(&mut harness, "Passes");
     harness.get_by_label("step 1 of 3");
 }
 
@@ -538,15 +642,14 @@ fn a_capture_folder_is_looked_at_but_not_run() {
 fn the_smallest_capture_and_an_empty_one_are_shown() {
     let mut one = inspector(z_fail([1, 1]));
     one.pick([0, 0]);
-    let mut harness = harness_of(one, [1280.0, 800.0]);
+    let mut harness = harness_of(one);
     for kind in ["Stencil", "Depth", "Mask", "Colour"] {
         click_button(&mut harness, kind);
     }
     let mut empty = z_fail([1, 1]);
     empty.steps.clear();
     empty.lights.clear();
-    harness.state_mut().inspector.set_capture(Arc::new(empty));
-    harness.run_steps(3);
+    show_capture(&mut harness, empty);
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label("This capture has no passes.");
 }
@@ -558,15 +661,13 @@ fn a_map_larger_than_the_gpus_textures_is_shown() {
     map.faces[1] = Arc::new(Image::uniform(PixelFormat::Depth32F, [16_384, 16_384], &0.5_f32.to_le_bytes()));
     let mut inspector = inspector(capture);
     inspector.select_step(0);
-    let harness = harness_of(inspector, [640.0, 400.0]);
+    let harness = harness_in(inspector, [640.0, 400.0]);
     harness.get_by_label_contains("16384×16384");
 }
 
 #[test]
 fn nothing_is_redrawn_while_nothing_changes() {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.pick([3, 4]);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = picked(z_fail(SIZE), [3, 4]);
     harness.run_steps(4);
     harness.step();
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;

@@ -1,30 +1,15 @@
 //! What is drawn over the picture: chosen in a menu, asked for once, listed with its colours.
 
-use super::by_hand::z_fail;
-use super::{SIZE, Seen, asks, click, click_button, harness, harness_of, inspector, is_disabled, press, reply};
-use crate::common;
-use egui::Key;
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
-use stencilscope::ask::{AnatomyOf, TestsOf};
-use stencilscope::capture::{Image, PixelFormat, StepTests};
+use super::*;
+use stencilscope::ask::TestsOf;
+use stencilscope::capture::StepTests;
 use stencilscope::reading::TestOutcomes;
-use stencilscope::reading::shown::PictureKind;
-use stencilscope::scene::{OpenSpec, open};
-use stencilscope::technique::Technique;
-
-fn shows(harness: &Harness<Seen>, text: &str) -> bool {
-    harness.query_all_by_label_contains(text).next().is_some()
-}
 
 fn turn_on(harness: &mut Harness<Seen>, names: &[&str]) {
     press(harness, Key::O);
     harness.run_steps(2);
     for name in names {
-        harness.get_by_role_and_label(Role::CheckBox, name).click();
-        harness.run_steps(2);
+        click_role(harness, Role::CheckBox, name);
     }
     press(harness, Key::Escape);
 }
@@ -67,8 +52,7 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
         assert!(harness.query_all_by_label(pixels).next().is_some(), "{name}: {pixels}");
     }
     assert!(harness.query_all_by_label_contains("their number does not tell which").next().is_some());
-    harness.state_mut().inspector.select_step(3);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_step(3));
     assert!(asks::<TestsOf>(&harness).contains(&TestsOf { step: 3, draw: None }));
     reply::<TestsOf>(&mut harness, Err("no room: make it smaller".to_owned()));
     harness.run_steps(2);
@@ -89,16 +73,13 @@ fn overdraw_is_a_picture_of_how_many_fragments_came() {
     harness.get_by_label("Fragments a pixel");
     harness.get_by_label("112 in all");
     harness.get_by_label_contains("overdraw after step 2");
-    harness.state_mut().inspector.select_step(2);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_step(2));
     assert!(is_disabled(&harness, "Overdraw"), "a step without draws");
 }
 
 #[test]
 fn a_folder_says_that_it_has_no_geometry() {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.open_folder(None);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = of_folder();
     turn_on(&mut harness, &["Silhouettes"]);
     harness.get_by_label_contains("Open the scene instead");
     assert!(asks::<AnatomyOf>(&harness).is_empty() && asks::<TestsOf>(&harness).is_empty());
@@ -108,30 +89,24 @@ fn a_folder_says_that_it_has_no_geometry() {
 fn the_menu_opens_by_mouse_too_and_overlays_go_off_again() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Overlay");
-    harness.get_by_role_and_label(Role::CheckBox, "Wireframe of volumes").click();
-    harness.run_steps(2);
+    click_role(&mut harness, Role::CheckBox, "Wireframe of volumes");
     harness.get_by_label("Overlay · 1");
-    harness.get_by_role_and_label(Role::CheckBox, "Wireframe of volumes").click();
-    harness.run_steps(2);
-    assert!(!shows(&harness, "Overlay · 1"));
+    click_role(&mut harness, Role::CheckBox, "Wireframe of volumes");
+    assert!(!says(&harness, "Overlay · 1"));
 }
 
 /// Over a real frame: lines and tints change the picture, and what is on is listed.
 #[test]
 fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("tori");
-    let request = common::request(Technique::ZFail, [320, 180]);
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
-    let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let frame = common::frame(&mut session, "tori", common::request(Technique::ZFail, [320, 180]));
+    let anatomy = pictures::anatomy(&mut session, &frame);
+    let mut harness = harness_of(pictures::inspector(&frame, [10, 10]));
     let plain = harness.render().expect("a picture");
     turn_on(&mut harness, &["Silhouettes", "Wireframe of volumes", "Receivers", "Casters' names"]);
     assert_eq!(asks::<AnatomyOf>(&harness).len(), 1);
     harness.get_by_label("Looking at the geometry …");
-    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
-    harness.run_steps(3);
+    change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy)));
     for text in [
         "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast",
         "side",
@@ -139,7 +114,7 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
         "dark cap",
         "receives shadows",
     ] {
-        assert!(shows(&harness, text), "{text}");
+        assert!(says(&harness, text), "{text}");
     }
     let over = harness.render().expect("a picture");
     let differing = plain.as_raw().chunks(4).zip(over.as_raw().chunks(4)).filter(|(a, b)| a != b).count();
@@ -148,12 +123,10 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
 
 #[test]
 fn a_menu_asked_for_while_the_picture_is_hidden_does_not_open_with_it_later() {
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 800.0]);
-    harness.get_by_role_and_label(Role::Tab, "Scene").click();
-    harness.run_steps(3);
+    let mut harness = harness_of(inspector(z_fail(SIZE)));
+    show_tab(&mut harness, "Scene");
     press(&mut harness, Key::O);
-    harness.get_by_role_and_label(Role::Tab, "Picture").click();
-    harness.run_steps(4);
+    show_tab(&mut harness, "Picture");
     assert!(harness.query_by_label("Wireframe of volumes").is_none());
     press(&mut harness, Key::O);
     harness.run_steps(2);

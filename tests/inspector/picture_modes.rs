@@ -1,25 +1,14 @@
 //! Before, after and what changed; comparing two steps or techniques; bits and histograms.
 
-use super::by_hand::{cube_map, with_draws, z_fail};
-use super::{SIZE, Seen, asks, click, click_button, harness, is_disabled, press, reply};
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use stencilscope::ask::{CaptureOf, DrawsOf, RunRequest};
-use stencilscope::reading::shown::PictureKind;
-use stencilscope::technique::Technique;
+use super::by_hand::with_draws;
+use super::*;
+use stencilscope::ask::{CaptureOf, DrawsOf};
 
 fn at_volumes() -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
     harness.state_mut().inspector.select_step(1);
-    harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
-    harness.run_steps(3);
+    change(&mut harness, |inspector| inspector.set_picture_kind(PictureKind::Stencil));
     harness
-}
-
-fn shows(harness: &Harness<Seen>, text: &str) -> bool {
-    harness.query_all_by_label_contains(text).next().is_some()
 }
 
 fn first_byte(harness: &Harness<Seen>) -> Option<u8> {
@@ -61,7 +50,7 @@ fn the_diff_of_counts_is_signed_and_counted() {
         harness.get_by_label(label);
     }
     press(&mut harness, Key::D);
-    assert!(!shows(&harness, "texels changed"));
+    assert!(!says(&harness, "texels changed"));
 }
 
 /// The light adds where the count is 0: 20 columns. It does not touch depth.
@@ -91,8 +80,7 @@ fn before_a_draw_is_after_the_one_before_it() {
 fn a_draw_before_that_is_not_known_is_asked_for() {
     let mut harness = harness(z_fail(SIZE));
     harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
-    harness.state_mut().inspector.select_draw(1, 1);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_draw(1, 1));
     assert!(!asks::<DrawsOf>(&harness).contains(&DrawsOf { step: 1 }), "the last draw is the step");
     press(&mut harness, Key::B);
     assert!(asks::<DrawsOf>(&harness).contains(&DrawsOf { step: 1 }));
@@ -116,24 +104,13 @@ fn two_steps_are_compared_under_a_divider_that_keys_and_mouse_move() {
     let x = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::Slider, "Compare divider").rect().center().x;
     let canvas = harness.get_by_label("Picture canvas").rect();
     assert!((x(&harness) - canvas.center().x).abs() < 1.0);
-    harness.get_by_role_and_label(Role::Slider, "Compare divider").focus();
-    harness.run_steps(2);
+    focus_role(&mut harness, Role::Slider, "Compare divider");
     press(&mut harness, Key::ArrowRight);
     assert!((x(&harness) - canvas.center().x - canvas.width() * 0.02).abs() < 1.0, "{}", x(&harness));
     assert_eq!(harness.state().inspector.step(), 1, "the divider keeps its keys");
     let from = harness.get_by_role_and_label(Role::Slider, "Compare divider").rect().center();
     let to = from + vec2(-200.0, 0.0);
-    for (pos, pressed) in [(from, true), (to, false)] {
-        harness.hover_at(pos);
-        harness.run_steps(1);
-        harness.event(Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-        harness.run_steps(1);
-    }
+    drag(&mut harness, from, to - from, PointerButton::Primary);
     assert!((x(&harness) - to.x).abs() < 2.0, "{} is not {}", x(&harness), to.x);
 }
 
@@ -160,9 +137,7 @@ fn asked(harness: &Harness<Seen>) -> Vec<RunRequest> {
 fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() {
     let mut harness = at_volumes();
     click_button(&mut harness, "Compare");
-    click(&mut harness, "Compare with");
-    click_button(&mut harness, "technique z-pass");
-    harness.run_steps(3);
+    choose(&mut harness, "Compare with", "technique z-pass");
     let requests = asked(&harness);
     assert_eq!(requests.len(), 1);
     assert_eq!(requests[0].choice.technique(), Technique::ZPass);
@@ -173,8 +148,7 @@ fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() 
     harness.run_steps(3);
     harness.get_by_label_contains("No texel differs");
     // The step of the frame that is shown has another name: the other's last step is shown.
-    harness.state_mut().inspector.select_step(3);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.select_step(3));
     harness.get_by_label_contains("No texel differs");
     assert_eq!(asked(&harness).len(), 1);
 }
@@ -183,16 +157,12 @@ fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() 
 fn a_technique_that_failed_says_why_and_one_without_such_a_picture_too() {
     let mut harness = at_volumes();
     click_button(&mut harness, "Compare");
-    click(&mut harness, "Compare with");
-    click_button(&mut harness, "technique shadow-map");
-    harness.run_steps(3);
+    choose(&mut harness, "Compare with", "technique shadow-map");
     reply::<CaptureOf>(&mut harness, Err("no room: make it smaller".to_owned()));
     harness.run_steps(2);
     harness.get_by_label_contains("shadow-map can't be shown: no room: make it smaller");
     let mut again = harness;
-    click(&mut again, "Compare with");
-    click_button(&mut again, "technique projective");
-    again.run_steps(3);
+    choose(&mut again, "Compare with", "technique projective");
     let mut other = cube_map();
     for step in &mut other.steps {
         if let stencilscope::capture::Snapshot::Frame(frame) = &mut step.snapshot {
@@ -207,8 +177,7 @@ fn a_technique_that_failed_says_why_and_one_without_such_a_picture_too() {
 #[test]
 fn a_bit_is_a_plane_of_two_inks_with_their_counts() {
     let mut harness = at_volumes();
-    click(&mut harness, "Bits of the stencil");
-    click_button(&mut harness, "Bit 1");
+    choose(&mut harness, "Bits of the stencil", "Bit 1");
     // Only the pixel of 255 has bit 1.
     for label in ["Bit 1 of the stencil", "1 set", "1", "0 not set", "1\u{2009}199"] {
         harness.get_by_label(label);

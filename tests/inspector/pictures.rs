@@ -1,99 +1,114 @@
 //! Pictures of the panels over real frames, for people to look at.
 
-use super::{Seen, click, click_button, harness_of, mouse, place_of, press};
-use crate::common;
+use super::*;
 use crate::common::report::{one_scene, three_scenes};
-use egui::{Key, PointerButton};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use stencilscope::ask::{MeshesOf, ReportOf, RunRequest, TruthOf};
-use stencilscope::capture::Capture;
-use stencilscope::inspector::{Inspector, SceneEntry};
-use stencilscope::progress::Progress;
+use stencilscope::anatomy::Anatomy;
+use stencilscope::ask::MeshesOf;
 use stencilscope::reading::ObjectMesh;
-use stencilscope::reading::shown::{PictureKind, TexelZoom};
 use stencilscope::report::{MeasuredReport, Report};
-use stencilscope::scene::{OpenSpec, Scene, open};
-use stencilscope::session::CaptureRequest;
-use stencilscope::technique::Technique;
 
 /// The harness leaves this much around the panels, pixels.
 pub const MARGIN: u32 = 8;
 /// Where light, one shadow and two shadows meet.
 const PICK: [u32; 2] = [689, 142];
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them; the README's is
-/// `z-fail-stencil-1440.png`. Without the variable the panels are only drawn, small.
-#[test]
-fn pictures_of_the_panels_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let sizes = sizes(folder.is_some());
-    let scene = open(&OpenSpec::new("tori")).expect("tori");
-    let mut session = common::session();
-    for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Planar] {
-        let timing_runs = if folder.is_some() { 5 } else { 0 };
-        let request = CaptureRequest { timing_runs, ..common::request(technique, [1280, 720]) };
-        let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
-        let judged = Arc::new(session.judged(&scene, &capture, &Progress::default()).expect("a truth"));
-        let views = VIEWS.iter().map(|view| (view, &capture)).chain(JUDGED_VIEWS.iter().map(|view| (view, &judged)));
-        for ((name, view), capture) in views {
-            for size in sizes {
-                let inspector = inspector(&scene, &request, capture, PICK);
-                let outer = size.map(|side| (side + 2 * MARGIN) as f32);
-                let mut harness = harness_of(inspector, outer);
-                view(&mut harness);
-                harness.run_steps(2);
-                draw(&mut harness, folder.as_deref(), &format!("{}-{name}", technique.name()), *size);
-            }
+/// Pictures of the panels: written where `INSPECTOR_PICTURES` names a folder, and only drawn, small, where it does not.
+pub struct Gallery {
+    pub folder: Option<PathBuf>,
+}
+
+impl Gallery {
+    pub fn open() -> Gallery {
+        Gallery { folder: std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from) }
+    }
+
+    pub fn sizes(&self) -> &'static [[u32; 2]] {
+        if self.folder.is_some() { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] }
+    }
+
+    /// Draws the panels in windows of several sizes, once they were brought into a state to be looked at.
+    pub fn show(
+        &self,
+        name: &str,
+        sizes: &[[u32; 2]],
+        mut inspector: impl FnMut() -> Inspector,
+        mut view: impl FnMut(&mut Harness<Seen>),
+    ) {
+        for size in sizes {
+            let mut harness = harness_in(inspector(), size.map(|side| (side + 2 * MARGIN) as f32));
+            view(&mut harness);
+            harness.run_steps(2);
+            self.draw(&mut harness, name, *size);
+        }
+    }
+
+    pub fn draw(&self, harness: &mut Harness<Seen>, name: &str, size: [u32; 2]) {
+        let picture = harness.render().expect("a picture");
+        if let Some(folder) = &self.folder {
+            save(&folder.join(format!("{name}-{}.png", size[0])), picture.as_raw(), size);
         }
     }
 }
 
-pub fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pick: [u32; 2]) -> Inspector {
+/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them; the README's is
+/// `z-fail-stencil-1440.png`. Without the variable the panels are only drawn, small.
+#[test]
+fn pictures_of_the_panels_can_be_drawn() {
+    let gallery = Gallery::open();
+    let mut session = common::session();
+    for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Planar] {
+        let timing_runs = if gallery.folder.is_some() { 5 } else { 0 };
+        let request = CaptureRequest { timing_runs, ..common::request(technique, [1280, 720]) };
+        let frame = common::frame(&mut session, "tori", request);
+        let scene = frame.scene().expect("a scene");
+        let capture = session.judged(scene, &frame.capture, &Progress::default()).expect("a truth");
+        let judged = RunFrame { capture: Arc::new(capture), ..frame.clone() };
+        let views = VIEWS.iter().map(|view| (view, &frame)).chain(JUDGED_VIEWS.iter().map(|view| (view, &judged)));
+        for ((name, view), frame) in views {
+            let name = format!("{}-{name}", technique.name());
+            gallery.show(&name, gallery.sizes(), || inspector(frame, PICK), view);
+        }
+    }
+}
+
+pub fn inspector(frame: &RunFrame, pick: [u32; 2]) -> Inspector {
+    let (scene, request) = frame.made().expect("a scene");
+    inspector_of(scene, request, &frame.capture, pick)
+}
+
+pub fn inspector_of(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pick: [u32; 2]) -> Inspector {
     let entry = SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() };
     let mut inspector = Inspector::new(vec![entry]);
-    let draft = RunRequest::of(scene, request.choice.clone(), request.size);
-    inspector.set_scene(scene, draft);
+    inspector.set_scene(scene, RunRequest::of(scene, request.choice.clone(), request.size));
     inspector.set_capture(capture.clone());
     inspector.pick(pick);
     inspector
 }
 
-pub fn sizes(are_kept: bool) -> &'static [[u32; 2]] {
-    if are_kept { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] }
-}
-
-pub fn draw(harness: &mut Harness<Seen>, folder: Option<&Path>, name: &str, size: [u32; 2]) {
-    let picture = harness.render().expect("a picture");
-    if let Some(folder) = folder {
-        save(&folder.join(format!("{name}-{}.png", size[0])), picture.as_raw(), size);
-    }
+/// What a frame is made of, as the app finds it out.
+pub fn anatomy(session: &mut Session, frame: &RunFrame) -> Arc<Anatomy> {
+    let (scene, request) = frame.made().expect("a scene");
+    Arc::new(session.anatomy(scene, Some(&request.choice), &frame.plan))
 }
 
 /// What only some techniques have: textures, silhouettes, counts in floats; and what meshes and
 /// settings look like there.
 #[test]
 fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let gallery = Gallery::open();
     let mut session = common::session();
     for Example { scene, technique, settings, pick, views } in EXAMPLES {
-        let scene = open(&OpenSpec::new(*scene)).expect("a built-in scene");
-        let mut request = common::request(*technique, [1280, 720]);
-        settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
-        let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
+        let frame = common::frame(&mut session, scene, common::request_with(*technique, settings, [1280, 720]));
         let mesh = |(object, topology)| ObjectMesh { object, topology };
-        let meshes: Vec<ObjectMesh> = session.topologies(&scene).into_iter().map(mesh).collect();
+        let topologies = session.topologies(frame.scene().expect("a scene"));
+        let meshes: Vec<ObjectMesh> = topologies.into_iter().map(mesh).collect();
+        let with_meshes = || {
+            let mut inspector = inspector(&frame, *pick);
+            inspector.tell(MeshesOf { added: Vec::new() }, Ok(Arc::new(meshes.clone())));
+            inspector
+        };
         for (name, view) in *views {
-            for size in sizes(folder.is_some()) {
-                let mut inspector = inspector(&scene, &request, &capture, *pick);
-                inspector.tell(MeshesOf { added: Vec::new() }, Ok(Arc::new(meshes.clone())));
-                let mut harness = harness_of(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
-                view(&mut harness);
-                harness.run_steps(2);
-                draw(&mut harness, folder.as_deref(), &format!("{}-{}-{name}", technique.name(), scene.name), *size);
-            }
+            gallery.show(&format!("{}-{scene}-{name}", technique.name()), gallery.sizes(), with_meshes, view);
         }
     }
 }
@@ -101,29 +116,25 @@ fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
 /// Passes draw by draw: states that are there, that are being fetched, and that a folder lacks.
 #[test]
 fn pictures_of_draws_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let gallery = Gallery::open();
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("tori");
-    let request = common::request(Technique::ZFail, [1280, 720]);
-    let plain = Arc::new(session.capture(&scene, &request).expect("a capture"));
-    let plan = session.plan(&scene, &request).expect("a plan");
-    let filled = Arc::new(plain.with_draws(&session.step_draws(&plan, &plain, 1).expect("draws")));
-    let views: [(&str, &Arc<Capture>, View); 4] = [
+    let plain = common::frame(&mut session, "tori", common::request(Technique::ZFail, [1280, 720]));
+    let draws = session.step_draws(&plain.plan, &plain.capture, 1).expect("draws");
+    let filled = RunFrame { capture: Arc::new(plain.capture.with_draws(&draws)), ..plain.clone() };
+    let views: [(&str, &RunFrame, View); 4] = [
         ("held", &filled, |_| ()),
         ("pass", &filled, |harness| harness.state_mut().inspector.select_step(1)),
         ("fetching", &plain, |_| ()),
         ("folder", &plain, |harness| harness.state_mut().inspector.open_folder(None)),
     ];
-    for (name, capture, view) in views {
-        for size in sizes(folder.is_some()) {
-            let mut inspector = inspector(&scene, &request, capture, PICK);
+    for (name, frame, view) in views {
+        let at_a_draw = || {
+            let mut inspector = inspector(frame, PICK);
             inspector.set_picture_kind(PictureKind::Stencil);
             inspector.select_draw(1, 2);
-            let mut harness = harness_of(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
-            view(&mut harness);
-            harness.run_steps(2);
-            draw(&mut harness, folder.as_deref(), &format!("draws-{name}"), *size);
-        }
+            inspector
+        };
+        gallery.show(&format!("draws-{name}"), gallery.sizes(), at_a_draw, view);
     }
 }
 
@@ -190,8 +201,7 @@ fn first_layer(harness: &mut Harness<Seen>) {
     press(harness, Key::Home);
     let capture = harness.state().inspector.capture().cloned().expect("a capture");
     let size = capture.lights[0].map.as_ref().expect("a map").faces[0].size();
-    let at = place_of(harness, size.map(|side| side / 2), size);
-    mouse(harness, at, PointerButton::Secondary);
+    pick_by_mouse(harness, size.map(|side| side / 2), size);
 }
 
 /// Writes the picture without its margin.
@@ -206,7 +216,8 @@ fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
     encoder.write_header().expect("a header").write_image_data(&inner).expect("the picture");
 }
 
-type View = fn(&mut Harness<Seen>);
+/// Brings the panels into a state to be looked at.
+pub type View = fn(&mut Harness<Seen>);
 
 fn tell_report(harness: &mut Harness<Seen>, report: Report) {
     let measured = MeasuredReport { report, left_out: Vec::new() };
@@ -225,7 +236,7 @@ const VIEWS: [(&str, View); 13] = [
     ("tracing", |harness| {
         harness.state_mut().inspector.set_picture_kind(PictureKind::Error);
         harness.run_steps(1);
-        let progress = super::last_asked::<TruthOf>(harness).progress;
+        let progress = last_asked::<TruthOf>(harness).progress;
         progress.start(100);
         (0..43).for_each(|_| progress.advance());
     }),
@@ -244,7 +255,7 @@ const VIEWS: [(&str, View); 13] = [
         tell_report(harness, report);
         harness.state_mut().inspector.start(ReportOf::grid().expect("a grid"));
         harness.run_steps(1);
-        let progress = super::last_asked::<ReportOf>(harness).progress;
+        let progress = last_asked::<ReportOf>(harness).progress;
         progress.start(15);
         (0..8).for_each(|_| progress.advance());
     }),
@@ -270,8 +281,7 @@ const JUDGED_VIEWS: [(&str, View); 4] = [
 ];
 
 fn go_to_the_largest(harness: &mut Harness<Seen>) {
-    harness.state_mut().inspector.set_picture_kind(PictureKind::Error);
-    harness.run_steps(2);
+    change(harness, |inspector| inspector.set_picture_kind(PictureKind::Error));
     if harness.query_by_label("Go to the largest").is_some() {
         click(harness, "Go to the largest");
     }

@@ -8,7 +8,7 @@ use super::*;
 use crate::common::random::Random;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use stencilscope::ask::{AnatomyOf, DiagnosisOf, HistoryOf, ReportOf, TestsOf, TruthOf};
+use stencilscope::ask::{DiagnosisOf, TestsOf};
 
 const FRAMES: usize = 450;
 /// How many inputs before a failure are told.
@@ -245,7 +245,7 @@ fn run(name: &str, seed: u64, inspector: Inspector, captures: &[Arc<Capture>]) {
     let mut monkey = Monkey { random: Random::new(seed), captures: captures.to_vec(), at, told };
     let mut frame = 0;
     let result = catch_unwind(AssertUnwindSafe(|| {
-        let mut harness = harness_of(inspector, SIZES[0]);
+        let mut harness = harness_in(inspector, SIZES[0]);
         while frame < FRAMES {
             monkey.act(&mut harness);
             harness.run_steps(1);

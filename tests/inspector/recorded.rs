@@ -1,25 +1,13 @@
 //! The panels over another program's frame.
 
-use super::{Seen, click, click_button, harness_of, mouse, place_of, press};
-use crate::common;
-use egui::accesskit::Role;
-use egui::{Key, PointerButton};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::path::Path;
-use std::sync::Arc;
-use stencilscope::capture::{Capture, RecomputeDifference};
+use super::*;
+use stencilscope::capture::RecomputeDifference;
 use stencilscope::import::{ConvertedFrame, SHIPPED, ShippedFrame, convert, read};
-use stencilscope::inspector::{Action, Inspector, SceneEntry};
 use stencilscope::plan::{FramePlan, Program, ShaderEffect};
-use stencilscope::progress::Progress;
-use stencilscope::reading::shown::PictureKind;
-use stencilscope::session::{FrameSource, RunFrame, Session};
+use stencilscope::session::FrameSource;
 
 /// A surface of `ogre` in the shadow of the torus.
 const DARK: [u32; 2] = [60, 140];
-/// A panel that shows everything.
-const TALL: [f32; 2] = [1280.0, 2000.0];
 
 /// A recording of the repository, held against itself.
 pub fn frame(session: &mut Session, name: &str) -> RunFrame {
@@ -63,7 +51,7 @@ fn changed(frame: &RunFrame, change: impl FnOnce(&mut FramePlan, &mut Capture)) 
 fn it_says_who_drew_the_frame_and_what_can_not_be_done_with_it() {
     let mut session = common::session();
     let ogre = frame(&mut session, "ogre");
-    let mut harness = harness_of(inspector(&ogre), [1280.0, 800.0]);
+    let mut harness = harness_of(inspector(&ogre));
     harness.get_by_label("OpenGL · depth D24S8 · recorded by RenderDoc 1.24");
     harness.get_by_label("drawn by another program: its technique can't be changed");
     harness.get_by_label_contains("no technique can be measured on it");
@@ -86,9 +74,8 @@ fn it_says_who_drew_the_frame_and_what_can_not_be_done_with_it() {
 fn a_picked_pixel_has_its_history() {
     let mut session = common::session();
     let ogre = frame(&mut session, "ogre");
-    let mut harness = harness_of(inspector(&ogre), TALL);
-    let at = place_of(&harness, DARK, ogre.capture.size);
-    mouse(&mut harness, at, PointerButton::Secondary);
+    let mut harness = harness_in(inspector(&ogre), TALL);
+    pick_by_mouse(&mut harness, DARK, ogre.capture.size);
     answer_all(&mut harness, &mut session, &ogre);
     assert_eq!(harness.state().inspector.picked(), Some(DARK));
     harness.get_by_label_contains("Dark under light 1");
@@ -125,7 +112,7 @@ fn draws_that_make_something_else_are_marked() {
         plan.passes[1].draws[1].program = program;
     });
     let name = ogre.capture.steps[1].draws[1].name.clone();
-    let mut harness = harness_of(inspector(&ogre), [1280.0, 800.0]);
+    let mut harness = harness_of(inspector(&ogre));
     click(&mut harness, "2 · volumes");
     let row = harness.get_by_label(&format!("{name}, differs")).rect();
     harness.hover_at(row.center());
@@ -148,7 +135,7 @@ fn debug_groups_are_levels_that_fold() {
             recorded.groups = groups.iter().map(|name| (*name).to_owned()).collect();
         }
     });
-    let mut harness = harness_of(inspector(&ogre), [1280.0, 800.0]);
+    let mut harness = harness_of(inspector(&ogre));
     let left = |harness: &Harness<Seen>, label: &str| harness.get_by_label(label).rect().left();
     assert!(left(&harness, "Debug group frame") < left(&harness, "Debug group shadows"));
     assert!(left(&harness, "1 · surfaces") < left(&harness, "2 · volumes"));
@@ -177,11 +164,11 @@ fn truth_is_asked_for_and_the_wrong_pixels_are_counted() {
                 let labels = capture.lights[0].shadow.take().expect("labels");
                 let bytes = labels.rows().flatten().map(|label| if *label == 1 { 0 } else { *label });
                 let bytes: Vec<u8> = bytes.collect();
-                let lit = stencilscope::capture::Image::packed(labels.format(), capture.size, bytes);
+                let lit = Image::packed(labels.format(), capture.size, bytes);
                 capture.lights[0].shadow = Some(Arc::new(lit));
             }
         });
-        let mut harness = harness_of(inspector(&frame), [1280.0, 800.0]);
+        let mut harness = harness_of(inspector(&frame));
         click_button(&mut harness, "Error");
         answer_all(&mut harness, &mut session, &frame);
         assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Error));
@@ -208,9 +195,9 @@ fn the_scene_tab_has_volumes_surfaces_and_the_found_light() {
             let far = volume.vertices.iter().filter(|corner| corner.w == 0.0).count();
             assert!(far > 0, "{name}: a volume without end");
         }
-        let casters: std::collections::BTreeSet<usize> = anatomy.volumes.iter().map(|volume| volume.caster).collect();
+        let casters: BTreeSet<usize> = anatomy.volumes.iter().map(|volume| volume.caster).collect();
         assert!(casters.len() >= 3, "{name}: {casters:?}");
-        let mut harness = harness_of(inspector(&frame), [1280.0, 800.0]);
+        let mut harness = harness_of(inspector(&frame));
         harness.get_by_role_and_label(Role::Tab, "Scene").click();
         answer_all(&mut harness, &mut session, &frame);
         harness.get_by_label("Free view of the scene");
@@ -223,7 +210,7 @@ fn the_scene_tab_has_volumes_surfaces_and_the_found_light() {
 fn without_a_found_light_scene_and_truth_say_why() {
     let mut session = common::session();
     let ogre = RunFrame { source: None, ..frame(&mut session, "ogre") };
-    let mut harness = harness_of(inspector(&ogre), [1280.0, 800.0]);
+    let mut harness = harness_of(inspector(&ogre));
     click_button(&mut harness, "Error");
     answer_all(&mut harness, &mut session, &ogre);
     harness.get_by_label_contains("no shadow volumes tell where its light is");
@@ -239,7 +226,7 @@ fn frames_that_come_with_the_program_are_offered_and_open() {
         |shipped: &ShippedFrame| SceneEntry { name: shipped.name.to_owned(), lesson: shipped.lesson.to_owned() };
     let mut inspector = Inspector::new(Vec::new());
     inspector.offer_frames(SHIPPED.iter().map(entry).collect());
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     click_button(&mut harness, "Open…");
     harness.get_by_label("A frame of another program");
     for shipped in SHIPPED {
@@ -257,7 +244,7 @@ fn a_frame_with_volumes_that_end_too_early_shows_where_shadow_is_missing() {
     let short = frame(&mut session, "ogre-short");
     let mut inspector = inspector(&short);
     inspector.set_picture_kind(PictureKind::Error);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     answer_all(&mut harness, &mut session, &short);
     let error = harness.state().inspector.capture().and_then(|capture| capture.error()).expect("an error");
     assert!(error.missing_shadow > 300 && error.missing_shadow == error.wrong(), "{error:?}");
@@ -272,7 +259,7 @@ fn a_frame_with_volumes_that_end_too_early_shows_where_shadow_is_missing() {
 fn a_diagnosis_names_the_fault_with_its_proof() {
     let mut session = common::session();
     let short = frame(&mut session, "ogre-short");
-    let mut harness = harness_of(inspector(&short), TALL);
+    let mut harness = harness_in(inspector(&short), TALL);
     click(&mut harness, "Diagnosis");
     click_button(&mut harness, "Diagnose");
     answer_all(&mut harness, &mut session, &short);

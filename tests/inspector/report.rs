@@ -1,18 +1,9 @@
 //! The Report tab.
 
-use super::{SIZE, Seen, asks, click_button, harness_of, inspector, last_asked, press, run_request, scene, z_fail};
+use super::*;
 use crate::common::report::{one_scene, three_scenes};
-use egui::Key;
-use egui::accesskit::{Role, Toggled};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::collections::BTreeMap;
-use std::sync::Arc;
-use stencilscope::ask::ReportOf;
-use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector};
+use egui::accesskit::Toggled;
 use stencilscope::report::{MeasuredReport, Report, ReportRow};
-use stencilscope::scene::Scene;
-use stencilscope::technique::{Choice, Technique};
 
 fn tell(inspector: &mut Inspector, report: Report) {
     tell_without(inspector, report, Vec::new());
@@ -26,7 +17,7 @@ fn tell_without(inspector: &mut Inspector, report: Report, left_out: Vec<String>
 fn showing(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     tell(&mut inspector);
-    harness_of(inspector, [1280.0, 800.0])
+    harness_of(inspector)
 }
 
 /// What opening the row of `label` asks for.
@@ -46,7 +37,7 @@ fn before_anything_is_measured_it_says_what_it_does() {
 
 #[test]
 fn without_a_scene_nothing_can_be_measured() {
-    let mut harness = harness_of(Inspector::default(), [1280.0, 800.0]);
+    let mut harness = harness_of(Inspector::default());
     harness.get_by_label_contains("Open a scene to measure");
     click_button(&mut harness, "Measure");
     assert!(harness.state().actions.is_empty());
@@ -82,8 +73,7 @@ fn a_point_and_a_row_open_what_they_stand_for() {
     let mut harness = showing(|inspector| tell(inspector, report.clone()));
     click_button(&mut harness, "shadow-map 1024: 1.5\u{a0}% wrong, 14.0 ms");
     assert_eq!(harness.state().actions.last(), Some(&opening(&report, "shadow-map", "1024")));
-    harness.get_by_role_and_label(Role::Row, "planar: 9.0\u{a0}% wrong, 10.5 ms").click();
-    harness.run_steps(2);
+    click_role(&mut harness, Role::Row, "planar: 9.0\u{a0}% wrong, 10.5 ms");
     assert_eq!(harness.state().actions.last(), Some(&opening(&report, "planar", "")));
     click_button(&mut harness, "Measure again");
     assert_eq!(asks::<ReportOf>(&harness).len(), 1);
@@ -100,12 +90,10 @@ fn what_was_left_out_is_named_and_where_it_is_measured() {
 fn the_keyboard_reaches_points_and_rows() {
     let report = one_scene();
     let mut harness = showing(|inspector| tell(inspector, report.clone()));
-    harness.get_by_role_and_label(Role::Button, "z-fail: none wrong, 21.7 ms").focus();
-    harness.run_steps(2);
+    focus_role(&mut harness, Role::Button, "z-fail: none wrong, 21.7 ms");
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().actions, [opening(&report, "z-fail", "")]);
-    harness.get_by_role_and_label(Role::Row, "ray-traced: none wrong, 150 ms").focus();
-    harness.run_steps(2);
+    focus_role(&mut harness, Role::Row, "ray-traced: none wrong, 150 ms");
     press(&mut harness, Key::Space);
     assert_eq!(harness.state().actions.last(), Some(&opening(&report, "ray-traced", "")));
 }
@@ -123,7 +111,7 @@ fn what_is_shown_now_is_selected() {
     request.choice.set("bias-slope", "2").expect("a slope");
     inspector.set_scene(&scene(), request);
     tell(&mut inspector, report);
-    let harness = harness_of(inspector, [1280.0, 800.0]);
+    let harness = harness_of(inspector);
     for role in [Role::Button, Role::Row] {
         let toggled = |label: &str| harness.get_by_role_and_label(role, label).accesskit_node().toggled();
         assert_eq!(toggled("shadow-map 2048: 0.76\u{a0}% wrong, 23.8 ms"), Some(Toggled::True));
@@ -137,7 +125,7 @@ fn scenes_are_headed_and_narrow_windows_have_plot_and_table_below_each_other() {
         let mut other = Inspector::new(Vec::new());
         other.set_scene(&scene(), run_request(Technique::ZFail));
         tell(&mut other, three_scenes());
-        let harness = harness_of(other, size);
+        let harness = harness_in(other, size);
         if size[0] > 1000.0 {
             harness.get_by_label("inside a volume");
             assert_eq!(harness.query_all_by_role(Role::Row).count(), 45);
@@ -190,8 +178,7 @@ fn what_was_measured_of_one_scene_does_not_stand_under_another_and_comes_back_wi
     // What is loaded again may be another scene by now.
     for (open, is_there) in [(&other, false), (&scene(), true), (&scene(), false), (&other, false), (&scene(), false)] {
         harness.state_mut().inspector.set_scene(open, run_request(Technique::ZFail));
-        harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-        harness.run_steps(3);
+        show_capture(&mut harness, z_fail(SIZE));
         assert_eq!(harness.query_by_role_and_label(Role::Row, row).is_some(), is_there, "{}", open.name);
     }
 }

@@ -11,9 +11,7 @@ use stencilscope::plan::CountOf;
 fn what_a_ladder_counts_is_read_to_its_end() {
     let mut capture = z_fail(SIZE);
     capture.lights[0].count_of = Some(CountOf::Mixed);
-    let mut inspector = inspector(capture);
-    inspector.pick(DARK);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = picked(capture, DARK);
     answer(&mut harness, history(DARK, &FACES));
     for words in ["along the view ray", "Counted from"] {
         let right = harness.query_all_by_label_contains(words).map(|told| told.rect().right()).fold(0.0, f32::max);
@@ -23,9 +21,8 @@ fn what_a_ladder_counts_is_read_to_its_end() {
 
 #[test]
 fn what_a_pass_draws_into_stands_line_under_line() {
-    let mut harness = harness_of(over("tori", Technique::ZFail), [1440.0, 900.0]);
-    click(&mut harness, "State");
-    harness.run_steps(3);
+    let mut harness = harness_in(over("tori", Technique::ZFail), [1440.0, 900.0]);
+    show_tab(&mut harness, "State");
     let top = |label: &str| harness.get_by_label(label).rect().top();
     let by = top("colour") - top("seen from");
     assert!((12.0..=22.0).contains(&by), "{by}");
@@ -37,22 +34,20 @@ fn a_reason_stands_once_under_all_that_was_left_out_for_it() {
     let left = inspector.capture().expect("a capture").left_out.clone();
     let of_first = left.iter().filter(|one| one.because == left[0].because).count();
     assert!(of_first > 1, "one reason for several rings");
-    let mut harness = harness_of(inspector, [1600.0, 3000.0]);
+    let mut harness = harness_in(inspector, [1600.0, 3000.0]);
     harness.run_steps(2);
     let before = harness.query_all_by_label(&left[0].because).count();
-    click(&mut harness, "Explain");
-    harness.run_steps(3);
+    show_tab(&mut harness, "Explain");
     assert_eq!(harness.query_all_by_label(&left[0].because).count(), before + 1);
 }
 
 #[test]
 fn what_a_button_does_is_told_beside_it_and_not_below_it() {
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [1024.0, 800.0]);
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [1024.0, 800.0]);
     for (tab, button, words) in
         [("Report", "Measure", "Measures every technique"), ("Diagnosis", "Diagnose", "Follows rays through the scene")]
     {
-        harness.get_by_role_and_label(Role::Tab, tab).click();
-        harness.run_steps(4);
+        show_tab(&mut harness, tab);
         let button = harness.get_by_role_and_label(Role::Button, button).rect();
         let words = harness.get_by_label_contains(words).rect();
         assert!(words.height() > 20.0, "it takes two lines here");

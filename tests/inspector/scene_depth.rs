@@ -1,21 +1,16 @@
 //! The Scene tab's picture against rays: is the nearest surface the one that is seen?
 
 use super::scene_view::{anatomy_of, ball_scene, over, show};
-use super::{Seen, click, harness_of};
+use super::*;
 use crate::common::random::Random;
 use egui::epaint::Primitive;
-use egui::{Event, Modifiers, PointerButton, Rect, pos2};
-use egui_kittest::kittest::Queryable;
-use egui_kittest::{Harness, wgpu::create_render_state, wgpu::default_wgpu_setup};
+use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
-use glam::{DMat4, DVec3, DVec4};
-use std::sync::Arc;
+use glam::{DMat4, DVec4};
 use std::sync::mpsc::channel;
 use std::time::Instant;
 use stencilscope::anatomy::Anatomy;
-use stencilscope::ask::AnatomyOf;
 use stencilscope::scene::builtin::ALL;
-use stencilscope::technique::Technique;
 use stencilscope::viewport::{DrawnPicture, Viewports};
 use stencilscope::wgpu;
 
@@ -146,18 +141,7 @@ fn seen(chunks: &[Chunk], eye: DVec3, clip_from_stage: DMat4, ndc: [f64; 2]) -> 
     })
 }
 
-fn wheel(harness: &mut Harness<Seen>, by: f32) {
-    harness.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: egui::vec2(0.0, by),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::NONE,
-    });
-    harness.run_steps(3);
-}
-
-fn place_in(rect: Rect, random: &mut Random) -> egui::Pos2 {
+fn place_in(rect: Rect, random: &mut Random) -> Pos2 {
     let mut along = |low: f32, high: f32| low + (high - low) * (0.1 + 0.8 * random.unit() as f32);
     pos2(along(rect.left(), rect.right()), along(rect.top(), rect.bottom()))
 }
@@ -171,20 +155,16 @@ fn a_large_model_is_drawn_whole_while_it_is_turned() {
     let start = Instant::now();
     let anatomy = anatomy_of(&scene, Technique::ZFail);
     println!("anatomy {:?}", start.elapsed());
-    let mut harness = harness_of(over(&scene), [1562.0, 820.0]);
+    let mut harness = harness_in(over(&scene), [1562.0, 820.0]);
     show(&mut harness);
     let middle = harness.get_by_label(FREE).rect().center();
     let still = drawn(&harness, &gpu, |picture| (picture.geometry.clone(), picture.samples));
     let triangles: usize = anatomy.objects.iter().map(|object| object.mesh.triangles().len()).sum();
     assert_eq!(still.0.solids.len() + still.0.holders.len(), triangles);
-    harness.hover_at(middle);
-    harness.run_steps(1);
-    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-    harness.event(Event::PointerButton { pos: middle, button, pressed: true, modifiers });
-    harness.run_steps(1);
+    press_left(&mut harness, middle);
     let mut times = Vec::new();
     for frame in 0..20 {
-        harness.hover_at(middle + egui::vec2(4.0 * frame as f32, 1.0));
+        harness.hover_at(middle + vec2(4.0 * frame as f32, 1.0));
         let start = Instant::now();
         harness.step();
         let panels = start.elapsed();
@@ -222,25 +202,15 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
     for builtin in ALL {
         let scene = builtin.scene().expect("a scene");
         let anatomy = anatomy_of(&scene, Technique::ZFail);
-        let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+        let mut harness = harness_of(over(&scene));
         show(&mut harness);
         click(&mut harness, "Gizmos");
         let (mut compared, mut excused, mut met) = (0, 0, 0);
         for projection in ["perspective", "orthographic", "cavalier", "cabinet"] {
-            harness.get_by_label("Projection of the Free view").click();
-            harness.run_steps(2);
-            harness.get_all_by_label(projection).last().expect("a choice").click();
-            harness.run_steps(2);
+            choose(&mut harness, "Projection of the Free view", projection);
             let rect = harness.get_by_label(FREE).rect();
             let from = place_in(rect, &mut random);
-            harness.hover_at(from);
-            harness.run_steps(1);
-            let event = |pos, pressed| {
-                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-                Event::PointerButton { pos, button, pressed, modifiers }
-            };
-            harness.event(event(from, true));
-            harness.run_steps(1);
+            press_left(&mut harness, from);
             for _ in 0..5 {
                 harness.hover_at(place_in(rect, &mut random));
                 harness.run_steps(1);
@@ -275,7 +245,7 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
                     assert!(is_edge || is_near, "{}, {projection}, {x} {y}: {found}, a ray finds {here:?}", scene.name);
                 }
             }
-            harness.event(event(from, false));
+            harness.event(button_event(from, PointerButton::Primary, false));
             harness.run_steps(1);
         }
         println!("{}: {compared} points, {met} on something, {excused} at an edge", scene.name);
@@ -308,11 +278,11 @@ fn share_of_view(anatomy: &Anatomy, clip_from_stage: DMat4, origin: DVec3) -> [f
 fn the_view_is_framed_on_what_stands_on_the_floor() {
     let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
     let mut scenes: Vec<_> = ALL.iter().map(|builtin| builtin.scene().expect("a scene")).collect();
-    let knot = stencilscope::scene::OpenSpec::new("assets/models/knot.obj");
-    scenes.push(stencilscope::scene::open(&knot).expect("a model on a floor"));
+    let knot = OpenSpec::new("assets/models/knot.obj");
+    scenes.push(open(&knot).expect("a model on a floor"));
     for scene in scenes {
         let anatomy: Arc<Anatomy> = anatomy_of(&scene, Technique::ZFail);
-        let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+        let mut harness = harness_of(over(&scene));
         show(&mut harness);
         let (view, origin) = drawn(&harness, &gpu, |picture| (picture.view, picture.geometry.origin));
         let [left, low, right, high] = share_of_view(&anatomy, view.clip_from_stage.as_dmat4(), origin);

@@ -1,50 +1,22 @@
 //! The Scene tab: a second camera that sees the first.
 
-use super::pictures::{draw, inspector as inspector_over, sizes};
-use super::{SIZE, Seen, asks, click, harness_of, reply, z_fail};
-use crate::common;
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use glam::DVec3;
-use std::path::PathBuf;
-use std::sync::Arc;
+use super::pictures::{self, Gallery, View};
+use super::*;
 use stencilscope::anatomy::{Anatomy, anatomy};
-use stencilscope::ask::{AnatomyOf, HistoryOf, RunRequest};
 use stencilscope::geometry::GeometryCache;
-use stencilscope::inspector::Inspector;
-use stencilscope::scene::shapes;
-use stencilscope::scene::{Camera, Material, Object, OpenSpec, Scene, open};
-use stencilscope::technique::{Choice, PlanRequest, Technique, plan};
+use stencilscope::scene::{Camera, Material, Object, shapes};
+use stencilscope::technique::{PlanRequest, plan};
 
 /// A box on a floor, seen from the front.
 pub fn box_scene() -> Scene {
-    let eye = DVec3::new(0.0, 2.0, 8.0);
-    let camera = Camera {
-        eye,
-        target: DVec3::Y,
-        up: DVec3::Y,
-        projection: stencilscope::scene::Projection::Perspective,
-        fov_y_degrees: 50.0,
-        near: 0.1,
-        far: None,
-    };
+    let camera = Camera { fov_y_degrees: 50.0, near: 0.1, ..Camera::looking([0.0, 2.0, 8.0], [0.0, 1.0, 0.0]) };
     let objects = vec![common::cuboid("box", [-1.0, 0.5, -1.0], [1.0, 1.5, 1.0])];
     Scene { name: "by hand".to_owned(), camera, ..common::from_above(objects) }
 }
 
 /// How a scene is run by z-fail.
 pub fn draft_of(scene: &Scene) -> RunRequest {
-    RunRequest {
-        choice: Choice::new(Technique::ZFail),
-        size: SIZE,
-        camera: scene.camera,
-        lights: scene.lights.clone(),
-        time: 0.0,
-        off: std::collections::BTreeSet::new(),
-        objects: Default::default(),
-    }
+    RunRequest::of(scene, Choice::new(Technique::ZFail), SIZE)
 }
 
 /// What a frame of a scene is made of, without a GPU.
@@ -70,36 +42,19 @@ pub fn over(scene: &Scene) -> Inspector {
 }
 
 pub fn shown() -> Harness<'static, Seen> {
-    let mut harness = harness_of(over(&box_scene()), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&box_scene()));
     show(&mut harness);
     harness
 }
 
 pub fn show(harness: &mut Harness<Seen>) {
-    harness.get_by_role_and_label(Role::Tab, "Scene").click();
-    harness.run_steps(3);
-}
-
-/// Presses at a place, moves, and lets go.
-pub fn drag(harness: &mut Harness<Seen>, from: Pos2, by: Vec2, button: PointerButton) {
-    harness.hover_at(from);
-    harness.run_steps(1);
-    let event = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
-    harness.event(event(from, true));
-    harness.run_steps(1);
-    for share in [0.5, 1.0] {
-        harness.hover_at(from + by * share);
-        harness.run_steps(1);
-    }
-    harness.event(event(from + by, false));
-    harness.run_steps(2);
+    show_tab(harness, "Scene");
 }
 
 /// A view shows three times as much.
 pub fn farther(harness: &mut Harness<Seen>, view: &str) {
-    harness.get_by_label(view).focus();
-    harness.run_steps(2);
-    (0..8).for_each(|_| super::press(harness, Key::Minus));
+    focus(harness, view);
+    (0..8).for_each(|_| press(harness, Key::Minus));
 }
 
 /// The view's texels, so that two looks can be compared.
@@ -126,7 +81,7 @@ fn anatomies(harness: &Harness<Seen>) -> usize {
 fn a_folder_has_no_geometry_and_says_what_to_open() {
     let mut inspector = Inspector::default();
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     show(&mut harness);
     harness.get_by_label("Opened from a folder: its geometry is not known.");
     harness.get_by_label("Open the scene instead, with Open… or by dropping its file here.");
@@ -139,7 +94,7 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
     let mut inspector = Inspector::default();
     inspector.set_scene(&scene, draft_of(&scene));
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     assert_eq!(anatomies(&harness), 0);
     show(&mut harness);
     harness.get_by_label("Looking at the scene's geometry…");
@@ -148,15 +103,12 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
     reply::<AnatomyOf>(&mut harness, Err("out of reach: try again".to_owned()));
     harness.run_steps(2);
     harness.get_by_label("out of reach: try again");
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(3);
+    show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(anatomies(&harness), 2);
-    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail)));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail))));
     harness.get_by_label(FREE);
     // Until the next frame's is there, that of the one before stays.
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(3);
+    show_capture(&mut harness, z_fail(SIZE));
     harness.get_by_label("Of the frame before.");
     harness.get_by_label(FREE);
     assert_eq!(anatomies(&harness), 3);
@@ -201,29 +153,21 @@ fn a_wireframe_is_hidden_by_surfaces_until_they_are_switched_off() {
 fn the_free_view_turns_moves_and_scales_and_reset_shows_all_again() {
     let mut harness = shown();
     let first = look(&mut harness, FREE);
-    let middle = harness.get_by_label(FREE).rect().center() + egui::vec2(90.0, 120.0);
+    let middle = harness.get_by_label(FREE).rect().center() + vec2(90.0, 120.0);
     let mut seen = vec![first.clone()];
-    let by = egui::vec2(60.0, 25.0);
+    let by = vec2(60.0, 25.0);
     drag(&mut harness, middle, by, PointerButton::Primary);
     seen.push(look(&mut harness, FREE));
     drag(&mut harness, middle, by, PointerButton::Secondary);
     seen.push(look(&mut harness, FREE));
     harness.hover_at(middle);
-    harness.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: egui::vec2(0.0, 60.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::NONE,
-    });
-    harness.run_steps(8);
+    wheel(&mut harness, 60.0);
+    harness.run_steps(5);
     seen.push(look(&mut harness, FREE));
-    harness.get_by_label(FREE).focus();
-    harness.run_steps(2);
+    focus(&mut harness, FREE);
     let step = harness.state().inspector.step();
     for key in [Key::ArrowLeft, Key::ArrowUp, Key::Plus] {
-        harness.key_press(key);
-        harness.run_steps(2);
+        press(&mut harness, key);
         seen.push(look(&mut harness, FREE));
     }
     assert_eq!(harness.state().inspector.step(), step, "the view keeps its keys");
@@ -249,16 +193,12 @@ fn four_views_have_a_projection_each() {
     }
     let front = "Front view of the scene";
     let orthographic = look(&mut harness, front);
-    harness.get_by_label("Projection of the Front view").click();
-    harness.run_steps(2);
-    harness.get_all_by_label("cavalier").last().expect("a choice").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Projection of the Front view", "cavalier");
     let cavalier = look(&mut harness, front);
     assert!(orthographic != cavalier);
-    harness.get_by_label("Angle of the Front view").set_value_accesskit(30.0);
-    harness.run_steps(2);
+    set_value(&mut harness, "Angle of the Front view", 30.0);
     assert!(cavalier != look(&mut harness, front));
-    super::click_button(&mut harness, "Right");
+    click_button(&mut harness, "Right");
     assert!(harness.query_by_label(front).is_none());
 }
 
@@ -270,14 +210,11 @@ fn one_caster_can_be_looked_at_alone() {
     choice.set("casters", "all").expect("a setting");
     let mut inspector = over(&scene);
     inspector.tell(AnatomyOf {}, Ok(anatomy_by(&scene, &choice)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     show(&mut harness);
     harness.get_by_label("Without the volumes of what holds everything (floor): choose it to see them.");
     let all = look(&mut harness, FREE);
-    harness.get_by_label("Caster shown").click();
-    harness.run_steps(2);
-    harness.get_all_by_label("floor").last().expect("a choice").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Caster shown", "floor");
     assert!(all != look(&mut harness, FREE));
 }
 
@@ -297,7 +234,7 @@ pub fn ball_scene(around: u32, rings: u32) -> Scene {
 fn a_large_mesh_looks_as_a_small_one_of_its_shape() {
     let mut looks = Vec::new();
     for (around, rings) in [(64, 32), (264, 133)] {
-        let mut harness = harness_of(over(&ball_scene(around, rings)), [1296.0, 816.0]);
+        let mut harness = harness_in(over(&ball_scene(around, rings)), [1296.0, 816.0]);
         show(&mut harness);
         looks.push(look(&mut harness, FREE));
         for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta"] {
@@ -321,13 +258,11 @@ fn a_large_mesh_looks_as_a_small_one_of_its_shape() {
 #[test]
 fn a_drag_over_a_built_in_scene_is_quick() {
     let scene = open(&OpenSpec::new("tori")).expect("a built-in scene");
-    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&scene));
     show(&mut harness);
     let middle = harness.get_by_label(FREE).rect().center();
     let still = time(&mut harness, middle, 0.0);
-    let pressed =
-        Event::PointerButton { pos: middle, button: PointerButton::Primary, pressed: true, modifiers: Modifiers::NONE };
-    harness.event(pressed);
+    harness.event(button_event(middle, PointerButton::Primary, true));
     harness.step();
     let dragged = time(&mut harness, middle, 3.0);
     println!("a frame of the Scene tab over tori: {still:?} still, {dragged:?} while it is dragged");
@@ -339,34 +274,27 @@ fn time(harness: &mut Harness<Seen>, from: Pos2, by: f32) -> std::time::Duration
     const FRAMES: u32 = 20;
     let start = std::time::Instant::now();
     for frame in 0..FRAMES {
-        harness.hover_at(from + egui::vec2(by * frame as f32, 0.0));
+        harness.hover_at(from + vec2(by * frame as f32, 0.0));
         harness.step();
     }
     start.elapsed() / FRAMES
 }
 
-/// A real frame of a built-in scene with its anatomy.
-fn harness_over(name: &str, technique: Technique, pick: [u32; 2], size: [f32; 2]) -> Harness<'static, Seen> {
-    let scene = open(&OpenSpec::new(name)).expect("a built-in scene");
-    let mut session = common::session();
-    let request = common::request(technique, [640, 360]);
-    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let anatomy = session.anatomy(&scene, Some(&request.choice), &plan);
-    let history = session.history(&plan, &capture, pick).expect("a history");
-    let mut inspector = inspector_over(&scene, &request, &Arc::new(capture), pick);
-    inspector.tell(AnatomyOf {}, Ok(Arc::new(anatomy)));
+/// The panels over a frame with its anatomy, and the history of a pixel.
+fn looked_at(session: &mut Session, frame: &RunFrame, pick: [u32; 2]) -> Inspector {
+    let history = session.history(&frame.plan, &frame.capture, pick).expect("a history");
+    let mut inspector = pictures::inspector(frame, pick);
+    inspector.tell(AnatomyOf {}, Ok(pictures::anatomy(session, frame)));
     inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));
-    harness_of(inspector, size)
+    inspector
 }
-
-type View = (&'static str, fn(&mut Harness<Seen>));
 
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_the_scene` writes them.
 #[test]
 fn pictures_of_the_scene_tab_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let size = if folder.is_some() { [1280, 800] } else { sizes(false)[0] };
-    let views: [View; 4] = [
+    let gallery = Gallery::open();
+    let mut session = common::session();
+    let views: [(&str, View); 4] = [
         ("free", |_| ()),
         ("four", |harness| click(harness, "Four views")),
         ("camera", |harness| click(harness, "See from the camera")),
@@ -385,16 +313,18 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
         ("two-lights", Technique::Projective, [320, 200]),
     ];
     for (name, technique, pick) in scenes {
+        let frame = common::frame(&mut session, name, common::request(technique, [640, 360]));
         for (view, act) in &views {
             // Without a folder one look at each is enough.
-            if folder.is_none() && *view != "four" {
+            if gallery.folder.is_none() && *view != "four" {
                 continue;
             }
-            let mut harness = harness_over(name, technique, pick, size.map(|side| (side + 16) as f32));
-            show(&mut harness);
-            act(&mut harness);
-            harness.run_steps(2);
-            draw(&mut harness, folder.as_deref(), &format!("scene-{name}-{}-{view}", technique.name()), size);
+            let name = format!("scene-{name}-{}-{view}", technique.name());
+            let inspector = || looked_at(&mut session, &frame, pick);
+            gallery.show(&name, &gallery.sizes()[..1], inspector, |harness| {
+                show(harness);
+                act(harness);
+            });
         }
     }
 }

@@ -1,17 +1,10 @@
 //! Settings by their widgets: a word or a number, what has no effect, and the meshes.
 
-use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, run_request, scene, z_fail};
-use crate::common;
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use stencilscope::ask::{MeshesOf, RunRequest};
+use super::*;
+use stencilscope::ask::MeshesOf;
 use stencilscope::geometry::{Connectivity, EdgeList, Topology};
-use stencilscope::inspector::Action;
 use stencilscope::reading::ObjectMesh;
 use stencilscope::scene::{Mesh, Projection};
-use stencilscope::technique::{Choice, Technique};
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
@@ -34,14 +27,6 @@ fn set(harness: &Harness<Seen>, key: &str) -> Option<String> {
     }
 }
 
-fn choose(harness: &mut Harness<Seen>, key: &str, word: &str) {
-    harness.get_by_role_and_label(Role::ComboBox, key).click();
-    harness.run_steps(2);
-    let option = harness.get_all_by_role_and_label(Role::Button, word).last().expect("the word in the list");
-    option.click();
-    harness.run_steps(2);
-}
-
 fn is_off(harness: &Harness<Seen>, key: &str) -> bool {
     harness.get_by_role_and_label(Role::ComboBox, key).accesskit_node().is_disabled()
 }
@@ -52,8 +37,7 @@ fn a_filter_is_chosen_its_number_changed_and_taken_back() {
     assert!(harness.query_by_label("filter pcf").is_none(), "no number where none is asked for");
     choose(&mut harness, "filter", "pcf");
     assert_eq!(set(&harness, "filter").as_deref(), Some("pcf:3"));
-    harness.get_by_label("filter pcf").set_value_accesskit(5.0);
-    harness.run_steps(2);
+    set_value(&mut harness, "filter pcf", 5.0);
     assert_eq!(set(&harness, "filter").as_deref(), Some("pcf:5"));
     choose(&mut harness, "filter", "none");
     assert_eq!(set(&harness, "filter").as_deref(), Some("none"));
@@ -65,8 +49,7 @@ fn an_extrusion_has_a_fraction() {
     let mut harness = settings_of("z-fail");
     choose(&mut harness, "extrusion", "finite");
     assert_eq!(set(&harness, "extrusion").as_deref(), Some("finite:3"));
-    harness.get_by_label("extrusion finite").set_value_accesskit(2.5);
-    harness.run_steps(2);
+    set_value(&mut harness, "extrusion finite", 2.5);
     assert_eq!(set(&harness, "extrusion").as_deref(), Some("finite:2.5"));
 }
 
@@ -124,7 +107,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
             object("turned", &turned),
         ])),
     );
-    let mut harness = harness_of(inspector, [1280.0, 1500.0]);
+    let mut harness = harness_in(inspector, [1280.0, 1500.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");
@@ -141,19 +124,18 @@ fn meshes_of_another_scene_are_not_known_yet() {
         Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])),
     );
     inspector.set_scene(&scene(), run_request(Technique::ZFail));
-    let mut harness = harness_of(inspector, [1280.0, 1200.0]);
+    let mut harness = harness_in(inspector, [1280.0, 1200.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("They are looked at once the first frame is captured.");
 }
 
 #[test]
 fn what_was_changed_is_marked_and_goes_back_by_itself() {
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 2000.0]);
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     click(&mut harness, "Scene settings");
     assert!(harness.query_by_label_contains("Reset ").is_none(), "nothing was changed");
     let place = harness.get_by_role_and_label(Role::SpinButton, "Field of view").rect();
-    harness.get_by_role_and_label(Role::SpinButton, "Field of view").set_value_accesskit(70.0);
-    harness.run_steps(2);
+    set_value(&mut harness, "Field of view", 70.0);
     assert_eq!(harness.get_by_role_and_label(Role::SpinButton, "Field of view").rect(), place, "nothing moves for it");
     click_button(&mut harness, "Reset field of view");
     assert_eq!(last_run(&harness).camera, scene().camera);
@@ -163,7 +145,7 @@ fn what_was_changed_is_marked_and_goes_back_by_itself() {
 /// A parallel camera shows the target as large as the pinhole did, and has numbers of its own.
 #[test]
 fn a_parallel_projection_is_chosen_and_taken_back() {
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 2000.0]);
+    let mut harness = harness_in(inspector(z_fail(SIZE)), TALL);
     click(&mut harness, "Scene settings");
     let field_of_view = |harness: &Harness<Seen>| {
         harness.get_by_role_and_label(Role::SpinButton, "Field of view").accesskit_node().is_disabled()
@@ -174,12 +156,9 @@ fn a_parallel_projection_is_chosen_and_taken_back() {
     assert_eq!(last_run(&harness).camera.projection, Projection::Orthographic { half_height });
     assert!(field_of_view(&harness), "it has no effect");
     choose(&mut harness, "Projection", "oblique");
-    harness.get_by_label("Half height").set_value_accesskit(3.0);
-    harness.run_steps(2);
-    harness.get_by_label("Oblique angle").set_value_accesskit(30.0);
-    harness.run_steps(2);
-    harness.get_by_label("Oblique depth factor").set_value_accesskit(1.0);
-    harness.run_steps(2);
+    set_value(&mut harness, "Half height", 3.0);
+    set_value(&mut harness, "Oblique angle", 30.0);
+    set_value(&mut harness, "Oblique depth factor", 1.0);
     let cavalier = Projection::Oblique { half_height: 3.0, angle_degrees: 30.0, factor: 1.0 };
     assert_eq!(last_run(&harness).camera.projection, cavalier);
     click_button(&mut harness, "Reset camera projection");
@@ -194,7 +173,7 @@ fn what_is_only_looked_at_is_not_changed() {
     let mut inspector = inspector(z_fail(SIZE));
     let request = RunRequest { lights: scene.lights.clone(), ..run_request(Technique::ZFail) };
     inspector.set_scene(&scene, request.clone());
-    let mut harness = harness_of(inspector, [1280.0, 2000.0]);
+    let mut harness = harness_in(inspector, TALL);
     click(&mut harness, "Scene settings");
     harness.run_steps(3);
     assert_eq!(harness.state().inspector.draft().as_deref(), Some(&request));
@@ -207,7 +186,7 @@ fn a_setting_of_the_technique_goes_back_to_its_default() {
     let mut choice = Choice::new(Technique::ZFail);
     choice.set("casters", "light-facing").expect("a setting");
     assert!(!inspector.choose(choice).is_empty());
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     harness.get_by_label("z-fail, changed: casters light-facing");
     click(&mut harness, "Scene settings");
     click_button(&mut harness, "Reset casters");

@@ -1,25 +1,11 @@
 //! The shadow map tab: texels and the pixels that read them, each way.
 
-use super::by_hand::z_fail;
-use super::{SIZE, Seen, click_button, harness, harness_of, inspector, mouse};
-use crate::common;
-use egui::PointerButton;
-use egui::accesskit::{Role, Toggled};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use glam::{DMat4, DVec3};
-use std::sync::Arc;
-use stencilscope::capture::{Capture, CapturedMap, Image, PixelFormat};
+use super::*;
+use egui::accesskit::Toggled;
+use glam::DMat4;
+use stencilscope::capture::CapturedMap;
 use stencilscope::math::projection::orthographic;
 use stencilscope::plan::DecidedBy;
-use stencilscope::scene::{OpenSpec, open};
-use stencilscope::technique::Technique;
-
-fn open_tab(harness: &mut Harness<Seen>) {
-    harness.get_by_role_and_label(Role::Tab, "Shadow map").click();
-    // It asks for what it shows.
-    harness.run_steps(3);
-}
 
 /// A map of 4 × 4 texels that looks the way the camera looks, over a wall at distance 1 that fills the
 /// picture: 0.83 m high and 1.1 m wide. The map is 0.8 m each way, so a texel is 0.2 m wide.
@@ -46,21 +32,21 @@ fn expected(texel: [i32; 2]) -> usize {
     let up = 22.5_f64.to_radians().tan();
     let place =
         |at: u32, side: u32, half: f64| ((2.0 * (f64::from(at) + 0.5) / f64::from(side) - 1.0) * half + 0.4) / 0.2;
-    let of = |x: u32, y: u32| {
+    let of = |[x, y]: [u32; 2]| {
         let column = place(x, SIZE[0], up * f64::from(SIZE[0]) / f64::from(SIZE[1])).floor() as i32;
         [column, place(y, SIZE[1], up).floor() as i32]
     };
-    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).filter(|(x, y)| of(*x, *y) == texel).count()
+    common::pixels(SIZE).filter(|at| of(*at) == texel).count()
 }
 
 #[test]
 fn pointing_at_a_texel_counts_the_pixels_that_read_it() {
     let mut harness = harness(capture());
-    open_tab(&mut harness);
+    show_tab(&mut harness, "Shadow map");
     harness.run_steps(2);
     let canvas = harness.get_by_label("Shadow map canvas").rect();
     let side = canvas.width().min(canvas.height()) / 4.0;
-    let at = canvas.center() + egui::vec2(-0.5, -1.5) * side;
+    let at = canvas.center() + vec2(-0.5, -1.5) * side;
     harness.hover_at(at);
     harness.run_steps(3);
     harness.get_by_label("Texel 1, 0");
@@ -73,18 +59,16 @@ fn pointing_at_a_texel_counts_the_pixels_that_read_it() {
 
 #[test]
 fn a_picked_pixel_marks_its_texel_and_a_picked_texel_its_pixels() {
-    let mut inspector = inspector(capture());
-    inspector.pick([20, 15]);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
-    open_tab(&mut harness);
+    let mut harness = picked(capture(), [20, 15]);
+    show_tab(&mut harness, "Shadow map");
     harness.run_steps(2);
     harness.get_by_label("Texel 2, 2");
     let canvas = harness.get_by_label("Shadow map canvas").rect();
     let side = canvas.width().min(canvas.height()) / 4.0;
-    mouse(&mut harness, canvas.center() + egui::vec2(1.5, 1.5) * side, PointerButton::Secondary);
+    mouse(&mut harness, canvas.center() + vec2(1.5, 1.5) * side, PointerButton::Secondary);
     harness.get_by_label("Texel 3, 3");
     let small = harness.get_by_label("Small picture").rect();
-    mouse(&mut harness, small.center() - egui::vec2(3.0, 3.0), PointerButton::Primary);
+    mouse(&mut harness, small.center() - vec2(3.0, 3.0), PointerButton::Primary);
     assert_eq!(harness.state().inspector.picked(), Some([19, 14]));
     harness.get_by_label("Texel 1, 1");
 }
@@ -92,16 +76,14 @@ fn a_picked_pixel_marks_its_texel_and_a_picked_texel_its_pixels() {
 #[test]
 fn a_frame_without_a_map_says_what_to_choose() {
     let mut harness = harness(z_fail(SIZE));
-    open_tab(&mut harness);
+    show_tab(&mut harness, "Shadow map");
     harness.get_by_label_contains("Choose the technique shadow-map");
 }
 
 #[test]
 fn what_a_pixel_covers_of_the_map_is_told() {
-    let mut inspector = inspector(capture());
-    inspector.pick([20, 15]);
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
-    open_tab(&mut harness);
+    let mut harness = picked(capture(), [20, 15]);
+    show_tab(&mut harness, "Shadow map");
     harness.run_steps(2);
     // A pixel is a square of the wall.
     let side = 2.0 * 22.5_f64.to_radians().tan() / f64::from(SIZE[1]) / 0.2;
@@ -114,25 +96,23 @@ fn what_a_pixel_covers_of_the_map_is_told() {
 #[test]
 fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
     let mut session = common::session();
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(std::path::PathBuf::from);
+    let gallery = pictures::Gallery::open();
     let mut unlike = 0;
     for (name, settings, least) in [
         ("tori", &[][..], 0.998),
         ("tori", &[("bias-normal", "12"), ("size", "128"), ("bias-slope", "0")][..], 0.998),
         ("two-lights", &[("bias-normal", "6"), ("size", "256")][..], 0.998),
     ] {
-        let scene = open(&OpenSpec::new(name)).expect("a built-in scene");
-        let mut request = common::request(Technique::ShadowMap, [160, 90]);
-        settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
-        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-        let (capture, plan) = (Arc::new(capture), Arc::new(plan));
+        let request = common::request_with(Technique::ShadowMap, settings, [160, 90]);
+        let frame = common::frame(&mut session, name, request);
         // As run, and as read from a folder, which has no normals.
-        for (plan, least) in [(Some(plan), least), (None, 0.98)] {
-            let is_run = plan.is_some();
-            let mut inspector = super::pictures::inspector(&scene, &request, &capture, [80, 45]);
-            plan.into_iter().for_each(|plan| inspector.set_plan(plan));
-            let mut harness = harness_of(inspector, [1280.0, 800.0]);
-            open_tab(&mut harness);
+        for (is_run, least) in [(true, least), (false, 0.98)] {
+            let mut inspector = pictures::inspector(&frame, [80, 45]);
+            if is_run {
+                inspector.set_plan(frame.plan.clone());
+            }
+            let mut harness = harness_of(inspector);
+            show_tab(&mut harness, "Shadow map");
             // The face that the picked pixel reads is shown, though that is found out later.
             let (face, _) = harness.state().inspector.map_texel_of([80, 45]).expect("a texel");
             let is_shown = |face: usize| {
@@ -141,17 +121,12 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
                 button.is_none_or(|button| button.accesskit_node().toggled() == Some(Toggled::True))
             };
             assert!(is_shown(face), "{name}: face {face}");
-            let (agree, all, moved) = agreement(&harness, &capture);
+            let (agree, all, moved) = agreement(&harness, &frame.capture);
             println!("{name}, {settings:?}, run: {is_run}: {agree} of {all} agree, {moved} read another texel");
             assert!(all > 1_000 && f64::from(agree) >= least * f64::from(all), "{name}: {agree} of {all}");
             unlike += if is_run { moved } else { 0 };
             click_button(&mut harness, "Show the picked pixel's texel");
-            super::pictures::draw(
-                &mut harness,
-                folder.as_deref(),
-                &format!("shadow-map-{name}-{}-{is_run}", settings.len()),
-                [1264, 784],
-            );
+            gallery.draw(&mut harness, &format!("shadow-map-{name}-{}-{is_run}", settings.len()), [1264, 784]);
         }
     }
     assert!(unlike > 500, "the bias moves what is read: {unlike}");
@@ -163,23 +138,20 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
 fn the_map_is_shown_while_its_links_are_waited_for() {
     let mut harness = harness(capture());
     harness.state_mut().asked = Some(Vec::new());
-    open_tab(&mut harness);
+    show_tab(&mut harness, "Shadow map");
     let waiting = "Finding which texel each pixel reads…";
     harness.get_by_label(waiting);
     harness.get_by_label("Shadow map canvas");
     let asked = |harness: &Harness<Seen>| harness.state().asked.clone().expect("held back");
     assert_eq!(asked(&harness).len(), 1);
-    harness.state_mut().inspector.set_capture(Arc::new(capture()));
-    harness.run_steps(3);
+    show_capture(&mut harness, capture());
     let [old, new] = &asked(&harness)[..] else { panic!("asked once for each frame") };
-    let result = super::found(&harness.state().inspector, old);
-    harness.state_mut().inspector.answer(old.ticket, result, true);
-    harness.run_steps(2);
+    let result = found(&harness.state().inspector, old);
+    change(&mut harness, |inspector| inspector.answer(old.ticket, result, true));
     harness.get_by_label(waiting);
     assert!(harness.state().inspector.map_texel_of([4, 4]).is_none());
-    let result = super::found(&harness.state().inspector, new);
-    harness.state_mut().inspector.answer(new.ticket, result, true);
-    harness.run_steps(2);
+    let result = found(&harness.state().inspector, new);
+    change(&mut harness, |inspector| inspector.answer(new.ticket, result, true));
     assert!(harness.query_by_label(waiting).is_none());
     assert_eq!(asked(&harness).len(), 2, "nothing is asked twice");
 }
@@ -189,16 +161,14 @@ fn the_map_is_shown_while_its_links_are_waited_for() {
 #[test]
 fn a_large_picture_is_linked_with_its_map_soon() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("tori");
     for bias in ["0", "1.5"] {
-        let mut request = common::request(Technique::ShadowMap, [1280, 720]);
-        request.choice.set("bias-normal", bias).expect("a setting");
-        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-        let mut inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [640, 360]);
-        inspector.set_plan(Arc::new(plan));
-        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        let request = common::request_with(Technique::ShadowMap, &[("bias-normal", bias)], [1280, 720]);
+        let frame = common::frame(&mut session, "tori", request);
+        let mut inspector = pictures::inspector(&frame, [640, 360]);
+        inspector.set_plan(frame.plan);
+        let mut harness = harness_of(inspector);
         let start = std::time::Instant::now();
-        open_tab(&mut harness);
+        show_tab(&mut harness, "Shadow map");
         let took = start.elapsed();
         println!("bias-normal {bias}: the tab over 1280x720 pixels opens in {took:?}");
         assert!(harness.state().inspector.map_texel_of([640, 360]).is_some() && took.as_secs_f64() < 3.0, "{took:?}");
@@ -211,7 +181,7 @@ fn agreement(harness: &Harness<Seen>, capture: &Capture) -> (u32, u32, u32) {
     let map = capture.lights[0].map.clone().expect("a map");
     let mask = capture.lights[0].shadow.clone().expect("a mask");
     let (mut agree, mut all, mut moved) = (0, 0, 0);
-    for (x, y) in (0..90).flat_map(|y| (0..160).map(move |x| (x, y))) {
+    for [x, y] in common::pixels([160, 90]) {
         let inspector = &harness.state().inspector;
         let Some(texel) = inspector.map_texel_of([x, y]) else { continue };
         let stored = map.faces[texel.0].depth_at(texel.1).expect("a texel");
@@ -260,7 +230,7 @@ fn decided(is_dark: bool) -> Harness<'static, Seen> {
     map.light_from_world = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0 - near));
     let mut inspector = inspector(capture);
     inspector.pick([20, 15]);
-    harness_of(inspector, [1280.0, 1000.0])
+    harness_in(inspector, [1280.0, 1000.0])
 }
 
 #[test]
@@ -290,8 +260,7 @@ fn the_texel_is_one_click_away_from_the_pixel() {
 #[test]
 fn explain_has_the_comparison_with_its_numbers() {
     let mut harness = decided(true);
-    harness.get_by_role_and_label(Role::Tab, "Explain").click();
-    harness.run_steps(4);
+    show_tab(&mut harness, "Explain");
     harness.get_by_label_contains("lit where the map stores nothing nearer to the light");
     harness.get_by_label("pixel 20, 15 reads texel 2, 2");
     harness.get_by_label("stored 0.4 (1.200 m), this surface 0.25 (1.500 m): stored is nearer to the light: shadow");

@@ -1,37 +1,22 @@
 //! What surrounds the panels: undo, themes, help, export, recent files, reload, animation, layout.
 
 use super::*;
-use egui::Modifiers;
-use std::collections::BTreeSet;
-use stencilscope::inspector::{ExportData, ExportKind, StoredSettings, ThemeChoice};
-
-fn shortcut(harness: &mut Harness<Seen>, modifiers: Modifiers, key: Key) {
-    harness.key_press_modifiers(modifiers, key);
-    harness.run_steps(2);
-}
-
-fn last_run(harness: &Harness<Seen>) -> RunRequest {
-    let run = harness.state().actions.iter().rev().find_map(|action| match action {
-        Action::Run(request) => Some(RunRequest::clone(request)),
-        _ => None,
-    });
-    run.expect("a run was asked for")
-}
+use stencilscope::inspector::{StoredSettings, ThemeChoice};
 
 #[test]
 fn a_change_of_technique_is_taken_back_and_made_again_by_keys_and_buttons() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "shadow-map");
     click_button(&mut harness, "z-pass");
-    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
     click_button(&mut harness, "Undo");
     assert_eq!(last_run(&harness).choice.technique(), Technique::ZFail);
     click_button(&mut harness, "Redo");
-    shortcut(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    press_with(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(last_run(&harness).choice.technique(), Technique::ZPass);
-    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
-    shortcut(&mut harness, Modifiers::COMMAND, Key::Y);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Y);
     assert_eq!(last_run(&harness).choice.technique(), Technique::ZPass);
 }
 
@@ -39,11 +24,10 @@ fn a_change_of_technique_is_taken_back_and_made_again_by_keys_and_buttons() {
 fn a_change_of_the_scene_is_taken_back() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Scene settings");
-    harness.get_by_label("light 1 position x").set_value_accesskit(2.5);
-    harness.run_steps(2);
+    set_value(&mut harness, "light 1 position x", 2.5);
     let before = scene().lights[0].position.x;
     assert_eq!(last_run(&harness).lights[0].position.x, 2.5);
-    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(last_run(&harness).lights[0].position.x, before);
 }
 
@@ -52,16 +36,17 @@ fn undo_goes_back_to_the_scene_that_was_open_before_and_runs_it_as_it_was() {
     let mut inspector = Inspector::new(Vec::new());
     inspector.open_scene(&scene(), run_request(Technique::ZFail), Some("first".to_owned()));
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     click_button(&mut harness, "planar");
     let inspector = &mut harness.state_mut().inspector;
     inspector.open_scene(&scene(), run_request(Technique::ZPass), Some("second".to_owned()));
     harness.run_steps(2);
-    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("first".to_owned())));
     // The app opens it, as a scene is opened first.
-    harness.state_mut().inspector.open_scene(&scene(), run_request(Technique::ZFail), Some("first".to_owned()));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| {
+        inspector.open_scene(&scene(), run_request(Technique::ZFail), Some("first".to_owned()))
+    });
     assert_eq!(last_run(&harness).choice.technique(), Technique::Planar);
 }
 
@@ -72,7 +57,7 @@ fn the_theme_changes_by_key_and_button_and_is_remembered() {
     click_button(&mut harness, "Theme");
     assert!(!harness.ctx.global_style().visuals.dark_mode);
     assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Light);
-    shortcut(&mut harness, Modifiers::COMMAND, Key::L);
+    press_with(&mut harness, Modifiers::COMMAND, Key::L);
     assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Dark);
 }
 
@@ -111,7 +96,7 @@ fn the_keys_of_the_help_stand_in_one_column_flush_left() {
 fn the_shown_picture_is_exported_where_it_is_wished_and_a_taken_place_is_asked_about() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "Stencil");
-    shortcut(&mut harness, Modifiers::COMMAND, Key::S);
+    press_with(&mut harness, Modifiers::COMMAND, Key::S);
     harness.get_by_label("Export: Shown picture (PNG)");
     click_button(&mut harness, "Save");
     let asked = |harness: &Harness<Seen>| match harness.state().actions.last() {
@@ -121,13 +106,11 @@ fn the_shown_picture_is_exported_where_it_is_wished_and_a_taken_place_is_asked_a
     let (kind, path, replace) = asked(&harness);
     assert_eq!((kind, replace), (ExportKind::Picture, false));
     assert!(path.ends_with(".png") && path.contains("stencil"), "{path}");
-    harness.state_mut().inspector.ask_to_replace(path);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.ask_to_replace(path));
     harness.get_by_label("× Something of this name is there already.");
     click_button(&mut harness, "Replace it");
     assert!(asked(&harness).2);
-    harness.state_mut().inspector.end_export(Ok("wrote it".to_owned()));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.end_export(Ok("wrote it".to_owned())));
     assert!(harness.query_by_label("Replace it").is_none());
     harness.get_by_label("wrote it");
 }
@@ -137,13 +120,11 @@ fn an_export_that_fails_says_so_in_its_dialog() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "Export");
     click_button(&mut harness, "Capture folder…");
-    harness.state_mut().inspector.end_export(Err("no room: choose another place".to_owned()));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.end_export(Err("no room: choose another place".to_owned())));
     harness.get_by_label("× no room: choose another place");
     click_button(&mut harness, "Browse…");
     assert!(matches!(harness.state().actions.last(), Some(Action::BrowseExport { .. })));
-    harness.state_mut().inspector.set_export_path("elsewhere".to_owned());
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_export_path("elsewhere".to_owned()));
     click_button(&mut harness, "Save");
     let asked = Action::Export { kind: ExportKind::Capture, path: "elsewhere".to_owned(), replace: false };
     assert_eq!(harness.state().actions.last(), Some(&asked));
@@ -194,7 +175,7 @@ fn what_was_opened_before_is_offered_and_opens() {
         inspector.open_scene(&scene(), run_request(Technique::ZFail), Some(source.to_owned()));
     }
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     click_button(&mut harness, "What is open: by hand");
     click_button(&mut harness, "models/a.obj");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/a.obj".to_owned())));
@@ -208,7 +189,7 @@ fn files_that_were_opened_before_are_listed_where_one_opens() {
         inspector.open_scene(&scene(), run_request(Technique::ZFail), Some(source.to_owned()));
     }
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     click_button(&mut harness, "Open…");
     harness.get_by_label("Opened before");
     assert!(harness.query_by_role_and_label(Role::Button, "a.toml").is_none(), "only the last ones");
@@ -224,23 +205,18 @@ fn files_that_were_opened_before_are_listed_where_one_opens() {
 #[test]
 fn a_changed_file_is_offered_for_reload_once() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.offer_reload("a.obj".to_owned());
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.offer_reload("a.obj".to_owned()));
     harness.get_by_label("a.obj changed on disk.");
     click_button(&mut harness, "Load it again");
     assert_eq!(harness.state().actions.last(), Some(&Action::Reload));
     assert!(harness.query_by_label("a.obj changed on disk.").is_none());
-    harness.state_mut().inspector.offer_reload("a.obj".to_owned());
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.offer_reload("a.obj".to_owned()));
     click_button(&mut harness, "Not now");
     assert!(harness.query_by_label("a.obj changed on disk.").is_none());
 }
 
 fn moving() -> Scene {
-    let mut scene = scene();
-    let spin = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("tori")).expect("a built-in scene");
-    scene.objects = spin.objects;
-    scene
+    Scene { objects: common::opened("tori").objects, ..scene() }
 }
 
 #[test]
@@ -248,33 +224,27 @@ fn an_animation_runs_a_capture_at_a_time_and_steps_by_hand() {
     let mut inspector = Inspector::new(Vec::new());
     inspector.open_scene(&moving(), run_request(Technique::ZFail), Some("tori".to_owned()));
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
-    let runs = |harness: &Harness<Seen>| {
-        harness.state().actions.iter().filter(|action| matches!(action, Action::Run(_))).count()
-    };
+    let mut harness = harness_of(inspector);
     press(&mut harness, Key::Period);
-    assert_eq!(runs(&harness), 1);
+    assert_eq!(runs(&harness).len(), 1);
     assert!((last_run(&harness).time - 1.0 / 30.0).abs() < 1e-9);
     harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
     press(&mut harness, Key::T);
     harness.run_steps(4);
-    assert_eq!(runs(&harness), 2, "the next moment waits for the capture of this one");
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(2);
-    assert_eq!(runs(&harness), 3);
+    assert_eq!(runs(&harness).len(), 2, "the next moment waits for the capture of this one");
+    show_capture(&mut harness, z_fail(SIZE));
+    assert_eq!(runs(&harness).len(), 3);
     let time = last_run(&harness).time;
     click(&mut harness, "Scene settings");
     click_button(&mut harness, "Stop animation");
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(3);
-    assert_eq!(runs(&harness), 3);
+    show_capture(&mut harness, z_fail(SIZE));
+    assert_eq!(runs(&harness).len(), 3);
     click_button(&mut harness, "Step");
     assert!(last_run(&harness).time > time);
     click_button(&mut harness, "To the start");
     assert_eq!(last_run(&harness).time, 0.0);
     click_button(&mut harness, "Run animation");
-    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
-    harness.run_steps(2);
+    show_capture(&mut harness, z_fail(SIZE));
     assert!(last_run(&harness).time > 0.0);
 }
 
@@ -284,14 +254,12 @@ fn objects_are_switched_off_and_on() {
     let scene = moving();
     inspector.open_scene(&scene, run_request(Technique::ZFail), None);
     inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    let mut harness = harness_in(inspector, [1280.0, 3000.0]);
     click(&mut harness, "Scene settings");
     let name = scene.objects[1].name.clone();
-    harness.get_by_role_and_label(Role::CheckBox, &name).click();
-    harness.run_steps(2);
+    click_role(&mut harness, Role::CheckBox, &name);
     assert_eq!(last_run(&harness).off, BTreeSet::from([1]));
-    harness.get_by_role_and_label(Role::CheckBox, &name).click();
-    harness.run_steps(2);
+    click_role(&mut harness, Role::CheckBox, &name);
     assert_eq!(last_run(&harness).off, BTreeSet::new());
 }
 
@@ -301,14 +269,7 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     assert_eq!(harness.state().inspector.remembered().layout, None, "nothing was moved");
     let from = harness.get_by_role_and_label(Role::Tab, "Report").rect().center();
     let to = harness.get_by_role_and_label(Role::Tab, "Pixel").rect().center();
-    harness.drag_at(from);
-    harness.run_steps(2);
-    harness.hover_at(from + vec2(0.0, -40.0));
-    harness.run_steps(2);
-    harness.hover_at(to);
-    harness.run_steps(4);
-    harness.drop_at(to);
-    harness.run_steps(4);
+    docking::drag_tab(&mut harness, from, to);
     let moved = harness.get_by_role_and_label(Role::Tab, "Report").rect();
     assert!(moved.center().distance(from) > 100.0, "it was dragged to the other tabs");
     let remembered = harness.state().inspector.remembered();
@@ -322,24 +283,24 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     let stored = serde_json::to_string(&remembered).expect("text");
     let mut again = inspector(z_fail(SIZE));
     again.recall(serde_json::from_str::<StoredSettings>(&stored).expect("a memory"));
-    let again = harness_of(again, [1280.0, 800.0]);
+    let again = harness_of(again);
     let found = again.get_by_role_and_label(Role::Tab, "Report").rect();
     assert!(found.center().distance(moved.center()) < 60.0, "{found:?} is where it was: {moved:?}");
     let mut broken = inspector(z_fail(SIZE));
     let layout = Some(serde_json::json!({ "root": 1, "tiles": {} }));
     broken.recall(StoredSettings { layout, ..StoredSettings::default() });
-    harness_of(broken, [1280.0, 800.0]).get_by_role_and_label(Role::Tab, "Report");
+    harness_of(broken).get_by_role_and_label(Role::Tab, "Report");
 }
 
 #[test]
 fn in_a_narrow_window_the_techniques_are_a_menu() {
-    let mut harness = harness_of(inspector(z_fail(SIZE)), [800.0, 600.0]);
+    let mut harness = harness_in(inspector(z_fail(SIZE)), [800.0, 600.0]);
     assert!(harness.query_by_role_and_label(Role::Button, "shadow-map").is_none());
     let menu = harness.get_by_role_and_label(Role::ComboBox, "Technique").rect();
     let undo = harness.get_by_role_and_label(Role::Button, "Undo").rect();
     assert!(menu.right() < undo.left(), "{menu:?} leaves room for {undo:?}");
-    harness.get_by_role_and_label(Role::ComboBox, "Technique").click();
-    harness.run_steps(3);
+    click_role(&mut harness, Role::ComboBox, "Technique");
+    harness.run_steps(1);
     harness.get_by_role_and_label(Role::Button, "shadow-map").click_accesskit();
     harness.run_steps(3);
     assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
@@ -350,7 +311,7 @@ fn the_techniques_stay_where_they_are_whatever_is_open() {
     let place = |name: &str| {
         let mut inspector = inspector(z_fail(SIZE));
         inspector.set_scene(&Scene { name: name.to_owned(), ..scene() }, run_request(Technique::ZFail));
-        let harness = harness_of(inspector, [1280.0, 800.0]);
+        let harness = harness_of(inspector);
         harness.get_by_label(&format!("What is open: {name}"));
         harness.get_by_role_and_label(Role::Button, "z-fail").rect()
     };

@@ -1,22 +1,15 @@
 //! The Stress tab.
 
-use super::{SIZE, Seen, asks, click_button, harness_of, inspector, last_asked, z_fail};
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use super::*;
 use stencilscope::accuracy::ErrorCounts;
-use stencilscope::ask::{Answer, PendingQuestion, StressOf};
-use stencilscope::inspector::{Action, Inspector};
+use stencilscope::ask::StressOf;
 use stencilscope::stress::{self, StressCase, StressRow, StressRows, cases};
 
 fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     prepare(&mut inspector);
-    let mut harness = harness_of(inspector, [1440.0, 900.0]);
-    harness.get_by_role_and_label(Role::Tab, "Stress").click();
-    harness.run_steps(4);
+    let mut harness = harness_in(inspector, [1440.0, 900.0]);
+    show_tab(&mut harness, "Stress");
     harness
 }
 
@@ -63,8 +56,7 @@ fn select(harness: &mut Harness<Seen>, row: &str) {
     // Rows below the fold take no click.
     harness.get_by_role_and_label(Role::Row, row).scroll_to_me();
     harness.run_steps(30);
-    harness.get_by_role_and_label(Role::Row, row).click();
-    harness.run_steps(2);
+    click_role(harness, Role::Row, row);
 }
 
 #[test]
@@ -178,8 +170,7 @@ fn running_a_case_again_replaces_its_rows_and_no_others() {
 #[test]
 fn progress_moves_within_a_case() {
     let mut harness = showing(|_| ());
-    harness.state_mut().inspector.start(StressOf { cases: vec!["random"] });
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.start(StressOf { cases: vec!["random"] }));
     let progress = last_asked::<StressOf>(&harness).progress;
     let share = |harness: &mut Harness<Seen>, rows: usize| {
         progress.start(1000);

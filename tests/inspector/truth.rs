@@ -1,15 +1,8 @@
 //! Truth and error: asked for where they are not there, counted and found where they are.
 
 use super::by_hand::with_truth;
-use super::{SIZE, Seen, asks, click_button, harness, harness_of, inspector, last_asked, press, reply, z_fail};
-use egui::Key;
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
-use stencilscope::ask::TruthOf;
-use stencilscope::capture::{Capture, CapturedTruth};
-use stencilscope::reading::shown::{PictureKind, TexelZoom};
+use super::*;
+use stencilscope::capture::CapturedTruth;
 
 fn asked(harness: &Harness<Seen>) -> usize {
     asks::<TruthOf>(harness).len()
@@ -17,11 +10,6 @@ fn asked(harness: &Harness<Seen>) -> usize {
 
 fn kind(harness: &Harness<Seen>) -> Option<PictureKind> {
     harness.state().inspector.picture_kind()
-}
-
-fn show(harness: &mut Harness<Seen>, capture: Capture) {
-    harness.state_mut().inspector.set_capture(Arc::new(capture));
-    harness.run_steps(2);
 }
 
 #[test]
@@ -38,8 +26,7 @@ fn error_without_truth_asks_for_it_once_and_the_last_picture_stays() {
     harness.run_steps(2);
     harness.get_by_label("The truth is being traced … 43 %");
     harness.get_by_label("Shown until then: stencil after step 3.");
-    harness.state_mut().inspector.update_capture(Arc::new(with_truth(z_fail(SIZE))));
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.update_capture(Arc::new(with_truth(z_fail(SIZE)))));
     assert_eq!((asked(&harness), kind(&harness)), (1, Some(PictureKind::Error)));
     assert!(harness.query_by_label_contains("being traced").is_none());
 }
@@ -56,19 +43,19 @@ fn with_truth_nothing_is_asked_for() {
 #[test]
 fn a_new_frame_asks_again_and_the_error_of_the_frame_before_stays_until_then() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
-    show(&mut harness, z_fail(SIZE));
+    show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(asked(&harness), 0, "only while truth or error is shown");
-    show(&mut harness, with_truth(z_fail(SIZE)));
+    show_capture(&mut harness, with_truth(z_fail(SIZE)));
     click_button(&mut harness, "Error");
     for frame in 1..=3 {
-        show(&mut harness, z_fail(SIZE));
+        show_capture(&mut harness, z_fail(SIZE));
         assert_eq!((asked(&harness), kind(&harness)), (frame, Some(PictureKind::Error)));
         harness.get_by_label("Shown is that of the frame before.");
     }
-    show(&mut harness, z_fail([20, 10]));
+    show_capture(&mut harness, z_fail([20, 10]));
     assert_eq!(kind(&harness), Some(PictureKind::Color), "of another size");
     click_button(&mut harness, "Mask");
-    show(&mut harness, z_fail(SIZE));
+    show_capture(&mut harness, z_fail(SIZE));
     assert_eq!((asked(&harness), kind(&harness)), (4, Some(PictureKind::Mask)));
 }
 
@@ -76,7 +63,7 @@ fn a_new_frame_asks_again_and_the_error_of_the_frame_before_stays_until_then() {
 fn tracing_is_cancelled_and_asked_for_again() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
     click_button(&mut harness, "Error");
-    show(&mut harness, z_fail(SIZE));
+    show_capture(&mut harness, z_fail(SIZE));
     click_button(&mut harness, "Cancel");
     assert!(last_asked::<TruthOf>(&harness).progress.is_cancelled());
     harness.get_by_label("The truth was not traced.");
@@ -93,13 +80,11 @@ fn tracing_is_cancelled_and_asked_for_again() {
 
 #[test]
 fn a_folder_without_truth_says_so_and_one_with_truth_shows_it() {
-    let mut without = inspector(z_fail(SIZE));
-    without.open_folder(None);
-    let mut harness = harness_of(without, [1280.0, 800.0]);
+    let mut harness = of_folder();
     click_button(&mut harness, "Truth");
     harness.get_by_label("This folder has no truth: capture it with --truth.");
     assert_eq!((asked(&harness), kind(&harness)), (0, Some(PictureKind::Color)));
-    show(&mut harness, with_truth(z_fail(SIZE)));
+    show_capture(&mut harness, with_truth(z_fail(SIZE)));
     assert_eq!(kind(&harness), Some(PictureKind::Truth));
     harness.get_by_label_contains("truth of light 1");
 }
@@ -147,8 +132,7 @@ fn mouse_and_keys_go_to_the_largest_patch() {
         let mut harness = harness(with_truth(z_fail(SIZE)));
         click_button(&mut harness, "Error");
         if by_key {
-            harness.get_by_role_and_label(Role::Button, "Go to the largest").focus();
-            harness.run_steps(2);
+            focus_role(&mut harness, Role::Button, "Go to the largest");
             press(&mut harness, Key::Enter);
         } else {
             click_button(&mut harness, "Go to the largest");
@@ -166,9 +150,7 @@ fn the_read_out_says_technique_truth_and_what_follows() {
         ([19, 25], "They differ, but the truth changes within this pixel: excused.", 1, 1),
         ([3, 3], "Truth and technique agree.", 2, 0),
     ] {
-        let mut inspector = inspector(with_truth(z_fail(SIZE)));
-        inspector.pick(at);
-        let harness = harness_of(inspector, [1280.0, 800.0]);
+        let harness = picked(with_truth(z_fail(SIZE)), at);
         harness.get_by_label(sentence);
         harness.get_by_role_and_label(Role::Label, "truth");
         assert_eq!(harness.query_all_by_label("shadow").count(), shadow);
@@ -188,10 +170,7 @@ fn several_lights_are_judged_one_by_one() {
     click_button(&mut harness, "Error");
     harness.get_by_label("Error, light 1");
     click_button(&mut harness, "Counts");
-    harness.get_by_label("Light of the picture").click();
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "light 2").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Light of the picture", "light 2");
     harness.get_by_label("Error, light 2");
     // The counts stay.
     harness.get_by_label("No pixel of 7 is wrong.");

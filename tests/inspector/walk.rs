@@ -1,25 +1,15 @@
 //! Walking: keys, mouse, walls, and how it begins and ends.
 
-use super::pictures::draw;
+use super::pictures::Gallery;
 use super::scene_view::{box_scene, draft_of, over};
-use super::{SIZE, Seen, asks, click, harness_of, place_of, press, reply, z_fail};
-use crate::common;
-use egui::{Event, Key, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use glam::DVec3;
-use std::path::PathBuf;
-use std::sync::Arc;
-use stencilscope::ask::{RunRequest, WallsOf, without};
-use stencilscope::inspector::{Action, Inspector};
-use stencilscope::reading::shown::PictureKind;
-use stencilscope::scene::{Scene, Swing, WallCache};
-use stencilscope::technique::Technique;
+use super::*;
+use stencilscope::ask::{WallsOf, without};
+use stencilscope::scene::{Swing, WallCache};
 
 const BANNER: &str = "Walking: Esc stops and frees the pointer";
 
 fn walking() -> Harness<'static, Seen> {
-    let mut harness = harness_of(over(&box_scene()), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&box_scene()));
     answer(&mut harness);
     click(&mut harness, "Walk");
     harness.get_by_label(BANNER);
@@ -47,21 +37,13 @@ fn answer(harness: &mut Harness<Seen>) {
     harness.run_steps(1);
 }
 
-fn runs(harness: &Harness<Seen>) -> Vec<RunRequest> {
-    let run = |action: &Action| match action {
-        Action::Run(request) => Some(RunRequest::clone(request)),
-        _ => None,
-    };
-    harness.state().actions.iter().filter_map(run).collect()
-}
-
 #[test]
 fn one_walks_ahead_while_w_is_held_a_frame_at_a_time() {
     let mut harness = walking();
     harness.key_down(Key::W);
     harness.run_steps(4);
     assert_eq!(runs(&harness).len(), 1, "nothing queues up while a frame is waited for");
-    let eye = |harness: &Harness<Seen>| runs(harness).last().expect("a run").camera.eye;
+    let eye = |harness: &Harness<Seen>| last_run(harness).camera.eye;
     let first = eye(&harness);
     assert!(first.z < 8.0 && first.x == 0.0 && first.y == 2.0, "{first}");
     answer(&mut harness);
@@ -80,7 +62,7 @@ fn the_mouse_looks_around() {
     let mut harness = walking();
     harness.event(Event::MouseMoved(vec2(100.0, 30.0)));
     harness.run_steps(2);
-    let camera = runs(&harness).last().expect("a run").camera;
+    let camera = last_run(&harness).camera;
     let ahead = (camera.target - camera.eye).normalize();
     let before = box_scene().camera;
     assert_eq!(camera.eye, before.eye);
@@ -94,7 +76,7 @@ fn p_goes_through_techniques_and_i_through_sizes_of_the_map() {
     let mut names = Vec::new();
     for _ in 0..6 {
         press(&mut harness, Key::P);
-        names.push(runs(&harness).last().expect("a run").choice.technique());
+        names.push(last_run(&harness).choice.technique());
     }
     use Technique::{None, Planar, Projective, ShadowMap, ZFail, ZPass};
     assert_eq!(names, [ShadowMap, None, Planar, Projective, ZPass, ZFail]);
@@ -105,14 +87,14 @@ fn p_goes_through_techniques_and_i_through_sizes_of_the_map() {
     harness.get_by_label(because);
     press(&mut harness, Key::P);
     assert!(harness.query_by_label(because).is_none(), "the next key that does something takes its place");
-    let size = |harness: &Harness<Seen>| runs(harness).last().expect("a run").choice.settings()["size"].clone();
+    let size = |harness: &Harness<Seen>| last_run(harness).choice.settings()["size"].clone();
     let sizes: Vec<String> = (0..5)
         .map(|_| {
             press(&mut harness, Key::I);
             size(&harness)
         })
         .collect();
-    assert_eq!(sizes.iter().collect::<std::collections::BTreeSet<_>>().len(), 5, "{sizes:?}");
+    assert_eq!(sizes.iter().collect::<BTreeSet<_>>().len(), 5, "{sizes:?}");
     assert!(sizes.contains(&"4096".to_owned()) && sizes.contains(&"256".to_owned()));
 }
 
@@ -127,14 +109,13 @@ fn v_lays_silhouettes_and_volumes_over_the_picture_and_speed_and_walls_are_told(
     }
     let color = PictureKind::Color;
     assert_eq!(seen, [(color, true), (color, true), (PictureKind::Mask, false), (color, false)]);
-    let tells = |harness: &Harness<Seen>, words: &str| harness.query_by_label_contains(words).is_some();
-    assert!(tells(&harness, "walls stop (C) · 2.0 m/s"));
+    assert!(says(&harness, "walls stop (C) · 2.0 m/s"));
     press(&mut harness, Key::C);
     press(&mut harness, Key::Period);
-    assert!(tells(&harness, "through walls (C) · 3.0 m/s"));
+    assert!(says(&harness, "through walls (C) · 3.0 m/s"));
     press(&mut harness, Key::Comma);
     press(&mut harness, Key::C);
-    assert!(tells(&harness, "walls stop (C) · 2.0 m/s"));
+    assert!(says(&harness, "walls stop (C) · 2.0 m/s"));
 }
 
 #[test]
@@ -142,18 +123,18 @@ fn l_makes_the_lamp_swing_and_stops_it() {
     let mut scene = box_scene();
     let swing = Swing { pivot: DVec3::Y * 6.0, axis: DVec3::Z, degrees: 20.0, period_seconds: 2.0 };
     scene.lights[0].motion.swing = Some(swing);
-    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&scene));
     answer(&mut harness);
     click(&mut harness, "Walk");
     answer_walls(&mut harness, &scene);
     press(&mut harness, Key::L);
-    assert!(runs(&harness).last().expect("a run").time > 0.0);
+    assert!(last_run(&harness).time > 0.0);
     harness.key_down(Key::S);
     answer(&mut harness);
     harness.run_steps(3);
     answer(&mut harness);
     harness.run_steps(3);
-    let last = runs(&harness).pop().expect("a run");
+    let last = last_run(&harness);
     assert!(last.camera.eye.z > 8.0 && last.time > 0.1, "one walks while it swings: {last:?}");
     harness.key_up(Key::S);
     press(&mut harness, Key::L);
@@ -189,7 +170,7 @@ fn escape_stops_and_so_does_the_button() {
 
 #[test]
 fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
-    let mut harness = harness_of(over(&box_scene()), [1280.0, 800.0]);
+    let mut harness = harness_of(over(&box_scene()));
     answer(&mut harness);
     for key in [Key::P, Key::W, Key::C, Key::I, Key::V, Key::L] {
         press(&mut harness, key);
@@ -200,7 +181,7 @@ fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
     assert!(harness.query_by_label(BANNER).is_none(), "away from the picture it goes from widget to widget");
     press(&mut harness, Key::Escape);
     let at = place_of(&harness, [20, 15], SIZE);
-    super::mouse(&mut harness, at, egui::PointerButton::Primary);
+    mouse(&mut harness, at, PointerButton::Primary);
     press(&mut harness, Key::Tab);
     harness.get_by_label(BANNER);
     let step = harness.state().inspector.step();
@@ -227,12 +208,18 @@ fn room() -> Scene {
     scene
 }
 
-fn walking_in(scene: &Scene) -> Harness<'static, Seen> {
+/// Begins to walk where nothing was captured yet.
+fn begin_in(scene: &Scene) -> Harness<'static, Seen> {
     let mut inspector = Inspector::default();
     inspector.set_scene(scene, draft_of(scene));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let mut harness = harness_of(inspector);
     answer(&mut harness);
     click(&mut harness, "Walk");
+    harness
+}
+
+fn walking_in(scene: &Scene) -> Harness<'static, Seen> {
+    let mut harness = begin_in(scene);
     for _ in 0..14 {
         press(&mut harness, Key::Period);
     }
@@ -248,7 +235,7 @@ fn go(harness: &mut Harness<Seen>, key: Key) -> DVec3 {
     }
     harness.key_up(key);
     harness.run_steps(1);
-    harness.state().inspector.draft().expect("a draft").camera.eye
+    eye_of(harness)
 }
 
 #[test]
@@ -305,8 +292,7 @@ fn walls_are_asked_for_anew_when_they_move_or_the_file_is_loaded_again() {
     answer(&mut harness);
     let before = walls_asked(&harness).len();
     let draft = *harness.state().inspector.draft().expect("a draft");
-    harness.state_mut().inspector.set_scene(&scene, draft);
-    harness.run_steps(2);
+    change(&mut harness, |inspector| inspector.set_scene(&scene, draft));
     assert_eq!(walls_asked(&harness).len(), before + 1, "another file has other walls");
 }
 
@@ -314,11 +300,7 @@ fn walls_are_asked_for_anew_when_they_move_or_the_file_is_loaded_again() {
 fn falling_from(eye: DVec3, scene: &mut Scene) -> Harness<'static, Seen> {
     scene.camera.target += eye - scene.camera.eye;
     scene.camera.eye = eye;
-    let mut inspector = Inspector::default();
-    inspector.set_scene(scene, draft_of(scene));
-    let mut harness = harness_of(inspector, [1280.0, 800.0]);
-    answer(&mut harness);
-    click(&mut harness, "Walk");
+    let mut harness = begin_in(scene);
     answer_walls(&mut harness, scene);
     harness.run_steps(1);
     assert!(runs(&harness).is_empty(), "one floats at first");
@@ -395,10 +377,10 @@ fn who_falls_off_the_world_is_put_back_and_told() {
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_walking` writes it.
 #[test]
 fn pictures_of_walking_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let mut harness = harness_of(over(&box_scene()), [1296.0, 816.0]);
+    let gallery = Gallery::open();
+    let mut harness = harness_in(over(&box_scene()), [1296.0, 816.0]);
     answer(&mut harness);
-    draw(&mut harness, folder.as_deref(), "walk-before", [1280, 800]);
+    gallery.draw(&mut harness, "walk-before", [1280, 800]);
     click(&mut harness, "Walk");
-    draw(&mut harness, folder.as_deref(), "walk", [1280, 800]);
+    gallery.draw(&mut harness, "walk", [1280, 800]);
 }

@@ -1,12 +1,11 @@
 //! Counts beyond eight bits, in a float target.
 
 use super::{capture, wrong};
-use crate::common::{from_above, judged, label_counts, session, square};
+use crate::common::{from_above, judged, label_counts, opened, session, square, stencil_before_mask};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Image, Snapshot};
 use stencilscope::plan::Decision;
-use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Object, Scene};
 use stencilscope::technique::Technique;
@@ -17,13 +16,6 @@ const FLOAT: [(&str, &str); 1] = [("counter", "float")];
 fn counts(capture: &Capture) -> Vec<f32> {
     let count: &Arc<Image> = capture.lights[0].count.as_ref().expect("a count");
     count.rows().flat_map(bytemuck::pod_collect_to_vec::<u8, f32>).collect()
-}
-
-/// The stencil before the mask, which reads it.
-fn stencil(capture: &Capture) -> Vec<u8> {
-    let mask = capture.steps.iter().position(|step| step.name == "mask").expect("a mask");
-    let Snapshot::Frame(frame) = &capture.steps[mask - 1].snapshot else { panic!("a frame") };
-    frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
 }
 
 /// An open, twisted caster with the eye outside and inside its volume, drawn and undrawn, and a sun.
@@ -57,7 +49,7 @@ fn a_float_counts_what_the_stencil_counts() {
                 let in_stencil = capture(&mut session, &scene, technique, extra);
                 let in_float = capture(&mut session, &scene, technique, &[&FLOAT[..], extra].concat());
                 let counted: Vec<u8> = counts(&in_float).iter().map(|count| *count as i32 as u8).collect();
-                assert!(counted == stencil(&in_stencil), "{technique:?} {extra:?}");
+                assert!(counted == stencil_before_mask(&in_stencil), "{technique:?} {extra:?}");
                 assert_eq!(in_float.lights[0].shadow, in_stencil.lights[0].shadow, "{technique:?} {extra:?}");
             }
         }
@@ -77,7 +69,7 @@ fn no_stencil_is_kept_where_a_float_counts() {
 #[test]
 fn counts_of_256_are_right_in_a_float_and_noticed_where_the_stencil_wraps() {
     let mut session = session();
-    let gate = Builtin::named("gate").expect("gate").scene().expect("a scene");
+    let gate = opened("gate");
     let size = [160, 120];
     let wrapped = judged(&mut session, &gate, Technique::ZFail, size);
     let error = wrapped.error().expect("an error");

@@ -1,9 +1,8 @@
 //! Depth mappings: five ways to store distance, and what each loses.
 
 use super::{SIZE, capture, over_floor, unseen, wrong};
-use crate::common::{from_above, label_counts, session, square};
+use crate::common::{from_above, label_counts, opened, session, square};
 use stencilscope::math::depth::DepthMapping;
-use stencilscope::scene::builtin::Builtin;
 use stencilscope::technique::Technique;
 
 /// All techniques that are exact on a square over a floor, and what makes the textures fine enough.
@@ -84,7 +83,7 @@ fn labels_do_not_depend_on_the_epsilon() {
 #[test]
 fn z_pass_plus_holds_with_the_eye_inside_a_volume_under_every_mapping() {
     let mut session = session();
-    let scene = Builtin::named("inside").expect("inside").scene().expect("a scene");
+    let scene = opened("inside");
     for mapping in DepthMapping::ALL {
         let settings = [("depth", mapping.name())];
         assert_eq!(wrong(&mut session, &scene, Technique::ZPassPlus, &settings), [0, 0], "{mapping:?}");

@@ -1,7 +1,7 @@
 //! Shadow maps: biases, culling and filtering.
 
 use super::{brightness, capture, shadow_pixels, unseen, wrong};
-use crate::common::{cuboid, from_above, session, square};
+use crate::common::{cuboid, from_above, session, square, under};
 use glam::DVec3;
 use stencilscope::scene::{Light, Scene};
 use stencilscope::technique::Technique;
@@ -13,9 +13,7 @@ fn plate() -> Scene {
     let mut plate = square("plate", 0.0, 3.0);
     plate.pose.rotate_degrees.z = 30.0;
     plate.pose.translate.y = 2.5;
-    let mut scene = from_above(vec![plate]);
-    scene.lights = vec![Light::point(DVec3::new(-2.0, 9.0, 0.5))];
-    scene
+    under(Light::point(DVec3::new(-2.0, 9.0, 0.5)), vec![plate])
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Planar shadows without the stencil, blended twice, unclipped, and fighting with their plane.
 
 use super::{as_bright_as, brightness, capture, over_floor, shadow_pixels, unseen, wrong};
-use crate::common::{from_above, mesh, session, square};
+use crate::common::{from_above, mesh, opened, session, square};
 use glam::DVec3;
 use stencilscope::scene::{Material, Object, shapes};
 use stencilscope::technique::Technique;
@@ -42,7 +42,7 @@ fn without_the_stencil_a_shadow_runs_off_its_receiver() {
 fn without_the_stencil_the_builtin_scenes_hang_shadows_over_their_edges_and_do_not_go_black() {
     let mut session = session();
     for (name, hangs_over) in [("table", true), ("rings", false)] {
-        let scene = stencilscope::scene::builtin::Builtin::named(name).expect(name).scene().expect("a scene");
+        let scene = opened(name);
         let lit = capture(&mut session, &scene, Technique::None, &[]);
         let plain = brightness(&lit);
         let settings = [("stencil", "off"), ("z-fighting", "polygon-offset")];

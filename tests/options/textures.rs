@@ -1,7 +1,7 @@
 //! Receiver textures and projected silhouettes.
 
 use super::{SIZE, as_bright_as, brightness, capture, over_floor, shadow_pixels, unseen, wrong};
-use crate::common::{from_above, label_counts, session, square};
+use crate::common::{from_above, label_counts, opened, session, square};
 use glam::DVec3;
 use stencilscope::capture::Snapshot;
 use stencilscope::scene::{Light, Scene};
@@ -43,7 +43,7 @@ fn a_parallelogram_has_its_own_edges_and_suns_a_sheared_box() {
 #[test]
 fn a_receivers_texture_errs_less_the_larger_it_is() {
     let mut session = session();
-    let scene = stencilscope::scene::builtin::Builtin::named("panels").expect("panels").scene().expect("a scene");
+    let scene = opened("panels");
     let mut errors = |size| {
         let [false_shadow, missing] = wrong(&mut session, &scene, Technique::PlanarTexture, &[("size", size)]);
         false_shadow + missing

@@ -1,7 +1,7 @@
 //! What wgpu answers with an error reaches the program unchanged through the wrapper.
 
 use super::renderer::{Fault, Renderer};
-use super::{folder, record};
+use super::{folder, gpu, record};
 use std::sync::mpsc;
 use stencilscope::wgpu;
 
@@ -27,9 +27,7 @@ const WRONG: [(&str, Wrong); 8] = [
     ("a copy past the end", |of| {
         let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let [from, to] = [16, 16].map(|size| buffer(&of.device, size, usage));
-        let mut encoder = of.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(&from, 0, &to, 8, 16);
-        of.queue.submit([encoder.finish()]);
+        gpu::submit(&of.device, &of.queue, |encoder| encoder.copy_buffer_to_buffer(&from, 0, &to, 8, 16));
     }),
     ("a write past the end", |of| {
         let target = buffer(&of.device, 16, wgpu::BufferUsages::COPY_DST);
@@ -46,9 +44,7 @@ const WRONG: [(&str, Wrong); 8] = [
         assert!(of.queue.write_buffer_with(&target, 0, size).is_none());
     }),
     ("a group that finishes what was never begun", |of| {
-        let mut encoder = of.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.pop_debug_group();
-        of.queue.submit([encoder.finish()]);
+        gpu::submit(&of.device, &of.queue, wgpu::CommandEncoder::pop_debug_group);
     }),
 ];
 

@@ -1,10 +1,11 @@
 //! A renderer of somebody else's: a floor, a cube over it, and the cube's shadow volume counted as z-fail does.
 
+use super::gpu;
 use stencilscope::glam::{self, Vec3, Vec4};
-use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use stencilscope::wgpu::{self, CompareFunction, StencilOperation};
 
 const SIZE: [u32; 2] = [320, 200];
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32FloatStencil8;
 const LIGHT: Vec3 = Vec3::new(1.5, 6.0, 2.0);
 
 const SHADER: &str = "
@@ -84,55 +85,23 @@ fn shadow_volume() -> (Vec<Vec4>, Vec<u16>) {
 impl Renderer {
     pub fn new(instance: impl Fn(wgpu::InstanceDescriptor) -> wgpu::Instance, fault: Fault) -> Renderer {
         let instance = instance(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-        let adapter = adapter.expect("an adapter");
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            required_features: wgpu::Features::DEPTH32FLOAT_STENCIL8,
-            ..wgpu::DeviceDescriptor::default()
-        }))
-        .expect("a device");
-        let texture = |format| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
-        };
-        let (color, depth) =
-            (texture(wgpu::TextureFormat::Rgba8Unorm), texture(wgpu::TextureFormat::Depth32FloatStencil8));
+        let required_features = wgpu::Features::DEPTH32FLOAT_STENCIL8;
+        let asked = wgpu::DeviceDescriptor { required_features, ..wgpu::DeviceDescriptor::default() };
+        let (device, queue) = gpu::device(&instance, &asked);
+        let texture = |format| gpu::texture(&device, SIZE, format, 1, wgpu::TextureUsages::COPY_SRC);
+        let (color, depth) = (texture(wgpu::TextureFormat::Rgba8Unorm), texture(DEPTH));
         let view = glam::camera::rh::view::look_at_mat4(Vec3::new(-3.0, 3.0, 5.0), Vec3::new(0.0, 0.5, 0.0), Vec3::Y);
         let clip_from_world =
             glam::camera::rh::proj::directx::perspective_infinite(0.9, SIZE[0] as f32 / SIZE[1] as f32, 0.1) * view;
-        let buffer =
-            |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        let buffer = |contents: &[u8], usage| gpu::buffer(&device, contents, usage);
         let uniform = buffer(bytemuck::bytes_of(&clip_from_world.to_cols_array()), wgpu::BufferUsages::UNIFORM);
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
+        let layout = gpu::of_uniform(&device, false);
         let camera = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
         });
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
-        });
+        let module = gpu::module(&device, SHADER);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &[Some(&layout)],
@@ -179,7 +148,7 @@ impl Renderer {
             fragment: "shaded",
             has_buffers: true,
             cull: Some(wgpu::Face::Back),
-            depth_stencil: depth_state(true, CompareFunction::Less, wgpu::StencilState::default()),
+            depth_stencil: gpu::depth_state(DEPTH, true, CompareFunction::Less, wgpu::StencilState::default()),
             blend: None,
             write: wgpu::ColorWrites::ALL,
         });
@@ -190,7 +159,8 @@ impl Renderer {
             fragment: "shaded",
             has_buffers: true,
             cull: (fault == Fault::CullsBack).then_some(wgpu::Face::Back),
-            depth_stencil: depth_state(
+            depth_stencil: gpu::depth_state(
+                DEPTH,
                 false,
                 CompareFunction::Less,
                 wgpu::StencilState {
@@ -210,7 +180,8 @@ impl Renderer {
             fragment: "dark",
             has_buffers: false,
             cull: None,
-            depth_stencil: depth_state(
+            depth_stencil: gpu::depth_state(
+                DEPTH,
                 false,
                 CompareFunction::Always,
                 wgpu::StencilState { front: counted, back: counted, read_mask: 0xff, write_mask: 0 },
@@ -269,44 +240,17 @@ impl Renderer {
     }
 
     pub fn draw(&self) {
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.encode(&mut encoder);
-        self.queue.submit([encoder.finish()]);
+        gpu::submit(&self.device, &self.queue, |encoder| self.encode(encoder));
     }
 
     /// Four bytes a pixel.
     pub fn picture(&self) -> Vec<u8> {
-        self.read(&self.color, wgpu::TextureAspect::All, 4)
+        gpu::bytes((&self.device, &self.queue), &self.color, wgpu::TextureAspect::All, 4)
     }
 
     /// One byte a pixel.
     pub fn stencil(&self) -> Vec<u8> {
-        self.read(&self.depth, wgpu::TextureAspect::StencilOnly, 1)
-    }
-
-    fn read(&self, texture: &wgpu::Texture, aspect: wgpu::TextureAspect, texel: u32) -> Vec<u8> {
-        let stride = (SIZE[0] * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: u64::from(stride * SIZE[1]),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin: wgpu::Origin3d::ZERO, aspect },
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None },
-            },
-            wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-        );
-        let index = self.queue.submit([encoder.finish()]);
-        buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.expect("mapped"));
-        let wait = wgpu::PollType::Wait { submission_index: Some(index), timeout: None };
-        self.device.poll(wait).expect("polled");
-        let mapped = buffer.get_mapped_range(..).expect("mapped");
-        mapped.chunks_exact(stride as usize).flat_map(|row| row[..(SIZE[0] * texel) as usize].to_vec()).collect()
+        gpu::bytes((&self.device, &self.queue), &self.depth, wgpu::TextureAspect::StencilOnly, 1)
     }
 }
 
@@ -320,14 +264,4 @@ struct Look {
     depth_stencil: wgpu::DepthStencilState,
     blend: Option<wgpu::BlendState>,
     write: wgpu::ColorWrites,
-}
-
-fn depth_state(write: bool, compare: CompareFunction, stencil: wgpu::StencilState) -> wgpu::DepthStencilState {
-    wgpu::DepthStencilState {
-        format: wgpu::TextureFormat::Depth32FloatStencil8,
-        depth_write_enabled: Some(write),
-        depth_compare: Some(compare),
-        stencil,
-        bias: wgpu::DepthBiasState::default(),
-    }
 }

@@ -1,10 +1,9 @@
 //! States of passes that a frame sets, overwrites and leaves to others: done draw by draw, they come to the same.
 
-use super::{draws, folder, record};
+use super::{draws, folder, gpu, record};
 use std::num::NonZeroU64;
 use stencilscope::capture::RecomputeDifference;
 use stencilscope::record::{RecordError, RecordedFrame};
-use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use stencilscope::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 
 const SHADER: &str = "
@@ -43,26 +42,12 @@ fn view(of: &wgpu::Texture) -> wgpu::TextureView {
 impl Stage {
     fn new(instance: impl FnOnce(wgpu::InstanceDescriptor) -> wgpu::Instance) -> Stage {
         let instance = instance(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
         let required_limits = wgpu::Limits { max_immediate_size: 32, ..wgpu::Limits::default() };
         let required_features = wgpu::Features::IMMEDIATES;
         let asked = wgpu::DeviceDescriptor { required_features, required_limits, ..Default::default() };
-        let (device, queue) =
-            pollster::block_on(adapter.expect("an adapter").request_device(&asked)).expect("a device");
-        let source = wgpu::ShaderSource::Wgsl(SHADER.into());
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-        let shift = wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let groups =
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[shift] });
+        let (device, queue) = gpu::device(&instance, &asked);
+        let module = gpu::module(&device, SHADER);
+        let groups = gpu::of_uniform(&device, true);
         let pipeline = |color: Option<TextureFormat>| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
@@ -84,12 +69,8 @@ impl Stage {
                     topology: wgpu::PrimitiveTopology::TriangleStrip,
                     ..wgpu::PrimitiveState::default()
                 },
-                depth_stencil: color.is_none().then(|| wgpu::DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::LessEqual),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
+                depth_stencil: color.is_none().then(|| {
+                    gpu::depth_state(DEPTH, true, wgpu::CompareFunction::LessEqual, wgpu::StencilState::default())
                 }),
                 multisample: wgpu::MultisampleState {
                     count: if color.is_some() { 4 } else { 1 },
@@ -105,20 +86,8 @@ impl Stage {
                 cache: None,
             })
         };
-        let texture = |format, sample_count, usage| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            })
-        };
-        let buffer =
-            |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        let texture = |format, samples, usage| gpu::texture(&device, SIZE, format, samples, usage);
+        let buffer = |contents: &[u8], usage| gpu::buffer(&device, contents, usage);
         // Two shifts, as far apart as dynamic offsets must be.
         let mut shifts = [[0.0_f32; 4]; 17];
         shifts[16] = [0.3, 0.25, 0.1, 0.0];
@@ -225,30 +194,13 @@ impl Stage {
     }
 
     fn draw(&self) {
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.encode(&mut encoder);
-        self.queue.submit([encoder.finish()]);
+        gpu::submit(&self.device, &self.queue, |encoder| self.encode(encoder));
     }
 
     /// The bytes of depth and of colour.
     fn pictures(&self) -> [Vec<u8>; 2] {
-        [&self.depth, &self.color].map(|texture| {
-            let [row, rows] = [4 * SIZE[0], SIZE[1]];
-            let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: u64::from(row * rows),
-                usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            });
-            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-            let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
-            self.queue.submit([encoder.finish()]);
-            buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.expect("mapped"));
-            self.device.poll(wgpu::PollType::wait_indefinitely()).expect("done");
-            buffer.get_mapped_range(..).expect("mapped").to_vec()
-        })
+        let read = |texture| gpu::bytes((&self.device, &self.queue), texture, wgpu::TextureAspect::All, 4);
+        [&self.depth, &self.color].map(read)
     }
 
     fn recorded(&self, name: &str) -> RecordedFrame {

@@ -1,12 +1,11 @@
 //! Every way in which wgpu draws is followed: where vertices land, which triangles they make, what they leave.
 
-use super::{draws, folder, record};
+use super::{draws, folder, gpu, record};
 use stencilscope::capture::disk::{self, WholeFrame};
 use stencilscope::history::FragmentOutcome;
 use stencilscope::import::ConvertedFrame;
 use stencilscope::record::RecordedFrame;
 use stencilscope::session::Session;
-use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use stencilscope::wgpu::{self, BufferUsages, IndexFormat, PrimitiveTopology};
 
 const SHADER: &str = "
@@ -64,29 +63,15 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 impl Stage {
     fn new() -> Stage {
         let instance = record::instance(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-        let asked = wgpu::DeviceDescriptor::default();
-        let (device, queue) =
-            pollster::block_on(adapter.expect("an adapter").request_device(&asked)).expect("a device");
-        let source = wgpu::ShaderSource::Wgsl(SHADER.into());
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-        let buffer =
-            |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        let (device, queue) = gpu::device(&instance, &wgpu::DeviceDescriptor::default());
+        let module = gpu::module(&device, SHADER);
+        let buffer = |contents: &[u8], usage| gpu::buffer(&device, contents, usage);
         let places: [[f32; 4]; 4] =
             [[-0.75, -0.75, 0.5, 1.0], [0.25, -0.75, 0.5, 1.0], [-0.75, 0.75, 0.25, 1.0], [0.25, 0.75, 0.25, 1.0]];
         let indices: [u16; 8] = [0, 1, 2, 3, 0xffff, 2, 1, 3];
         // A plain draw of two instances, then an indexed one of one, from index 1 on.
         let arguments: [u32; 9] = [3, 2, 0, 0, 3, 1, 1, 0, 0];
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: 64, height: 48, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let texture = gpu::texture(&device, [64, 48], FORMAT, 1, wgpu::TextureUsages::empty());
         Stage {
             places: buffer(bytemuck::cast_slice(&places), BufferUsages::STORAGE | BufferUsages::VERTEX),
             indices: buffer(bytemuck::cast_slice(&indices), BufferUsages::INDEX),
@@ -121,13 +106,12 @@ impl Stage {
                 strip_index_format: is_strip.then_some(IndexFormat::Uint16),
                 ..wgpu::PrimitiveState::default()
             },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Less),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
+            depth_stencil: Some(gpu::depth_state(
+                FORMAT,
+                true,
+                wgpu::CompareFunction::Less,
+                wgpu::StencilState::default(),
+            )),
             multisample: wgpu::MultisampleState::default(),
             fragment: look.fragment.map(|name| wgpu::FragmentState {
                 module: &self.module,
@@ -181,10 +165,8 @@ impl Stage {
             let differs = draw.differs.unwrap_or_else(|| panic!("{name}: not computed anew"));
             assert!(differs.is_nowhere() && differs.rounded == 0, "{name}: {differs:?}");
         }
-        let limits =
-            frame.capture.origin.as_ref().map_or(0, |origin| {
-                origin.limits.iter().filter(|limit| !limit.contains("no light is looked for")).count()
-            });
+        let limits = frame.capture.origin.iter().flat_map(|origin| &origin.limits);
+        let limits = limits.filter(|limit| !limit.contains("no light is looked for")).count();
         assert_eq!(limits, 0, "{name}: {:?}", frame.capture.origin);
         let WholeFrame { capture, plan, .. } = disk::read_whole(&folder).expect("a capture folder");
         std::fs::remove_dir_all(folder).expect("removed");

@@ -2,7 +2,7 @@
 
 use super::{assert_eye_is_free, crosses, crossings, is_eye_lit, near_points, open_edges, place_of, volume};
 use crate::common::random::Random;
-use crate::common::{apart, judged, session};
+use crate::common::{apart, judged, opened, pixels, session};
 use glam::DVec3;
 use std::time::Instant;
 use stencilscope::accuracy::Finding;
@@ -43,10 +43,6 @@ const OPEN: [(&str, &[&str]); 9] = [
 /// Scenes whose eye starts in a shadow.
 const IN_SHADE: [&str; 2] = ["inside", "tiger-cage"];
 
-fn named(name: &str) -> Scene {
-    Builtin::named(name).expect(name).scene().expect(name)
-}
-
 #[test]
 fn every_scene_of_the_list_is_there() {
     let names: Vec<&str> = ALL.iter().map(|builtin| builtin.name).collect();
@@ -80,7 +76,7 @@ fn builtin_scenes_are_well_formed() {
             .iter()
             .for_each(|object| assert_well_formed(&scene, object, open.contains(&object.name.as_str())));
     }
-    let animated: Vec<&str> = ALL.iter().map(|one| one.name).filter(|name| named(name).is_animated()).collect();
+    let animated: Vec<&str> = ALL.iter().map(|one| one.name).filter(|name| opened(name).is_animated()).collect();
     assert_eq!(animated, ["tori", "rings", "tetrahedron", "teapot-like", "tiger-cage"]);
 }
 
@@ -116,7 +112,7 @@ fn builtin_scenes_start_with_a_free_eye() {
 /// a door into a cell, and on the walkway.
 #[test]
 fn the_tiger_cage_has_room_to_walk() {
-    let mut scene = named("tiger-cage");
+    let mut scene = opened("tiger-cage");
     let doors = [[0.0, 1.6, 0.9], [1.2, 1.6, 0.9], [2.2, 1.6, 0.9], [-1.2, 1.6, -0.9], [-2.2, 1.6, -0.9]];
     let ways = [[0.0, 1.6, 4.9], [0.0, 1.6, -5.2], [2.0, 1.6, 7.5], [0.0, 4.2, 5.0], [0.0, 4.2, -5.0]];
     for eye in [&doors[..], &ways[..]].concat() {
@@ -167,7 +163,7 @@ fn builtin_scenes_show_their_shadows_and_z_fail_is_right() {
     let mut session = session();
     let mut z_pass_views = 0;
     for builtin in ALL {
-        let start = named(builtin.name);
+        let start = opened(builtin.name);
         for seconds in [0.0, 1.7] {
             let scene = start.at(seconds);
             let capture = judged(&mut session, &scene, Technique::ZFail, SIZE);
@@ -200,7 +196,7 @@ fn z_fail_is_right_in(name: &str) {
     while views < 10 {
         tries += 1;
         assert!(tries <= 120, "{name}: {views} of {tries} views show light and shadow");
-        let scene = from_anywhere(&named(name), &mut random);
+        let scene = from_anywhere(&opened(name), &mut random);
         let capture = judged(&mut session, &scene, Technique::ZFail, SIZE);
         assert_z_fail_holds(&scene, &capture, &format!("{:?}", scene.camera));
         // Walls seen from behind say little.
@@ -228,7 +224,7 @@ fn from_anywhere(start: &Scene, random: &mut Random) -> Scene {
 #[test]
 fn planar_shadows_are_right_on_panels_and_not_enough_on_steps() {
     let mut session = session();
-    let mut wrong_in = |name: &str| wrong(&judged(&mut session, &named(name), Technique::Planar, SIZE));
+    let mut wrong_in = |name: &str| wrong(&judged(&mut session, &opened(name), Technique::Planar, SIZE));
     for name in ["rings", "panels", "tetrahedron"] {
         assert_eq!(wrong_in(name), 0, "{name}");
     }
@@ -241,7 +237,7 @@ fn planar_shadows_are_right_on_panels_and_not_enough_on_steps() {
 fn the_tetrahedron_is_what_it_is_said_to_be() {
     let lesson = Builtin::named("tetrahedron").expect("a name").lesson;
     assert!(lesson.contains("regular tetrahedron") && !lesson.contains("unit"), "{lesson}");
-    let scene = named("tetrahedron");
+    let scene = opened("tetrahedron");
     let points = scene.objects.last().expect("it").mesh.positions();
     let mut corners: Vec<DVec3> = Vec::new();
     for point in points {
@@ -260,7 +256,7 @@ fn the_tetrahedron_is_what_it_is_said_to_be() {
 /// The eye is in the volume of one slat, the near plane cuts those of its neighbours.
 #[test]
 fn inside_is_inside_one_volume_and_cuts_two_others() {
-    let scene = named("inside");
+    let scene = opened("inside");
     let points = near_points(&scene.camera, ASPECT);
     let sun = place_of(&scene.lights[0]);
     let mut in_volume = Vec::new();
@@ -309,10 +305,10 @@ fn true_count(scene: &Scene, size: [u32; 2], pixel: [u32; 2]) -> Option<usize> {
 fn wrong_by_count(scene: &Scene, capture: &Capture) -> std::collections::BTreeMap<usize, u64> {
     let findings = &capture.lights[0].truth.as_ref().expect("judged").findings;
     let mut counts = std::collections::BTreeMap::new();
-    for (x, y) in (0..capture.size[1]).flat_map(|y| (0..capture.size[0]).map(move |x| (x, y))) {
-        let finding = findings.byte_at([x, y]).and_then(Finding::from_byte).expect("a finding");
+    for at in pixels(capture.size) {
+        let finding = findings.byte_at(at).and_then(Finding::from_byte).expect("a finding");
         if finding.is_wrong() {
-            let count = true_count(scene, capture.size, [x, y]).expect("on floor or wall");
+            let count = true_count(scene, capture.size, at).expect("on floor or wall");
             *counts.entry(count).or_default() += 1;
         }
     }
@@ -323,24 +319,24 @@ fn wrong_by_count(scene: &Scene, capture: &Capture) -> std::collections::BTreeMa
 /// 256 and only there. Labels at the edges of a region are excused, so a few of 256 may be right.
 #[test]
 fn the_gate_is_300_deep_and_only_256_is_wrong() {
-    let scene = named("gate");
+    let scene = opened("gate");
     let capture = judged(&mut session(), &scene, Technique::ZFail, SIZE);
     let truth = capture.lights[0].truth.as_ref().expect("judged");
-    let mut pixels = std::collections::BTreeMap::new();
-    for (x, y) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))) {
-        let finding = truth.findings.byte_at([x, y]).and_then(Finding::from_byte).expect("a finding");
-        let is_shadow = truth.labels.byte_at([x, y]) == Some(1);
-        let Some(count) = true_count(&scene, SIZE, [x, y]).filter(|_| is_shadow) else { continue };
-        let [all, wrong] = pixels.entry(count).or_insert([0, 0]);
+    let mut by_count = std::collections::BTreeMap::new();
+    for at in pixels(SIZE) {
+        let finding = truth.findings.byte_at(at).and_then(Finding::from_byte).expect("a finding");
+        let is_shadow = truth.labels.byte_at(at) == Some(1);
+        let Some(count) = true_count(&scene, SIZE, at).filter(|_| is_shadow) else { continue };
+        let [all, wrong] = by_count.entry(count).or_insert([0, 0]);
         *all += 1;
         *wrong += u64::from(finding.is_wrong());
     }
-    println!("count: [pixels, wrong] {pixels:?}");
-    assert_eq!(pixels.keys().max(), Some(&300));
+    println!("count: [pixels, wrong] {by_count:?}");
+    assert_eq!(by_count.keys().max(), Some(&300));
     for deep in [250, 256, 300] {
-        assert!(pixels[&deep][0] >= 200, "{deep}: {:?}", pixels[&deep]);
+        assert!(by_count[&deep][0] >= 200, "{deep}: {:?}", by_count[&deep]);
     }
-    for (count, [all, wrong]) in pixels {
+    for (count, [all, wrong]) in by_count {
         // 257 and the like may be rays through an edge of two triangles.
         if count == 256 {
             assert!(wrong * 10 >= all * 9, "{wrong} of {all}");

@@ -1,21 +1,16 @@
 //! Things that move, and things that are mirrored, stretched and turned.
 
-use crate::common::{from_above, judged, session, square};
+use crate::common::{from_above, judged, opened, session, square};
 use glam::{DMat4, DVec3};
 use std::sync::Arc;
 use stencilscope::accuracy::compare;
 use stencilscope::progress::Progress;
-use stencilscope::scene::builtin::Builtin;
 use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Mesh, MeshBuilder, Motion, Object, Orbit, Pose, Scene, Swing};
 use stencilscope::technique::Technique;
 use stencilscope::truth::Tracer;
 
 const SIZE: [u32; 2] = [96, 72];
-
-fn named(name: &str) -> Scene {
-    Builtin::named(name).expect(name).scene().expect(name)
-}
 
 const SWING: Swing =
     Swing { pivot: DVec3::new(1.0, 5.0, 2.0), axis: DVec3::new(0.0, 0.0, 3.0), degrees: 30.0, period_seconds: 4.0 };
@@ -68,7 +63,7 @@ fn a_swing_turns_the_whole_object() {
 /// The lamp of the tiger cage: the bulb stays where it is in the shade.
 #[test]
 fn a_lamp_and_its_light_swing_together() {
-    let start = named("tiger-cage");
+    let start = opened("tiger-cage");
     let bulb_in_lamp = |scene: &Scene| {
         let lamp = scene.objects.iter().find(|object| object.name == "lamp").expect("a lamp");
         lamp.pose.world_from_object().inverse().transform_point3(scene.lights[0].position.truncate())
@@ -177,7 +172,7 @@ fn a_directional_light_is_a_point_light_far_away() {
     let mut panel = from_above(vec![square("panel", 2.0, 1.5)]);
     panel.camera.eye = DVec3::new(6.0, 7.0, 3.0);
     panel.camera.up = DVec3::Y;
-    let scenes = ["table", "steps", "teapot-like", "tetrahedron", "inside"].map(named);
+    let scenes = ["table", "steps", "teapot-like", "tetrahedron", "inside"].map(opened);
     for scene in scenes.into_iter().chain([panel, moving_scene()]) {
         for towards in [DVec3::new(0.7, 1.3, -0.4), DVec3::new(-0.9, 0.6, 0.8)] {
             let under = |light: Light| Scene { lights: vec![light], ..scene.clone() };

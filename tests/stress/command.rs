@@ -8,9 +8,7 @@ const QUICK: [&str; 5] = ["stress", "--case", "sliver", "--size", "80x60"];
 fn the_command_tells_in_every_form() {
     let folder = folder();
     let volumes = [&QUICK[..], &["-t", "z-fail", "-t", "z-pass"][..]].concat();
-    let table = run(folder.path(), &volumes);
-    assert_eq!(table.status.code(), Some(0), "{}", text(&table.stderr));
-    let table = text(&table.stdout);
+    let table = done(folder.path(), &volumes);
     assert!(table.contains("sliver: ") && table.contains("2 hold, 0 fail as known, 0 unexpected"), "{table}");
     assert!(table.contains("expectations are measured at 320x240"), "{table}");
 

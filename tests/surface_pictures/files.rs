@@ -1,7 +1,7 @@
 //! Files of pictures and of libraries that name them: what is shown of them, what is said of the rest, and what lies.
 
 use super::asset;
-use crate::commands::{assert_fails, folder, run, text};
+use crate::commands::{assert_fails, done, folder, printed_json, read_json, run, text};
 use glam::Vec2;
 use stencilscope::capture::disk::read_whole;
 use stencilscope::scene::{Mesh, OpenSpec, files_of, obj};
@@ -57,10 +57,8 @@ fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
     // What is not taken is in the plan, by name.
     let folder = folder();
     std::fs::write(folder.path().join("m.obj"), format!("mtllib /dev/zero\n{BOX}{face}")).expect("written");
-    let made = run(folder.path(), &["capture", "m.obj", "-t", "none", "--size", "32x24", "-o", "out"]);
-    assert!(made.status.success(), "{}", text(&made.stderr));
-    let manifest = std::fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
-    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    done(folder.path(), &["capture", "m.obj", "-t", "none", "--size", "32x24", "-o", "out"]);
+    let manifest = read_json(&folder.path().join("out/manifest.json"));
     let left_out = manifest["left_out"].as_array().expect("a list");
     let named = left_out.iter().find(|one| one["decision"] == "material").expect("it is named");
     assert_eq!(named["what"], "the materials of `/dev/zero`");
@@ -140,8 +138,7 @@ fn pixel_tells_the_texel_and_explains_each_key() {
     let arguments = ["pixel", &scene, "--size", "96x72", "--at", "60,60"];
     let told = text(&run(folder.path(), &arguments).stdout);
     assert!(told.contains("its colour is times (") && told.contains(") of tiles.png, at u "), "{told}");
-    let document = text(&run(folder.path(), &[&arguments[..], &["--json"]].concat()).stdout);
-    let document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    let document = printed_json(folder.path(), &[&arguments[..], &["--json"]].concat());
     assert_eq!(document["shading"]["texture"]["name"], "tiles.png");
     crate::help::assert_json_is_explained("pixel", &document);
 }

@@ -5,8 +5,9 @@ mod lines;
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::{gaps, is_near, mask_of, number};
+use super::patterns::{all_but, find, gaps, is_near, is_number, mask_of, matching, number};
 use super::purposes::steps;
+use crate::common::stencil;
 use formulas::FORMULAS;
 use lines::LINES;
 use stencilscope::history::{PixelEventKind, PixelHistory};
@@ -97,8 +98,7 @@ impl Here<'_> {
 
     /// All bytes of the stencil after this step.
     fn bytes(&self) -> Vec<u8> {
-        let frame = self.frame.capture.frame_at(self.step).expect("a frame");
-        frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
+        stencil(self.frame.capture.frame_at(self.step).expect("a frame"))
     }
 
     /// All counts after this step.
@@ -131,6 +131,26 @@ impl Here<'_> {
             return pass.color.as_ref().and_then(|target| target.clear).map_or(0.0, |clear| clear[0] as f32);
         }
         cleared.or_else(|| self.frame.stencil(self.step.checked_sub(1), at)).expect("a stencil").into()
+    }
+
+    /// The stored depth after this step.
+    fn depth(&self, at: [u32; 2]) -> Option<f32> {
+        self.frame.capture.frame_at(self.step)?.depth.image.depth_at(at)
+    }
+
+    /// The stencil before this step.
+    fn stencil_before(&self, at: [u32; 2]) -> u8 {
+        self.frame.stencil(self.step.checked_sub(1), at).expect("a stencil")
+    }
+
+    /// The stored depth where nothing is.
+    fn clear_depth(&self) -> f32 {
+        if self.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 }
+    }
+
+    /// What is told has been drawn, in triangles.
+    fn has_drawn(&self, part: DrawPart, told: &str) -> bool {
+        number(told) == self.triangles(part)
     }
 
     fn volume_passes_follow(&self) -> bool {
@@ -229,7 +249,7 @@ fn pick_is_missing(here: &Here, _: &[&str]) -> bool {
 /// The sum of a pixel's depth: what the GPU stored, and what a reader gets who adds the numbers up.
 fn is_sum(here: &Here, told: &[&str], [sign, power]: [f64; 2]) -> bool {
     let pixel = at(told[0], told[1]);
-    let stored = here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(pixel));
+    let stored = here.depth(pixel);
     let [offset, scale, distance] = [told[2], told[3], told[4]].map(number);
     let part = scale * distance.powf(power);
     let is_sum = (offset + sign * part - number(told[5])).abs() <= 2e-3 * part + 1e-6;
@@ -280,25 +300,12 @@ fn near_count(here: &Here, at: [u32; 2]) -> f64 {
 
 pub fn patterns() -> Vec<&'static str> {
     // No built-in scene has an object that receives no shadow, and is tested.
-    let rare = ["receives no shadow", "no texel of it is known"];
-    FORMULAS
-        .iter()
-        .chain(LINES)
-        .map(|(pattern, _)| *pattern)
-        .filter(|pattern| !rare.iter().any(|words| pattern.contains(words)))
-        .collect()
+    all_but(&["receives no shadow", "no texel of it is known"], &[FORMULAS, LINES])
 }
 
-fn find(all: &'static [(&'static str, Check)], here: &Here, text: &str, held: &mut Held) -> Option<String> {
-    let known = all.iter().find_map(|(pattern, check)| Some((pattern, check, gaps(pattern, text)?)));
-    match known {
-        Some((pattern, check, told)) if check(here, &told) => {
-            held.insert(pattern);
-            None
-        }
-        Some((pattern, ..)) => Some(format!("is not so ({pattern}): {text}")),
-        None => Some(format!("is known to no check: {text}")),
-    }
+/// Of the first pattern that knows the text.
+fn find_first(all: &'static [(&'static str, Check)], here: &Here, text: &str, held: &mut Held) -> Option<String> {
+    find(matching(all, text).take(1), text, held, |check, told| check(here, told))
 }
 
 pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
@@ -319,8 +326,8 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
             };
             for fact in facts(&known) {
                 let here = Here { frame, step, pick, history, map: map.as_ref(), formula: &fact.formula };
-                let formula = find(FORMULAS, &here, here.formula, held);
-                let lines = fact.here.iter().filter_map(|line| find(LINES, &here, line, held));
+                let formula = find_first(FORMULAS, &here, here.formula, held);
+                let lines = fact.here.iter().filter_map(|line| find_first(LINES, &here, line, held));
                 let name = &frame.capture.steps[step].name;
                 let told = formula.into_iter().chain(lines);
                 wrong.extend(told.map(|what| format!("a card of {name} (step {step}), pixel {pick:?}, {what}")));

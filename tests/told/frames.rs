@@ -1,13 +1,13 @@
 //! The frames that are held, and what their GPU left.
 
-use crate::common::request;
+use crate::common::{opened, request};
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Step};
 use stencilscope::history::PixelHistory;
 use stencilscope::plan::{FramePlan, Pass};
 use stencilscope::reading::map_readers::MapReaders;
 use stencilscope::scene::builtin;
-use stencilscope::scene::{OpenSpec, Projection, Scene, open};
+use stencilscope::scene::{Projection, Scene};
 use stencilscope::session::Session;
 use stencilscope::technique::{SettingSpec, SettingValues, Technique};
 
@@ -92,49 +92,40 @@ pub fn jobs() -> Vec<Job> {
         for scene in &scenes {
             let is_slow = *scene == LARGE && technique != Technique::Auto;
             if !is_slow {
-                jobs.push(Job { scene, technique, settings: Vec::new(), camera: Seen::AsItIs });
+                jobs.push(job(scene, technique, Seen::AsItIs, &[]));
             }
         }
         for spec in technique.settings() {
             for value in values(technique, spec) {
                 let scene = quick[jobs.len() % quick.len()];
                 // What it changes only beside another.
-                let beside = match spec.key {
-                    "epsilon" => Some(("depth", "standard-infinite-epsilon")),
-                    "far-vertices" => Some(("extrusion", "finite:3")),
-                    "order" => Some(("faces", "two-pass")),
-                    _ => None,
+                let beside: &[(&str, &str)] = match spec.key {
+                    "epsilon" => &[("depth", "standard-infinite-epsilon")],
+                    "far-vertices" => &[("extrusion", "finite:3")],
+                    "order" => &[("faces", "two-pass")],
+                    _ => &[],
                 };
-                let beside = beside.map(|(key, value)| (key, value.to_owned()));
-                let settings = beside.into_iter().chain([(spec.key, value)]).collect();
-                jobs.push(Job { scene, technique, settings, camera: Seen::AsItIs });
+                jobs.push(job(scene, technique, Seen::AsItIs, &[beside, &[(spec.key, &value)]].concat()));
             }
         }
     }
     // Counts beyond eight bits, and both passes of faces in floats.
-    let job = |scene, technique, key, value: &str| Job {
-        scene,
-        technique,
-        settings: vec![(key, value.to_owned())],
-        camera: Seen::AsItIs,
-    };
-    let gate = |key, value| job("gate", Technique::ZFail, key, value);
+    let gate = |key, value| job("gate", Technique::ZFail, Seen::AsItIs, &[(key, value)]);
     jobs.extend([gate("counter", "float"), gate("operations", "clamp"), gate("faces", "two-pass")]);
     jobs.push(gate("stencil-bits", "4"));
-    jobs.push(job("inside", Technique::ZPassPlus, "counter", "float"));
-    jobs.push(job("inside", Technique::ZPass, "faces", "two-pass"));
+    jobs.push(job("inside", Technique::ZPassPlus, Seen::AsItIs, &[("counter", "float")]));
+    jobs.push(job("inside", Technique::ZPass, Seen::AsItIs, &[("faces", "two-pass")]));
     jobs.extend(parallel());
     jobs
 }
 
+fn job(scene: &'static str, technique: Technique, camera: Seen, settings: &[(&'static str, &str)]) -> Job {
+    let settings = settings.iter().map(|(key, value)| (*key, (*value).to_owned())).collect();
+    Job { scene, technique, settings, camera }
+}
+
 /// Parallel cameras: linear depth, and counts that begin elsewhere.
 fn parallel() -> Vec<Job> {
-    let job = |scene, technique, camera, settings: &[(&'static str, &str)]| Job {
-        scene,
-        technique,
-        settings: settings.iter().map(|(key, value)| (*key, (*value).to_owned())).collect(),
-        camera,
-    };
     use Seen::{Cabinet, FromTheLight, Orthographic};
     vec![
         job("tori", Technique::ZFail, Orthographic, &[]),
@@ -165,7 +156,7 @@ pub struct Frame {
 
 impl Frame {
     pub fn of(session: &mut Session, job: &Job) -> Frame {
-        let mut scene = open(&OpenSpec::new(job.scene)).expect("a built-in scene");
+        let mut scene = opened(job.scene);
         job.camera.place(&mut scene);
         let mut request = request(job.technique, SIZE);
         for (key, value) in &job.settings {
@@ -179,6 +170,11 @@ impl Frame {
         let plan = Arc::new(plan);
         let readers = (0..capture.lights.len()).map(|light| MapReaders::new(&capture, Some(&plan), light)).collect();
         Frame { scene, capture, plan, pixels, readers }
+    }
+
+    /// Does the count begin at the volumes around the eye?
+    pub fn starts_at_eye(&self) -> bool {
+        self.plan.settings.get("start").is_some_and(|start| start == "eye-count")
     }
 
     pub fn step(&self, index: usize) -> (&Step, &Pass) {

@@ -1,5 +1,7 @@
 //! Patterns of sentences: text with gaps.
 
+use super::Held;
+
 /// What stands in the gaps `{}` of a pattern; `None` where the text is another one.
 pub fn gaps<'a>(pattern: &str, text: &'a str) -> Option<Vec<&'a str>> {
     let mut pieces = pattern.split("{}");
@@ -15,11 +17,48 @@ pub fn gaps<'a>(pattern: &str, text: &'a str) -> Option<Vec<&'a str>> {
     rest.is_empty().then_some(found)
 }
 
+/// The patterns that a text has, each with its check and its gaps.
+pub fn matching<'t, C>(
+    all: &'static [(&'static str, C)],
+    text: &'t str,
+) -> impl Iterator<Item = (&'static str, &'static C, Vec<&'t str>)> {
+    all.iter().filter_map(move |(pattern, check)| Some((*pattern, check, gaps(pattern, text)?)))
+}
+
+/// What is wrong with a text: no pattern knows it, or it is so by the check of none that does.
+pub fn find<'t, C: 'static>(
+    known: impl Iterator<Item = (&'static str, &'static C, Vec<&'t str>)>,
+    text: &str,
+    held: &mut Held,
+    is_so: impl Fn(&C, &[&str]) -> bool,
+) -> Option<String> {
+    let known: Vec<_> = known.collect();
+    if let Some((pattern, ..)) = known.iter().find(|(_, check, told)| is_so(check, told)) {
+        held.insert(pattern);
+        return None;
+    }
+    Some(match known.first() {
+        Some((pattern, ..)) => format!("is not so ({pattern}): {text}"),
+        None => format!("is known to no check: {text}"),
+    })
+}
+
+/// All patterns but those with rare words, which the frames here may lack.
+pub fn all_but<C>(rare: &[&str], all: &[&[(&'static str, C)]]) -> Vec<&'static str> {
+    let patterns = all.iter().flat_map(|some| some.iter()).map(|(pattern, _)| *pattern);
+    patterns.filter(|pattern| !rare.iter().any(|words| pattern.contains(words))).collect()
+}
+
 /// A number as it is written for people.
 pub fn number(text: &str) -> f64 {
     let plain: String = text.chars().filter(|c| *c != '\u{2009}').map(|c| if c == '−' { '-' } else { c }).collect();
     let plain = plain.split(' ').next().unwrap_or_default();
     if plain == "∞" { f64::INFINITY } else { plain.parse().unwrap_or(f64::NAN) }
+}
+
+/// Is it this whole number?
+pub fn is_number(told: &str, count: usize) -> bool {
+    number(told) == count as f64
 }
 
 /// The lowest bits of a stencil, by name.

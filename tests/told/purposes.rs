@@ -2,9 +2,9 @@
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::{gaps, mask_of};
+use super::patterns::{all_but, find, gaps, mask_of, matching};
 use glam::{DVec3, DVec4};
-use stencilscope::plan::{Draw, DrawPart, Pass, Program, Visibility};
+use stencilscope::plan::{Draw, DrawPart, Pass, PlanMap, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
 
@@ -144,7 +144,7 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
 fn begins<'t>(frame: &Frame, pass: &Pass, told: &'t str) -> Option<&'t str> {
     let cleared = cleared_to(frame, pass);
     let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around {}. {}", told) {
-        let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+        let starts_at_eye = frame.starts_at_eye();
         let place = if frame.scene.camera.is_parallel() { "the middle of the near plane" } else { "the eye" };
         (told[0], starts_at_eye && told[1] == place, told[2])
     } else if let Some(told) = gaps(
@@ -179,7 +179,7 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
     let (eye, caps) = told.split_once("; ").unwrap_or((told, ""));
     let [is_z_pass, is_auto] =
         [Technique::ZPass, Technique::Auto].map(|technique| frame.plan.technique == technique.name());
-    let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+    let starts_at_eye = frame.starts_at_eye();
     let is_parallel = frame.scene.camera.is_parallel();
     let is_eye_so = match eye {
         ", if the eye itself is in none" => is_z_pass && !starts_at_eye && !is_parallel,
@@ -215,6 +215,28 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
             .all(|cap| !(lacks[cap] && is_drawn[cap]) && (lacks[cap] || is_drawn[cap] || !is_needed[cap]))
 }
 
+/// Does each face on this side turn the bit over, and is what follows of that so?
+fn is_odd_or_even(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
+    is_light(pass, told[0])
+        && pass.draws.iter().all(|draw| turns_over(draw, is_in_front))
+        && begins(frame, pass, told[1]) == Some("")
+        && is_so_where(frame, pass, told[2])
+}
+
+/// Do all faces count on this side, and is what is left of them as told?
+fn is_whole(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
+    is_light(pass, told[0]) && count_all(pass, is_in_front, true, true) && is_left(frame, pass, told[1])
+}
+
+fn is_first_half(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
+    is_light(pass, told[0]) && is_half(pass, is_in_front, told[1]) && !is_second(frame, pass)
+}
+
+fn is_second_half(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
+    let is_so = is_half(pass, is_in_front, told[1]) && is_left(frame, pass, told[2]);
+    is_light(pass, told[0]) && is_so && is_second(frame, pass)
+}
+
 fn asks(pass: &Pass, how: Visibility) -> bool {
     pass.draws.iter().all(|draw| [Program::Light(how), Program::Light(Visibility::Everywhere)].contains(&draw.program))
 }
@@ -228,25 +250,27 @@ fn is_even_marked(pass: &Pass) -> bool {
         && marks.iter().all(|mark| mark % 2 == 0)
 }
 
+fn map_of<'a>(frame: &'a Frame, pass: &Pass) -> Option<&'a PlanMap> {
+    frame.plan.lights[pass.light.expect("a light").0].map.as_ref()
+}
+
 fn sees_from_the_light(frame: &Frame, pass: &Pass) -> bool {
-    pass.view.0 != 0
-        && pass.draws.iter().all(|draw| draw.part == DrawPart::Map)
-        && frame.plan.lights[pass.light.expect("a light").0].map.is_some()
+    pass.view.0 != 0 && pass.draws.iter().all(|draw| draw.part == DrawPart::Map) && map_of(frame, pass).is_some()
 }
 
 fn holds_depth(frame: &Frame, pass: &Pass) -> bool {
-    let map = frame.plan.lights[pass.light.expect("a light").0].map.as_ref();
-    sees_from_the_light(frame, pass) && map.is_some_and(|map| map.lookup.is_some()) && pass.color.is_none()
+    let reads_depth = map_of(frame, pass).is_some_and(|map| map.lookup.is_some());
+    sees_from_the_light(frame, pass) && reads_depth && pass.color.is_none()
 }
 
 fn holds_color(frame: &Frame, pass: &Pass) -> bool {
-    let map = frame.plan.lights[pass.light.expect("a light").0].map.as_ref();
-    sees_from_the_light(frame, pass) && map.is_some_and(|map| map.lookup.is_none()) && pass.color.is_some()
+    let reads_color = map_of(frame, pass).is_some_and(|map| map.lookup.is_none());
+    sees_from_the_light(frame, pass) && reads_color && pass.color.is_some()
 }
 
 /// Is the light's map there where its pass says that it is read?
 fn has_map(frame: &Frame, pass: &Pass) -> bool {
-    frame.plan.lights[pass.light.expect("a light").0].map.is_some()
+    map_of(frame, pass).is_some()
 }
 
 const PURPOSES: &[(&str, Check)] = &[
@@ -259,15 +283,11 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. {}",
-        |frame, pass, told| {
-            is_light(pass, told[0]) && count_all(pass, true, true, true) && is_left(frame, pass, told[1])
-        },
+        |frame, pass, told| is_whole(frame, pass, told, true),
     ),
     (
         "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. {}",
-        |frame, pass, told| {
-            is_light(pass, told[0]) && count_all(pass, false, true, true) && is_left(frame, pass, told[1])
-        },
+        |frame, pass, told| is_whole(frame, pass, told, false),
     ),
     (
         "Counts the shadow volumes of {}, behind each surface where they may hold {}, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. {}",
@@ -283,19 +303,17 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Counts the shadow volumes of {} in front of each surface, first half: {}. The other faces follow in a pass of their own.",
-        |frame, pass, told| is_light(pass, told[0]) && is_half(pass, true, told[1]) && !is_second(frame, pass),
+        |frame, pass, told| is_first_half(frame, pass, told, true),
     ),
     ("Counts the shadow volumes of {} in front of each surface, second half: {}. {}", |frame, pass, told| {
-        let is_so = is_half(pass, true, told[1]) && is_left(frame, pass, told[2]);
-        is_light(pass, told[0]) && is_so && is_second(frame, pass)
+        is_second_half(frame, pass, told, true)
     }),
     (
         "Counts the shadow volumes of {} behind each surface, first half: {}. The other faces follow in a pass of their own.",
-        |frame, pass, told| is_light(pass, told[0]) && is_half(pass, false, told[1]) && !is_second(frame, pass),
+        |frame, pass, told| is_first_half(frame, pass, told, false),
     ),
     ("Counts the shadow volumes of {} behind each surface, second half: {}. {}", |frame, pass, told| {
-        let is_so = is_half(pass, false, told[1]) && is_left(frame, pass, told[2]);
-        is_light(pass, told[0]) && is_so && is_second(frame, pass)
+        is_second_half(frame, pass, told, false)
     }),
     (
         "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light adds 1, drawn as the light sees it through the near rectangle.",
@@ -326,23 +344,11 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. {}1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
-        |frame, pass, told| {
-            let turned = pass.draws.iter().all(|draw| turns_over(draw, true));
-            is_light(pass, told[0])
-                && turned
-                && begins(frame, pass, told[1]) == Some("")
-                && is_so_where(frame, pass, told[2])
-        },
+        |frame, pass, told| is_odd_or_even(frame, pass, told, true),
     ),
     (
         "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. {}1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
-        |frame, pass, told| {
-            let turned = pass.draws.iter().all(|draw| turns_over(draw, false));
-            is_light(pass, told[0])
-                && turned
-                && begins(frame, pass, told[1]) == Some("")
-                && is_so_where(frame, pass, told[2])
-        },
+        |frame, pass, told| is_odd_or_even(frame, pass, told, false),
     ),
     (
         "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light turns the bit over, drawn as the light sees it through the near rectangle.",
@@ -438,24 +444,16 @@ const PURPOSES: &[(&str, Check)] = &[
 pub fn patterns() -> Vec<&'static str> {
     // In no built-in scene does a light without casters that darken reach this.
     let rare = ["no caster can darken anything", "no flat receiver has a shadow", "no silhouette is on its way"];
-    PURPOSES
-        .iter()
-        .map(|(pattern, _)| *pattern)
-        .filter(|pattern| !rare.iter().any(|words| pattern.contains(words)))
-        .collect()
+    all_but(&rare, &[PURPOSES])
 }
 
 pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
-    let mut wrong = Vec::new();
-    for pass in &frame.plan.passes {
-        let known = PURPOSES.iter().find_map(|(pattern, check)| Some((pattern, check, gaps(pattern, &pass.purpose)?)));
-        match known {
-            Some((pattern, check, told)) if check(frame, pass, &told) => drop(held.insert(pattern)),
-            Some(_) => wrong.push(format!("the purpose of {} is not so: {}", pass.name, pass.purpose)),
-            None => wrong.push(format!("no check knows the purpose of {}: {}", pass.name, pass.purpose)),
-        }
-    }
-    wrong
+    let wrong = |pass: &Pass| {
+        let known = matching(PURPOSES, &pass.purpose).take(1);
+        let wrong = find(known, &pass.purpose, held, |check, told| check(frame, pass, told))?;
+        Some(format!("the purpose of {} {wrong}", pass.name))
+    };
+    frame.plan.passes.iter().filter_map(wrong).collect()
 }
 
 /// What is lit is marked in the stencil, where the draw has one.

@@ -2,14 +2,14 @@
 //! here too, so that others are found.
 
 use super::purposes::steps;
-use crate::common::{request, session};
+use crate::common::{opened, request, session, stencil};
 use std::collections::{BTreeMap, BTreeSet};
 use stencilscope::capture::Capture;
 use stencilscope::inspector::{TOURS, Tour, TourMove, TourStop};
-use stencilscope::plan::{DecidedBy, DrawPart, FramePlan, Pass, Program, Visibility};
+use stencilscope::plan::{DecidedBy, Draw, DrawPart, FramePlan, Pass, Program, Visibility};
 use stencilscope::progress::Progress;
 use stencilscope::reading::shown::PictureKind;
-use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::scene::Scene;
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation};
 
@@ -28,6 +28,15 @@ impl Shown<'_> {
         &self.plan.passes[self.step]
     }
 
+    fn draws(&self) -> &[Draw] {
+        &self.pass().draws
+    }
+
+    /// The draws of all passes.
+    fn all_draws(&self) -> impl Iterator<Item = &Draw> + Clone {
+        self.plan.passes.iter().flat_map(|pass| &pass.draws)
+    }
+
     fn wrong(&self) -> [u64; 2] {
         let errors = self.capture.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error);
         errors.fold([0, 0], |[one, other], error| [one + error.false_shadow, other + error.missing_shadow])
@@ -39,14 +48,12 @@ impl Shown<'_> {
     }
 
     fn stencil(&self) -> Vec<u8> {
-        let frame = self.capture.frame_at(self.step).and_then(|frame| frame.stencil.as_ref()).expect("a stencil");
-        frame.image.rows().flatten().copied().collect()
+        stencil(self.capture.frame_at(self.step).expect("a frame"))
     }
 
     /// All sides count on that side of the surface: up where the ray enters it from there, and down where it leaves.
     fn count(&self, in_front: bool) -> bool {
-        let sides: Vec<_> =
-            self.pass().draws.iter().filter(|draw| draw.part == DrawPart::Side).filter_map(steps).collect();
+        let sides: Vec<_> = self.draws().iter().filter(|draw| draw.part == DrawPart::Side).filter_map(steps).collect();
         let by = if in_front { (1, -1) } else { (-1, 1) };
         !sides.is_empty() && sides.iter().all(|one| one.is_in_front == in_front && (one.outside, one.inside) == by)
     }
@@ -57,7 +64,7 @@ impl Shown<'_> {
     }
 
     fn has(&self, part: DrawPart) -> bool {
-        self.plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.part == part)
+        self.all_draws().any(|draw| draw.part == part)
     }
 
     fn faces(&self) -> usize {
@@ -70,12 +77,8 @@ type Claim = (Technique, &'static str, &'static str, fn(&Shown) -> bool);
 /// By tour, title and words of a stop.
 const CLAIMS: &[Claim] = &[
     (Technique::None, "Ambient light and depth", "The first pass draws every surface in a little light", |shown| {
-        shown.step == 0
-            && shown
-                .pass()
-                .draws
-                .iter()
-                .all(|draw| matches!(draw.program, Program::Ambient { .. }) && draw.raster.depth_write)
+        let is_ambient = |draw: &Draw| matches!(draw.program, Program::Ambient { .. }) && draw.raster.depth_write;
+        shown.step == 0 && shown.draws().iter().all(is_ambient)
     }),
     (Technique::None, "How far everything is", "never draws a surface twice at the same place", |shown| {
         let later = shown.plan.passes[1..].iter().filter(|pass| pass.timed).flat_map(|pass| &pass.draws);
@@ -85,26 +88,23 @@ const CLAIMS: &[Claim] = &[
         shown.labels(1) == 0 && shown.wrong()[0] == 0 && shown.wrong()[1] > 0
     }),
     (Technique::Planar, "A floor that catches shadows", "Its pixels are marked in the stencil buffer first", |shown| {
-        shown.pass().draws.iter().all(|draw| draw.part == DrawPart::Receiver)
+        shown.draws().iter().all(|draw| draw.part == DrawPart::Receiver)
             && shown.stencil().iter().any(|byte| *byte != 0)
     }),
     (Technique::Planar, "Casters pressed flat", "lets each pixel be darkened once", |shown| {
-        shown.pass().draws.iter().all(|draw| {
+        let is_once = |draw: &Draw| {
             draw.part == DrawPart::PlanarShadow && draw.raster.face(true).0.compare == CompareFunction::Equal
-        }) && shown.stencil().iter().any(|byte| byte % 2 == 1)
+        };
+        shown.draws().iter().all(is_once) && shown.stencil().iter().any(|byte| byte % 2 == 1)
     }),
     (
         Technique::Planar,
         "One pixel, event by event",
         "the receiver marks it, a flattened triangle passes the test and raises it",
         |shown| {
-            let before = &shown.plan.passes[shown.step - 1];
-            before.draws.iter().all(|draw| draw.raster.face(true).0.pass_op == StencilOperation::Replace)
-                && shown
-                    .pass()
-                    .draws
-                    .iter()
-                    .all(|draw| draw.raster.face(true).0.pass_op == StencilOperation::IncrementClamp)
+            let before = &shown.plan.passes[shown.step - 1].draws;
+            let all = |draws: &[Draw], does| draws.iter().all(|draw| draw.raster.face(true).0.pass_op == does);
+            all(before, StencilOperation::Replace) && all(shown.draws(), StencilOperation::IncrementClamp)
         },
     ),
     (
@@ -125,8 +125,7 @@ const CLAIMS: &[Claim] = &[
         },
     ),
     (Technique::PlanarTexture, "Light, read through the texture", "No stencil is needed", |shown| {
-        shown.lights_by(Visibility::ReceiverTexture)
-            && !shown.plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.part == DrawPart::Receiver)
+        shown.lights_by(Visibility::ReceiverTexture) && !shown.has(DrawPart::Receiver)
     }),
     (Technique::PlanarTexture, "Its error", "Wrong pixels lie along edges", |shown| shown.capture.error().is_some()),
     (Technique::ZPass, "Shadow as a volume", "A point is in shadow exactly if it is inside one", |shown| {
@@ -151,7 +150,7 @@ const CLAIMS: &[Claim] = &[
         shown.capture.technique == "z-fail" && shown.scene.name == "inside" && shown.wrong() == [0, 0]
     }),
     (Technique::ZFail, "What every pixel shows", "First the scene in ambient light, with its depths", |shown| {
-        shown.step == 0 && shown.pass().draws.iter().all(|draw| draw.raster.depth_write)
+        shown.step == 0 && shown.draws().iter().all(|draw| draw.raster.depth_write)
     }),
     (
         Technique::ZFail,
@@ -167,7 +166,7 @@ const CLAIMS: &[Claim] = &[
         "The same in the API's words",
         "decrement for front faces, increment for back faces, both wrapping",
         |shown| {
-            shown.pass().draws.iter().filter(|draw| draw.part == DrawPart::Side).all(|draw| {
+            shown.draws().iter().filter(|draw| draw.part == DrawPart::Side).all(|draw| {
                 let [front, back] = [true, false].map(|is_front| draw.raster.face(is_front).0.depth_fail_op);
                 [front, back] == [StencilOperation::DecrementWrap, StencilOperation::IncrementWrap]
             })
@@ -180,7 +179,7 @@ const CLAIMS: &[Claim] = &[
         |shown| shown.count(false) && shown.labels(1) > 0,
     ),
     (Technique::ZFail, "Light where the count is 0", "The light's pass tests the stencil for 0", |shown| {
-        let tested = shown.pass().draws.iter().filter(|draw| draw.raster.stencil.is_enabled());
+        let tested = shown.draws().iter().filter(|draw| draw.raster.stencil.is_enabled());
         tested.clone().count() > 0
             && tested.clone().all(|draw| {
                 draw.raster.stencil_reference == 0 && draw.raster.face(true).0.compare == CompareFunction::Equal
@@ -220,20 +219,10 @@ const CLAIMS: &[Claim] = &[
         "The cheapest that is right",
         "a volume that can't be cut by the near plane is counted without caps",
         |shown| {
-            let in_front: BTreeSet<_> = shown
-                .pass()
-                .draws
-                .iter()
-                .filter(|draw| steps(draw).is_some_and(|one| one.is_in_front))
-                .map(|draw| &draw.caster)
-                .collect();
-            let capped = shown
-                .pass()
-                .draws
-                .iter()
-                .filter(|draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap))
-                .map(|draw| &draw.caster);
-            capped.into_iter().all(|caster| !in_front.contains(caster))
+            let is_in_front = |draw: &&Draw| steps(draw).is_some_and(|one| one.is_in_front);
+            let is_cap = |draw: &&Draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap);
+            let in_front: BTreeSet<_> = shown.draws().iter().filter(is_in_front).map(|draw| &draw.caster).collect();
+            shown.draws().iter().filter(is_cap).all(|draw| !in_front.contains(&draw.caster))
         },
     ),
     (Technique::Auto, "What was left out", "lists everything that was left out with its reason", |shown| {
@@ -258,7 +247,7 @@ const CLAIMS: &[Claim] = &[
         shown.faces() > 0
     }),
     (Technique::ShadowMap, "Bias", "The depth is moved by a bias", |shown| {
-        let maps = shown.plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Map);
+        let maps = shown.all_draws().filter(|draw| draw.part == DrawPart::Map);
         maps.clone().count() > 0 && maps.clone().all(|draw| draw.raster.depth_bias.constant != 0)
     }),
     (Technique::ShadowMap, "Its error", "Wrong pixels follow the texels along every edge", |shown| {
@@ -279,13 +268,8 @@ const CLAIMS: &[Claim] = &[
     }),
     (Technique::Projective, "What it can't know", "a caster can't shadow itself", |shown| {
         // A caster's own layer is left out of its look-up.
-        let lit = shown
-            .plan
-            .passes
-            .iter()
-            .flat_map(|pass| &pass.draws)
-            .filter(|draw| draw.program == Program::Light(Visibility::Projected));
-        lit.clone().any(|draw| draw.constants.layer.is_some())
+        let mut lit = shown.all_draws().filter(|draw| draw.program == Program::Light(Visibility::Projected));
+        lit.any(|draw| draw.constants.layer.is_some())
     }),
     (Technique::RayTraced, "A ray for every pixel", "From each surface point a ray goes to the light", |shown| {
         shown.pass().image.is_some()
@@ -329,7 +313,7 @@ fn every_stop_of_a_tour_shows_what_it_says() {
         for (index, stop) in tour.stops.iter().enumerate() {
             let (name, technique) = (scene_at(tour, index), stop.technique(tour));
             let (scene, capture, plan) = frames.entry((name, technique.name())).or_insert_with(|| {
-                let scene = open(&OpenSpec::new(name)).expect("a built-in scene");
+                let scene = opened(name);
                 let (capture, plan) = session.capture_with_plan(&scene, &request(technique, SIZE)).expect("a capture");
                 let capture = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
                 (scene, capture, plan)

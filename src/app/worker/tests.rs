@@ -8,28 +8,49 @@ use crate::ask::{
     Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, ObjectChanges, Question, ReportOf,
     StressOf, TimingOf, TruthOf, WallsOf,
 };
+use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::report::MeasuredReport;
 use crate::scene::{Light, WallCache};
 use crate::stress::StressCase;
 use crate::technique::Technique;
+use std::collections::BTreeSet;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A worker over a small built-in scene, its first frame, and the news after it.
 fn started() -> (Worker, u64, Receiver<News>) {
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let (worker, news) = over(table(), OpenSpec::new("table"), Technique::Planar);
+    let frame = wait(&news, |news| if let News::Captured { frame, .. } = news { Some(frame) } else { None });
+    (worker, frame, news)
+}
+
+fn table() -> Scene {
+    crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene")
+}
+
+/// A worker over a scene as it was opened, and its news.
+fn over(scene: Scene, name: OpenSpec, technique: Technique) -> (Worker, Receiver<News>) {
     let start = WorkerStart {
         source: ViewSource::Scene(Box::new(scene)),
-        name: OpenSpec::new("table"),
-        capture: CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]),
+        name,
+        capture: CaptureRequest::new(Choice::new(technique), [64, 36]),
         time: 0.0,
         adapter: None,
     };
     let (tell, news) = channel();
     let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
-    let frame = wait(&news, |news| if let News::Captured { frame, .. } = news { Some(frame) } else { None });
-    (worker, frame, news)
+    (worker, news)
+}
+
+/// The casters of the next frame by z-fail, and its plan.
+fn casters_of_z_fail(news: &Receiver<News>) -> (BTreeSet<String>, Arc<FramePlan>) {
+    let plan = wait(news, |news| match news {
+        News::Captured { run, .. } if run.plan.technique == "z-fail" => Some(run.plan),
+        _ => None,
+    });
+    let casters = plan.passes.iter().flat_map(|pass| &pass.draws).filter_map(|draw| draw.caster.clone()).collect();
+    (casters, plan)
 }
 
 fn wait<T>(news: &Receiver<News>, mut is_it: impl FnMut(News) -> Option<T>) -> T {
@@ -140,7 +161,7 @@ fn meshes_are_told_object_by_object() {
     let (worker, frame, news) = started();
     ask(&worker, frame, 1, MeshesOf { added: Vec::new() });
     let meshes = answer::<MeshesOf>(&news, 1).expect("meshes");
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let scene = table();
     let names = scene.objects.iter().map(|object| object.name.clone());
     assert_eq!(meshes.iter().map(|mesh| mesh.object.clone()).collect::<Vec<_>>(), names.collect::<Vec<_>>());
 }
@@ -248,31 +269,18 @@ fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_told() {
 #[test]
 fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
     let (worker, _, news) = started();
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let off = (1..scene.objects.len()).collect();
-    let request = RunRequest {
-        choice: Choice::new(Technique::ZFail),
-        size: [64, 36],
-        camera: scene.camera,
-        lights: scene.lights.clone(),
-        time: 0.0,
-        off,
-        objects: Default::default(),
-    };
+    let scene = table();
+    let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
+    request.off = (1..scene.objects.len()).collect();
     assert!(worker.order(Order::Run { scene: 1, request: Box::new(request) }));
-    let plan = wait(&news, |news| match news {
-        News::Captured { run, .. } if run.plan.technique == "z-fail" => Some(run.plan),
-        _ => None,
-    });
-    let names: std::collections::BTreeSet<&str> =
-        plan.passes.iter().flat_map(|pass| &pass.draws).filter_map(|draw| draw.caster.as_deref()).collect();
+    let (names, _) = casters_of_z_fail(&news);
     assert!(names.iter().all(|name| *name == scene.objects[0].name), "{names:?}");
 }
 
 #[test]
 fn walls_are_those_of_the_scene_as_it_would_be_run() {
     let (worker, frame, news) = started();
-    let mut scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let mut scene = table();
     let walls =
         |off: std::ops::Range<usize>| WallsOf { off: off.collect(), objects: ObjectChanges::default(), time: 0.0 };
     // Of a scene that is open no more nothing is told.
@@ -293,20 +301,14 @@ fn walls_are_those_of_the_scene_as_it_would_be_run() {
 #[test]
 fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
     let (worker, _, news) = started();
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let scene = table();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("mine.toml").display().to_string();
     let mut choice = Choice::new(Technique::ShadowMap);
     choice.set("size", "256").expect("a size");
-    let request = RunRequest {
-        choice: choice.clone(),
-        size: [64, 36],
-        camera: crate::scene::Camera { near: 0.25, ..scene.camera },
-        lights: scene.lights.clone(),
-        time: 0.0,
-        off: std::collections::BTreeSet::from([1]),
-        objects: Default::default(),
-    };
+    let mut request = RunRequest::of(&scene, choice.clone(), [64, 36]);
+    request.camera.near = 0.25;
+    request.off = BTreeSet::from([1]);
     let save = |replace| {
         let order = Order::SaveScene { scene: 1, request: Box::new(request.clone()), path: path.clone(), replace };
         assert!(worker.order(order));
@@ -333,28 +335,13 @@ fn a_changed_file_is_loaded_again_with_camera_and_lights_as_they_are() {
     std::fs::write(&path, text(1.0)).expect("a file");
     let spec = OpenSpec::new(path.display().to_string());
     let scene = crate::scene::open(&spec).expect("a scene file");
-    let start = WorkerStart {
-        source: ViewSource::Scene(Box::new(scene.clone())),
-        name: spec,
-        capture: CaptureRequest::new(Choice::new(Technique::ZFail), [64, 36]),
-        time: 0.0,
-        adapter: None,
-    };
-    let (tell, news) = channel();
-    let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
+    let (worker, news) = over(scene.clone(), spec, Technique::ZFail);
     let files = wait(&news, |news| if let News::Opened { files, .. } = news { Some(files) } else { None });
     assert_eq!(files, std::slice::from_ref(&path));
     std::fs::write(&path, text(2.0)).expect("a file");
-    let camera = crate::scene::Camera { eye: glam::DVec3::new(3.0, 2.0, 6.0), ..scene.camera };
-    let request = RunRequest {
-        choice: Choice::new(Technique::ZPass),
-        size: [64, 36],
-        camera,
-        lights: scene.lights.iter().map(|light| Light { intensity: 0.25, ..light.clone() }).collect(),
-        time: 0.0,
-        off: std::collections::BTreeSet::new(),
-        objects: Default::default(),
-    };
+    let mut request = RunRequest::of(&scene, Choice::new(Technique::ZPass), [64, 36]);
+    request.camera.eye = glam::DVec3::new(3.0, 2.0, 6.0);
+    request.lights.iter_mut().for_each(|light| light.intensity = 0.25);
     assert!(worker.order(Order::Reload { request: Box::new(request) }));
     let (scene, request) = wait(&news, |news| match news {
         News::Opened { scene, request, .. } => Some((scene, request)),
@@ -371,7 +358,7 @@ fn a_changed_file_is_loaded_again_with_camera_and_lights_as_they_are() {
 #[test]
 fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     let (worker, _, news) = started();
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let scene = table();
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
     let moved = crate::scene::Pose { translate: glam::DVec3::new(0.0, 3.0, 0.0), ..scene.objects[1].pose };
     request.objects.moved.insert(1, moved);
@@ -381,12 +368,7 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     request.off.insert(2);
     let count = scene.objects.len();
     assert!(worker.order(Order::Run { scene: 1, request: Box::new(request.clone()) }));
-    let plan = wait(&news, |news| match news {
-        News::Captured { run, .. } if run.plan.technique == "z-fail" => Some(run.plan),
-        _ => None,
-    });
-    let casters: std::collections::BTreeSet<&str> =
-        plan.passes.iter().flat_map(|pass| &pass.draws).filter_map(|draw| draw.caster.as_deref()).collect();
+    let (casters, plan) = casters_of_z_fail(&news);
     assert!(casters.contains("new box") && !casters.contains(scene.objects[2].name.as_str()), "{casters:?}");
     assert_eq!(plan.lights.len(), scene.lights.len() + 1);
     let changed = request.applied_to(&scene);

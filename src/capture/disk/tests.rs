@@ -99,15 +99,7 @@ fn example() -> Capture {
         size: SIZE,
         adapter: AdapterInfo { name: "none".into(), driver: "by hand".into(), kind: "other".into() },
         depth: DepthMapping::StandardFinite.curve(0.1, 50.0, 0.0),
-        camera: Camera {
-            eye: DVec3::new(0.1, 0.2, 1.0 / 3.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Perspective,
-            fov_y_degrees: 44.9,
-            near: 0.05,
-            far: None,
-        },
+        camera: Camera { fov_y_degrees: 44.9, ..Camera::looking([0.1, 0.2, 1.0 / 3.0], [0.0; 3]) },
         steps: vec![
             step("ambient", None, frame(Some(aspect(&cleared, true)), false, FrameTarget::Picture)),
             step("light 0 map +x", Some(0), Snapshot::Map { light: 0, face: 3 }),
@@ -130,6 +122,14 @@ fn example() -> Capture {
         plan_text: "pass ambient\n".into(),
         origin: None,
     }
+}
+
+/// The example's folder, and what it lies in.
+fn written() -> (tempfile::TempDir, PathBuf) {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    (parent, folder)
 }
 
 fn manifest(folder: &Path) -> serde_json::Value {
@@ -182,9 +182,7 @@ fn a_parallel_camera_is_read_back_and_a_folder_without_one_has_a_pinhole() {
 
 #[test]
 fn the_folder_is_laid_out_as_promised() {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (_parent, folder) = written();
     let expected = [
         "000-ambient.color.png",
         "000-ambient.depth.npy",
@@ -235,9 +233,7 @@ fn the_folder_is_laid_out_as_promised() {
 
 #[test]
 fn arrays_are_what_numpy_expects() {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (_parent, folder) = written();
     let bytes = fs::read(folder.join("002-volumes.stencil.npy")).expect("an array");
     let header = String::from_utf8_lossy(&bytes[..128]).into_owned();
     assert!(bytes.starts_with(b"\x93NUMPY") && header.contains("'|u1'") && header.contains("(3, 5"), "{header}");
@@ -270,9 +266,7 @@ fn a_folder_in_the_way_is_left_alone() {
 
 #[test]
 fn a_capture_is_replaced_only_on_request() {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (parent, folder) = written();
     let other = Capture { scene: "other".into(), ..example() };
     assert!(matches!(write(&other, &folder, false), Err(CaptureError::Exists { .. })));
     assert_eq!(manifest(&folder)["scene"], "bunny \"on\" a floor");
@@ -283,9 +277,7 @@ fn a_capture_is_replaced_only_on_request() {
 
 #[test]
 fn a_failure_leaves_nothing_and_keeps_the_old_capture() {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (parent, folder) = written();
     let mut broken = example();
     // A map without faces can't be written.
     broken.lights[0].map.as_mut().expect("a map").faces.clear();
@@ -299,9 +291,7 @@ fn a_failure_leaves_nothing_and_keeps_the_old_capture() {
 
 #[test]
 fn a_link_to_a_capture_is_followed() {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (parent, folder) = written();
     #[cfg(unix)]
     {
         let link = parent.path().join("link");
@@ -315,9 +305,7 @@ fn a_link_to_a_capture_is_followed() {
 
 /// What reading says after `change` to the manifest's text.
 fn reading_after(change: impl Fn(&str) -> String) -> String {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (_parent, folder) = written();
     let path = folder.join(MANIFEST);
     let text = fs::read_to_string(&path).expect("a manifest");
     let changed = change(&text);
@@ -352,9 +340,7 @@ fn broken_folders_are_refused_with_a_reason() {
 
 #[test]
 fn a_cut_array_is_refused() {
-    let parent = tempfile::tempdir().expect("a folder");
-    let folder = parent.path().join("out");
-    write(&example(), &folder, false).expect("written");
+    let (_parent, folder) = written();
     for name in ["000-ambient.depth.npy", "light0.map.npy", "000-ambient.color.png"] {
         let path = folder.join(name);
         let whole = fs::read(&path).expect("a file");

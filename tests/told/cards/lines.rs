@@ -1,25 +1,22 @@
 //! Each line below a card's formula, and when it is so.
 
 use super::*;
+use crate::common::labels;
 
 pub const LINES: &[(&str, Check)] = &[
     ("Pick a pixel (right click) to see its own numbers.", pick_is_missing),
     ("Pick a pixel (right click) to see the faces that made its count.", pick_is_missing),
     ("Pick a pixel (right click) to see the texel that decides it.", pick_is_missing),
     ("pixel {}, {}: no surface is there, and depth stays {}", |here, told| {
-        let stored =
-            here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at(told[0], told[1])));
-        let clear = if here.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 };
-        stored == Some(clear) && told[2].parse() == Ok(clear)
+        let clear = here.clear_depth();
+        here.depth(at(told[0], told[1])) == Some(clear) && told[2].parse() == Ok(clear)
     }),
     ("pixel {}, {}: {} + {} · {} = {}", |here, told| is_sum(here, told, [1.0, 1.0])),
     ("pixel {}, {}: {} − {} · {} = {}", |here, told| is_sum(here, told, [-1.0, 1.0])),
     ("pixel {}, {}: {} + {} / {} = {}", |here, told| is_sum(here, told, [1.0, -1.0])),
     ("pixel {}, {}: {} − {} / {} = {}", |here, told| is_sum(here, told, [-1.0, -1.0])),
     ("the next depth that can be stored is {} further", |here, told| {
-        let at = here.pick.expect("a pick");
-        let stored =
-            here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at)).expect("a depth");
+        let stored = here.depth(here.pick.expect("a pick")).expect("a depth");
         let curve = here.frame.plan.depth;
         let away = |depth: f32| {
             let part = f64::from(depth) - curve.offset;
@@ -39,7 +36,7 @@ pub const LINES: &[(&str, Check)] = &[
         let (turning, idle): (Vec<_>, Vec<_>) = faces.partition(|event| event.before.stencil != event.after.stencil);
         let change = here.stored(at(told[0], told[1])) - here.before(at(told[0], told[1]));
         let is_odd = turning.len() % 2 == 1;
-        [number(told[2]), number(told[3])] == [turning.len() as f64, idle.len() as f64] && is_odd == (change != 0.0)
+        is_number(told[2], turning.len()) && is_number(told[3], idle.len()) && is_odd == (change != 0.0)
     }),
     (
         "pixel {}, {}: it begins at {}, {} faces add 1, {} take 1 away, {} do not count here: {} + {} − {} = {}",
@@ -78,7 +75,7 @@ pub const LINES: &[(&str, Check)] = &[
     ("{} of {} pixels have a count other than 0", |here, told| {
         let counts = here.all_counts();
         let marked = counts.iter().filter(|count| **count != 0.0).count();
-        [number(told[0]), number(told[1])] == [marked as f64, counts.len() as f64]
+        is_number(told[0], marked) && is_number(told[1], counts.len())
     }),
     ("the highest count is {}", |here, told| {
         let most = here.all_counts().into_iter().fold(f32::MIN, f32::max);
@@ -88,16 +85,14 @@ pub const LINES: &[(&str, Check)] = &[
         let bytes = here.bytes();
         let most = bytes.iter().filter(|byte| **byte < 128).max().copied().unwrap_or(0);
         let beyond = bytes.iter().filter(|byte| **byte > 127).count();
-        number(told[0]) == f64::from(most) && number(told[1]) == beyond as f64 && beyond > 0
+        number(told[0]) == f64::from(most) && is_number(told[1], beyond) && beyond > 0
     }),
     ("sides, between each silhouette edge and the same edge at the far end: {}", |here, told| {
-        number(told[0]) == here.triangles(DrawPart::Side)
+        here.has_drawn(DrawPart::Side, told[0])
     }),
     (
         "sides, two triangles at every edge of what is one closed volume, and at those of each triangle of what is not: {}",
-        |here, told| {
-            number(told[0]) == here.triangles(DrawPart::Side) && here.copies_and_sides().all(is_closed_or_prism)
-        },
+        |here, told| here.has_drawn(DrawPart::Side, told[0]) && here.copies_and_sides().all(is_closed_or_prism),
     ),
     (
         "caps, every triangle of the former once and of the latter twice, in its place or at the far end: {}",
@@ -107,9 +102,7 @@ pub const LINES: &[(&str, Check)] = &[
             number(told[0]) == drawn && (drawn == 0.0 || drawn == caps as f64)
         },
     ),
-    ("light caps, the casting triangles themselves: {}", |here, told| {
-        number(told[0]) == here.triangles(DrawPart::LightCap)
-    }),
+    ("light caps, the casting triangles themselves: {}", |here, told| here.has_drawn(DrawPart::LightCap, told[0])),
     ("dark caps, the casting triangles carried to the far end: {}", |here, told| {
         let finite = here.frame.capture.settings["extrusion"].starts_with("finite");
         finite && number(told[0]) == here.triangles(DrawPart::DarkCap)
@@ -146,11 +139,9 @@ pub const LINES: &[(&str, Check)] = &[
         told[0] == format!("light {}", index + 1) && color == [true; 3] && told[4] == diffuse && told[5] == fading
     }),
     ("{} of {} pixels have {}: the test lets light through", |here, told| {
-        let bytes: Vec<u8> =
-            match here.step.checked_sub(1).and_then(|step| here.frame.capture.frame_at(step)?.stencil.as_ref()) {
-                Some(stencil) => stencil.image.rows().flatten().copied().collect(),
-                None => return false,
-            };
+        let before = here.step.checked_sub(1).and_then(|step| here.frame.capture.frame_at(step));
+        let Some(before) = before.filter(|frame| frame.stencil.is_some()) else { return false };
+        let bytes = stencil(before);
         let is_even = told[2] == "an even number";
         let lit = bytes.iter().filter(|byte| if is_even { **byte % 2 == 0 } else { **byte == 0 }).count();
         let asks = if is_even {
@@ -158,26 +149,24 @@ pub const LINES: &[(&str, Check)] = &[
         } else {
             told[2] == "the count 0" && [0xff, 0xf, 3, 1].iter().any(|mask| asks_stencil(here, *mask))
         };
-        asks && [number(told[0]), number(told[1])] == [lit as f64, bytes.len() as f64]
+        asks && is_number(told[0], lit) && is_number(told[1], bytes.len())
     }),
     ("pixel {}, {}: its stencil is {}, so {}", |here, told| {
         let pixel = at(told[0], told[1]);
-        let stencil = here.frame.stencil(here.step.checked_sub(1), pixel).expect("a stencil");
         let is_added = told[3] == "light is added";
-        let before = here.frame.capture.frame_at(here.step - 1).and_then(|frame| frame.color.image.rgba_at(pixel));
-        let after = here.frame.capture.frame_at(here.step).and_then(|frame| frame.color.image.rgba_at(pixel));
-        let is_kept_away = told[3] == "the stencil test keeps light away" && before == after;
+        let color = |step| here.frame.capture.frame_at(step).and_then(|frame| frame.color.image.rgba_at(pixel));
+        let is_kept_away = told[3] == "the stencil test keeps light away" && color(here.step - 1) == color(here.step);
         let says = match here.frame.label(here.light(), pixel) {
             Some(0) => is_added,
             Some(1) => is_kept_away,
             _ => is_added || is_kept_away,
         };
-        number(told[2]) == f64::from(stencil) && says
+        number(told[2]) == f64::from(here.stencil_before(pixel)) && says
     }),
     ("pixel {}, {}: its stencil is {}, but the object receives no shadow, and light is added", |here, told| {
         let pixel = at(told[0], told[1]);
         let has_one = here.frame.scene.objects.iter().any(|object| !object.receives);
-        number(told[2]) == f64::from(here.frame.stencil(here.step.checked_sub(1), pixel).expect("a stencil"))
+        number(told[2]) == f64::from(here.stencil_before(pixel))
             && here.frame.label(here.light(), pixel) == Some(0)
             && has_one
     }),
@@ -193,7 +182,7 @@ pub const LINES: &[(&str, Check)] = &[
             let light = &here.frame.capture.lights[map.light];
             let faces = &light.map.as_ref().expect("a map").faces;
             let stored = faces[map.middle.texel.face].depth_at(map.middle.texel.at).expect("a depth");
-            let clear = if here.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 };
+            let clear = here.clear_depth();
             let first = |text: &str| text.split(' ').next().and_then(|number| number.parse::<f32>().ok());
             let is_stored = if stored == clear { told[0] == "no caster" } else { first(told[0]) == Some(stored) };
             let own = first(told[1]).expect("a depth");
@@ -205,11 +194,8 @@ pub const LINES: &[(&str, Check)] = &[
                 "nothing is stored: lit" => stored == clear && label != Some(1),
                 "too close to tell anew" => matches!(label, Some(0 | 1)),
                 many => gaps("{} of {} hold nothing nearer: {}/{} lit", many).is_some_and(|told| {
-                    let width = here.frame.plan.lights[map.light]
-                        .map
-                        .as_ref()
-                        .and_then(|map| map.lookup)
-                        .map_or(0, |how| how.filter_width);
+                    let lookup = here.frame.plan.lights[map.light].map.as_ref().and_then(|map| map.lookup);
+                    let width = lookup.map_or(0, |how| how.filter_width);
                     let [lit, all, lit_again, all_again] = [0, 1, 2, 3].map(|gap| number(told[gap]));
                     let of_width = f64::from(width * width);
                     // Beyond its face a filter reads none.
@@ -231,16 +217,8 @@ pub const LINES: &[(&str, Check)] = &[
     }),
     ("pixel {}, {}: no texel of it is known that decides", |here, _| here.map.is_none() && here.pick.is_some()),
     ("{} lit, {} in shadow, {} background, {} faces away", |here, told| {
-        let labels: Vec<u8> = here.frame.capture.lights[here.light()]
-            .shadow
-            .as_ref()
-            .expect("labels")
-            .rows()
-            .flatten()
-            .copied()
-            .collect();
-        (0..4)
-            .all(|label| number(told[label]) == labels.iter().filter(|one| usize::from(**one) == label).count() as f64)
+        let labels = &labels(&here.frame.capture)[here.light()];
+        (0..4).all(|label| is_number(told[label], labels.iter().filter(|one| usize::from(**one) == label).count()))
     }),
     ("Choose the picture Truth or Error to hold it against rays.", |here, _| {
         here.frame.capture.lights[here.light()].truth.is_none()
@@ -257,7 +235,7 @@ pub const LINES: &[(&str, Check)] = &[
         let own = number(told[0]) - 1.0;
         let seen = map.faces.get(own as usize).copied().flatten();
         (seen == Some(pass.view) || own == f64::from(layer))
-            && number(told[1]) == layers as f64
+            && is_number(told[1], layers)
             && [told[2], told[3]].map(number) == attachment.size.map(f64::from)
     }),
     ("1 m from the light a texel is {} mm wide, 10 m away {} mm", |here, told| {
@@ -278,13 +256,11 @@ pub const LINES: &[(&str, Check)] = &[
         casters.sort_unstable();
         casters.dedup();
         let is = |text: &str, count: usize, noun: &str| {
-            number(text) == count as f64 && text.ends_with(&format!(" {noun}{}", if count == 1 { "" } else { "s" }))
+            is_number(text, count) && text.ends_with(&format!(" {noun}{}", if count == 1 { "" } else { "s" }))
         };
         is(told[0], casters.len(), "caster") && is(told[1], draws, "draw")
     }),
-    ("{} pixels are marked", |here, told| {
-        number(told[0]) == here.bytes().iter().filter(|byte| **byte != 0).count() as f64
-    }),
+    ("{} pixels are marked", |here, told| is_number(told[0], here.bytes().iter().filter(|byte| **byte != 0).count())),
     (
         "A count is of bodies: every caster that can darken a surface here is proven closed, and counts 1 each time the way to the light goes through it.",
         |here, _| is_count_of(here, CountOf::Bodies),

@@ -3,7 +3,7 @@
 use super::*;
 
 fn round(worker: &Worker, frame: u64, ticket: u64, path: &Path) -> Progress {
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let scene = table();
     let request = Box::new(RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]));
     let subject = FilmSubject::LightRound { request, light: 0 };
     ask(worker, frame, ticket, FilmOf { subject, path: path.display().to_string() })
@@ -69,7 +69,7 @@ fn a_film_that_can_not_be_made_says_why_with_the_mend() {
     );
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.png").display().to_string();
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let scene = table();
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
     request.lights[0] = Light::directional([0.0, 1.0, 0.0]);
     let subject = FilmSubject::LightRound { request: Box::new(request), light: 0 };
