@@ -262,7 +262,7 @@ pub(crate) fn take_connected<T: Copy + PartialEq>(
     reach: u32,
     mut taken: impl FnMut(usize),
 ) {
-    let held = left[start];
+    let label = left[start];
     let mut open = vec![start];
     left[start] = none;
     while let Some(index) = open.pop() {
@@ -271,7 +271,7 @@ pub(crate) fn take_connected<T: Copy + PartialEq>(
         for near_y in y.saturating_sub(reach)..=(y + reach).min(height - 1) {
             for near_x in x.saturating_sub(reach)..=(x + reach).min(width - 1) {
                 let near = near_y as usize * width as usize + near_x as usize;
-                if left[near] == held {
+                if left[near] == label {
                     left[near] = none;
                     open.push(near);
                 }

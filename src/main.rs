@@ -23,8 +23,8 @@ fn main() -> ExitCode {
 #[expect(unsafe_code, reason = "no other thread runs yet that could read the environment")]
 fn keep_mesa_quiet() {
     let is_set = |name| std::env::var_os(name).is_some();
-    let told = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT", "DRI_PRIME"].into_iter().any(is_set);
-    if cfg!(target_os = "linux") && !is_set("XDG_RUNTIME_DIR") && !told {
+    let is_chosen = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT", "DRI_PRIME"].into_iter().any(is_set);
+    if cfg!(target_os = "linux") && !is_set("XDG_RUNTIME_DIR") && !is_chosen {
         // Sound as the reason says: `main` calls this first.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }

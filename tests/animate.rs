@@ -126,7 +126,7 @@ fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
     for (place, (exact, rounded)) in (0..5).zip(exact.pictures.iter().zip(&rounded.pictures)) {
         let capture = session.capture(&round.scene(place), &request(Technique::ZFail, [96, 64])).expect("a frame");
         assert_eq!(*exact, finished(&capture), "place {place}");
-        let kept = Picture::drawn([96, 64], |at| apng::ColorDepth::Rounded.kept(exact.at(at).expect("a pixel")));
+        let kept = Picture::drawn([96, 64], |at| apng::ColorDepth::Rounded.reduced(exact.at(at).expect("a pixel")));
         assert_eq!(*rounded, kept, "place {place}");
     }
     assert!((1..5).all(|place| exact.pictures[place] != exact.pictures[place - 1]), "it moves");
@@ -171,7 +171,7 @@ fn a_file_that_is_there_is_replaced_only_where_that_is_wished() {
 }
 
 #[test]
-fn what_makes_no_animation_is_refused_in_one_line_with_the_mend() {
+fn what_makes_no_animation_is_refused_in_one_line_with_the_fix() {
     let round = ["--light-round"];
     let cases: &[(&[&str], &[&str])] = &[
         (&["-o", "a.gif"], &["`a.gif`", "ends in .png"]),

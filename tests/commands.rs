@@ -102,7 +102,7 @@ pub fn assert_fails(arguments: &[&str], code: i32, words: &[&str]) {
 }
 
 #[test]
-fn broken_input_is_refused_in_one_line_with_the_mend() {
+fn broken_input_is_refused_in_one_line_with_the_fix() {
     let cases: &[(&str, &[&str])] = &[
         ("missing.obj", &["missing.obj", "no such file", "check the path"]),
         ("empty.obj", &["empty.obj", "is empty"]),
@@ -123,7 +123,7 @@ fn broken_input_is_refused_in_one_line_with_the_mend() {
 }
 
 #[test]
-fn broken_usage_is_refused_in_one_line_with_the_mend() {
+fn broken_usage_is_refused_in_one_line_with_the_fix() {
     let cases: &[(&[&str], &[&str])] = &[
         (&["--size", "0x0"], &["0x0", "from 1 to 16384"]),
         (&["--size", "100000x100000"], &["100000x100000", "from 1 to 16384"]),
@@ -172,7 +172,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
 
 /// The unit of another program's frame is not known.
 #[test]
-fn a_recorded_frame_tells_distances_in_units() {
+fn a_recorded_frame_reports_distances_in_units() {
     let folder = folder();
     let coordinates = ["pixel", "ogre", "--at", "200,150", "--coordinates"];
     assert_fails(&coordinates, 2, &["another program's is a guess", "leave it out"]);
@@ -184,7 +184,7 @@ fn a_recorded_frame_tells_distances_in_units() {
 
 /// The names and values that scripts rely on.
 #[test]
-fn pixel_tells_its_history_as_text_and_as_json() {
+fn pixel_reports_its_history_as_text_and_as_json() {
     let folder = folder();
     let arguments = ["pixel", "tetrahedron", "--size", "320x240", "-t", "z-fail", "--at", "160,120"];
     let output = run(folder.path(), &arguments);
@@ -368,7 +368,7 @@ fn bench_panels_steps_in_the_next_frame_and_rests_when_idle() {
 }
 
 #[test]
-fn a_word_that_no_picture_s_name_has_is_wrong_usage_and_the_names_are_told() {
+fn a_word_that_no_picture_s_name_has_is_wrong_usage_and_the_names_are_reported() {
     let folder = folder();
     let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "sunset"]);
     assert_eq!(output.status.code(), Some(2));
@@ -404,7 +404,7 @@ fn bench_truth_prints_rays_a_second() {
 }
 
 #[test]
-fn a_capture_with_truth_tells_errors_in_text_manifest_and_arrays() {
+fn a_capture_with_truth_reports_errors_in_text_manifest_and_arrays() {
     let folder = folder();
     let capture = ["capture", "triangle.obj", "--size", "80x60", "-o", "out", "--truth"];
     for (technique, is_right) in [("none", false), ("z-fail", true)] {

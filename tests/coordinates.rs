@@ -194,7 +194,7 @@ fn a_vertex_that_is_not_there_is_named() {
 }
 
 #[test]
-fn pixel_tells_vertices_and_explains_each_key() {
+fn pixel_reports_vertices_and_explains_each_key() {
     let work = folder();
     let of = |arguments: &[&str]| {
         let size = ["pixel", "tetrahedron", "--size", "80x60"];

@@ -86,7 +86,7 @@ fn a_triangle_across_the_lights_height_is_an_anti_shadow() {
 
 /// A technique without shadows is no riddle, and a far plane before the floor is named, though its depth is clamped.
 #[test]
-fn what_was_not_asked_for_or_not_drawn_is_told_as_such() {
+fn what_was_not_asked_for_or_not_drawn_is_reported_as_such() {
     let folder = crate::commands::folder();
     let (code, told, _) = diagnose(folder.path(), &["tori", "-t", "none", "--no-techniques"]);
     assert_eq!(code, Some(1), "{told}");
@@ -125,7 +125,7 @@ fn a_floor_is_no_open_mesh_and_a_sheet_over_it_is() {
 
 /// A map is blamed for what its settings can mend, and all of the picture is right by z-fail.
 #[test]
-fn maps_are_told_how_to_stay_maps() {
+fn maps_are_reported_how_to_stay_maps() {
     let folder = crate::commands::folder();
     let (code, found) = document(folder.path(), &["steps", "-t", "shadow-map", "--set", "size=128"]);
     let advice = &found["advice"];
@@ -181,7 +181,7 @@ fn the_document_has_the_names_of_the_contract() {
 }
 
 #[test]
-fn a_mesh_with_holes_is_told_of_before_any_pixel() {
+fn a_mesh_with_holes_is_reported_of_before_any_pixel() {
     let folder = crate::commands::folder();
     let (_, told, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques", "--json"]);
     let document: serde_json::Value = serde_json::from_str(&told).expect("JSON");
@@ -226,7 +226,7 @@ fn a_folder_has_pictures_text_and_document_and_is_replaced_only_on_request() {
 }
 
 #[test]
-fn the_mended_scene_opens_again_and_is_right() {
+fn the_fixed_scene_opens_again_and_is_right() {
     let folder = crate::commands::folder();
     shaded(folder.path());
     // From a file, from a built-in scene with meshes of its own, from a model.
@@ -237,12 +237,12 @@ fn the_mended_scene_opens_again_and_is_right() {
         (&["tori", "-t", "shadow-map", "--set", "bias-slope=0", "--set", "bias-constant=0"], ""),
         (&[model, "-t", "none"], ""),
     ];
-    for (index, (arguments, mend)) in cases.into_iter().enumerate() {
+    for (index, (arguments, fix)) in cases.into_iter().enumerate() {
         let file = format!("fixed-{index}.toml");
         let (code, told, error) = diagnose(folder.path(), &[arguments, &["--fix", &file]].concat());
         assert_eq!(code, Some(1), "{error}");
         let last = told.lines().last().expect("a line");
-        assert!(last.starts_with(&format!("{file}: written so that it says: {mend}")), "{told}");
+        assert!(last.starts_with(&format!("{file}: written so that it says: {fix}")), "{told}");
         assert!(last.contains("opened again, 0 of "), "{told}");
         let (code, told, error) = diagnose(folder.path(), &[&file, "--no-techniques"]);
         assert_eq!(code, Some(0), "{told}{error}");
@@ -255,7 +255,7 @@ fn the_mended_scene_opens_again_and_is_right() {
 }
 
 #[test]
-fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_mend() {
+fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_fix() {
     let cases: &[(&[&str], &[&str])] = &[
         (&["tory"], &["did you mean `tori`?"]),
         (&["tori", "-t", "z-fial"], &["did you mean `z-fail`?"]),
@@ -277,7 +277,7 @@ fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_mend() {
 
 /// A model beside the mended scene is never replaced: it may be what the scene is made of.
 #[test]
-fn a_mended_scene_replaces_no_model() {
+fn a_fixed_scene_replaces_no_model() {
     let folder = crate::commands::folder();
     let path = |name: &str| folder.path().join(name);
     let fixed = ["tori", "-t", "z-fail", "--set", "extrusion=finite:1", "--fix", "mended.toml", "--overwrite"];

@@ -33,12 +33,10 @@ fn told(diagnosis: &Diagnosis) -> String {
         let (kind, at) = (region.kind.name(), region.at);
         text += &format!("  {} {kind} at {at:?} of {:?} on {:?}\n", region.pixels, region.casters, region.receivers);
         for cause in &region.causes {
-            let mend = cause.mend.as_ref().map_or("nothing".to_owned(), ToString::to_string);
+            let fix = cause.fix.as_ref().map_or("nothing".to_owned(), ToString::to_string);
             let (proof, left) = (cause.proof.name(), cause.pixels_left);
-            text += &format!(
-                "    {} {proof} {left:?}: {}; {mend} {:?}\n",
-                cause.cause, cause.evidence, cause.together_with
-            );
+            text +=
+                &format!("    {} {proof} {left:?}: {}; {fix} {:?}\n", cause.cause, cause.evidence, cause.together_with);
         }
     }
     text

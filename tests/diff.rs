@@ -104,7 +104,7 @@ fn with_texel(capture: &Capture, step: usize, format: PixelFormat, at: [u32; 2],
 }
 
 #[test]
-fn each_aspect_tells_its_values() {
+fn each_aspect_reports_its_values() {
     let good = session().capture(&scene(), &request(Technique::ZFail, SIZE)).expect("a capture");
     let at = [20, 30];
     let of = |changed: &Capture| {
@@ -154,7 +154,7 @@ fn each_aspect_tells_its_values() {
 }
 
 #[test]
-fn a_difference_that_goes_on_is_told_as_carried() {
+fn a_difference_that_goes_on_is_reported_as_carried() {
     let mut session = session();
     let [good, other] = ["all", "light-facing"].map(|casters| {
         let request = request_with(Technique::ZFail, &[("casters", casters)], SIZE);
@@ -268,7 +268,7 @@ fn conditions_count_and_what_was_asked_does_not() {
 
 /// The program, from outside.
 #[test]
-fn the_command_tells_in_every_form_and_by_its_exit_code() {
+fn the_command_reports_in_every_form_and_by_its_exit_code() {
     let folder = crate::commands::folder();
     let capture = |name: &str, technique: &str| {
         done(folder.path(), &["capture", "triangle.obj", "--size", "48x32", "-o", name, "-t", technique]);
@@ -331,7 +331,7 @@ fn the_command_compares_techniques_and_settings_of_a_scene() {
 }
 
 #[test]
-fn what_can_not_be_compared_is_refused_in_one_line_with_the_mend() {
+fn what_can_not_be_compared_is_refused_in_one_line_with_the_fix() {
     let cases: &[(&[&str], &[&str])] = &[
         (&["tori"], &["both are auto", "--set-b"]),
         (&["tori", "-t", "z-fail", "-t", "z-fail"], &["both are z-fail", "--set-b KEY=VALUE"]),

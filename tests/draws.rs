@@ -222,7 +222,7 @@ fn what_draws_leave_alone_takes_no_room() {
 }
 
 #[test]
-fn a_frame_whose_draws_change_too_much_is_refused_with_a_mend() {
+fn a_frame_whose_draws_change_too_much_is_refused_with_a_fix() {
     let mut session = session();
     session.hold_at_most(32 << 20);
     let request = CaptureRequest { size: [640, 480], ..by_draw(Technique::None) };

@@ -119,7 +119,7 @@ fn a_page_that_is_there_is_replaced_only_where_that_is_wished() {
 }
 
 #[test]
-fn what_makes_no_page_is_refused_in_one_line_with_the_mend() {
+fn what_makes_no_page_is_refused_in_one_line_with_the_fix() {
     let cases: &[(&[&str], &[&str])] = &[
         (&["page", "tori", "-o", "a.png"], &["`a.png`", "ends in .html"]),
         (&["page", "tori", "-o", "nowhere/a.html"], &["nowhere/a.html", "can't be written", "choose another"]),

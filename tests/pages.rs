@@ -341,7 +341,7 @@ fn keys_step_and_the_address_goes_to_the_pixel() {
 
 /// Texel and reader point at each other as in the window, also where each texel has a depth of its own.
 #[test]
-fn a_clicked_texel_tells_the_pixels_that_read_it_and_a_pixel_what_it_is_compared_with() {
+fn a_clicked_texel_reports_the_pixels_that_read_it_and_a_pixel_what_it_is_compared_with() {
     let size = [160, 120];
     for (filter, by_plane) in [("pcf:3", "off"), ("pcf:3", "on"), ("pcf:2", "on")] {
         let settings = [("size", "64"), ("filter", filter), ("bias-receiver-plane", by_plane)];

@@ -169,7 +169,7 @@ fn a_culled_face_shows_in_the_history_of_a_pixel_that_lacks_its_shadow() {
     let pixel = [shadowed % width, shadowed / width].map(|at| at as u32);
     right.at(pixel).stencil(1).agrees();
     wrong.at(pixel).stencil(0).agrees();
-    let is_culled_back = |triangle: &TriangleEvent| triangle.fate == FragmentOutcome::Culled && !triangle.is_front;
+    let is_culled_back = |triangle: &TriangleEvent| triangle.outcome == FragmentOutcome::Culled && !triangle.is_front;
     let of_volume = |frame: &mut Rendered| {
         let history = frame.at(pixel).history().clone();
         history.triangles().filter(|(event, triangle)| event.pass_name == "volumes" && is_culled_back(triangle)).count()

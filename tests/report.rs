@@ -237,7 +237,7 @@ fn rows_for_which_there_is_no_room_are_left_out_and_the_others_are_as_they_were(
     let choices = vec![Choice::new(Technique::ZFail), large, Choice::new(Technique::Planar)];
     let what = Measurement { choices, size: [80, 60], runs: 2 };
     let mut measured = |room| {
-        session.set_room(room);
+        session.set_memory_budget(room);
         session.measure(&scene, &what, &Progress::default()).expect("rows")
     };
     // The map alone is 64 MiB: where there is room, it is set up anew for each of its frames.
@@ -309,7 +309,7 @@ fn colours_are_wrong_where_labels_are() {
 
 /// Two models of one name are two scenes: neither hides the other's front.
 #[test]
-fn scenes_of_one_name_are_told_apart() {
+fn scenes_of_one_name_are_distinguished() {
     let folder = folder();
     fs::copy(folder.path().join("triangle.obj"), folder.path().join("models/triangle.obj")).expect("copied");
     let arguments = ["report", "triangle.obj", "models/triangle.obj", "--size", "40x30", "--runs", "1", "-t", "none"];

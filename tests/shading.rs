@@ -120,7 +120,7 @@ fn a_light_at_45_degrees_has_the_cosine_of_45_degrees() {
 }
 
 #[test]
-fn pixel_tells_the_cosine_and_explains_each_key() {
+fn pixel_reports_the_cosine_and_explains_each_key() {
     let folder = folder();
     let mut frame = rendered(&opened("spheres"), Technique::ZFail, &[("shading", "gouraud")]);
     let [x, y] = frame.first_labelled(0, PixelLabel::Lit).expect("light");

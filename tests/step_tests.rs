@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [160, 90];
 fn counted(history: &PixelHistory, step: usize, draw: Option<usize>) -> [u8; 4] {
     let mut counts = [0; 4];
     for (event, triangle) in history.triangles() {
-        let FragmentOutcome::Tested { stencil, depth, .. } = triangle.fate else { continue };
+        let FragmentOutcome::Tested { stencil, depth, .. } = triangle.outcome else { continue };
         if event.pass != step || draw.is_some_and(|draw| draw != triangle.draw) {
             continue;
         }

@@ -362,8 +362,8 @@ fn see_random_scenes() {
 fn a_known_failure_that_does_not_show_is_unexpected_too() {
     let mut session = session();
     let z_pass = Entrant::of(Technique::ZPass);
-    let mend = |scene: &mut Scene| scene.camera.near = 0.05;
-    let row = one(&mut session, ("near-plane", 2.1), z_pass, SMALL, InjectedFault::Scene(&mend));
+    let fix = |scene: &mut Scene| scene.camera.near = 0.05;
+    let row = one(&mut session, ("near-plane", 2.1), z_pass, SMALL, InjectedFault::Scene(&fix));
     assert!(matches!(row.expected, ExpectedResult::Fails(FailureSymptom { name: "near-plane", .. })));
     assert_eq!((row.error.wrong(), row.surprise()), (0, Some(UnexpectedResult::NotShown)));
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::disk::{read_whole, write};
 use stencilscope::plan::{Blob, FramePlan};
-use stencilscope::reading::pick_ray::sight;
+use stencilscope::reading::pick_ray::ray;
 use stencilscope::scene::{
     Camera, Light, Material, MaterialTexture, Mesh, MeshBuilder, Object, Projection, Scene, SceneBuilder, Shading,
     TextureImage, obj, shapes,
@@ -240,10 +240,10 @@ fn places_in_a_picture_are_in_perspective() {
     let normal = right.cross(up);
     let (mut compared, mut bent) = (0, 0.0_f64);
     for [x, y] in (1..SIZE[1]).step_by(3).flat_map(|y| (1..SIZE[0]).step_by(4).map(move |x| [x, y])) {
-        let sight = sight(frame.capture(), [x, y]);
-        let from = scene.camera.eye + sight.from;
-        let distance = normal.dot(corner - from) / normal.dot(sight.along);
-        let at = from + sight.along * distance - corner;
+        let ray = ray(frame.capture(), [x, y]);
+        let from = scene.camera.eye + ray.from;
+        let distance = normal.dot(corner - from) / normal.dot(ray.along);
+        let at = from + ray.along * distance - corner;
         let uv = [at.dot(right) / right.length_squared(), at.dot(up) / up.length_squared()];
         if !uv.iter().all(|part| (0.06..0.94).contains(part)) {
             continue;

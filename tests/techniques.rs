@@ -246,7 +246,7 @@ fn casters_all_round_make_a_cube_map_without_its_empty_faces() {
     whole.choice.set("leave-out", "none").expect("a setting");
     let six = session.plan(&scene, &whole).expect("a plan");
     let attachment = plan.lights[0].map.as_ref().expect("a map").attachment;
-    assert_eq!([&plan, &six].map(|plan| plan.held_layers(attachment)), [5, 6]);
+    assert_eq!([&plan, &six].map(|plan| plan.stored_layers(attachment)), [5, 6]);
     let face = u64::from(plan.attachment(attachment).size[0]).pow(2) * 4;
     assert!(six.bytes() >= plan.bytes() + face, "{} and {}", six.bytes(), plan.bytes());
     let six = session.capture(&scene, &whole).expect("a capture");

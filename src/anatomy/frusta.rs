@@ -89,12 +89,12 @@ fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: View
 }
 
 pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
-    let sights = CORNERS.map(|corner| camera.sights(aspect).through(corner));
-    let at = |sight: Ray, distance: f64| (camera.eye + sight.at(distance)).extend(1.0);
+    let rays = CORNERS.map(|corner| camera.rays(aspect).through(corner));
+    let at = |ray: Ray, distance: f64| (camera.eye + ray.at(distance)).extend(1.0);
     Frustum {
         of: ViewOf::Camera,
-        near: sights.map(|sight| at(sight, camera.near)),
-        far: sights.map(|sight| far.map_or(sight.along.extend(0.0), |far| at(sight, far))),
+        near: rays.map(|ray| at(ray, camera.near)),
+        far: rays.map(|ray| far.map_or(ray.along.extend(0.0), |far| at(ray, far))),
     }
 }
 

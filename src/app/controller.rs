@@ -38,7 +38,7 @@ pub struct Controller {
     /// The panels.
     pub inspector: Inspector,
     worker: Worker,
-    tell: Notify,
+    notify: Notify,
     /// Of the scene that is open.
     scene: u64,
     /// Of the frame that is shown.
@@ -65,9 +65,9 @@ impl Drop for Controller {
 }
 
 impl Controller {
-    /// Opens what is asked for. `tell` wakes whoever draws. What was remembered of the run before is recalled, and
+    /// Opens what is asked for. `notify` wakes whoever draws. What was remembered of the run before is recalled, and
     /// this one's kept, where `remembers` says so.
-    pub fn new(request: ViewRequest, tell: Notify, remembers: bool) -> Result<Controller, AppError> {
+    pub fn new(request: ViewRequest, notify: Notify, remembers: bool) -> Result<Controller, AppError> {
         let start = WorkerStart {
             source: request.source,
             name: request.name,
@@ -75,7 +75,7 @@ impl Controller {
             time: request.time,
             adapter: request.adapter,
         };
-        let to_window = Arc::clone(&tell);
+        let to_window = Arc::clone(&notify);
         let worker = Worker::start(start, move |news| to_window(WindowNews::Worker(news)))?;
         let entry = |name: &str, lesson: &str| SceneEntry { name: name.to_owned(), lesson: lesson.to_owned() };
         let scenes = builtin::ALL.iter().map(|builtin| entry(builtin.name, builtin.lesson)).collect();
@@ -86,11 +86,11 @@ impl Controller {
         }
         let remembered = inspector.remembered();
         inspector.set_job(Some("starting".to_owned()));
-        let watch = if remembers { Some(Watch::start(Arc::clone(&tell)).map_err(AppError::NoThread)?) } else { None };
+        let watch = if remembers { Some(Watch::start(Arc::clone(&notify)).map_err(AppError::NoThread)?) } else { None };
         Ok(Controller {
             inspector,
             worker,
-            tell,
+            notify,
             scene: 0,
             frame: 0,
             run: None,
@@ -117,7 +117,7 @@ impl Controller {
             WindowNews::Exported(exported) => self.end_export(exported),
             WindowNews::Read { ticket, result } => {
                 self.inspector.answer(ticket, result, true);
-                let next = self.reader.go_on(&self.tell);
+                let next = self.reader.go_on(&self.notify);
                 self.say_if_failed(next);
             }
             WindowNews::FileChanged(file) => self.inspector.offer_reload(file),
@@ -218,7 +218,7 @@ impl Controller {
                         }
                         (data, _) => export::ExportContent::Panels(data),
                     };
-                    if let Err(error) = export::start(data, path, replace, Arc::clone(&self.tell)) {
+                    if let Err(error) = export::start(data, path, replace, Arc::clone(&self.notify)) {
                         self.inspector.end_export(Err(format!("nothing can be written now: {error}; try again")));
                     }
                     return;
@@ -258,7 +258,7 @@ impl Controller {
     fn read(&mut self, asked: PendingQuestion) {
         let Some(capture) = self.inspector.capture().cloned() else { return };
         let reading = ReadRequest { asked, capture, plan: self.inspector.plan().cloned() };
-        let begun = self.reader.read(reading, &self.tell);
+        let begun = self.reader.read(reading, &self.notify);
         self.say_if_failed(begun);
     }
 
@@ -281,10 +281,10 @@ impl Controller {
             }
             DialogFilter::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
         };
-        let tell = Arc::clone(&self.tell);
+        let notify = Arc::clone(&self.notify);
         let wait = move || {
             if let Some(chosen) = pollster::block_on(dialog) {
-                tell(WindowNews::Chosen(chosen.path().display().to_string()));
+                notify(WindowNews::Chosen(chosen.path().display().to_string()));
             }
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
@@ -297,11 +297,11 @@ impl Controller {
         let dialog = rfd::AsyncFileDialog::new().set_title("Export");
         let name = Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
         let dialog = dialog.set_file_name(name.unwrap_or_default());
-        let tell = Arc::clone(&self.tell);
+        let notify = Arc::clone(&self.notify);
         let wait = move || {
             // A capture is a folder: its place is chosen like that of a file that is not there yet.
             if let Some(file) = pollster::block_on(dialog.save_file()) {
-                tell(WindowNews::ChosenExport(file.path().display().to_string()));
+                notify(WindowNews::ChosenExport(file.path().display().to_string()));
             }
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {

@@ -23,10 +23,10 @@ pub enum ExportContent {
 
 /// Writes `data` to `path`, and tells the window how that ended. What is there is replaced only where `replace`
 /// says so. Scenes are the worker's to write.
-pub fn start(data: ExportContent, path: String, replace: bool, tell: Notify) -> std::io::Result<()> {
+pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -> std::io::Result<()> {
     let run = move || {
         let news = write(&data, &path, replace);
-        tell(WindowNews::Exported(news));
+        notify(WindowNews::Exported(news));
     };
     std::thread::Builder::new().name("export".to_owned()).spawn(run).map(drop)
 }
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_that_can_not_be_written_to_is_told_with_the_mend() {
+    fn a_place_that_can_not_be_written_to_is_reported_with_the_fix() {
         let data = ExportContent::Panels(ExportData::Picture(Picture::filled([1, 1], [0; 3])));
         let answer = write(&data, "/no such folder/a.png", false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("choose another place")));

@@ -272,7 +272,7 @@ impl Painter {
         for (y, row) in (0..height).zip(bytes.chunks_exact(stride as usize)) {
             for (x, texel) in (0..width).zip(row.chunks_exact(4)) {
                 let [a, b, c] = [texel[0], texel[1], texel[2]];
-                picture.put([x, y], if is_bgra { [c, b, a] } else { [a, b, c] });
+                picture.set([x, y], if is_bgra { [c, b, a] } else { [a, b, c] });
             }
         }
         Ok(picture)

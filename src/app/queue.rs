@@ -78,7 +78,7 @@ impl Order {
 
     /// Opening wins over the runs around it, as those before are of the old scene and those after were made before the
     /// window knew the new one.
-    fn is_kept_over(&self, later: &Order) -> bool {
+    fn outlasts(&self, later: &Order) -> bool {
         !matches!(self, Order::Run { .. }) && matches!(later, Order::Run { .. })
     }
 }
@@ -91,13 +91,13 @@ impl OrderQueue {
     /// One more.
     pub fn add(&mut self, order: Order) {
         let sort = order.sort();
-        if sort != OrderKind::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.is_kept_over(&order)) {
+        if sort != OrderKind::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.outlasts(&order)) {
             self.0.insert(sort, order);
         }
     }
 
     /// Puts back what was obeyed in part; a newer one of its sort counts instead.
-    pub fn put_back(&mut self, rest: Order) {
+    pub fn restore_waiting(&mut self, rest: Order) {
         self.0.entry(rest.sort()).or_insert(rest);
     }
 
@@ -236,10 +236,10 @@ mod tests {
     fn the_rest_of_the_stress_cases_comes_last_and_gives_way_to_a_newer_run() {
         let stress = |ticket| asked(ticket, StressOf { cases: Vec::new() });
         let mut queue = queue([stress(2), asked(3, TruthOf {})]);
-        queue.put_back(stress(1));
+        queue.restore_waiting(stress(1));
         assert_eq!(tickets(queue), [3, 2]);
         let mut queue = OrderQueue::default();
-        queue.put_back(stress(1));
+        queue.restore_waiting(stress(1));
         assert_eq!(tickets(queue), [1]);
     }
 

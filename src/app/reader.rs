@@ -35,16 +35,16 @@ pub struct ReaderThread {
 
 impl ReaderThread {
     /// Answers now, or after what is under way.
-    pub fn read(&mut self, reading: ReadRequest, tell: &Notify) -> Result<(), NoReader> {
+    pub fn read(&mut self, reading: ReadRequest, notify: &Notify) -> Result<(), NoReader> {
         if self.is_running {
             self.next = Some(reading);
             return Ok(());
         }
-        let (tell, ticket) = (Arc::clone(tell), reading.asked.ticket);
+        let (notify, ticket) = (Arc::clone(notify), reading.asked.ticket);
         let run = move || {
             let ReadRequest { asked, capture, plan } = reading;
             let result = asked.ask.read_from(&capture, plan.as_ref());
-            tell(WindowNews::Read { ticket: asked.ticket, result });
+            notify(WindowNews::Read { ticket: asked.ticket, result });
         };
         std::thread::Builder::new().name("reader".to_owned()).spawn(run).map_err(|why| NoReader { ticket, why })?;
         self.is_running = true;
@@ -52,8 +52,8 @@ impl ReaderThread {
     }
 
     /// What was under way is done.
-    pub fn go_on(&mut self, tell: &Notify) -> Result<(), NoReader> {
+    pub fn go_on(&mut self, notify: &Notify) -> Result<(), NoReader> {
         self.is_running = false;
-        self.next.take().map_or(Ok(()), |next| self.read(next, tell))
+        self.next.take().map_or(Ok(()), |next| self.read(next, notify))
     }
 }

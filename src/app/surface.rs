@@ -153,13 +153,13 @@ impl WindowSurface {
         match command {
             egui::ViewportCommand::CursorGrab(grab) => {
                 self.holds_pointer = *grab != egui::CursorGrab::None;
-                let held = if self.holds_pointer {
+                let grabbed = if self.holds_pointer {
                     let locked = self.window.set_cursor_grab(CursorGrabMode::Locked);
                     locked.or_else(|_| self.window.set_cursor_grab(CursorGrabMode::Confined))
                 } else {
                     self.window.set_cursor_grab(CursorGrabMode::None)
                 };
-                self.grab_failed = held.err().map(|error| error.to_string());
+                self.grab_failed = grabbed.err().map(|error| error.to_string());
             }
             egui::ViewportCommand::CursorVisible(is_visible) => self.window.set_cursor_visible(*is_visible),
             _ => {}

@@ -22,7 +22,7 @@ pub struct Watch {
 
 impl Watch {
     /// Starts to look.
-    pub fn start(tell: Notify) -> std::io::Result<Watch> {
+    pub fn start(notify: Notify) -> std::io::Result<Watch> {
         let watch = Watch::default();
         let files = Arc::clone(&watch.files);
         let look = move || {
@@ -34,7 +34,7 @@ impl Watch {
                 }
                 let changed = files.lock().ok().and_then(|mut files| first_changed(&mut files));
                 if let Some(file) = changed {
-                    tell(WindowNews::FileChanged(file));
+                    notify(WindowNews::FileChanged(file));
                 }
             }
         };
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_change_is_told_once_and_a_missing_file_is_no_change() {
+    fn a_change_is_reported_once_and_a_missing_file_is_no_change() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("a.obj");
         std::fs::write(&file, "v 0 0 0").expect("a file");

@@ -43,8 +43,8 @@ impl App {
         let adapter = request.adapter.clone();
         // A loop that has ended takes no news, and needs none.
         let to_window = proxy.clone();
-        let tell = Arc::new(move |news| drop(to_window.send_event(news)));
-        let controller = Controller::new(request, tell, true)?;
+        let notify = Arc::new(move |news| drop(to_window.send_event(news)));
+        let controller = Controller::new(request, notify, true)?;
         Ok(App { ctx: context(&proxy), controller, proxy, adapter, surface: None, failure: None, repaint_at: None })
     }
 

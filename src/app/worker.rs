@@ -78,8 +78,8 @@ pub struct WorkerStart {
 }
 
 impl Worker {
-    /// Starts the thread; `tell` carries its news.
-    pub fn start(start: WorkerStart, tell: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
+    /// Starts the thread; `notify` carries its news.
+    pub fn start(start: WorkerStart, notify: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let (alive, ended) = channel();
         let is_filming = Arc::new(AtomicBool::new(false));
@@ -87,7 +87,7 @@ impl Worker {
         let run = move || {
             // Goes last: by then all else has gone.
             let _alive: Sender<()> = alive;
-            let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(tell), films);
+            let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(notify), films);
             work.begin(start.source, start.name, start.time);
             work.obey_all(&waiting);
         };
@@ -129,7 +129,7 @@ struct WorkerState {
     is_filming: Arc<AtomicBool>,
     /// Stress cases that are being run.
     stress: Option<turns::StressRun>,
-    tell: Box<dyn Fn(News) + Send>,
+    notify: Box<dyn Fn(News) + Send>,
 }
 
 /// What a stress case brings along in place of what the user has chosen, which counts again when another
@@ -146,7 +146,7 @@ impl WorkerState {
     fn new(
         adapter: Option<String>,
         capture: &CaptureRequest,
-        tell: Box<dyn Fn(News) + Send>,
+        notify: Box<dyn Fn(News) + Send>,
         is_filming: Arc<AtomicBool>,
     ) -> WorkerState {
         let CaptureRequest { choice, size, every, .. } = capture.clone();
@@ -166,7 +166,7 @@ impl WorkerState {
             film: None,
             is_filming,
             stress: None,
-            tell,
+            notify,
         }
     }
 
@@ -261,15 +261,15 @@ impl WorkerState {
         }
         let (doing, starts) = (asked.ask.doing(), self.session.is_none());
         if let Some(doing) = &doing {
-            (self.tell)(News::Busy(doing.clone()));
+            (self.notify)(News::Busy(doing.clone()));
         }
         let result = self.found(of, asked).map_err(|error| error.to_string());
         // Where it was cancelled, the window has asked for it.
         if !asked.progress.is_cancelled() {
-            (self.tell)(News::Answered { ticket: asked.ticket, result });
+            (self.notify)(News::Answered { ticket: asked.ticket, result });
         }
         if doing.is_some() || starts {
-            (self.tell)(News::Idle);
+            (self.notify)(News::Idle);
         }
     }
 
@@ -304,7 +304,7 @@ impl WorkerState {
     }
 
     fn open(&mut self, name: &str) -> Result<(), String> {
-        (self.tell)(News::Busy(format!("opening {name}")));
+        (self.notify)(News::Busy(format!("opening {name}")));
         let path = Path::new(name);
         if path.is_dir() {
             self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name);
@@ -334,12 +334,12 @@ impl WorkerState {
             Ok(frame) => frame,
             Err(whole) => {
                 (self.open, self.last, self.spec) = (None, None, None);
-                return (self.tell)(News::OpenedFolder { capture: Arc::new(whole.capture), source: name });
+                return (self.notify)(News::OpenedFolder { capture: Arc::new(whole.capture), source: name });
             }
         };
         let Ok((scene, request)) = frame.made() else {
             (self.open, self.spec) = (None, None);
-            (self.tell)(News::OpenedFolder { capture: Arc::clone(&frame.capture), source: name });
+            (self.notify)(News::OpenedFolder { capture: Arc::clone(&frame.capture), source: name });
             return self.show(frame, Duration::ZERO);
         };
         let spec = OpenSpec::new(disk::scene_file(Path::new(folder)).display().to_string());
@@ -349,7 +349,7 @@ impl WorkerState {
         self.take_over(&request);
         let (scene_number, files) = (self.scenes, crate::scene::files_of(&spec));
         (self.open, self.spec) = (Some(scene.clone()), Some(spec));
-        (self.tell)(News::Opened { scene_number, scene, source: Some(name), files, request });
+        (self.notify)(News::Opened { scene_number, scene, source: Some(name), files, request });
         self.show(frame, Duration::ZERO);
     }
 
@@ -359,7 +359,7 @@ impl WorkerState {
         let is_meant = whole.capture.origin.is_some() && !is_checked;
         let Some(plan) = whole.plan.as_ref().filter(|_| is_meant) else { return whole };
         let checked =
-            self.session().and_then(|session| session.held_against_itself(plan, &whole.capture, &Progress::default()));
+            self.session().and_then(|session| session.compared_with_rerun(plan, &whole.capture, &Progress::default()));
         match checked {
             Ok(capture) => WholeFrame { capture, ..whole },
             // What was stored can be looked at without a GPU.
@@ -371,7 +371,7 @@ impl WorkerState {
     fn show(&mut self, frame: RunFrame, took: Duration) {
         self.took = took;
         self.frames += 1;
-        (self.tell)(News::Captured { frame: self.frames, run: frame.clone() });
+        (self.notify)(News::Captured { frame: self.frames, run: frame.clone() });
         self.last = Some(frame);
     }
 
@@ -379,7 +379,7 @@ impl WorkerState {
     /// it, and what has none is told.
     fn reload(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(spec) = self.spec.clone() else { return Ok(()) };
-        (self.tell)(News::Busy(format!("opening {}", spec.name)));
+        (self.notify)(News::Busy(format!("opening {}", spec.name)));
         let mut scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
         scene.camera = request.camera;
         self.choice = request.choice.clone();
@@ -390,8 +390,8 @@ impl WorkerState {
         };
         let CarriedOver { request, dropped } = request.carried_over(&before, &scene);
         let name = spec.name;
-        let told = dropped.into_iter().map(|what| News::Dropped(format!("{name} was loaded without {what}")));
-        told.for_each(&self.tell);
+        let dropped_news = dropped.into_iter().map(|what| News::Dropped(format!("{name} was loaded without {what}")));
+        dropped_news.for_each(&self.notify);
         self.open_as(Box::new(scene), &request)
     }
 
@@ -413,7 +413,7 @@ impl WorkerState {
                 }
             }
         };
-        (self.tell)(News::Exported(news));
+        (self.notify)(News::Exported(news));
     }
 
     /// The session, opened on first use.
@@ -421,7 +421,7 @@ impl WorkerState {
         match &mut self.session {
             Some(session) => Ok(session),
             none => {
-                (self.tell)(News::Busy("starting the GPU".to_owned()));
+                (self.notify)(News::Busy("starting the GPU".to_owned()));
                 Ok(none.insert(Session::new(self.adapter.as_deref())?))
             }
         }
@@ -442,7 +442,7 @@ impl WorkerState {
         let files = self.spec.as_ref().map_or_else(Vec::new, crate::scene::files_of);
         self.open = Some(scene.clone());
         self.last = None;
-        (self.tell)(News::Opened {
+        (self.notify)(News::Opened {
             scene_number: self.scenes,
             scene,
             source,
@@ -454,7 +454,7 @@ impl WorkerState {
 
     /// Opens a stress case's scene at a value, with its shadows made as `entrant` says.
     fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
-        (self.tell)(News::Busy(format!("opening {}", case.name)));
+        (self.notify)(News::Busy(format!("opening {}", case.name)));
         let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
         scene.name = format!("{} {value}", case.name);
         let choice = match entrant {
@@ -488,7 +488,7 @@ impl WorkerState {
     fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
         let request = CaptureRequest { every: self.every, ..CaptureRequest::new(request.choice.clone(), request.size) };
         self.session()?;
-        (self.tell)(News::Busy(format!("capturing {}", request.choice.technique().name())));
+        (self.notify)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
         let frame = self.session()?.render(scene, request)?;
         self.show(frame, start.elapsed());
@@ -498,9 +498,9 @@ impl WorkerState {
     /// Tells that the work is over, and of an error.
     fn finish(&self, done: Result<(), String>) {
         if let Err(reason) = done {
-            (self.tell)(News::Failed(reason));
+            (self.notify)(News::Failed(reason));
         }
-        (self.tell)(News::Idle);
+        (self.notify)(News::Idle);
     }
 }
 

@@ -284,7 +284,7 @@ impl Answers {
     }
 
     /// Takes in what is known of a question that nobody need ask, or why nothing is.
-    pub fn tell<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
+    pub fn take_in<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
         let ask = question.into();
         let slot = self.slot_mut(Q::KIND);
         slot.asked = None;
@@ -356,14 +356,14 @@ impl Answers {
 
     /// Is anything being found out that says how far it is?
     pub fn has_progress(&self) -> bool {
-        let tells = [
+        let takes_in = [
             QuestionKind::TruthOf,
             QuestionKind::DiagnosisOf,
             QuestionKind::ReportOf,
             QuestionKind::FilmOf,
             QuestionKind::StressOf,
         ];
-        tells.iter().any(|kind| self.slot(*kind).asked.is_some())
+        takes_in.iter().any(|kind| self.slot(*kind).asked.is_some())
     }
 
     fn slot(&self, kind: QuestionKind) -> &AnswerSlot {

@@ -87,7 +87,7 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
 pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
     let contents = contents.into();
-    put_folder(folder, |new| write_files(contents, new))
+    write_folder(folder, |new| write_files(contents, new))
 }
 
 /// Writes a picture's values as a NumPy array, or those of all layers of a map; colours as numbers too.
@@ -100,13 +100,13 @@ pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureErr
 
 /// Makes a folder whole or not at all: `fill` makes and fills it beside its place, where it is renamed to. One that
 /// it replaces is moved aside until then; whether it may be replaced is the caller's to know.
-pub fn put_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
+pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
     let made: Vec<&Path> = new.ancestors().take_while(|ancestor| !ancestor.exists()).collect();
     let result = fill(&new).and_then(|filled| {
-        put_in_place(folder, &new, &old)?;
+        swap_in(folder, &new, &old)?;
         Ok(filled)
     });
     result.map_err(|error| {
@@ -130,7 +130,7 @@ fn beside(folder: &Path, which: &str) -> PathBuf {
     folder.with_file_name(format!(".{name}.{which}-{}", std::process::id()))
 }
 
-fn put_in_place(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureError> {
+fn swap_in(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureError> {
     let failed = |source| CaptureError::Write { file: folder.to_owned(), source };
     let replaces = folder.exists();
     if replaces {
@@ -234,15 +234,15 @@ fn frame_files(
     written: &mut WrittenImages,
 ) -> Result<StateFiles, CaptureError> {
     let mut unchanged = Vec::new();
-    let mut put = |name: &'static str, ending: &str, aspect: &Aspect| {
+    let mut write = |name: &'static str, ending: &str, aspect: &Aspect| {
         if aspect.unchanged {
             unchanged.push(name.to_owned());
         }
-        written.put(folder, format!("{stem}.{name}.{ending}"), &aspect.image).map(Some)
+        written.write(folder, format!("{stem}.{name}.{ending}"), &aspect.image).map(Some)
     };
-    let color = put("color", "png", &frame.color)?;
-    let depth = put("depth", "npy", &frame.depth)?;
-    let stencil = frame.stencil.as_ref().map_or(Ok(None), |stencil| put("stencil", "npy", stencil))?;
+    let color = write("color", "png", &frame.color)?;
+    let depth = write("depth", "npy", &frame.depth)?;
+    let stencil = frame.stencil.as_ref().map_or(Ok(None), |stencil| write("stencil", "npy", stencil))?;
     Ok(StateFiles { color, depth, stencil, unchanged: Some(unchanged), ..StateFiles::default() })
 }
 
@@ -253,7 +253,7 @@ struct WrittenImages(BTreeMap<*const Image, String>);
 
 impl WrittenImages {
     /// Writes a picture to `file` unless it has one; the file that it has.
-    fn put(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
+    fn write(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
         if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
             return Ok(earlier.clone());
         }

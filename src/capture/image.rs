@@ -271,7 +271,7 @@ mod tests {
         Image::from_rows(PixelFormat::U8, [5, 20], row_stride, bytes)
     }
 
-    fn held(images: &[&Image]) -> usize {
+    fn shared_bytes(images: &[&Image]) -> usize {
         let places: std::collections::BTreeSet<(usize, usize)> =
             images.iter().flat_map(|image| image.memory()).map(|place| (place.start, place.end)).collect();
         places.iter().map(|(start, end)| end - start).sum()
@@ -291,7 +291,7 @@ mod tests {
         let third = picture(16, &[(2, 9), (4, 19)]);
         let of_both = third.sharing(&shared).expect("one strip differs");
         assert_eq!((&of_both, of_both.rows().len()), (&third, 20));
-        assert_eq!(held(&[&shared, &of_both]), held(&[&shared]) + 4 * 5);
+        assert_eq!(shared_bytes(&[&shared, &of_both]), shared_bytes(&[&shared]) + 4 * 5);
     }
 
     #[test]
@@ -309,7 +309,7 @@ mod tests {
         let drawn = picture(8, &[(0, 0)]);
         let shared = drawn.sharing(&cleared).expect("one strip differs");
         assert_eq!(shared, drawn);
-        assert_eq!(held(&[&shared]), 5 + 8 * 5);
+        assert_eq!(shared_bytes(&[&shared]), 5 + 8 * 5);
     }
 
     #[test]

@@ -81,7 +81,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
         notes += &write_folder(folder, &files)?;
     }
     if let Some(fix) = fix {
-        notes += &fix.write(&mut session, &loaded, scene_options.moment()?, &request, &diagnosis, &suited)?;
+        notes += &fix.write(&mut session, &loaded, scene_options.seconds()?, &request, &diagnosis, &suited)?;
     }
     if arguments.json.is_none() {
         output::print(&notes)?;
@@ -115,8 +115,8 @@ fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
     if !diagnosis.is_bad() {
         return Ok(());
     }
-    let told: u64 = diagnosis.regions.iter().map(|region| region.pixels).sum();
-    let all = told + diagnosis.rest.pixels;
+    let listed: u64 = diagnosis.regions.iter().map(|region| region.pixels).sum();
+    let all = listed + diagnosis.rest.pixels;
     let mut by_cause: BTreeMap<Cause, u64> = BTreeMap::new();
     for region in &diagnosis.regions {
         let first = region.causes.first().filter(|found| found.proof != Proof::NotIt);
@@ -158,15 +158,15 @@ fn files(
     text: &str,
     document: &str,
 ) -> Result<DiagnosisFiles, CliError> {
-    let mut pictured = |mend: &Fix| {
-        let (capture, _) = session.capture_mended(scene, request, InjectedFault::None, mend)?;
+    let mut pictured = |fix: &Fix| {
+        let (capture, _) = session.capture_fixed(scene, request, InjectedFault::None, fix)?;
         Ok::<_, CliError>(session.judged(scene, &capture, &Progress::default())?)
     };
     let png = |picture: &Picture| picture.to_png().map_err(|error| broken(std::io::Error::other(error.to_string())));
     let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Fix::default())?))?)];
     // A larger picture is another: nothing in it stands beside the first.
-    if let Some(advice) = diagnosis.advice.as_ref().filter(|advice| advice.mend.larger.is_none()) {
-        files.push(("mended.png", png(&wrong_pixels(&pictured(&advice.mend)?))?));
+    if let Some(advice) = diagnosis.advice.as_ref().filter(|advice| advice.fix.larger.is_none()) {
+        files.push(("mended.png", png(&wrong_pixels(&pictured(&advice.fix)?))?));
     }
     files.push(("diagnosis.txt", text.as_bytes().to_vec()));
     files.push((DOCUMENT, document.as_bytes().to_vec()));
@@ -174,7 +174,7 @@ fn files(
 }
 
 fn write_folder(folder: &Path, files: &DiagnosisFiles) -> Result<String, CliError> {
-    disk::put_folder(folder, |new| {
+    disk::write_folder(folder, |new| {
         let failed = |source| CaptureError::Write { file: new.to_owned(), source };
         fs::create_dir_all(new).map_err(failed)?;
         files.iter().try_for_each(|(name, bytes)| fs::write(new.join(name), bytes).map_err(failed))

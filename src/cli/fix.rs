@@ -49,10 +49,10 @@ impl<'a> FixOutput<'a> {
         if !diagnosis.is_bad() {
             return Ok(format!("{}: not written, as nothing is wrong\n", self.file));
         }
-        let Some(mend) = diagnosis.mend_to_write(suited) else {
+        let Some(fix) = diagnosis.fix_to_write(suited) else {
             return Ok(format!("{}: not written, as nothing that was tried helps\n", self.file));
         };
-        let scene = mended(loaded, request.choice.clone(), &mend)?;
+        let scene = fixed(loaded, request.choice.clone(), &fix)?;
         store(&scene, Some(Path::new(self.source)), Path::new(self.file))?;
         let again = open(&OpenSpec { floor: false, ..OpenSpec::new(self.file) })?.at(time);
         let choice = again.technique.as_ref().map(Choice::parse).transpose()?;
@@ -60,7 +60,7 @@ impl<'a> FixOutput<'a> {
         let capture = session.capture(&again, &request)?;
         let error = session.judged(&again, &capture, &Progress::default())?.error().unwrap_or_default();
         Ok(format!(
-            "{}: written so that it says: {mend}; opened again, {} of {} compared pixels are wrong\n",
+            "{}: written so that it says: {fix}; opened again, {} of {} compared pixels are wrong\n",
             self.file,
             numbers::count(error.wrong()),
             numbers::count(error.compared),
@@ -69,9 +69,9 @@ impl<'a> FixOutput<'a> {
 }
 
 /// The scene with the mend made, and the technique that it asks for.
-fn mended(loaded: &Scene, mut choice: Choice, mend: &Fix) -> Result<Scene, CliError> {
+fn fixed(loaded: &Scene, mut choice: Choice, fix: &Fix) -> Result<Scene, CliError> {
     let mut scene = loaded.clone();
-    mend.apply(&mut scene, &mut choice)?;
+    fix.apply(&mut scene, &mut choice)?;
     scene.technique = Some(choice.to_request());
     Ok(scene)
 }

@@ -85,7 +85,7 @@ impl ImportTarget {
         drop(frame);
         let mut session = Session::new(self.adapter.as_deref())?;
         let capture = progress::with_bar("check", &Progress::default(), |progress| {
-            session.held_against_itself(&plan, &capture, progress)
+            session.compared_with_rerun(&plan, &capture, progress)
         })?;
         disk::write(
             FolderContents { capture: &capture, plan: Some(&plan), scene: scene.as_ref() },

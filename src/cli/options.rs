@@ -130,11 +130,11 @@ impl SceneOptions {
 
     /// Opens the scene and applies these options; the result stands still at `--time`.
     pub fn open(&self, name: &str) -> Result<Scene, CliError> {
-        Ok(self.load(name)?.at(self.moment()?))
+        Ok(self.load(name)?.at(self.seconds()?))
     }
 
     /// The moment at which scenes are seen.
-    pub fn moment(&self) -> Result<f64, CliError> {
+    pub fn seconds(&self) -> Result<f64, CliError> {
         match self.time {
             SceneTime::At(seconds) => Ok(seconds),
             SceneTime::Moving { .. } => {
@@ -144,7 +144,7 @@ impl SceneOptions {
     }
 
     /// The frames that were asked for, `usual` ones where their number was not; `None` of one moment.
-    pub fn moments(&self, moves: MovingPart, usual: usize) -> Option<MotionFrames> {
+    pub fn motion_frames(&self, moves: MovingPart, usual: usize) -> Option<MotionFrames> {
         match self.time {
             SceneTime::At(_) => None,
             SceneTime::Moving { from, to, frames } => {
@@ -157,9 +157,9 @@ impl SceneOptions {
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
         let mut scene = open(&self.spec(name))?;
         if self.z_up && !is_model(name) {
-            let mend = "leave it out, or turn its objects in a scene file (`rotate_degrees`)";
+            let fix = "leave it out, or turn its objects in a scene file (`rotate_degrees`)";
             return Err(CliError::Usage(format!(
-                "`--z-up` turns a bare model (.obj, .ply), and `{name}` is none: {mend}"
+                "`--z-up` turns a bare model (.obj, .ply), and `{name}` is none: {fix}"
             )));
         }
         self.place_camera(&mut scene)?;
@@ -240,13 +240,13 @@ impl Subject {
         let shipped = ShippedFrame::named(name).filter(|_| !is_capture);
         if !is_capture && shipped.is_none() {
             let loaded = scene.load(name)?;
-            let at = loaded.at(scene.moment()?);
+            let at = loaded.at(scene.seconds()?);
             let request = frame.request(&at)?;
             return Ok(Subject::Scene(Box::new(SceneSubject { loaded, scene: at, request })));
         }
         if !scene.is_untouched() || frame.technique.is_some() || !frame.set.is_empty() || frame.size.is_some() {
-            let mend = "leave its options out, or name its scene.toml in place of the folder";
-            return Err(CliError::Usage(format!("`{name}` is a frame that was captured already: {mend}")));
+            let fix = "leave its options out, or name its scene.toml in place of the folder";
+            return Err(CliError::Usage(format!("`{name}` is a frame that was captured already: {fix}")));
         }
         let alone = "it holds no frame that this version can run: capture the scene again";
         let whole = RunFrame::from_folder(match shipped {

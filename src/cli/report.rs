@@ -66,11 +66,11 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     if let Some(MergedFiles::Merge(arguments)) = &arguments.merge {
         return merge::run(arguments, command);
     }
-    if arguments.moves != MovingPart::Scene && arguments.moments().is_none() {
+    if arguments.moves != MovingPart::Scene && arguments.motion_frames().is_none() {
         return Err(CliError::Usage("`--moves` is for frames from a moment to another: add `--time A..B`".to_owned()));
     }
     let choices = choices(arguments)?;
-    let open = |name: &String| match arguments.moments() {
+    let open = |name: &String| match arguments.motion_frames() {
         Some(_) => arguments.scene_options.load(name),
         None => arguments.scene_options.open(name),
     };
@@ -97,16 +97,16 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
             continue;
         }
         let bar = swept.as_ref().map_or_else(|| name.clone(), |swept| format!("{name}, {} {}", swept.name, swept.text));
-        let moments = arguments.moments();
-        let measured = with_bar(&bar, &Progress::default(), |progress| match moments {
-            Some(moments) => session.measure_moving(scene, &ours, moments, progress),
+        let motion_frames = arguments.motion_frames();
+        let measured = with_bar(&bar, &Progress::default(), |progress| match motion_frames {
+            Some(motion_frames) => session.measure_moving(scene, &ours, motion_frames, progress),
             None => session.measure(scene, &ours, progress),
         })?;
         let of_block = report_rows(name, &ours, &measured, &what.choices);
         rows.extend(of_block.into_iter().map(|row| ReportRow { sweep: swept.clone(), ..row }));
     }
     let part = arguments.shard.map(|shard| {
-        let moving = arguments.moments().map_or_else(String::new, |MotionFrames { moves, from, to, frames }| {
+        let moving = arguments.motion_frames().map_or_else(String::new, |MotionFrames { moves, from, to, frames }| {
             format!(", {frames} from {from} to {to} s, {} moves", moves.name())
         });
         let how = format!("stencilscope {} report, {} timed frames{moving}", env!("CARGO_PKG_VERSION"), arguments.runs);
@@ -118,8 +118,8 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
 
 impl ReportArguments {
     /// The frames of a motion that are asked for; `None` of scenes that stand still.
-    fn moments(&self) -> Option<MotionFrames> {
-        self.scene_options.moments(self.moves, usize::from(self.runs))
+    fn motion_frames(&self) -> Option<MotionFrames> {
+        self.scene_options.motion_frames(self.moves, usize::from(self.runs))
     }
 }
 

@@ -41,8 +41,8 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
     if Path::new(&arguments.scene).is_dir() {
         // Whatever is wrong with the folder is the better answer.
         crate::capture::disk::read(Path::new(&arguments.scene))?;
-        let mend = "read its manifest.json, .npy and .png files, or open it where there is a display";
-        return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {mend}")));
+        let fix = "read its manifest.json, .npy and .png files, or open it where there is a display";
+        return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {fix}")));
     }
     let writing = capture::CaptureOutput { folder, overwrite: true, truth: arguments.truth, page: None };
     let job = capture::CaptureJob::new(&arguments.scene, &arguments.scene_options, &arguments.frame, writing)?;
@@ -116,7 +116,7 @@ pub mod window {
             source: ViewSource::Scene(Box::new(loaded)),
             name: scene.spec(name),
             capture,
-            time: scene.moment()?,
+            time: scene.seconds()?,
             adapter: frame.adapter.clone(),
             step: None,
             pick: None,

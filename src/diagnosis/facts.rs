@@ -2,7 +2,7 @@
 
 use super::RegionKind;
 use super::cause::Cause;
-use super::mend::Fix;
+use super::fix::Fix;
 use super::mesh_facts::MeshFacts;
 use super::regions::ConnectedRegion;
 use crate::accuracy::Finding;
@@ -54,7 +54,7 @@ pub(crate) struct SuspectedCause {
     pub cause: Cause,
     pub evidence: String,
     /// In the order in which they are tried; none where nothing helps.
-    pub mends: Vec<Fix>,
+    pub fixes: Vec<Fix>,
     /// How many samples show it.
     pub shown_by: usize,
     /// How much it says about this very frame: larger before smaller.
@@ -62,8 +62,8 @@ pub(crate) struct SuspectedCause {
 }
 
 impl SuspectedCause {
-    pub fn new(cause: Cause, evidence: String, mends: Vec<Fix>, shown_by: usize) -> Option<SuspectedCause> {
-        (shown_by > 0).then_some(SuspectedCause { cause, evidence, mends, shown_by, weight: 0 })
+    pub fn new(cause: Cause, evidence: String, fixes: Vec<Fix>, shown_by: usize) -> Option<SuspectedCause> {
+        (shown_by > 0).then_some(SuspectedCause { cause, evidence, fixes, shown_by, weight: 0 })
     }
 }
 

@@ -19,7 +19,7 @@ impl Diagnosis {
             })
         });
         let advice = self.advice.as_ref().map(
-            |advice| json!({"mend": mend(&advice.mend), "wrong_left": advice.wrong_left, "sentence": advice.sentence}),
+            |advice| json!({"mend": fix(&advice.fix), "wrong_left": advice.wrong_left, "sentence": advice.sentence}),
         );
         let document = json!({
             "schema": SCHEMA,
@@ -44,8 +44,8 @@ fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> Value 
     json!({"object": object, "cause": kind.name(), "count": count, "at": at, "effect": effect})
 }
 
-fn flag(FlagFound { object, cause, pixels, at, mend: of }: &FlagFound) -> Value {
-    json!({"object": object, "cause": cause.name(), "pixels": pixels, "at": at, "mend": mend(of)})
+fn flag(FlagFound { object, cause, pixels, at, fix: of }: &FlagFound) -> Value {
+    json!({"object": object, "cause": cause.name(), "pixels": pixels, "at": at, "mend": fix(of)})
 }
 
 fn region(region: &RegionFound) -> Value {
@@ -66,7 +66,7 @@ fn cause(found: &CauseFound) -> Value {
         "cause": found.cause.name(),
         "meaning": found.cause.meaning(),
         "evidence": found.evidence,
-        "mend": found.mend.as_ref().map(mend),
+        "mend": found.fix.as_ref().map(fix),
         "proof": Proof::name(found.proof),
         "pixels_left": found.pixels_left,
         "together_with": found.together_with.iter().map(|cause| cause.name()).collect::<Vec<_>>(),
@@ -74,24 +74,24 @@ fn cause(found: &CauseFound) -> Value {
 }
 
 /// Only what it changes, and the same in words.
-fn mend(mend: &Fix) -> Value {
+fn fix(fix: &Fix) -> Value {
     let mut table = Map::new();
-    if let Some(technique) = mend.technique.map(Technique::name) {
+    if let Some(technique) = fix.technique.map(Technique::name) {
         table.insert("technique".to_owned(), technique.into());
     }
-    if !mend.settings.is_empty() {
-        table.insert("settings".to_owned(), json!(mend.settings));
+    if !fix.settings.is_empty() {
+        table.insert("settings".to_owned(), json!(fix.settings));
     }
-    if !mend.scene.is_empty() {
-        let edits = mend.scene.iter().map(|edit| json!({"object": edit.name, "change": edit.change.name()}));
+    if !fix.scene.is_empty() {
+        let edits = fix.scene.iter().map(|edit| json!({"object": edit.name, "change": edit.change.name()}));
         table.insert("objects".to_owned(), edits.collect::<Vec<_>>().into());
     }
-    if !mend.plan.is_empty() {
-        table.insert("plan".to_owned(), mend.plan.iter().map(|edit| edit.name()).collect::<Vec<_>>().into());
+    if !fix.plan.is_empty() {
+        table.insert("plan".to_owned(), fix.plan.iter().map(|edit| edit.name()).collect::<Vec<_>>().into());
     }
-    if let Some(times) = mend.larger {
+    if let Some(times) = fix.larger {
         table.insert("times_as_large".to_owned(), times.into());
     }
-    table.insert("words".to_owned(), mend.describe().into());
+    table.insert("words".to_owned(), fix.describe().into());
     Value::Object(table)
 }

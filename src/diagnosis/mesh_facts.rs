@@ -87,14 +87,14 @@ impl MeshFacts {
     /// What there is to tell of it before any pixel.
     pub fn findings(&self, lights: &[DVec4]) -> Vec<MeshFinding> {
         let mut found = Vec::new();
-        let mut tell = |kind: MeshDefect, count: usize, at: &[DVec3], effect: &str| {
+        let mut report = |kind: MeshDefect, count: usize, at: &[DVec3], effect: &str| {
             if count > 0 {
                 let at = at.iter().take(MOST_PLACES).copied().collect();
                 found.push(MeshFinding { object: self.name.clone(), kind, count, at, effect: effect.to_owned() });
             }
         };
         let only_facing = "right with casters = all, which volumes cast with by default; with casters = light-facing";
-        tell(
+        report(
             MeshDefect::Cause(Cause::OpenMesh),
             self.open.len(),
             &self.open,
@@ -102,25 +102,25 @@ impl MeshFacts {
                 "the mesh has holes: {only_facing} it casts less than its shadow, and as a textbook has it, streaks"
             ),
         );
-        tell(
+        report(
             MeshDefect::Cause(Cause::NonManifold),
             self.non_manifold.0,
             &self.non_manifold.1,
             &format!("edges of more than two triangles: {only_facing} silhouettes may not close"),
         );
-        tell(
+        report(
             MeshDefect::Cause(Cause::InconsistentWinding),
             self.inconsistent.0 + usize::from(self.is_inside_out),
             &self.inconsistent.1,
             &format!("triangles disagree on which side is out, or face inwards: {only_facing} the wrong ones cast"),
         );
-        tell(
+        report(
             MeshDefect::Cause(Cause::SplitVertices),
             self.split.len(),
             &self.split,
             "equal positions under different indices: welded, the mesh is whole along these edges",
         );
-        tell(
+        report(
             MeshDefect::Cause(Cause::NearVertices),
             self.near.len(),
             &self.near,
@@ -128,31 +128,31 @@ impl MeshFacts {
         );
         let inside = lights.iter().filter(|light| self.winding_around(**light).is_some());
         let inside: Vec<DVec3> = inside.map(|light| light.truncate() / light.w).collect();
-        tell(
+        report(
             MeshDefect::Cause(Cause::LightInside),
             inside.len(),
             &inside,
             &format!("a light is inside: {only_facing} nothing that should cast faces it"),
         );
-        tell(
+        report(
             MeshDefect::FlatTriangles,
             self.flat.0,
             &self.flat.1,
             "triangles without area cast nothing, and are no harm",
         );
-        tell(
+        report(
             MeshDefect::DroppedTriangles,
             self.dropped,
             &[],
             "triangles with two equal corners were left out, and are no harm",
         );
-        tell(
+        report(
             MeshDefect::DuplicateTriangles,
             self.duplicates.len(),
             &self.duplicates,
             "the same triangle more than once: volumes count it as often, and reach the 255 of eight bits sooner",
         );
-        tell(
+        report(
             MeshDefect::Slivers,
             self.slivers.len(),
             &self.slivers,

@@ -11,8 +11,8 @@
 
 mod cause;
 pub(crate) mod facts;
+mod fix;
 mod json;
-mod mend;
 pub(crate) mod mesh_facts;
 pub(crate) mod proof;
 pub mod recorded;
@@ -23,7 +23,7 @@ mod suited;
 mod text;
 
 pub use cause::Cause;
-pub use mend::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};
+pub use fix::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};
 pub use shown::wrong_pixels;
 pub use suited::TechniqueFit;
 
@@ -134,7 +134,7 @@ pub struct CauseFound {
     /// What was measured, in a sentence without its stop.
     pub evidence: String,
     /// What to change; `None` where nothing helps.
-    pub mend: Option<Fix>,
+    pub fix: Option<Fix>,
     /// What running it again has shown.
     pub proof: Proof,
     /// Wrong pixels of the region that the mend leaves, with those that it makes newly wrong in the
@@ -150,7 +150,7 @@ pub struct CauseFound {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FixWithinTechnique {
     /// Changes of settings and scene.
-    pub mend: Fix,
+    pub fix: Fix,
     /// Wrong pixels that it leaves.
     pub pixels_left: u64,
 }
@@ -224,14 +224,14 @@ pub struct FlagFound {
     /// One of them; `None` where there is none.
     pub at: Option<[u32; 2]>,
     /// What sets it.
-    pub mend: Fix,
+    pub fix: Fix,
 }
 
 /// What to do about the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// All that is to be changed, at once.
-    pub mend: Fix,
+    pub fix: Fix,
     /// Wrong pixels that were left when it was run, summed over the lights.
     pub wrong_left: u64,
     /// In a sentence.
@@ -242,18 +242,18 @@ pub struct Advice {
 
 impl Advice {
     /// To make these changes, which leave so many pixels wrong of those that are now.
-    pub(crate) fn new(mend: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
+    pub(crate) fn new(fix: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
         let outcome = outcome(wrong_left);
-        let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", numbers::count(wrong_now));
-        Advice { mend: mend.clone(), wrong_left, sentence, staying: None }
+        let sentence = format!("To mend it, {fix}: {outcome}, of {} now.", numbers::count(wrong_now));
+        Advice { fix: fix.clone(), wrong_left, sentence, staying: None }
     }
 
     /// Where another technique is advised: what to change who stays with this one, and how many pixels that leaves
     /// wrong.
     pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Fix, u64)>) -> Advice {
-        if let (Some(_), Some((mend, left))) = (self.mend.technique, staying) {
-            self.sentence += &format!(" To stay with {}, {mend}: {}.", technique.name(), outcome(left));
-            self.staying = Some(FixWithinTechnique { mend: mend.clone(), pixels_left: left });
+        if let (Some(_), Some((fix, left))) = (self.fix.technique, staying) {
+            self.sentence += &format!(" To stay with {}, {fix}: {}.", technique.name(), outcome(left));
+            self.staying = Some(FixWithinTechnique { fix: fix.clone(), pixels_left: left });
         }
         self
     }

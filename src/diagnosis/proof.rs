@@ -1,7 +1,7 @@
 //! What the run of a mend shows of a region, and which cause is named first.
 
 use super::facts::SuspectedCause;
-use super::mend::Fix;
+use super::fix::Fix;
 use super::regions::ConnectedRegion;
 use super::{Cause, CauseFound, FixWithinTechnique, Proof};
 
@@ -41,7 +41,7 @@ pub(crate) fn judge(
 #[derive(Debug, Clone)]
 pub(crate) struct TriedCause {
     pub suspicion: SuspectedCause,
-    pub mend: Option<Fix>,
+    pub fix: Option<Fix>,
     pub proof: Proof,
     pub left: Option<u64>,
     pub staying: Option<FixWithinTechnique>,
@@ -65,7 +65,7 @@ impl TriedCause {
             self.left.unwrap_or(0),
             std::cmp::Reverse(self.suspicion.shown_by),
             std::cmp::Reverse(self.suspicion.weight),
-            self.mend.as_ref().map_or(0, Fix::weight),
+            self.fix.as_ref().map_or(0, Fix::weight),
             self.suspicion.cause,
         )
     }
@@ -77,7 +77,7 @@ pub(crate) fn ranked(mut tried: Vec<TriedCause>) -> Vec<CauseFound> {
     let found = |tried: TriedCause| CauseFound {
         cause: tried.suspicion.cause,
         evidence: tried.suspicion.evidence,
-        mend: tried.mend,
+        fix: tried.fix,
         proof: tried.proof,
         pixels_left: tried.left,
         staying: tried.staying,

@@ -83,7 +83,7 @@ pub struct FrameSuspicion {
     /// What it is suspected from, in numbers.
     pub evidence: String,
     /// The frame without it.
-    pub mended: FramePlan,
+    pub fixed: FramePlan,
 }
 
 /// A suspicion that was tried.
@@ -242,8 +242,8 @@ pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Fram
 /// What speaks for a cause in a plan; `None` where nothing does.
 pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<FrameSuspicion> {
     let rule = RULES.iter().find(|rule| rule.cause == cause)?;
-    let (evidence, mended) = (rule.look)(&CountingDraws { plan, light }, position)?;
-    Some(FrameSuspicion { cause, evidence, mended })
+    let (evidence, fixed) = (rule.look)(&CountingDraws { plan, light }, position)?;
+    Some(FrameSuspicion { cause, evidence, fixed })
 }
 
 /// The draws that count a light's volumes.

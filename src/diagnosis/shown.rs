@@ -40,7 +40,7 @@ pub fn wrong_pixels(capture: &Capture) -> Picture {
         let findings = capture.lights.iter().filter_map(|light| light.truth.as_ref()?.findings.byte_at(at));
         let wrong = findings.filter(|byte| Finding::from_byte(*byte).is_some_and(Finding::is_wrong)).min();
         if let Some(color) = wrong.map(colors::finding).or(ground) {
-            picture.put(at, color);
+            picture.set(at, color);
         }
     }
     picture

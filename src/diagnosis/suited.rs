@@ -43,19 +43,19 @@ impl TechniqueFit {
 impl Diagnosis {
     /// What mends the scene for good, where anything is better than what was asked for: what is advised, or the fastest
     /// technique without a wrong pixel.
-    pub fn mend_to_write(&self, suited: &[TechniqueFit]) -> Option<Fix> {
+    pub fn fix_to_write(&self, suited: &[TechniqueFit]) -> Option<Fix> {
         let best = || {
             let choice = &TechniqueFit::best(suited)?.choice;
             // All of them: what was set for another technique is to be kept in none.
             let settings = choice.settings().clone();
             Some(Fix { technique: Some(choice.technique()), settings, ..Fix::default() })
         };
-        let advised = self.advice.as_ref().map(|advice| advice.mend.clone());
-        if self.is_mended() { advised } else { best().or(advised) }
+        let advised = self.advice.as_ref().map(|advice| advice.fix.clone());
+        if self.is_fixed() { advised } else { best().or(advised) }
     }
 
     /// Does what it advises leave nothing wrong?
-    pub fn is_mended(&self) -> bool {
+    pub fn is_fixed(&self) -> bool {
         self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
     }
 }

@@ -66,8 +66,8 @@ impl Diagnosis {
 
     fn causes(&self, region: &RegionFound, explained: &mut BTreeSet<Cause>) -> String {
         let mut out = String::new();
-        let is_told = |cause: &&CauseFound| cause.proof != Proof::NotIt;
-        for found in region.causes.iter().filter(is_told) {
+        let is_listed = |cause: &&CauseFound| cause.proof != Proof::NotIt;
+        for found in region.causes.iter().filter(is_listed) {
             out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence);
             if explained.insert(found.cause) {
                 out += &format!("     {}\n", found.cause.meaning());
@@ -75,7 +75,7 @@ impl Diagnosis {
             out += &format!("     {}\n", proof(found));
         }
         let ruled_out: Vec<&str> =
-            region.causes.iter().filter(|cause| !is_told(cause)).map(|found| found.cause.name()).collect();
+            region.causes.iter().filter(|cause| !is_listed(cause)).map(|found| found.cause.name()).collect();
         if !ruled_out.is_empty() {
             out += &format!("   ruled out by running their mends: {}\n", ruled_out.join(", "));
         }
@@ -97,11 +97,11 @@ impl Diagnosis {
         if !self.is_bad() {
             return "nothing: the shadows are right".to_owned();
         }
-        let better = TechniqueFit::best(suited).filter(|_| !self.is_mended());
+        let better = TechniqueFit::best(suited).filter(|_| !self.is_fixed());
         let better = better.map(|best| format!("`-t {}` has no wrong pixel here", best.name().replace(' ', " --set ")));
         match (&self.advice, better) {
             (Some(advice), better) => {
-                let options = advice.mend.options();
+                let options = advice.fix.options();
                 let run =
                     if options.is_empty() { String::new() } else { format!(" As options: `{}`.", options.join(" ")) };
                 let better = better.map_or_else(String::new, |better| format!(" {better}."));
@@ -154,7 +154,7 @@ impl Fix {
 /// Do two regions have the same causes with the same mends and proofs?
 fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
     let said = |region: &RegionFound| -> Vec<(Cause, Option<Fix>, Proof)> {
-        region.causes.iter().map(|found| (found.cause, found.mend.clone(), found.proof)).collect()
+        region.causes.iter().map(|found| (found.cause, found.fix.clone(), found.proof)).collect()
     };
     !one.causes.is_empty() && said(one) == said(other)
 }
@@ -167,9 +167,9 @@ fn as_before(region: &RegionFound, like: usize) -> String {
 }
 
 /// What the mend is, and what running it has shown.
-fn proof(CauseFound { mend, proof, pixels_left, .. }: &CauseFound) -> String {
-    let Some(mend) = mend else { return "no mend to run".to_owned() };
-    let options = mend.options();
+fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
+    let Some(fix) = fix else { return "no mend to run".to_owned() };
+    let options = fix.options();
     let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
     let left = pixels_left.unwrap_or(0);
     let outcome = match proof {
@@ -177,7 +177,7 @@ fn proof(CauseFound { mend, proof, pixels_left, .. }: &CauseFound) -> String {
         Proof::Part | Proof::NotIt => format!("{} of these stay wrong", pixels(left)),
         Proof::NotRun => "not run".to_owned(),
     };
-    format!("to mend it: {mend}{options}; run so, {outcome}")
+    format!("to mend it: {fix}{options}; run so, {outcome}")
 }
 
 fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> String {
@@ -193,9 +193,9 @@ fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> String
     format!("   {object}: {} {}: {effect}{places}\n", numbers::count(*count as u64), kind.name())
 }
 
-fn flag(FlagFound { object, cause, pixels: changed, at, mend }: &FlagFound) -> String {
+fn flag(FlagFound { object, cause, pixels: changed, at, fix }: &FlagFound) -> String {
     let at = at.map_or_else(String::new, |[x, y]| format!(", such as {x},{y}"));
-    format!("   {object}: {cause}: {} would change{at}; to do so, {mend}\n", pixels(*changed))
+    format!("   {object}: {cause}: {} would change{at}; to do so, {fix}\n", pixels(*changed))
 }
 
 fn techniques(suited: &[TechniqueFit]) -> String {

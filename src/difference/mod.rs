@@ -302,9 +302,11 @@ impl ImageComparisons {
         kinds.dedup();
         let one = |aspect: AspectKind| {
             let (found, carried) = match (a.get(&aspect), b.get(&aspect)) {
-                (Some((in_a, kept_a)), Some((in_b, kept_b))) => (self.compare(in_a, in_b)?, *kept_a && *kept_b),
-                (Some((_, kept)), None) => (AspectChange::OnlyIn(ComparedSide::A), *kept),
-                (None, Some((_, kept))) => (AspectChange::OnlyIn(ComparedSide::B), *kept),
+                (Some((in_a, carried_a)), Some((in_b, carried_b))) => {
+                    (self.compare(in_a, in_b)?, *carried_a && *carried_b)
+                }
+                (Some((_, carried)), None) => (AspectChange::OnlyIn(ComparedSide::A), *carried),
+                (None, Some((_, carried))) => (AspectChange::OnlyIn(ComparedSide::B), *carried),
                 (None, None) => return None,
             };
             Some(AspectDifference { aspect, found, carried })

@@ -46,7 +46,7 @@ impl Difference {
             for x in 0..width {
                 let differs = in_a.texel([x, y]) != in_b.texel([x, y]);
                 let ground = shown_a.at([x, y]).map_or(colors::NOTHING, dark_gray);
-                where_differs.put([x, y], if differs { DIFFERS } else { ground });
+                where_differs.set([x, y], if differs { DIFFERS } else { ground });
             }
         }
         where_differs.frame(difference.region.bounds, FRAME_GAP, FRAME_WIDTH, FRAME);
@@ -90,7 +90,7 @@ fn colored(aspect: AspectKind, image: &Image, range: [f32; 2]) -> Picture {
     let [width, height] = image.size();
     let mut picture = Picture::filled(image.size(), colors::NOTHING);
     for at in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
-        picture.put(at, color(aspect, image, at, range));
+        picture.set(at, color(aspect, image, at, range));
     }
     picture
 }

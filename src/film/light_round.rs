@@ -22,10 +22,10 @@ impl LightRound {
     /// Of a light of a scene that stands still, in `places` steps of the same angle; the first is where the light is.
     pub fn new(scene: Scene, light: usize, places: u32) -> Result<LightRound, FilmError> {
         let lights = scene.lights.len();
-        let Some(turned) = scene.lights.get(light) else { return Err(FilmError::NoLight { light, lights }) };
+        let Some(rotated) = scene.lights.get(light) else { return Err(FilmError::NoLight { light, lights }) };
         let middle = middle(&scene.objects);
         // Of a directional light only the direction counts.
-        let way = turned.position.truncate() - if turned.is_directional() { DVec3::ZERO } else { middle };
+        let way = rotated.position.truncate() - if rotated.is_directional() { DVec3::ZERO } else { middle };
         if way.with_y(0.0).length() <= ON_AXIS * way.length() {
             return Err(FilmError::OnAxis { light: numbers::light(light) });
         }
@@ -43,8 +43,8 @@ impl LightRound {
         let Some(light) = scene.lights.get_mut(self.light).filter(|_| place > 0) else { return scene };
         let turn = DQuat::from_rotation_y(TAU * f64::from(place) / f64::from(self.places.max(1)));
         let middle = if light.is_directional() { DVec3::ZERO } else { self.middle };
-        let turned = middle + turn * (light.position.truncate() - middle);
-        light.position = turned.extend(light.position.w);
+        let rotated = middle + turn * (light.position.truncate() - middle);
+        light.position = rotated.extend(light.position.w);
         scene
     }
 }
@@ -98,14 +98,14 @@ mod tests {
     fn a_direction_turns_and_other_lights_stay() {
         let scene = scene([Light::point([4.0, 5.0, 2.0]), Light::directional([1.0, 2.0, 0.0])]);
         let round = LightRound::new(scene.clone(), 1, 4).expect("a way round");
-        let turned = round.scene(1);
-        assert_eq!(turned.lights[0], scene.lights[0]);
-        let away = turned.lights[1].position - DVec3::new(0.0, 2.0, -1.0).extend(0.0);
-        assert!(away.length() < 1e-12 && turned.lights[1].is_directional(), "{:?}", turned.lights[1]);
+        let rotated = round.scene(1);
+        assert_eq!(rotated.lights[0], scene.lights[0]);
+        let away = rotated.lights[1].position - DVec3::new(0.0, 2.0, -1.0).extend(0.0);
+        assert!(away.length() < 1e-12 && rotated.lights[1].is_directional(), "{:?}", rotated.lights[1]);
     }
 
     #[test]
-    fn a_light_on_the_axis_and_one_that_is_not_there_are_refused_with_the_mend() {
+    fn a_light_on_the_axis_and_one_that_is_not_there_are_refused_with_the_fix() {
         let refused =
             |light: Light, index: usize| LightRound::new(scene([light]), index, 4).expect_err("refused").to_string();
         let above = refused(Light::point([1.0, 9.0, 2.0]), 0);

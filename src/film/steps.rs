@@ -51,19 +51,19 @@ pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError
 fn bar(width: u32, left: &str, right: &str) -> Result<Picture, SvgError> {
     let height = bar_height(width);
     let beside = height as f32 * BESIDE;
-    let room = width as f32 - 2.0 * beside;
+    let inner = width as f32 - 2.0 * beside;
     let drawn_width = |words: &str| svg::width(&document(width, height, &text(words, 0.0, height, TEXT)));
     let right_width = drawn_width(right)?;
     // What a pass is called is more than what it writes.
-    let right = if right_width + beside > room / 2.0 { "" } else { right };
-    let room = if right.is_empty() { room } else { room - right_width - beside };
+    let right = if right_width + beside > inner / 2.0 { "" } else { right };
+    let left_width = if right.is_empty() { inner } else { inner - right_width - beside };
     let letters: Vec<char> = left.chars().collect();
-    let (mut kept, mut words) = (letters.len(), left.to_owned());
+    let (mut shown, mut words) = (letters.len(), left.to_owned());
     let mut drawn = drawn_width(&words)?;
-    while drawn > room && kept > 0 {
-        // As many as the room's share of the width; at least one goes.
-        kept = ((kept as f32 * room / drawn) as usize).min(kept - 1);
-        words = letters[..kept].iter().collect::<String>() + "…";
+    while drawn > left_width && shown > 0 {
+        // As many as the width has space for; at least one goes.
+        shown = ((shown as f32 * left_width / drawn) as usize).min(shown - 1);
+        words = letters[..shown].iter().collect::<String>() + "…";
         drawn = drawn_width(&words)?;
     }
     let right_at = width as f32 - beside - right_width;

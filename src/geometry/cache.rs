@@ -1,7 +1,7 @@
 //! What geometry is worth keeping between plans: edge lists by the mesh's content, planes by the
 //! mesh and its place, and buffers.
 
-use super::hugging::{has_edge_on, put_hugging_last};
+use super::grazing::{has_edge_on, move_grazing_last};
 use super::planar::FlattenedCaster;
 use super::{
     Blob, CapFan, CasterPlanes, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings,
@@ -15,16 +15,16 @@ use std::sync::Arc;
 
 /// Triangles kept at once (about 60 bytes each, and as much again for each pose); a scene of more starts over with
 /// each mesh.
-const MOST_TRIANGLES_KEPT: usize = 2_000_000;
+const MOST_TRIANGLES_CACHED: usize = 2_000_000;
 
 /// Places of meshes that something short is known about.
-const MOST_PLACES_KEPT: usize = 16_384;
+const MOST_PLACES_CACHED: usize = 16_384;
 
 /// Triangles of surfaces kept at once, of some 80 bytes each; beyond, they are made anew for each plan.
-const MOST_SURFACES_KEPT: usize = 500_000;
+const MOST_SURFACES_CACHED: usize = 500_000;
 
 /// Flattened triangles kept at once, of 96 bytes each; beyond, they are made anew for each plan.
-const MOST_FLATTENED_KEPT: usize = 500_000;
+const MOST_FLATTENED_CACHED: usize = 500_000;
 
 /// What was found out about the meshes planned so far. Planning with a full or an empty cache
 /// gives the same plan.
@@ -40,7 +40,7 @@ pub struct GeometryCache {
     doubled: HashMap<(u64, PoseBits), bool>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
     surfaces: LastUsed<SurfaceKey, DrawnSurface>,
-    triangles_kept: usize,
+    triangles_cached: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
 }
@@ -97,7 +97,7 @@ pub struct VolumeRequest<'a> {
     /// Which of its triangles cast.
     pub casters: Casters,
     /// Of each triangle: it need not cast, since what it darkens is dark without it. Empty: none.
-    pub held: &'a [bool],
+    pub hidden: &'a [bool],
     /// How the silhouette is found.
     pub by: SilhouetteBy,
     /// Carries it away from the light.
@@ -114,7 +114,7 @@ impl GeometryCache {
 
     /// A flattened caster: made again only if plane, caster or light changed.
     pub fn flattened(&mut self, what: &FlattenedCaster, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
-        self.flattened.get_or_make_within(MOST_FLATTENED_KEPT, what.key(), || {
+        self.flattened.get_or_make_within(MOST_FLATTENED_CACHED, what.key(), || {
             let triangles = Arc::new(make());
             let count = triangles.len();
             (triangles, count)
@@ -126,7 +126,7 @@ impl GeometryCache {
         if let Some(edges) = self.edges.get(&mesh.content_hash()) {
             return edges.clone();
         }
-        self.make_room(mesh);
+        self.free_memory_for(mesh);
         let edges = Arc::new(EdgeList::new(mesh.triangles(), mesh.positions().len()));
         self.edges.insert(mesh.content_hash(), edges.clone());
         edges
@@ -138,7 +138,7 @@ impl GeometryCache {
         if let Some(planes) = self.planes.get(&key) {
             return planes.clone();
         }
-        self.make_room(caster.mesh);
+        self.free_memory_for(caster.mesh);
         let planes = Arc::new(CasterPlanes::new(caster.world, caster.mesh.triangles()));
         self.planes.insert(key, planes.clone());
         planes
@@ -153,20 +153,20 @@ impl GeometryCache {
         let edges = (of.by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
         planes.facings(caster.world, triangles, light, &mut self.facings);
         self.facings.keep_casting(of.casters);
-        self.facings.leave_out(of.held);
+        self.facings.leave_out(of.hidden);
         let found = &mut self.silhouette;
         match &edges {
             Some(edges) => silhouette(edges, &self.facings, found),
             None => silhouette_by_search(triangles, &self.facings, found),
         }
-        let hugging = if of.is_drawn { put_hugging_last(found, caster, light, edges.as_deref()) } else { 0 };
+        let grazing = if of.is_drawn { move_grazing_last(found, caster, light, edges.as_deref()) } else { 0 };
         let fan = |light| CapFan::new(caster.world, triangles, &self.facings, found, light);
         let far_end = match of.extruder.infinite_from().map(fan) {
             Some(Some(fan)) => FarEnd::Fan(fan),
             None if of.extruder.is_one_point() => FarEnd::Point,
             _ => FarEnd::Caps,
         };
-        write_indices(triangles, caster.world.len(), &self.facings, (found, hugging), far_end, out)
+        write_indices(triangles, caster.world.len(), &self.facings, (found, grazing), far_end, out)
     }
 
     /// A caster's volume for a vertex shader: made again only if caster or origin changed.
@@ -193,7 +193,7 @@ impl GeometryCache {
         let groups = mesh.groups().iter().map(|group| group.triangles.end).zip(shadings.iter().copied()).collect();
         let origin = origin.to_array().map(f64::to_bits);
         let key = (mesh.content_hash(), mesh.normals_hash(), pose.bits(), origin, groups);
-        self.surfaces.get_or_make_within(MOST_SURFACES_KEPT, key, || (make(), mesh.triangles().len()))
+        self.surfaces.get_or_make_within(MOST_SURFACES_CACHED, key, || (make(), mesh.triangles().len()))
     }
 
     /// How `mesh` hangs together, found out on first use.
@@ -248,21 +248,21 @@ impl GeometryCache {
         found
     }
 
-    fn make_room(&mut self, mesh: &Mesh) {
-        self.triangles_kept += mesh.triangles().len();
-        if self.triangles_kept > MOST_TRIANGLES_KEPT {
+    fn free_memory_for(&mut self, mesh: &Mesh) {
+        self.triangles_cached += mesh.triangles().len();
+        if self.triangles_cached > MOST_TRIANGLES_CACHED {
             self.edges.clear();
             self.planes.clear();
             self.connectivities.clear();
             self.topologies.clear();
-            self.triangles_kept = mesh.triangles().len();
+            self.triangles_cached = mesh.triangles().len();
         }
     }
 }
 
 /// Adds what was found out about a mesh at a place, which takes long to find out and little room.
 fn insert_among<T>(known: &mut HashMap<(u64, PoseBits), T>, key: (u64, PoseBits), found: T) {
-    if known.len() >= MOST_PLACES_KEPT {
+    if known.len() >= MOST_PLACES_CACHED {
         known.clear();
     }
     known.insert(key, found);

@@ -105,7 +105,7 @@ pub struct ExtrudedVolume {
     /// The mesh's triangles in its own order: front faces outwards.
     pub caps: Range<usize>,
     /// The same once more, back faces outwards; none of a closed mesh.
-    pub turned_caps: Range<usize>,
+    pub flipped_caps: Range<usize>,
 }
 
 impl ExtrudedVolume {
@@ -139,7 +139,7 @@ impl ExtrudedVolume {
         (0..copies).for_each(|copy| indices.extend(of_copy(copy)));
         let (once, all) = (sides + triangles.len(), sides + triangles.len() * copies);
         let (corners, indices) = (Blob::new(corners), Blob::new(indices));
-        ExtrudedVolume { corners, indices, sides: 0..sides, caps: sides..once, turned_caps: once..all }
+        ExtrudedVolume { corners, indices, sides: 0..sides, caps: sides..once, flipped_caps: once..all }
     }
 }
 
@@ -230,7 +230,7 @@ mod tests {
         let bits = |index: u32| vertices.data()[index as usize].map(|value| (value + 0.0).to_bits());
         let triangles = volume.indices.data().as_chunks::<3>().0;
         let outwards = |(at, [a, b, c]): (usize, &[u32; 3])| {
-            if volume.turned_caps.contains(&at) { [*a, *c, *b].map(bits) } else { [*a, *b, *c].map(bits) }
+            if volume.flipped_caps.contains(&at) { [*a, *c, *b].map(bits) } else { [*a, *b, *c].map(bits) }
         };
         triangles.iter().enumerate().map(outwards).collect()
     }
@@ -306,9 +306,9 @@ mod tests {
                 let carry = extruder.carry_from(eye);
                 for place in world {
                     let expected = relative::homogeneous(extruder.carry(place), eye);
-                    let told = carry.far(relative::point(place, eye));
-                    let near = told.iter().zip(expected).all(|(told, expected)| (told - expected).abs() < 1e-5);
-                    assert!(near, "{extrusion:?} of {light}: {told:?} {expected:?}");
+                    let far = carry.far(relative::point(place, eye));
+                    let near = far.iter().zip(expected).all(|(far, expected)| (far - expected).abs() < 1e-5);
+                    assert!(near, "{extrusion:?} of {light}: {far:?} {expected:?}");
                 }
             }
         }

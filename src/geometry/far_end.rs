@@ -88,9 +88,9 @@ impl CapFan {
 
     /// The triangles of its spheres, whose first corner has index `first`.
     pub fn sphere_indices(&self, first: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
-        let is_turned = self.spheres < 0;
+        let is_flipped = self.spheres < 0;
         let side = move |[a, b, c]: [u32; 3]| {
-            [first + a, first + if is_turned { c } else { b }, first + if is_turned { b } else { c }]
+            [first + a, first + if is_flipped { c } else { b }, first + if is_flipped { b } else { c }]
         };
         (0..self.spheres.unsigned_abs()).flat_map(move |_| OCTAHEDRON.map(side))
     }

@@ -11,7 +11,7 @@ mod edges;
 mod extruded;
 mod facing;
 mod far_end;
-mod hugging;
+mod grazing;
 mod intersection;
 pub mod layers;
 pub mod light_frame;

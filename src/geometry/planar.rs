@@ -163,7 +163,7 @@ pub struct Flattener {
 impl Flattener {
     /// Onto `plane`, turned towards the light; `None` where the light lies in the plane.
     pub fn new(plane: Plane, light: DVec4, clip: FlattenClip) -> Option<Flattener> {
-        let plane = if plane.at(light) < 0.0 { plane.turned() } else { plane };
+        let plane = if plane.at(light) < 0.0 { plane.flipped() } else { plane };
         let light_height = plane.at(light);
         (light_height > 0.0).then(|| Flattener { plane, light, clip, light_height, triangles: Vec::new() })
     }
@@ -223,19 +223,19 @@ impl Flattener {
 /// Sutherland–Hodgman: keeps the part of a polygon where `inside(height) ≥ 0`. Corners that it
 /// makes have the height `limit` exactly, whatever their position rounds to.
 fn clip(polygon: &[(DVec3, f64)], limit: f64, inside: impl Fn(f64) -> f64) -> Vec<(DVec3, f64)> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    let mut clipped = Vec::with_capacity(polygon.len() + 1);
     for (index, &(point, height)) in polygon.iter().enumerate() {
         let (next_point, next_height) = polygon[(index + 1) % polygon.len()];
         let (here, there) = (inside(height), inside(next_height));
         if here >= 0.0 {
-            kept.push((point, height));
+            clipped.push((point, height));
         }
         if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
             let t = here / (here - there);
-            kept.push((point + (next_point - point) * t, limit));
+            clipped.push((point + (next_point - point) * t, limit));
         }
     }
-    kept
+    clipped
 }
 
 #[cfg(test)]

@@ -53,8 +53,8 @@ impl ViewVolume {
     /// cut there.
     pub fn new(camera: &Camera, aspect: f64) -> ViewVolume {
         let world_from_view = camera.world_from_view();
-        let sights = camera.sights(aspect);
-        let corner = |x: f64, y: f64| sights.through(DVec2::new(x, y)).at(camera.near);
+        let rays = camera.rays(aspect);
+        let corner = |x: f64, y: f64| rays.through(DVec2::new(x, y)).at(camera.near);
         let half = camera.half_height();
         let ahead = world_from_view * DVec3::NEG_Z;
         // In view space, through the edges that face left, right, down and up.
@@ -63,13 +63,13 @@ impl ViewVolume {
             let plane = match camera.is_parallel() {
                 false => Plane::through(DVec3::ZERO, world_from_view * (-outward).extend(-reach)),
                 true => {
-                    let edge = sights.through(outward);
+                    let edge = rays.through(outward);
                     let along_edge = world_from_view * outward.perp().extend(0.0);
                     Plane::through(edge.from, edge.along.cross(along_edge))
                 }
             };
-            let inside = sights.through(DVec2::ZERO).at(1.0).extend(1.0);
-            if plane.at(inside) < 0.0 { plane.turned() } else { plane }
+            let inside = rays.through(DVec2::ZERO).at(1.0).extend(1.0);
+            if plane.at(inside) < 0.0 { plane.flipped() } else { plane }
         };
         ViewVolume {
             planes: [
@@ -80,7 +80,7 @@ impl ViewVolume {
                 side(DVec2::Y),
             ],
             near_rectangle: [corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)],
-            near_middle: sights.through(DVec2::ZERO).at(camera.near),
+            near_middle: rays.through(DVec2::ZERO).at(camera.near),
             near: camera.near,
         }
     }
@@ -98,7 +98,7 @@ impl ViewVolume {
 
     /// Are all points of space beyond the near plane, so that it cuts nothing between them?
     pub fn is_beyond_near(&self, points: &[DVec4]) -> bool {
-        outside(&[self.planes[0].turned()], points).is_some()
+        outside(&[self.planes[0].flipped()], points).is_some()
     }
 
     /// The same of points at infinity: the near plane is no matter there.
@@ -118,13 +118,13 @@ impl ViewVolume {
         }
         let corners = self.near_rectangle;
         let middle = self.near_middle;
-        let inwards = |plane: Plane| if plane.at(middle.extend(1.0)) < 0.0 { plane.turned() } else { plane };
+        let inwards = |plane: Plane| if plane.at(middle.extend(1.0)) < 0.0 { plane.flipped() } else { plane };
         let side = |index: usize| {
             let [a, b] = [corners[index], corners[(index + 1) % 4]];
             inwards(Plane::through(a, (b - a).cross(light.truncate() - a * light.w)))
         };
         // Towards the light from the near plane, and for a lamp no farther than the light itself.
-        let base = if height > 0.0 { *near_plane } else { near_plane.turned() };
+        let base = if height > 0.0 { *near_plane } else { near_plane.flipped() };
         let mut planes = vec![base, side(0), side(1), side(2), side(3)];
         if light.w != 0.0 {
             planes.push(Plane::through(light.truncate() / light.w, -base.normal));
@@ -138,7 +138,7 @@ impl NearClipVolume {
     pub fn outside(&self, points: &[DVec4]) -> Option<OutsidePlane> {
         match self {
             NearClipVolume::Planes(planes) => outside(planes, points),
-            NearClipVolume::Slab(plane) => outside(&[*plane, plane.turned()], points),
+            NearClipVolume::Slab(plane) => outside(&[*plane, plane.flipped()], points),
         }
     }
 }

@@ -126,7 +126,7 @@ mod tests {
 
     /// Points on lines through the light share x and y; z says where they are on it.
     #[test]
-    fn the_lights_pyramid_becomes_a_box() {
+    fn the_lights_frustum_becomes_a_box() {
         for light in [DVec4::new(1.0, 6.0, 2.0, 1.0), DVec4::new(0.4, 2.0, -0.3, 0.0)] {
             let matrix = SLANTED.box_from_world(light).expect("a light above");
             for (s, t) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.3, 0.8)] {
@@ -151,9 +151,9 @@ mod tests {
         let on_receiver = SLANTED.corner + SLANTED.ex * 0.25 + SLANTED.ey * 0.75;
         for along in [-0.5, -1e-6, 1e-6, 0.5, 0.99, 1.1] {
             let clip = matrix * on_receiver.lerp(light.truncate(), along).extend(1.0);
-            let is_kept = clip.w > 0.0 && clip.z >= 0.0 && clip.z <= clip.w;
-            assert_eq!(is_kept, (0.0..1.0).contains(&along), "{along}: {clip}");
-            if is_kept {
+            let is_inside = clip.w > 0.0 && clip.z >= 0.0 && clip.z <= clip.w;
+            assert_eq!(is_inside, (0.0..1.0).contains(&along), "{along}: {clip}");
+            if is_inside {
                 assert!((clip.truncate().truncate() / clip.w - glam::DVec2::new(-0.5, -0.5)).length() < 1e-9);
             }
         }

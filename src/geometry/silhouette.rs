@@ -60,13 +60,13 @@ pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteE
 pub fn silhouette_by_search(triangles: &[[u32; 3]], facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
     let mut list: Vec<[u32; 2]> = Vec::new();
     for (&[a, b, c], sign) in triangles.iter().zip(facings.signs()) {
-        let turned = match sign {
+        let oriented = match sign {
             1 => [a, b, c],
             -1 => [a, c, b],
             _ => continue,
         };
         for side in 0..3 {
-            let (from, to) = (turned[side], turned[(side + 1) % 3]);
+            let (from, to) = (oriented[side], oriented[(side + 1) % 3]);
             match list.iter().position(|other| *other == [to, from]) {
                 Some(reverse) => {
                     list.swap_remove(reverse);
@@ -81,9 +81,9 @@ pub fn silhouette_by_search(triangles: &[[u32; 3]], facings: &Facings, out: &mut
         multiplicity: if from < to { 1 } else { -1 },
     }));
     out.sort_unstable();
-    out.dedup_by(|next, kept| {
-        let is_same = next.edge == kept.edge;
-        kept.multiplicity += if is_same { next.multiplicity } else { 0 };
+    out.dedup_by(|next, last| {
+        let is_same = next.edge == last.edge;
+        last.multiplicity += if is_same { next.multiplicity } else { 0 };
         is_same
     });
 }

@@ -158,8 +158,8 @@ mod tests {
             let sphere = shapes::sphere(1.0, 16, 8).expect("a sphere");
             let first = builder.positions.len() as u32;
             builder.positions.extend(sphere.positions().iter().map(|p| *p * radius.abs()));
-            let turned = |&[a, b, c]: &[u32; 3]| if *radius < 0.0 { [a, c, b] } else { [a, b, c] };
-            let triangles = sphere.triangles().iter().map(|corners| turned(corners).map(|v| v + first));
+            let oriented = |&[a, b, c]: &[u32; 3]| if *radius < 0.0 { [a, c, b] } else { [a, b, c] };
+            let triangles = sphere.triangles().iter().map(|corners| oriented(corners).map(|v| v + first));
             builder.triangles.extend(triangles);
         }
         builder.build().expect("a mesh")

@@ -171,10 +171,10 @@ mod tests {
     }
 
     #[test]
-    fn turned_doubled_flat_and_split_are_told_apart() {
-        let mut turned = TETRAHEDRON;
-        turned[0].swap(0, 1);
-        assert_eq!(topology(&CORNERS, &turned).connectivity.inconsistent_edges.count, 3);
+    fn turned_doubled_flat_and_split_are_distinguished() {
+        let mut flipped = TETRAHEDRON;
+        flipped[0].swap(0, 1);
+        assert_eq!(topology(&CORNERS, &flipped).connectivity.inconsistent_edges.count, 3);
         let doubled = topology(&CORNERS, &[TETRAHEDRON.to_vec(), vec![TETRAHEDRON[0]]].concat());
         assert_eq!((doubled.connectivity.non_manifold_edges.count, doubled.is_closed()), (3, false));
         let flat = topology(&[[0.0; 3], [0.25; 3], [0.5; 3]], &[[0, 1, 2], [0, 1, 1]]);

@@ -54,17 +54,17 @@ impl ConvexOccluder {
             let upright = border.map(|index| {
                 let [a, b] = [edges.edges()[index].low, edges.edges()[index].high].map(|v| world[v as usize]);
                 let plane = Plane::through(a, (b - a).cross(planes[0].normal));
-                if plane.at(middle.extend(1.0)) > 0.0 { plane.turned() } else { plane }
+                if plane.at(middle.extend(1.0)) > 0.0 { plane.flipped() } else { plane }
             });
             is_tiled.then(|| ConvexBody::Sheet(planes[0], upright.collect()))?
         } else {
             let middle = used().sum::<DVec3>() / (3 * triangles.len()) as f64;
-            let is_turned = |plane: &Plane| plane.at(middle.extend(1.0)) > 0.0;
+            let is_flipped = |plane: &Plane| plane.at(middle.extend(1.0)) > 0.0;
             // Turned outwards, its triangles run along each edge once either way: the surface is whole.
-            let run = |(triangle, way): (usize, i32)| if is_turned(&planes[triangle]) { -way } else { way };
+            let run = |(triangle, way): (usize, i32)| if is_flipped(&planes[triangle]) { -way } else { way };
             let is_closed = (0..edges.edges().len())
                 .all(|index| incident(index) == 2 && edges.incident(index).map(run).sum::<i32>() == 0);
-            let outwards = |plane: &Plane| if is_turned(plane) { plane.turned() } else { *plane };
+            let outwards = |plane: &Plane| if is_flipped(plane) { plane.flipped() } else { *plane };
             is_closed.then(|| ConvexBody::Solid(planes.iter().map(outwards).collect()))?
         };
         let (ConvexBody::Solid(outside) | ConvexBody::Sheet(_, outside)) = &body;
@@ -124,7 +124,12 @@ const MOST_TRIANGLES_OF_PARTS: usize = 65_536;
 const MOST_HOLDERS: usize = 8;
 
 /// Of each triangle of a mesh: its part lies wholly in the umbra of another part. Empty where none does.
-pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity, light: DVec4) -> Vec<bool> {
+pub fn in_umbra_of_parts(
+    world: &[DVec3],
+    triangles: &[[u32; 3]],
+    connectivity: &Connectivity,
+    light: DVec4,
+) -> Vec<bool> {
     if connectivity.components < 2 || triangles.len() > MOST_TRIANGLES_OF_PARTS {
         return Vec::new();
     }
@@ -141,21 +146,21 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Con
         return Vec::new();
     }
     largest.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let holder = |part: usize| {
+    let umbra_of = |part: usize| {
         let (vertices, triangles) = alone(world, &parts[part]);
         let edges = EdgeList::new(&triangles, vertices.len());
         Some((part, ConvexOccluder::new(&vertices, &triangles, &edges)?))
     };
-    let holders: Vec<(usize, ConvexOccluder)> = largest.into_iter().take(MOST_HOLDERS).filter_map(holder).collect();
-    let is_held = |(part, bounds): (usize, &AxisBox)| {
+    let holders: Vec<(usize, ConvexOccluder)> = largest.into_iter().take(MOST_HOLDERS).filter_map(umbra_of).collect();
+    let is_in_umbra = |(part, bounds): (usize, &AxisBox)| {
         let corners = bounds.corners();
-        holders.iter().any(|(other, holder)| *other != part && holder.darkens_all(&corners, light))
+        holders.iter().any(|(other, umbra_of)| *other != part && umbra_of.darkens_all(&corners, light))
     };
-    let held: Vec<bool> = bounds.iter().enumerate().map(is_held).collect();
-    if !held.contains(&true) {
+    let in_umbra: Vec<bool> = bounds.iter().enumerate().map(is_in_umbra).collect();
+    if !in_umbra.contains(&true) {
         return Vec::new();
     }
-    (0..triangles.len()).map(|index| held[connectivity.component_of(index)]).collect()
+    (0..triangles.len()).map(|index| in_umbra[connectivity.component_of(index)]).collect()
 }
 
 /// A part with its own vertices alone.
@@ -189,31 +194,31 @@ mod tests {
 
     #[test]
     fn a_part_holds_those_that_lie_in_it_or_behind_it() {
-        let held = |inner: f64, offset: [f64; 3], light: DVec4| {
+        let in_umbra = |inner: f64, offset: [f64; 3], light: DVec4| {
             let [outer, inner] = [2.0, inner].map(|size| shapes::cuboid([size; 3]).expect("a box"));
             let both = shapes::joined([(&outer, DVec3::ZERO), (&inner, DVec3::from_array(offset))]).expect("two boxes");
             let connectivity = Connectivity::new(&both, &EdgeList::new(both.triangles(), both.positions().len()));
-            held_by_parts(both.positions(), both.triangles(), &connectivity, light)
+            in_umbra_of_parts(both.positions(), both.triangles(), &connectivity, light)
         };
         let inner_alone: Vec<bool> = (0..24).map(|triangle| triangle >= 12).collect();
         for light in [LAMP, SUN, DVec4::new(5.0, 2.0, 1.0, 1.0), DVec4::new(1e9, 4e8, 1e8, 1.0)] {
-            assert_eq!(held(1.0, [0.1, 0.2, 0.0], light), inner_alone, "{light}");
-            assert_eq!(held(1.0, [4.0, 0.0, 3.0], light), Vec::<bool>::new(), "{light}");
-            assert!(held(2.0, [0.0; 3], light).is_empty(), "in its faces");
-            assert!(held(2.0 - 1e-9, [0.0; 3], light).is_empty(), "too near to its faces");
+            assert_eq!(in_umbra(1.0, [0.1, 0.2, 0.0], light), inner_alone, "{light}");
+            assert_eq!(in_umbra(1.0, [4.0, 0.0, 3.0], light), Vec::<bool>::new(), "{light}");
+            assert!(in_umbra(2.0, [0.0; 3], light).is_empty(), "in its faces");
+            assert!(in_umbra(2.0 - 1e-9, [0.0; 3], light).is_empty(), "too near to its faces");
         }
-        assert_eq!(held(1.0, [0.0, -3.0, 0.0], SUN), inner_alone);
-        assert!(held(1.0, [0.6, -3.0, 0.0], SUN).is_empty(), "its side shows");
-        assert!(held(1.0, [0.0, 9.0, 0.0], LAMP).is_empty(), "beyond the light");
+        assert_eq!(in_umbra(1.0, [0.0, -3.0, 0.0], SUN), inner_alone);
+        assert!(in_umbra(1.0, [0.6, -3.0, 0.0], SUN).is_empty(), "its side shows");
+        assert!(in_umbra(1.0, [0.0, 9.0, 0.0], LAMP).is_empty(), "beyond the light");
         // A lamp in the outer box, on its face, or a hair off it: nothing is proven.
         for height in [0.9, 1.0 - 1e-6, 1.0 - 1e-9, 1.0, 1.0 + 1e-9] {
             let lamp = DVec4::new(0.3, height, 0.2, 1.0);
-            assert!(held(1.0, [0.0, -0.2, 0.0], lamp).is_empty(), "{height}");
+            assert!(in_umbra(1.0, [0.0, -0.2, 0.0], lamp).is_empty(), "{height}");
             let cube = occluder(&shapes::cuboid([2.0; 3]).expect("a box"), DVec3::ZERO).expect("convex");
             assert!(!cube.darkens_all(&[DVec3::ZERO], lamp), "{height}");
             assert!(!cube.darkens_all(&[DVec3::new(0.3, -3.0, 0.2)], lamp) || height > 1.0, "{height}");
         }
-        assert_eq!(held(1.0, [0.0, -0.2, 0.0], DVec4::new(0.3, 1.001, 0.2, 1.0)), inner_alone);
+        assert_eq!(in_umbra(1.0, [0.0, -0.2, 0.0], DVec4::new(0.3, 1.001, 0.2, 1.0)), inner_alone);
     }
 
     #[test]

@@ -128,11 +128,11 @@ pub struct VolumeParts {
     /// Quads from the silhouette to the far vertices.
     pub sides: Range<usize>,
     /// Those of the silhouette's last edges, which hug a triangle of their own.
-    pub hugging_sides: Range<usize>,
+    pub grazing_sides: Range<usize>,
     /// Casting triangles that face the light as they are.
     pub light_cap: Range<usize>,
     /// Casting triangles that face away and count as turned, in their own vertex order.
-    pub light_cap_turned: Range<usize>,
+    pub light_cap_flipped: Range<usize>,
     /// What closes the far end.
     pub dark_cap: DarkCap,
 }
@@ -155,45 +155,45 @@ impl VolumeParts {
         let [towards, away] = [all + facings.towards(), all + facings.towards() + facings.away()];
         VolumeParts {
             sides: 0..sides[0],
-            hugging_sides: sides[0]..all,
+            grazing_sides: sides[0]..all,
             light_cap: all..towards,
-            light_cap_turned: towards..away,
+            light_cap_flipped: towards..away,
             dark_cap,
         }
     }
 
     /// How many triangles a volume with both caps has.
     pub fn triangles(&self) -> usize {
-        let light_caps = self.light_cap.len() + self.light_cap_turned.len();
+        let light_caps = self.light_cap.len() + self.light_cap_flipped.len();
         let dark_cap = match &self.dark_cap {
             DarkCap::None => 0,
             DarkCap::Fan(triangles, _) => triangles.len(),
             DarkCap::Carried(_) => light_caps,
         };
-        self.hugging_sides.end + light_caps + dark_cap
+        self.grazing_sides.end + light_caps + dark_cap
     }
 }
 
 /// Writes the indices of the volume of a caster of `vertex_count` vertices: three a triangle, into
 /// the vertices of [`Extruder::vertices`], front faces outwards but for turned light-cap
-/// triangles. The last `hugging` edges' sides are a run of their own. Whatever `out` held is overwritten.
+/// triangles. The last `grazing` edges' sides are a run of their own. Whatever `out` held is overwritten.
 pub fn write_indices(
     triangles: &[[u32; 3]],
     vertex_count: usize,
     facings: &Facings,
-    (silhouette, hugging): (&[SilhouetteEdge], usize),
+    (silhouette, grazing): (&[SilhouetteEdge], usize),
     far_end: FarEnd,
     out: &mut Vec<u32>,
 ) -> VolumeParts {
     let far = FarVertices { first: vertex_count as u32, is_one_point: matches!(far_end, FarEnd::Point) };
-    let edges = silhouette.split_at(silhouette.len() - hugging);
+    let edges = silhouette.split_at(silhouette.len() - grazing);
     let quads = |edges: &[SilhouetteEdge]| -> usize {
         edges.iter().map(|edge| edge.multiplicity.unsigned_abs() as usize).sum()
     };
     let quads = [quads(edges.0), quads(edges.1)];
     let sides = quads.map(|quads| if far.is_one_point { quads } else { 2 * quads });
     let mut parts = VolumeParts::new(sides, facings, DarkCap::None);
-    let caps_end = parts.light_cap_turned.end;
+    let caps_end = parts.light_cap_flipped.end;
     let mut end = caps_end;
     parts.dark_cap = match far_end {
         FarEnd::Point => DarkCap::None,
@@ -209,7 +209,7 @@ pub fn write_indices(
     } else {
         out.resize(length, 0);
     }
-    let (sides, rest) = out.as_chunks_mut().0.split_at_mut(parts.hugging_sides.end);
+    let (sides, rest) = out.as_chunks_mut().0.split_at_mut(parts.grazing_sides.end);
     write_sides(sides, silhouette, far);
     let (caps, fan) = rest.split_at_mut(facings.towards() + facings.away());
     if let FarEnd::Fan(of) = far_end {
@@ -225,8 +225,8 @@ pub fn write_indices(
         let runs = facings.runs().chunks(SHARE / RUN);
         let shares = triangles.chunks(SHARE).zip(facings.signs().chunks(SHARE)).zip(runs);
         let mut rest = caps;
-        let with_room = |((triangles, signs), runs)| (rest.split_off(signs), triangles, signs, runs);
-        let tasks: Vec<_> = shares.map(with_room).collect();
+        let with_space = |((triangles, signs), runs)| (rest.split_off(signs), triangles, signs, runs);
+        let tasks: Vec<_> = shares.map(with_space).collect();
         tasks.into_par_iter().for_each(|(caps, triangles, signs, runs)| caps.write(triangles, signs, runs));
     }
     parts
@@ -285,24 +285,24 @@ impl<'a> CapIndices<'a> {
 
     /// Writes triangles that all face the same way.
     fn push(&mut self, triangles: &[[u32; 3]], sign: i8) {
-        let room = match sign {
+        let space = match sign {
             1 => &mut self.towards,
             -1 => &mut self.away,
             _ => return,
         };
-        front(room, triangles.len()).copy_from_slice(triangles);
+        front(space, triangles.len()).copy_from_slice(triangles);
     }
 }
 
-/// Takes the first `count` places of `room`.
-fn front<'a>(room: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
-    let (taken, rest) = std::mem::take(room).split_at_mut(count);
-    *room = rest;
+/// Takes the first `count` places of `space`.
+fn front<'a>(space: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
+    let (taken, rest) = std::mem::take(space).split_at_mut(count);
+    *space = rest;
     taken
 }
 
 fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
-    let mut room = out.iter_mut();
+    let mut space = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {
         // The turned triangle runs from `low` to `high` where the multiplicity is positive; the
         // side beside it must run back along the edge for the volume to close.
@@ -317,18 +317,18 @@ fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVert
         };
         for _ in 0..multiplicity.unsigned_abs() {
             let triangles = std::iter::once(first).chain(second);
-            triangles.zip(&mut room).for_each(|(triangle, out)| *out = triangle);
+            triangles.zip(&mut space).for_each(|(triangle, out)| *out = triangle);
         }
     }
 }
 
 /// Each side's quad runs along its far edge one way; the fan's triangle must run back.
 fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
-    let mut room = out.iter_mut();
+    let mut space = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {
         let (p, q) = (far.of(edge.low), far.of(edge.high));
         let triangle = if multiplicity > 0 { [q, p, far.apex()] } else { [p, q, far.apex()] };
-        (0..multiplicity.unsigned_abs()).zip(&mut room).for_each(|(_, out)| *out = triangle);
+        (0..multiplicity.unsigned_abs()).zip(&mut space).for_each(|(_, out)| *out = triangle);
     }
 }
 
@@ -361,15 +361,15 @@ mod tests {
                 None if extruder.is_one_point() => FarEnd::Point,
                 None => FarEnd::Caps,
             };
-            let hugging = edges.len() / 3;
-            let parts = write_indices(corners, world.len(), &facings, (&edges, hugging), far_end, &mut indices);
+            let grazing = edges.len() / 3;
+            let parts = write_indices(corners, world.len(), &facings, (&edges, grazing), far_end, &mut indices);
             let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
             // As they face outwards: the light cap's turned run, and the carried dark cap's other one.
             if let DarkCap::Carried(base) = parts.dark_cap {
                 let carried = |[a, b, c]: [u32; 3]| [a + base, b + base, c + base];
-                let turned = |[a, b, c]: [u32; 3]| [a, c, b];
-                let towards: Vec<_> = triangles[parts.light_cap.clone()].iter().map(|t| turned(carried(*t))).collect();
-                let away: Vec<_> = triangles[parts.light_cap_turned.clone()].iter().map(|t| carried(*t)).collect();
+                let flipped = |[a, b, c]: [u32; 3]| [a, c, b];
+                let towards: Vec<_> = triangles[parts.light_cap.clone()].iter().map(|t| flipped(carried(*t))).collect();
+                let away: Vec<_> = triangles[parts.light_cap_flipped.clone()].iter().map(|t| carried(*t)).collect();
                 triangles.extend(towards.into_iter().chain(away));
             }
             let fan = if let DarkCap::Fan(_, fan) = &parts.dark_cap { Some(*fan) } else { None };
@@ -383,7 +383,7 @@ mod tests {
     fn assert_closed(volume: &Volume) {
         let mut balance = BTreeMap::new();
         for (index, &[a, b, c]) in volume.triangles.iter().enumerate() {
-            let corners = if volume.parts.light_cap_turned.contains(&index) { [a, c, b] } else { [a, b, c] };
+            let corners = if volume.parts.light_cap_flipped.contains(&index) { [a, c, b] } else { [a, b, c] };
             for side in 0..3 {
                 let (from, to) = (corners[side], corners[(side + 1) % 3]);
                 if from != to {
@@ -428,16 +428,16 @@ mod tests {
     #[test]
     fn a_single_triangle_turned_away_casts_like_one_turned_towards() {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        for (corners, is_turned) in [([0, 1, 2], false), ([0, 2, 1], true)] {
+        for (corners, is_flipped) in [([0, 1, 2], false), ([0, 2, 1], true)] {
             let volume = Volume::new(&world, &[corners], DVec4::new(0.2, 0.2, 4.0, 1.0));
-            assert_eq!([volume.parts.sides.len(), volume.parts.hugging_sides.len()], [4, 2]);
-            assert_eq!(volume.parts.light_cap.len(), usize::from(!is_turned));
-            assert_eq!(volume.parts.light_cap_turned.len(), usize::from(is_turned));
+            assert_eq!([volume.parts.sides.len(), volume.parts.grazing_sides.len()], [4, 2]);
+            assert_eq!(volume.parts.light_cap.len(), usize::from(!is_flipped));
+            assert_eq!(volume.parts.light_cap_flipped.len(), usize::from(is_flipped));
             assert!(matches!(&volume.parts.dark_cap, DarkCap::Fan(triangles, _) if *triangles == (7..10)));
             assert_eq!(volume.triangles.len(), 10);
             assert_closed(&volume);
             let inside = DVec3::new(0.3, 0.3, -1.0);
-            for index in 0..volume.parts.hugging_sides.end {
+            for index in 0..volume.parts.grazing_sides.end {
                 let [a, b, c] = volume.triangles[index].map(|v| volume.vertices[v as usize]);
                 let matrix = glam::DMat4::from_cols(a, b, c, inside.extend(1.0));
                 assert!(matrix.determinant() > 0.0, "the inside is behind every side");
@@ -449,7 +449,7 @@ mod tests {
     fn a_directional_light_needs_no_dark_cap_and_half_the_sides() {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let volume = Volume::new(&world, &[[0, 1, 2]], DVec4::new(0.0, 0.0, 1.0, 0.0));
-        assert_eq!(volume.parts.hugging_sides.end, 3);
+        assert_eq!(volume.parts.grazing_sides.end, 3);
         assert_eq!(volume.parts.dark_cap, DarkCap::None);
         assert_eq!(volume.vertices.len(), 4);
     }
@@ -477,7 +477,7 @@ mod tests {
         let of = |sign: Sign| triangles.iter().zip(0..count).filter(move |(_, i)| sign_of(*i) == sign).map(|(t, _)| *t);
         let written = indices.as_chunks::<3>().0;
         let expected: Vec<[u32; 3]> = of(Sign::Positive).chain(of(Sign::Negative)).collect();
-        assert_eq!(written[..parts.light_cap_turned.end], expected);
+        assert_eq!(written[..parts.light_cap_flipped.end], expected);
         assert_eq!((written.len(), parts.dark_cap), (expected.len(), DarkCap::Carried(count + 2)));
     }
 
@@ -514,13 +514,13 @@ mod tests {
                     let angle = f64::from(seen);
                     let ray = DVec3::new(angle.sin(), (1.7 * angle).cos(), (2.3 * angle).sin() + 0.01);
                     let by_fan = windings(&fan, fan.triangles[range.clone()].iter().copied(), ray);
-                    let carried = |run: &Range<usize>, is_turned: bool| {
+                    let carried = |run: &Range<usize>, is_flipped: bool| {
                         let far = fan.triangles[run.clone()].iter().map(|t| t.map(|corner| corner + base));
                         let sum = windings(&fan, far, ray);
-                        if is_turned { -sum } else { sum }
+                        if is_flipped { -sum } else { sum }
                     };
                     // Turned as in `assert_closed`: away from the light.
-                    let by_caps = carried(&fan.parts.light_cap, true) + carried(&fan.parts.light_cap_turned, false);
+                    let by_caps = carried(&fan.parts.light_cap, true) + carried(&fan.parts.light_cap_flipped, false);
                     assert_eq!(by_fan, by_caps, "{seed} {light} {ray}");
                 }
             }
@@ -534,7 +534,7 @@ mod tests {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         let volume = Volume::new(&world, &corners, DVec4::new(0.2, 0.2, 0.2, 1.0));
         let DarkCap::Fan(triangles, fan) = &volume.parts.dark_cap else { panic!("a point light") };
-        assert_eq!((triangles.len(), fan.spheres, volume.parts.hugging_sides.end), (8, 1, 0));
+        assert_eq!((triangles.len(), fan.spheres, volume.parts.grazing_sides.end), (8, 1, 0));
         assert_closed(&volume);
     }
 }

@@ -97,13 +97,13 @@ mod tests {
     #[test]
     fn shells_add_and_turned_ones_take_away() {
         let (mut world, mut triangles) = cube(0.0, 9.0);
-        let (inner, turned) = cube(3.0, 6.0);
-        triangles.extend(turned.iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
+        let (inner, flipped) = cube(3.0, 6.0);
+        triangles.extend(flipped.iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
         world.extend(inner);
         assert_eq!(winding_number(&world, &triangles, DVec3::splat(1.0)), Some(1));
         assert_eq!(winding_number(&world, &triangles, DVec3::splat(4.5)), Some(0));
         triangles.truncate(12);
-        let turned: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
-        assert_eq!(winding_number(&world, &turned, DVec3::splat(4.5)), Some(-1));
+        let flipped: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        assert_eq!(winding_number(&world, &flipped, DVec3::splat(4.5)), Some(-1));
     }
 }

@@ -37,13 +37,13 @@ pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
 /// The labels of each light.
 pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
     let plan = prepared.plan;
-    let mut held = SnapshotStorage { memory: SnapshotMemory::Mapped, room: prepared.room };
+    let mut storage = SnapshotStorage { memory: SnapshotMemory::Mapped, budget: prepared.budget };
     let mut labels = vec![None; plan.lights.len()];
     for (index, pass) in plan.passes.iter().enumerate() {
         if let Some(light) = labelled(plan, pass) {
             let staged = prepared.staged(index)?;
             let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-            held.keep(&mut labels[light.0], left)?;
+            storage.keep(&mut labels[light.0], left)?;
         }
     }
     Ok(labels)

@@ -12,12 +12,12 @@ use wgpu::{Device, Texture, TextureFormat};
 type AttachmentKey = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFormat>>;
 
 /// Larger ones go with their plan.
-const MOST_BYTES_KEPT: u64 = 1 << 26;
+const MOST_BYTES_POOLED: u64 = 1 << 26;
 
 /// Those of the newest plan.
 #[derive(Debug, Default)]
 pub(super) struct AttachmentPool {
-    kept: Vec<(AttachmentKey, Arc<Texture>)>,
+    pooled: Vec<(AttachmentKey, Arc<Texture>)>,
 }
 
 impl AttachmentPool {
@@ -35,20 +35,20 @@ impl AttachmentPool {
             wanted.map_label_and_view_formats(|label| label.map(str::to_owned), |formats| formats.to_vec())
         };
         let ids = || (0..plan.attachments.len()).map(AttachmentId);
-        let mut left = std::mem::take(&mut self.kept);
+        let mut left = std::mem::take(&mut self.pooled);
         left.retain(|(_, texture)| Arc::strong_count(texture) == 1);
         let mut free = |id: AttachmentId| {
             let wanted = owned(id);
             let found = left.iter().position(|(made, _)| *made == wanted)?;
             Some(left.swap_remove(found).1)
         };
-        let may_keep: Vec<bool> = ids().map(|id| given[id.0].is_none() && may_hand_on(plan, id)).collect();
+        let may_cache: Vec<bool> = ids().map(|id| given[id.0].is_none() && may_hand_on(plan, id)).collect();
         let mut found: Vec<Option<Arc<Texture>>> = given.to_vec();
-        ids().filter(|id| may_keep[id.0]).for_each(|id| found[id.0] = free(id));
+        ids().filter(|id| may_cache[id.0]).for_each(|id| found[id.0] = free(id));
         drop(left);
         let create = |id| Arc::new(device.create_texture(&describe(id)));
         let textures: Vec<Arc<Texture>> = ids().map(|id| found[id.0].take().unwrap_or_else(|| create(id))).collect();
-        self.kept = ids().filter(|id| may_keep[id.0]).map(|id| (owned(id), textures[id.0].clone())).collect();
+        self.pooled = ids().filter(|id| may_cache[id.0]).map(|id| (owned(id), textures[id.0].clone())).collect();
         textures
     }
 }
@@ -64,8 +64,8 @@ fn may_hand_on(plan: &FramePlan, id: AttachmentId) -> bool {
                 .is_none_or(|target| target.clear_depth.is_some() && (!has_stencil || target.clear_stencil.is_some()))
     };
     let first = plan.passes.iter().find(|pass| pass.targets().any(|target| target == id));
-    plan.held_layers(id) == 1
-        && plan.attachment_bytes(id) <= MOST_BYTES_KEPT
+    plan.stored_layers(id) == 1
+        && plan.attachment_bytes(id) <= MOST_BYTES_POOLED
         && plan.passes.iter().all(|pass| pass.recorded.is_none())
         && first.is_some_and(clears)
 }

@@ -1,9 +1,9 @@
 //! Makes steps of the copies of a frame, part by part: what did not change is shared, and its copy given back.
 
 use super::GpuError;
+use super::budget::MemoryBudget;
 use super::prepared::Prepared;
 use super::readback::{StagingCopy, TargetChange, color_change, depth_change, stencil_change};
-use super::room::MemoryBudget;
 use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub struct ExecutorOutput {
     /// One a light: the faces of its map, left-out ones at their clear value.
     pub maps: Vec<Option<Vec<Arc<Image>>>>,
     /// One a pass: it did not run, since what it draws was there from the frame before.
-    pub kept: Vec<bool>,
+    pub from_cache: Vec<bool>,
 }
 
 /// What the passes so far have left.
@@ -31,13 +31,13 @@ pub(super) struct Collector {
     depth: Arc<Image>,
     stencil: Arc<Image>,
     output: ExecutorOutput,
-    held: SnapshotStorage,
+    storage: SnapshotStorage,
 }
 
 /// How pictures are held, and in what room.
 pub(super) struct SnapshotStorage {
     pub memory: SnapshotMemory,
-    pub room: MemoryBudget,
+    pub budget: MemoryBudget,
 }
 
 /// Where captured pictures lie.
@@ -50,8 +50,8 @@ pub enum SnapshotMemory {
 }
 
 impl Collector {
-    /// Before the first pass. `kept` are the passes that will not run.
-    pub fn new(plan: &FramePlan, kept: Vec<bool>, held: SnapshotStorage) -> Collector {
+    /// Before the first pass. `from_cache` are the passes that will not run.
+    pub fn new(plan: &FramePlan, from_cache: Vec<bool>, storage: SnapshotStorage) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
         let none = vec![None; plan.lights.len()];
@@ -61,8 +61,8 @@ impl Collector {
             color: zero(PixelFormat::Rgba8Srgb),
             depth: zero(PixelFormat::Depth32F),
             stencil: zero(PixelFormat::U8),
-            output: ExecutorOutput { steps, targets, labels: none.clone(), counts: none, maps, kept },
-            held,
+            output: ExecutorOutput { steps, targets, labels: none.clone(), counts: none, maps, from_cache },
+            storage,
         }
     }
 
@@ -71,7 +71,7 @@ impl Collector {
         let plan = prepared.plan;
         let pass = &plan.passes[index];
         let staged = prepared.staged(index)?;
-        let (output, held) = (&mut self.output, &mut self.held);
+        let (output, storage) = (&mut self.output, &mut self.storage);
         let role = |target| plan.attachment(target).role;
         let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
         let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
@@ -81,7 +81,7 @@ impl Collector {
                 let known = output.maps[light.0].as_mut().and_then(|faces| faces.get_mut(face));
                 let image = match (known, staged.color.as_ref().or(staged.depth.as_ref())) {
                     (Some(known), Some(staging)) => {
-                        held.move_on(known, staging.image()?)?;
+                        storage.move_on(known, staging.image()?)?;
                         Some(known.clone())
                     }
                     (known, _) => known.cloned(),
@@ -94,13 +94,13 @@ impl Collector {
                 let target = match color_role.map(|(role, _)| role) {
                     Some(AttachmentRole::Labels(light)) => {
                         let labels = after(&change, &staged.color, PixelFormat::U8, plan.size)?;
-                        held.keep(&mut output.labels[light.0], labels)?;
+                        storage.keep(&mut output.labels[light.0], labels)?;
                         own.clone_from(&output.labels[light.0]);
                         FrameTarget::Labels
                     }
                     Some(AttachmentRole::Count(light)) => {
                         let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
-                        held.keep(&mut output.counts[light.0], count)?;
+                        storage.keep(&mut output.counts[light.0], count)?;
                         own.clone_from(&output.counts[light.0]);
                         FrameTarget::Count
                     }
@@ -112,11 +112,11 @@ impl Collector {
                 let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
                 let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
                 let frame = FrameSnapshot {
-                    color: held.step_aspect(&mut self.color, color_after)?,
-                    depth: held.step_aspect(&mut self.depth, depth_after)?,
+                    color: storage.step_aspect(&mut self.color, color_after)?,
+                    depth: storage.step_aspect(&mut self.depth, depth_after)?,
                     stencil: prepared.passes[index]
                         .has_stencil
-                        .then(|| held.step_aspect(&mut self.stencil, stencil_after))
+                        .then(|| storage.step_aspect(&mut self.stencil, stencil_after))
                         .transpose()?,
                     target,
                 };
@@ -172,7 +172,7 @@ impl SnapshotStorage {
             (_, None) => {}
             (Some(known), Some(after)) => _ = self.move_on(known, after)?,
             (known, Some(after)) => {
-                self.room.take(after.bytes_beside(None))?;
+                self.budget.take(after.bytes_beside(None))?;
                 *known = Some(after);
             }
         }
@@ -194,7 +194,7 @@ impl SnapshotStorage {
         if is_another {
             let sharing = if self.memory == SnapshotMemory::Shared { next.sharing(current) } else { None };
             let next = sharing.map_or(next, Arc::new);
-            self.room.take(next.bytes_beside(Some(current)))?;
+            self.budget.take(next.bytes_beside(Some(current)))?;
             *current = next;
         }
         Ok(is_another)

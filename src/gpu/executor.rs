@@ -2,13 +2,13 @@
 //! where those copies are many.
 
 use super::answer::{self, LabelsAndPicture};
+use super::budget::MemoryBudget;
 use super::collect::{Collector, ExecutorOutput, SnapshotMemory, SnapshotStorage};
 use super::fragment_log::LogCache;
 use super::pipelines::Pipelines;
 use super::prepared::{PlanResources, Prepared, PreparedDraw};
 use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
 use super::readback::{StagedPass, StagingCopy};
-use super::room::MemoryBudget;
 use super::{GpuContext, GpuError, features, start};
 use crate::capture::Image;
 use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
@@ -28,7 +28,7 @@ const MOST_BYTES: u64 = 8 << 30;
 pub struct Executor {
     pub(super) context: Arc<GpuContext>,
     pub(super) pipelines: Pipelines,
-    kept: PlanResources,
+    resources: PlanResources,
     pub(super) log: LogCache,
     most_bytes: u64,
 }
@@ -53,7 +53,7 @@ impl Executor {
     pub fn new(context: GpuContext) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
-            kept: PlanResources::default(),
+            resources: PlanResources::default(),
             log: LogCache::default(),
             context: Arc::new(context),
             most_bytes: MOST_BYTES,
@@ -78,19 +78,19 @@ impl Executor {
     /// Forgets pipelines and buffers, so that the next plan is set up from nothing.
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
-        self.kept = PlanResources::default();
+        self.resources = PlanResources::default();
         self.log = LogCache::default();
     }
 
     /// Uploads what a plan needs and makes its pipelines.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
-        let room = MemoryBudget::of(self.most_bytes);
-        let Executor { context, pipelines, kept, .. } = self;
-        let prepared = context.guarded(|| Prepared::new(context, pipelines, kept, plan, room));
+        let budget = MemoryBudget::of(self.most_bytes);
+        let Executor { context, pipelines, resources, .. } = self;
+        let prepared = context.guarded(|| Prepared::new(context, pipelines, resources, plan, budget));
         if prepared.is_err() {
             // Whatever could not be made is not handed on.
-            self.kept.forget_attachments();
+            self.resources.forget_attachments();
         }
         prepared
     }
@@ -100,9 +100,9 @@ impl Executor {
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan)?;
-        let maps = std::mem::take(&mut self.kept.maps);
+        let maps = std::mem::take(&mut self.resources.maps);
         let prepared = self.prepare(plan);
-        self.kept.maps = maps;
+        self.resources.maps = maps;
         prepared
     }
 
@@ -110,9 +110,9 @@ impl Executor {
     /// there stays.
     pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
-        let room = MemoryBudget::of(self.most_bytes);
+        let budget = MemoryBudget::of(self.most_bytes);
         let Executor { context, pipelines, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, &mut PlanResources::default(), plan, room))
+        context.guarded(|| Prepared::new(context, pipelines, &mut PlanResources::default(), plan, budget))
     }
 
     /// Finds what can't be run, and a device for what can.
@@ -140,8 +140,8 @@ impl Executor {
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { RunMode::Snapshots } else { RunMode::Frame };
         if snapshots {
-            let mut room = prepared.room;
-            room.take(prepared.snapshot_bytes())?;
+            let mut budget = prepared.budget;
+            budget.take(prepared.snapshot_bytes())?;
         }
         let start = Instant::now();
         run(prepared, mode, &FrameQueries::default())?;
@@ -171,7 +171,7 @@ impl Executor {
     pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
         // A map that stays is drawn once: a pass that does not run shows no sample of what it holds.
-        let asks = |pass: &Pass| !prepared.may_keep(pass);
+        let asks = |pass: &Pass| !prepared.may_cache(pass);
         let samples = context.guarded(|| Ok(DrawSamples::new(&context.device, prepared.plan, asks)))?;
         let notes = FrameQueries { samples, ..FrameQueries::default() };
         run(prepared, RunMode::Frame, &notes)?;
@@ -217,7 +217,7 @@ impl Executor {
 impl FrameQueries {
     /// When the passes of a mode begin and end.
     fn of_times(prepared: &Prepared, mode: RunMode) -> FrameQueries {
-        let runs = |pass: &Pass| mode.runs(pass) && !prepared.is_kept(pass);
+        let runs = |pass: &Pass| mode.runs(pass) && !prepared.is_cached(pass);
         FrameQueries {
             timestamps: PassTimestamps::new(&prepared.context, prepared.plan, runs),
             ..FrameQueries::default()
@@ -281,8 +281,8 @@ fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), G
 fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotMemory) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
-    let kept = plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
-    let mut collector = Collector::new(plan, kept, SnapshotStorage { memory, room: prepared.room });
+    let resources = plan.passes.iter().map(|pass| prepared.is_cached(pass)).collect();
+    let mut collector = Collector::new(plan, resources, SnapshotStorage { memory, budget: prepared.budget });
     let mut start = 0;
     while start < plan.passes.len() {
         let part = context.guarded(|| {
@@ -323,7 +323,7 @@ fn submit(prepared: &Prepared, mode: RunMode, notes: &FrameQueries, passes: Rang
         if !mode.runs(pass) {
             continue;
         }
-        if !prepared.is_kept(pass) && pass.targets().next().is_some() {
+        if !prepared.is_cached(pass) && pass.targets().next().is_some() {
             let content = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref());
             if let (Some(content), Some(target)) = (content, prepared.start_target(index)) {
                 start::record(&mut encoder, &target, content);

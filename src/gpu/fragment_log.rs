@@ -70,24 +70,24 @@ const CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0
 
 impl Executor {
     /// Draws the triangles of `covering` again, behind a scissor of `pixel`, and writes down their
-    /// fragments there. There is `room` for so many at first, and more where they are more.
+    /// fragments there. There is `capacity` for so many at first, and more where they are more.
     pub fn log_fragments(
         &mut self,
         plan: &FramePlan,
         pixel: [u32; 2],
         covering: &[Covering],
-        room: u32,
+        capacity: u32,
     ) -> Result<FragmentLog, GpuError> {
         if covering.is_empty() {
             return Ok(FragmentLog::default());
         }
-        let mut room = room.max(1);
+        let mut capacity = capacity.max(1);
         loop {
-            let log = self.replay(plan, pixel, covering, u64::from(room))?;
-            if log.counted <= room {
+            let log = self.replay(plan, pixel, covering, u64::from(capacity))?;
+            if log.counted <= capacity {
                 return Ok(log);
             }
-            room = log.counted;
+            capacity = log.counted;
         }
     }
 
@@ -96,7 +96,7 @@ impl Executor {
         plan: &FramePlan,
         pixel: [u32; 2],
         covering: &[Covering],
-        room: u64,
+        capacity: u64,
     ) -> Result<FragmentLog, GpuError> {
         self.provide(plan)?;
         let Executor { context, pipelines, log, .. } = self;
@@ -111,7 +111,7 @@ impl Executor {
                 contents: bytemuck::cast_slice(&corners),
                 usage: BufferUsages::VERTEX,
             });
-            let size = HEAD_BYTES + room * size_of::<LogRecord>() as u64;
+            let size = HEAD_BYTES + capacity * size_of::<LogRecord>() as u64;
             let buffer = |usage| {
                 device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("fragment log"),
@@ -153,7 +153,7 @@ impl Executor {
             context.wait()?;
             Ok(readable)
         })?;
-        log.target.take_if(|target| u64::from(target.width()) * u64::from(target.height()) > MOST_KEPT_TEXELS);
+        log.target.take_if(|target| u64::from(target.width()) * u64::from(target.height()) > MOST_CACHED_TEXELS);
         read(&readable)
     }
 }
@@ -189,7 +189,7 @@ fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> LogKey {
         front_face: raster.front_face,
         is_recorded: draw.program.is_recorded(),
         depth_format: target
-            .map_or(TextureFormat::Depth32Float, |target| plan.attachment(target.attachment).held_format()),
+            .map_or(TextureFormat::Depth32Float, |target| plan.attachment(target.attachment).stored_format()),
     }
 }
 
@@ -244,8 +244,9 @@ impl LogCache {
     }
 
     fn target(&mut self, device: &Device, format: TextureFormat, size: [u32; 2]) -> &Texture {
-        let kept = self.target.take().filter(|kept| kept.format() == format && [kept.width(), kept.height()] == size);
-        self.target.insert(kept.unwrap_or_else(|| {
+        let cached =
+            self.target.take().filter(|cached| cached.format() == format && [cached.width(), cached.height()] == size);
+        self.target.insert(cached.unwrap_or_else(|| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("fragment log"),
                 size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -319,6 +320,6 @@ impl LogCache {
 }
 
 /// A larger target is made anew for each log; a picture of 8K is kept.
-const MOST_KEPT_TEXELS: u64 = 1 << 25;
+const MOST_CACHED_TEXELS: u64 = 1 << 25;
 /// Pipelines kept at once.
 const MOST_PIPELINES: usize = 64;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::Texture;
 
-/// By [`FramePlan::kept_by`]; they stay as long as the newest plan that keeps maps uses them.
+/// By [`FramePlan::cache_key`]; they stay as long as the newest plan that keeps maps uses them.
 #[derive(Debug, Default)]
 pub(super) struct MapCache {
     cached: LastUsed<u64, Arc<CachedMap>>,
@@ -46,6 +46,6 @@ impl MapCache {
         create: impl FnOnce() -> Arc<Texture>,
     ) -> Option<Arc<CachedMap>> {
         let new = || Arc::new(CachedMap { texture: create(), is_drawn: AtomicBool::new(false) });
-        Some(self.cached.get_or_make(plan.kept_by(id)?, new))
+        Some(self.cached.get_or_make(plan.cache_key(id)?, new))
     }
 }

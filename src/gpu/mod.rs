@@ -19,6 +19,7 @@
 
 mod answer;
 mod attachments;
+mod budget;
 mod buffers;
 mod collect;
 mod context;
@@ -32,7 +33,6 @@ mod pipelines;
 mod prepared;
 mod queries;
 mod readback;
-mod room;
 mod shaders;
 mod specialization;
 mod start;

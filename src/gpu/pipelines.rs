@@ -34,7 +34,7 @@ pub(super) struct BindGroupLayouts {
     pub draw: BindGroupLayout,
     pub surface: BindGroupLayout,
     pub textured_surface: BindGroupLayout,
-    pub kept: BindGroupLayout,
+    pub retained: BindGroupLayout,
     pub light: BindGroupLayout,
     pub light_with_map: BindGroupLayout,
     pub light_with_labels: BindGroupLayout,
@@ -56,7 +56,7 @@ pub(super) struct Pipelines {
 }
 
 /// Pipelines kept at once: a driver may keep a hundred kilobytes of code for each. A plan of more makes some anew.
-const MOST_KEPT: usize = 512;
+const MOST_CACHED: usize = 512;
 
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
 /// `ExtrudedCorner` of the plan.
@@ -101,7 +101,7 @@ impl Pipelines {
         if let Some(pipeline) = self.pipelines.get(key) {
             return pipeline.clone();
         }
-        if self.pipelines.len() >= MOST_KEPT {
+        if self.pipelines.len() >= MOST_CACHED {
             // A slider moved over many biases has made one each.
             self.pipelines.clear();
         }
@@ -135,8 +135,8 @@ impl Pipelines {
         let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
         // Floats are stored as they are.
         let fragment = match key.shader.form {
-            ShaderInputs::Kept if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
-            ShaderInputs::Kept => source.fragment,
+            ShaderInputs::Retained if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
+            ShaderInputs::Retained => source.fragment,
             _ => source.fragment.filter(|_| !is_recorded || key.depth_steps.is_some()),
         };
         device.create_render_pipeline(&RenderPipelineDescriptor {
@@ -233,7 +233,7 @@ impl BindGroupLayouts {
                 "textured surface",
                 &[storage(0), storage(1), storage(2), storage(3), storage(4), picture, picture_sampler],
             ),
-            kept: layout(
+            retained: layout(
                 "kept fragments",
                 &[entry(0, ShaderStages::FRAGMENT, BufferBindingType::Storage { read_only: true }, false)],
             ),
@@ -255,7 +255,7 @@ impl BindGroupLayouts {
         };
         let surface = match shader.form {
             ShaderInputs::Textured => &self.textured_surface,
-            ShaderInputs::Kept => &self.kept,
+            ShaderInputs::Retained => &self.retained,
             ShaderInputs::Plain | ShaderInputs::Extruded => &self.surface,
         };
         [&self.view, &self.draw, surface, light]

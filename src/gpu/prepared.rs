@@ -2,12 +2,12 @@
 //! once a run wants them, the buffers that snapshots are copied to. Made once, run as often as wanted.
 
 use super::attachments::AttachmentPool;
+use super::budget::MemoryBudget;
 use super::buffers::{Buffers, check_bound};
 use super::maps::{CachedMap, MapCache};
 use super::pictures::Pictures;
 use super::pipelines::{BindGroupLayouts, PipelineKey, Pipelines};
 use super::readback::{StagedPass, StagingCopy, TargetChange, color_change, depth_change, stencil_change};
-use super::room::MemoryBudget;
 use super::shaders::{ShaderInputs, ShaderKey};
 use super::specialization::Specialization;
 use super::uniforms::{self, UniformArray};
@@ -63,7 +63,7 @@ pub struct Prepared<'a> {
     /// By attachment: the texture that stays from frame to frame.
     pub(super) kept: Vec<Option<Arc<CachedMap>>>,
     /// What attachments and pictures leave for copies.
-    pub(super) room: MemoryBudget,
+    pub(super) budget: MemoryBudget,
 }
 
 #[derive(Debug)]
@@ -97,10 +97,10 @@ impl<'a> Prepared<'a> {
         pipelines: &mut Pipelines,
         kept: &mut PlanResources,
         plan: &'a FramePlan,
-        mut room: MemoryBudget,
+        mut budget: MemoryBudget,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
-        check_size(device, plan, &mut room)?;
+        check_size(device, plan, &mut budget)?;
         kept.next_plan();
         let PlanResources { buffers, pictures, maps, attachments } = kept;
         let describe = |id| described(plan, id);
@@ -135,17 +135,17 @@ impl<'a> Prepared<'a> {
             draw_group,
             lights,
             kept,
-            room,
+            budget,
         })
     }
 
     /// What this pass draws stays for the next frame.
-    pub(super) fn may_keep(&self, pass: &Pass) -> bool {
+    pub(super) fn may_cache(&self, pass: &Pass) -> bool {
         pass.targets().any(|id| self.kept[id.0].is_some())
     }
 
     /// What this pass would draw is still there.
-    pub(super) fn is_kept(&self, pass: &Pass) -> bool {
+    pub(super) fn is_cached(&self, pass: &Pass) -> bool {
         let is_drawn = |id: AttachmentId| self.kept[id.0].as_ref().is_some_and(|map| map.is_drawn());
         pass.targets().any(is_drawn)
     }
@@ -161,7 +161,7 @@ impl<'a> Prepared<'a> {
         Some(start::StartTarget {
             device: &self.context.device,
             texture: &self.textures[target.attachment.0],
-            layer: held_layer(self.plan, target.attachment, target.layer),
+            layer: stored_layer(self.plan, target.attachment, target.layer),
             view: self.passes[index].depth_stencil.as_ref()?,
             pipeline: self.passes[index].start.as_ref(),
         })
@@ -193,8 +193,8 @@ impl<'a> Prepared<'a> {
 
     /// Can the snapshots of all timed passes be held at once?
     pub fn holds_all_snapshots(&self) -> bool {
-        let mut room = self.room;
-        room.take(self.snapshot_bytes()).is_ok()
+        let mut budget = self.budget;
+        budget.take(self.snapshot_bytes()).is_ok()
     }
 }
 
@@ -215,9 +215,9 @@ impl PassPreparer<'_> {
     fn pass(&mut self, pass: &Pass, first_draw: usize) -> Result<PreparedPass, GpuError> {
         let plan = self.plan;
         let target = pass.depth_stencil.as_ref();
-        let view = |id: AttachmentId, layer| layer_view(&self.textures[id.0], held_layer(plan, id, layer));
+        let view = |id: AttachmentId, layer| layer_view(&self.textures[id.0], stored_layer(plan, id, layer));
         let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.depth.as_ref());
-        let start = target.filter(|_| start.is_some()).map(|target| plan.attachment(target.attachment).held_format());
+        let start = target.filter(|_| start.is_some()).map(|target| plan.attachment(target.attachment).stored_format());
         let image_target = pass.image.as_ref().and(pass.color.as_ref());
         // Another program's colours are not known: a draw that leaves nothing else is not run.
         let draws = if pass.targets().next().is_some() { &pass.draws[..] } else { &[] };
@@ -250,14 +250,14 @@ impl PassPreparer<'_> {
             None => self.buffers.get(device, &mesh.vertices)?,
         };
         let indices = self.buffers.get(device, &mesh.indices)?;
-        let shading = match (&mesh.surface, &mesh.kept) {
+        let shading = match (&mesh.surface, &mesh.retained) {
             (Some(surface), _) if shader.pulls_vertices() => {
                 let group = self.surface_group(draw, surface, [&vertices, &indices])?;
                 let light = pass.light.filter(|_| draw.program.visibility().is_some());
                 Some((group, light.map(|light| self.light_group(draw, light))))
             }
-            (_, Some(kept)) if shader.form == ShaderInputs::Kept => {
-                Some((kept_group(device, self.pipelines, &self.buffers.get(device, kept)?)?, None))
+            (_, Some(retained)) if shader.form == ShaderInputs::Retained => {
+                Some((kept_group(device, self.pipelines, &self.buffers.get(device, retained)?)?, None))
             }
             _ => None,
         };
@@ -325,7 +325,7 @@ impl PassPreparer<'_> {
 }
 
 /// Takes room for attachments and pictures.
-fn check_size(device: &Device, plan: &FramePlan, room: &mut MemoryBudget) -> Result<(), GpuError> {
+fn check_size(device: &Device, plan: &FramePlan, budget: &mut MemoryBudget) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;
     for (index, attachment) in plan.attachments.iter().enumerate() {
@@ -350,7 +350,7 @@ fn check_size(device: &Device, plan: &FramePlan, room: &mut MemoryBudget) -> Res
             });
         }
     }
-    room.take(bytes)
+    budget.take(bytes)
 }
 
 /// An attachment's texture.
@@ -371,20 +371,20 @@ fn described(plan: &FramePlan, id: AttachmentId) -> wgpu::TextureDescriptor<'_> 
         size: wgpu::Extent3d {
             width: attachment.size[0],
             height: attachment.size[1],
-            depth_or_array_layers: plan.held_layers(id),
+            depth_or_array_layers: plan.stored_layers(id),
         },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: attachment.held_format(),
+        format: attachment.stored_format(),
         usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | other | started,
         view_formats: &[],
     }
 }
 
 /// Where a layer that is drawn lies in its texture. A plan that draws another has not passed the lint.
-fn held_layer(plan: &FramePlan, id: AttachmentId, layer: u32) -> u32 {
-    plan.held_layer(id, layer).unwrap_or_default()
+fn stored_layer(plan: &FramePlan, id: AttachmentId, layer: u32) -> u32 {
+    plan.stored_layer(id, layer).unwrap_or_default()
 }
 
 pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
@@ -403,7 +403,7 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: ShaderKey, raster: &RasterState
         specialization: Specialization::default(),
         raster: RasterState { stencil_reference: 0, ..raster.clone() },
         color_format: pass.color.as_ref().map(|target| plan.attachment(target.attachment).format),
-        depth_format: depth_stencil.map(Attachment::held_format),
+        depth_format: depth_stencil.map(Attachment::stored_format),
         depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| shader.program.is_recorded()),
     }
 }
@@ -411,7 +411,7 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: ShaderKey, raster: &RasterState
 fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> Result<BindGroup, GpuError> {
     check_bound(device, kept)?;
     let entries = [BindGroupEntry { binding: 0, resource: kept.as_entire_binding() }];
-    let layout = &pipelines.layouts.kept;
+    let layout = &pipelines.layouts.retained;
     Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("kept fragments"), layout, entries: &entries }))
 }
 
@@ -437,7 +437,7 @@ impl AspectCopy {
 fn copied(plan: &FramePlan, pass: &Pass) -> [Option<AspectCopy>; 3] {
     let copied = |target: Option<(AttachmentId, u32)>, change: TargetChange, aspect| {
         let (attachment, layer) = target.filter(|_| change == TargetChange::Drawn)?;
-        Some(AspectCopy { attachment, layer: held_layer(plan, attachment, layer), aspect })
+        Some(AspectCopy { attachment, layer: stored_layer(plan, attachment, layer), aspect })
     };
     let color = pass.color.as_ref().map(|target| (target.attachment, target.layer));
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| (target.attachment, target.layer));

@@ -20,15 +20,15 @@ pub(super) enum ShaderInputs {
     /// The planes of vertices that are [`Extruded`](crate::plan::Extruded).
     Extruded,
     /// The fragments that another program's shader has kept.
-    Kept,
+    Retained,
 }
 
 impl ShaderKey {
     /// Of a draw.
     pub fn of(draw: &Draw, mesh: &DrawMesh) -> ShaderKey {
-        let form = match (&mesh.extruded, &mesh.kept, draw.constants.texture) {
+        let form = match (&mesh.extruded, &mesh.retained, draw.constants.texture) {
             (Some(_), ..) => ShaderInputs::Extruded,
-            (None, Some(_), _) if draw.program.is_recorded() => ShaderInputs::Kept,
+            (None, Some(_), _) if draw.program.is_recorded() => ShaderInputs::Retained,
             (None, _, Some(_)) => ShaderInputs::Textured,
             (None, _, None) => ShaderInputs::Plain,
         };
@@ -44,7 +44,7 @@ impl ShaderKey {
     pub fn group_count(self) -> usize {
         match self.program {
             Program::Ambient { .. } if self.form == ShaderInputs::Textured => 3,
-            Program::Recorded { .. } if self.form == ShaderInputs::Kept => 3,
+            Program::Recorded { .. } if self.form == ShaderInputs::Retained => 3,
             Program::Position if self.form == ShaderInputs::Extruded => 2,
             Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
@@ -81,7 +81,9 @@ pub(super) fn source_of(shader: ShaderKey) -> ProgramSource {
             let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
             joined(&[&files[..], &textured].concat(), "vs_surface_textured", Some("fs_light_textured"))
         }
-        (ShaderInputs::Kept, _) => joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", Some("fs_recorded_kept")),
+        (ShaderInputs::Retained, _) => {
+            joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", Some("fs_recorded_kept"))
+        }
         (ShaderInputs::Plain, program) | (ShaderInputs::Textured, program) => plain(program),
     }
 }
@@ -156,7 +158,8 @@ mod tests {
         let textured =
             Program::all().into_iter().filter(|program| program.shows_texture()).map(with(ShaderInputs::Textured));
         let extruded = [Program::Position, Program::Flat, Program::Count].into_iter().map(with(ShaderInputs::Extruded));
-        let recorded = Program::all().into_iter().filter(|program| program.is_recorded()).map(with(ShaderInputs::Kept));
+        let recorded =
+            Program::all().into_iter().filter(|program| program.is_recorded()).map(with(ShaderInputs::Retained));
         let shaders = plain.chain(textured).chain(extruded).chain(recorded);
         let programs = shaders.map(|shader| (format!("{shader:?}"), source_of(shader).source));
         for (name, source) in

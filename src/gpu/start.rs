@@ -97,13 +97,13 @@ fn draw_depth(
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
     });
-    let kept = || Operations { load: LoadOp::Load, store: StoreOp::Store };
+    let stored = || Operations { load: LoadOp::Load, store: StoreOp::Store };
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("start"),
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view,
             depth_ops: Some(Operations { load: LoadOp::Load, store: StoreOp::Store }),
-            stencil_ops: texture.format().has_stencil_aspect().then(kept),
+            stencil_ops: texture.format().has_stencil_aspect().then(stored),
         }),
         ..wgpu::RenderPassDescriptor::default()
     });

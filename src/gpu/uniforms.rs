@@ -143,7 +143,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
         flat: draw.constants.flat,
         count: draw.constants.count,
         // Of a layer that is left out, all of the light arrives.
-        layer: draw.constants.layer.and_then(|layer| map?.held_layer(layer)).unwrap_or(NO_LAYER),
+        layer: draw.constants.layer.and_then(|layer| map?.stored_layer(layer)).unwrap_or(NO_LAYER),
         checks_from: draw.constants.checks_from,
         emission: material.emission,
         checks: material.checks,

@@ -103,9 +103,10 @@ impl PixelHistory {
     /// Everything that is wrong with it; empty where it agrees with the GPU.
     pub fn disagreements(&self) -> Vec<Disagreement> {
         let mut found = self.contradictions.clone();
-        let is_fragment =
-            |fate: FragmentOutcome| matches!(fate, FragmentOutcome::Tested { .. } | FragmentOutcome::Discarded(_));
-        let listed = self.triangles().filter(|(_, one)| is_fragment(one.fate)).count() as u32;
+        let is_fragment = |outcome: FragmentOutcome| {
+            matches!(outcome, FragmentOutcome::Tested { .. } | FragmentOutcome::Discarded(_))
+        };
+        let listed = self.triangles().filter(|(_, one)| is_fragment(one.outcome)).count() as u32;
         if listed != self.counted {
             found.push(Disagreement::Counted { counted: self.counted, listed });
         }

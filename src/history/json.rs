@@ -75,7 +75,7 @@ impl PixelDocument {
 fn entry(history: &PixelHistory, event: &PixelEvent) -> PixelEventEntry {
     let one = event.triangle();
     let counts = event.before.count != event.after.count || event.kind == PixelEventKind::ClearCount;
-    let tests = match one.map(|one| one.fate) {
+    let tests = match one.map(|one| one.outcome) {
         Some(FragmentOutcome::Tested { stencil, depth, operation }) => Some((stencil, depth, operation)),
         _ => None,
     };
@@ -108,7 +108,7 @@ fn entry(history: &PixelHistory, event: &PixelEvent) -> PixelEventEntry {
         depth_after: event.after.depth,
         count_before: counts.then_some(event.before.count),
         count_after: counts.then_some(event.after.count),
-        note: one.and_then(|one| one.fate.note()).map(str::to_owned),
+        note: one.and_then(|one| one.outcome.note()).map(str::to_owned),
     }
 }
 

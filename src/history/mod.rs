@@ -162,7 +162,7 @@ pub struct TriangleEvent {
     /// As the depth test sees it; outside 0 to 1 where it was clipped.
     pub depth: f32,
     /// What became of it.
-    pub fate: FragmentOutcome,
+    pub outcome: FragmentOutcome,
 }
 
 /// What became of a triangle at a pixel.
@@ -248,7 +248,7 @@ impl PixelEvent {
 
     /// What was done to the stencil, where a fragment was tested against one.
     fn operation(&self) -> Option<StencilOperation> {
-        match self.triangle()?.fate {
+        match self.triangle()?.outcome {
             FragmentOutcome::Tested { operation, .. } => operation,
             _ => None,
         }
@@ -256,7 +256,7 @@ impl PixelEvent {
 
     /// It changed what the pixel holds, or reached its colour: faces of shadow volumes have none.
     pub fn does_something(&self) -> bool {
-        let has_passed = self.triangle().is_some_and(|one| one.fate.passed());
+        let has_passed = self.triangle().is_some_and(|one| one.outcome.passed());
         self.before != self.after || (has_passed && !self.is_of_volume())
     }
 
@@ -328,7 +328,7 @@ impl PixelHistory {
             Some((event.step() != 0, is_behind))
         };
         let is_tested = |event: &&PixelEvent| {
-            event.triangle().is_some_and(|one| matches!(one.fate, FragmentOutcome::Tested { .. }))
+            event.triangle().is_some_and(|one| matches!(one.outcome, FragmentOutcome::Tested { .. }))
         };
         let faces = self.events.iter().filter(|event| event.light == Some(light) && event.is_from_camera);
         let faces = faces.filter(is_tested);

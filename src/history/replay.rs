@@ -26,7 +26,7 @@ impl PixelHistory {
         log: &FragmentLog,
     ) -> PixelHistory {
         let start = start_of(plan, pixel);
-        let mut replay = HistoryReplay { plan, pixel, held: start, events: Vec::new(), contradictions: Vec::new() };
+        let mut replay = HistoryReplay { plan, pixel, values: start, events: Vec::new(), contradictions: Vec::new() };
         let is_hidden = |one: &&Covering| matches!(one.coverage, Coverage::Culled(_) | Coverage::Clipped(..));
         let hidden = covering.iter().filter(is_hidden).count() as u32;
         let mut fragments = log.fragments.iter().peekable();
@@ -51,7 +51,7 @@ impl PixelHistory {
             is_reversed: plan.depth.mapping.is_reversed(),
             start,
             depth_rounding: rounding(plan),
-            computed: replay.held,
+            computed: replay.values,
             events: replay.events,
             captured: captured_after.last().map(|captured| captured.stored),
             captured_after,
@@ -67,7 +67,7 @@ impl PixelHistory {
 struct HistoryReplay<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
-    held: PixelValues,
+    values: PixelValues,
     events: Vec<PixelEvent>,
     contradictions: Vec<Disagreement>,
 }
@@ -82,31 +82,31 @@ impl HistoryReplay<'_> {
             is_from_camera: pass.view == ViewId(0),
             target: target_of(self.plan, pass),
             kind,
-            before: self.held,
+            before: self.values,
             after,
         });
-        self.held = after;
+        self.values = after;
     }
 
     /// What a pass begins with: content, and what it clears.
     fn clear(&mut self, index: usize, pass: &Pass) {
         // The frame's own start is no event.
         if let Some(start) = start_content(pass).filter(|_| first_with_depth(self.plan) != Some(index)) {
-            let put = held_in(start, self.plan, self.pixel, self.held);
-            self.push(index, PixelEventKind::Put, put);
+            let written = values_of(start, self.plan, self.pixel, self.values);
+            self.push(index, PixelEventKind::Put, written);
         }
         if let Some(target) = &pass.depth_stencil {
             if let Some(depth) = target.clear_depth {
-                self.push(index, PixelEventKind::ClearDepth, PixelValues { depth, ..self.held });
+                self.push(index, PixelEventKind::ClearDepth, PixelValues { depth, ..self.values });
             }
             if let Some(stencil) = target.clear_stencil {
-                self.push(index, PixelEventKind::ClearStencil, PixelValues { stencil, ..self.held });
+                self.push(index, PixelEventKind::ClearStencil, PixelValues { stencil, ..self.values });
             }
         }
         if let Some(clear) =
             pass.color.as_ref().and_then(|target| target.clear).filter(|_| self.plan.counts_in_float(pass))
         {
-            self.push(index, PixelEventKind::ClearCount, PixelValues { count: clear[0] as f32, ..self.held });
+            self.push(index, PixelEventKind::ClearCount, PixelValues { count: clear[0] as f32, ..self.values });
         }
     }
 
@@ -117,7 +117,7 @@ impl HistoryReplay<'_> {
             self.push(
                 one.pass,
                 triangle(draw, one, VisibleFace { is_front, depth }, FragmentOutcome::Discarded(clip)),
-                self.held,
+                self.values,
             );
             return;
         }
@@ -125,25 +125,28 @@ impl HistoryReplay<'_> {
         let depth = if draw.raster.unclipped_depth { depth.clamp(near, far) } else { depth };
         let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
         let depth = target.map_or(depth, |target| target.stored_depth(depth));
-        let outcome =
-            stencil_machine::test(&draw.raster, IncomingFragment { depth, front_facing: is_front }, self.held.stored());
+        let tested = stencil_machine::test(
+            &draw.raster,
+            IncomingFragment { depth, front_facing: is_front },
+            self.values.stored(),
+        );
         let (side, _) = draw.raster.face(is_front);
         let has_test = draw.raster.stencil.is_enabled();
-        let fate = FragmentOutcome::Tested {
-            stencil: test_of(Some(outcome.stencil_passed), side.compare),
-            depth: test_of(outcome.depth_passed, draw.raster.depth_compare),
-            operation: has_test.then_some(outcome.operation),
+        let outcome = FragmentOutcome::Tested {
+            stencil: test_of(Some(tested.stencil_passed), side.compare),
+            depth: test_of(tested.depth_passed, draw.raster.depth_compare),
+            operation: has_test.then_some(tested.operation),
         };
-        let added = if outcome.passed() && self.plan.counts_in_float(pass) { count_of(draw, is_front) } else { 0.0 };
+        let added = if tested.passed() && self.plan.counts_in_float(pass) { count_of(draw, is_front) } else { 0.0 };
         let after =
-            PixelValues { depth: outcome.after.depth, stencil: outcome.after.stencil, count: self.held.count + added };
-        self.push(one.pass, triangle(draw, one, VisibleFace { is_front, depth }, fate), after);
+            PixelValues { depth: tested.after.depth, stencil: tested.after.stencil, count: self.values.count + added };
+        self.push(one.pass, triangle(draw, one, VisibleFace { is_front, depth }, outcome), after);
     }
 
     /// What geometry says of the triangle, against whether the GPU made a fragment of it.
     fn compare(&mut self, pass: &Pass, one: &Covering, has_fragment: bool) {
         let draw = &pass.draws[one.draw];
-        let (face, fate) = match (one.coverage, has_fragment) {
+        let (face, outcome) = match (one.coverage, has_fragment) {
             (Coverage::Doubtful, _) | (Coverage::Sure, true) => return,
             (Coverage::Culled(face), false) => (face, FragmentOutcome::Culled),
             (Coverage::Clipped(face, clip), false) => (face, FragmentOutcome::Clipped(clip)),
@@ -154,7 +157,7 @@ impl HistoryReplay<'_> {
                 return;
             }
         };
-        self.push(one.pass, triangle(draw, one, face, fate), self.held);
+        self.push(one.pass, triangle(draw, one, face, outcome), self.values);
     }
 }
 
@@ -168,7 +171,7 @@ fn rounding(plan: &FramePlan) -> f32 {
 /// What a pixel of the picture holds before the frame's first pass.
 fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> PixelValues {
     let first = first_with_depth(plan).and_then(|index| start_content(&plan.passes[index]));
-    first.map_or(NEW, |start| held_in(start, plan, pixel, NEW))
+    first.map_or(NEW, |start| values_of(start, plan, pixel, NEW))
 }
 
 /// The first pass that has the picture's depth.
@@ -180,12 +183,12 @@ fn start_content(pass: &Pass) -> Option<&StartContent> {
     pass.recorded.as_ref()?.start.as_ref()
 }
 
-/// What a pixel holds of some content, and of `held` where that says nothing.
-fn held_in(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], held: PixelValues) -> PixelValues {
+/// What a pixel holds of some content, and of `values` where that says nothing.
+fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: PixelValues) -> PixelValues {
     let index = y as usize * plan.size[0] as usize + x as usize;
     let depth = start.depth.as_ref().and_then(|depth| depth.data().get(index).copied());
     let stencil = start.stencil.as_ref().and_then(|stencil| stencil.data().get(index).copied());
-    PixelValues { depth: depth.unwrap_or(held.depth), stencil: stencil.unwrap_or(held.stencil), ..held }
+    PixelValues { depth: depth.unwrap_or(values.depth), stencil: stencil.unwrap_or(values.stencil), ..values }
 }
 
 /// What a pass of the picture draws into.
@@ -219,11 +222,12 @@ fn clears(plan: &FramePlan) -> u32 {
     };
     let first = first_with_depth(plan);
     let passes = || plan.passes.iter().enumerate().filter(|(_, pass)| plan.is_of_picture(pass));
-    let put = passes().filter(|(index, pass)| start_content(pass).is_some() && first != Some(*index)).count() as u32;
-    put + passes().map(|(_, pass)| of_pass(pass)).sum::<u32>()
+    let written =
+        passes().filter(|(index, pass)| start_content(pass).is_some() && first != Some(*index)).count() as u32;
+    written + passes().map(|(_, pass)| of_pass(pass)).sum::<u32>()
 }
 
-fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, fate: FragmentOutcome) -> PixelEventKind {
+fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOutcome) -> PixelEventKind {
     PixelEventKind::Triangle(Box::new(TriangleEvent {
         draw: one.draw,
         draw_name: draw.name.clone(),
@@ -236,7 +240,7 @@ fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, fate: FragmentOutcom
         faces_inwards: draw.faces_inwards,
         lights: asks(draw),
         depth: face.depth,
-        fate,
+        outcome,
     }))
 }
 

@@ -97,7 +97,7 @@ impl PixelHistory {
             PixelEventKind::ClearCount => format!("{pass}: clear count"),
             PixelEventKind::Triangle(one) => {
                 let side = if one.shows_outside() { "front" } else { "back" };
-                let fate = match one.fate {
+                let outcome = match one.outcome {
                     FragmentOutcome::Tested { stencil: TestResult::Failed, .. } => "fails stencil",
                     FragmentOutcome::Tested { depth: TestResult::Failed, .. } => "fails depth",
                     FragmentOutcome::Tested { .. } => "passes",
@@ -105,7 +105,7 @@ impl PixelHistory {
                     FragmentOutcome::Culled => "culled",
                     FragmentOutcome::Clipped(_) => "clipped",
                 };
-                format!("{pass}: {}, {side}, {fate}{change}", who(one))
+                format!("{pass}: {}, {side}, {outcome}{change}", who(one))
             }
         }
     }
@@ -152,8 +152,8 @@ impl PixelHistory {
     }
 
     fn what_became(&self, event: &PixelEvent, one: &TriangleEvent) -> String {
-        let FragmentOutcome::Tested { stencil, depth, operation } = one.fate else {
-            return one.fate.note().unwrap_or_default().to_owned();
+        let FragmentOutcome::Tested { stencil, depth, operation } = one.outcome else {
+            return one.outcome.note().unwrap_or_default().to_owned();
         };
         let place = if event.is_of_volume() && event.is_from_camera { self.place(event, one) } else { "" };
         let tests = match (stencil, depth) {

@@ -155,8 +155,8 @@ impl PixelHistory {
     /// The count of a light as its light pass tests it.
     pub(super) fn counted_at(&self, light: usize) -> VolumeCount {
         let in_float = self.events.iter().any(|event| event.kind == PixelEventKind::ClearCount);
-        let held = self.tested_count(light);
-        if in_float { VolumeCount::Float(held.count) } else { VolumeCount::Stencil(held.stencil) }
+        let values = self.tested_count(light);
+        if in_float { VolumeCount::Float(values.count) } else { VolumeCount::Stencil(values.stencil) }
     }
 
     fn light_pass(&self, light: usize, counted: Option<&CountedFaces>) -> LightPassResult {
@@ -164,9 +164,9 @@ impl PixelHistory {
             event.light == Some(light)
                 && one.lights.is_some()
                 && event.target == FrameTarget::Picture
-                && one.fate.passed()
+                && one.outcome.passed()
         });
-        match lit.map(|(_, one)| (one.lights, one.fate)) {
+        match lit.map(|(_, one)| (one.lights, one.outcome)) {
             None => LightPassResult::Skips,
             Some((Some(Visibility::Count), _)) => match counted.map(|counted| counted.count) {
                 Some(VolumeCount::Float(count)) if count != 0.0 => LightPassResult::Skips,
@@ -193,9 +193,9 @@ fn flattened_of(events: &[&PixelEvent]) -> FlattenedShadow {
         ..FlattenedShadow::default()
     };
     let mut casters = BTreeSet::new();
-    for TriangleEvent { caster, draw_name, fate, .. } in events.iter().filter_map(|event| event.triangle()) {
-        match fate {
-            _ if fate.passed() => {
+    for TriangleEvent { caster, draw_name, outcome, .. } in events.iter().filter_map(|event| event.triangle()) {
+        match outcome {
+            _ if outcome.passed() => {
                 casters.insert(caster.clone().unwrap_or_else(|| draw_name.clone()));
             }
             FragmentOutcome::Tested { stencil: TestResult::Failed, .. } => found.failed_stencil += 1,

@@ -188,7 +188,7 @@ fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
         lookup: Some(MapLookup { clear_depth: 1.0, bias_normal: 0.0, bias_receiver_plane: false, filter_width: 1 }),
         projects_backwards: false,
         repeats_edge: false,
-        is_kept: false,
+        is_cached: false,
     };
     PlanLight {
         relative_position: [0.0; 4],

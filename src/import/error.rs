@@ -68,14 +68,14 @@ pub enum ImportError {
         reason: String,
     },
     /// RenderDoc can't replay the capture here.
-    #[error("{}: can't be replayed here ({reason}); {mend}", file.display())]
+    #[error("{}: can't be replayed here ({reason}); {fix}", file.display())]
     Replay {
         /// Which file.
         file: PathBuf,
         /// RenderDoc's words.
         reason: String,
         /// What may help.
-        mend: &'static str,
+        fix: &'static str,
     },
     /// The capture is of an API that is not read.
     #[error("{}: {api} is not read; record a program that draws with Vulkan, OpenGL core or OpenGL ES", file.display())]
@@ -140,7 +140,7 @@ pub enum ImportError {
         reason: String,
     },
     /// The program has ended before the frame.
-    #[error("`{program}` ended{how} before frame {frame}{and_said}; {mend}")]
+    #[error("`{program}` ended{how} before frame {frame}{and_said}; {fix}")]
     Died {
         /// Its name.
         program: String,
@@ -151,10 +151,10 @@ pub enum ImportError {
         /// `: ` and its last line, where it wrote one.
         and_said: String,
         /// What may help.
-        mend: &'static str,
+        fix: &'static str,
     },
     /// The program runs, but the frame does not come.
-    #[error("`{program}` had not shown frame {frame} after {seconds} s ({seen}); {mend}")]
+    #[error("`{program}` had not shown frame {frame} after {seconds} s ({seen}); {fix}")]
     NeverPresented {
         /// Its name.
         program: String,
@@ -165,7 +165,7 @@ pub enum ImportError {
         /// What it had done until then.
         seen: String,
         /// What may help.
-        mend: &'static str,
+        fix: &'static str,
     },
     /// RenderDoc can't record what the program draws with.
     #[error("`{program}` draws with {api}, which RenderDoc can't record ({reason}); have it use Vulkan or OpenGL core")]

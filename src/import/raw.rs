@@ -219,7 +219,7 @@ pub struct RawDraw {
     /// What the fragment shader may do.
     pub fragment: RawFragment,
     /// The fragments that it has not discarded, where they were noted: column and row of the pixel, and the triangle.
-    pub kept: Option<Vec<([u16; 2], u32)>>,
+    pub retained: Option<Vec<([u16; 2], u32)>>,
     /// Samples of the targets.
     pub samples: u32,
 }

@@ -156,8 +156,8 @@ impl DocumentReader {
         let [width, height] = self.size(target);
         let [found, expected] = [self.blobs.length(blob)?, u64::from(width) * u64::from(height) * texel as u64];
         // RenderDoc leaves a byte a texel after Vulkan's depth of 24 bits with stencil: room for what it has put above.
-        let has_room = texture.format == RawFormat::D24S8 && found == expected / 4 * 5;
-        if found != expected && !has_room {
+        let has_padding = texture.format == RawFormat::D24S8 && found == expected / 4 * 5;
+        if found != expected && !has_padding {
             return Err(broken(format!("a picture of `{name}` has {found} bytes, not {expected}")));
         }
         // The first texture of the format stands for it.
@@ -173,10 +173,10 @@ impl DocumentReader {
         let layout = TexelLayout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
         let mut contents = pictures::read(&self.textures[target.texture].format, &bytes, [width, height], layout);
         let last = self.last.entry(target).or_default();
-        let kept = pictures::share(&mut contents, last);
+        let shared = pictures::share(&mut contents, last);
         last.clone_from(&contents);
         // The bytes go, and what is as it was is there already.
-        self.blobs.give_back(found.saturating_mul(4).saturating_sub(kept));
+        self.blobs.give_back(found.saturating_mul(4).saturating_sub(shared));
         self.pictures.insert((blob, alike, [width, height]), contents.clone());
         Ok(contents)
     }
@@ -252,7 +252,7 @@ impl DocumentReader {
             stencil: states.stencil,
             blend: states.blend,
             fragment,
-            kept: None,
+            retained: None,
             samples,
         })
     }

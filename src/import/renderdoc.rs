@@ -102,7 +102,7 @@ fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> I
         "missing" => ImportError::NoFile { file, reason },
         "corrupt" => ImportError::Corrupt { file, reason },
         "newer" => ImportError::Version { file, reason },
-        "replay" => ImportError::Replay { file, reason, mend: replay_mend() },
+        "replay" => ImportError::Replay { file, reason, fix: replay_fix() },
         "api" => ImportError::Api { file, api: reason },
         "large" => ImportError::TooLarge { what: format!("more than {words} GiB") },
         _ => common_error(ended, options),
@@ -125,7 +125,7 @@ fn record_error(ended: ProcessEnd, recording: &RecordingRequest, options: &Rende
             let ProcessEnd::Said { last, .. } = &ended else { return common_error(ended, options) };
             let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
             let how = if words.is_empty() { String::new() } else { format!(" {words}") };
-            ImportError::Died { program, how, frame: recording.frame, and_said, mend: died_mend() }
+            ImportError::Died { program, how, frame: recording.frame, and_said, fix: died_fix() }
         }
         "never" => never(recording, words),
         "unsupported" => {
@@ -149,7 +149,7 @@ fn never(recording: &RecordingRequest, seen: &str) -> ImportError {
         frame: recording.frame,
         seconds: recording.seconds,
         seen: seen.to_owned(),
-        mend: match has_display() {
+        fix: match has_display() {
             true => {
                 "ask for an earlier --frame or more --seconds, and name the program itself, not a script that starts it"
             }
@@ -185,10 +185,10 @@ fn has_display() -> bool {
     ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
 }
 
-fn replay_mend() -> &'static str {
+fn replay_fix() -> &'static str {
     if has_display() { "replay it on the machine that recorded it, or install mesa-vulkan-drivers" } else { NO_DISPLAY }
 }
 
-fn died_mend() -> &'static str {
+fn died_fix() -> &'static str {
     if has_display() { "run it by itself first, or ask for an earlier --frame" } else { NO_DISPLAY }
 }

@@ -32,7 +32,7 @@ pub use tours::{TOURS, Tour, TourMove, TourStop};
 use crate::ask::{Answer, Answers, Question, QuestionKind, RunRequest};
 use crate::capture::{Capture, Image};
 use crate::plan::FramePlan;
-use crate::reading::moment::CapturePoint;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::shown::{PictureKind, TexelZoom};
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
@@ -174,9 +174,9 @@ impl Inspector {
     }
 
     /// Takes in what is known of a question without being asked.
-    pub fn tell<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
+    pub fn take_in<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
         let is_known = result.is_ok();
-        self.model.answers.tell(question, result);
+        self.model.answers.take_in(question, result);
         if is_known {
             self.model.take_in(Q::KIND);
         }

@@ -164,7 +164,7 @@ mod tests {
     /// A sheared plane far from the origin: naive arithmetic can't tell one unit in the last
     /// place, and turning the corners round must always turn the sign.
     #[test]
-    fn a_direction_one_ulp_off_the_plane_is_told_from_one_on_it() {
+    fn a_direction_one_ulp_off_the_plane_is_reported_from_one_on_it() {
         let [a, b, c] = [
             DVec3::new(1e7 + 0.1, -3e6 + 0.7, 12.3),
             DVec3::new(1e7 + 1.1, -3e6 + 0.9, 12.9),

@@ -32,7 +32,7 @@ impl Plane {
     }
 
     /// The same plane with its normal turned round.
-    pub fn turned(&self) -> Plane {
+    pub fn flipped(&self) -> Plane {
         Plane { normal: -self.normal, offset: -self.offset }
     }
 }

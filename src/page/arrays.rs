@@ -69,7 +69,7 @@ pub struct PageArray {
 
 impl PageArrays {
     /// Puts bytes in, little-endian, unless they are there.
-    pub fn put(&mut self, layout: ArrayLayout, bytes: &[u8]) -> ArrayIndex {
+    pub fn add(&mut self, layout: ArrayLayout, bytes: &[u8]) -> ArrayIndex {
         let key = (layout, bytes.len(), FixedState::with_seed(0).hash_one(bytes));
         if let Some(index) = self.known.get(&key) {
             return *index;
@@ -207,9 +207,9 @@ mod tests {
     fn an_array_is_there_once() {
         let mut arrays = PageArrays::default();
         let layout = ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 4 };
-        let first = arrays.put(layout, &[1, 2, 3, 4]);
-        let others = [arrays.put(layout, &[1, 2, 3, 5]), arrays.put(ArrayLayout { width: 2, ..layout }, &[1, 2, 3, 4])];
-        assert_eq!(arrays.put(layout, &[1, 2, 3, 4]), first);
+        let first = arrays.add(layout, &[1, 2, 3, 4]);
+        let others = [arrays.add(layout, &[1, 2, 3, 5]), arrays.add(ArrayLayout { width: 2, ..layout }, &[1, 2, 3, 4])];
+        assert_eq!(arrays.add(layout, &[1, 2, 3, 4]), first);
         assert!(!others.contains(&first) && arrays.into_entries().len() == 3);
     }
 }

@@ -29,24 +29,24 @@ pub fn meshes(plan: &FramePlan, arrays: &mut PageArrays) -> Vec<Option<PageMesh>
     let entry = |(index, mesh): (usize, &DrawMesh)| {
         let views = shown.get(&index)?;
         let layout = ArrayLayout { word: ArrayWord::U32, lanes: 3, width: 0 };
-        let indices = arrays.put(layout, bytemuck::cast_slice(mesh.indices.data()));
+        let indices = arrays.add(layout, bytemuck::cast_slice(mesh.indices.data()));
         let corners = views.iter().map(|(view, is_recorded)| {
             // Another program's corners are in clip space.
             let matrix = (!is_recorded).then(|| plan.views[view.0].clip_from_relative);
-            (view.0, put(mesh.vertices.data(), matrix, arrays))
+            (view.0, add(mesh.vertices.data(), matrix, arrays))
         });
         Some(PageMesh { indices, corners: corners.collect() })
     };
     plan.meshes.iter().enumerate().map(entry).collect()
 }
 
-fn put(corners: &[[f32; 4]], matrix: Option<Mat4>, arrays: &mut PageArrays) -> ArrayIndex {
+fn add(corners: &[[f32; 4]], matrix: Option<Mat4>, arrays: &mut PageArrays) -> ArrayIndex {
     let layout = ArrayLayout { word: ArrayWord::F32, lanes: 4, width: 0 };
     match matrix {
-        None => arrays.put(layout, bytemuck::cast_slice(corners)),
+        None => arrays.add(layout, bytemuck::cast_slice(corners)),
         Some(matrix) => {
             let clip: Vec<[f32; 4]> = corners.iter().map(|corner| transformed(matrix, *corner)).collect();
-            arrays.put(layout, bytemuck::cast_slice(&clip))
+            arrays.add(layout, bytemuck::cast_slice(&clip))
         }
     }
 }

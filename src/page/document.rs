@@ -237,5 +237,5 @@ fn image(image: &Image, arrays: &mut PageArrays) -> ArrayIndex {
         PixelFormat::U8 => (ArrayWord::U8, 1),
     };
     let bytes: Vec<u8> = image.rows().flatten().copied().collect();
-    arrays.put(ArrayLayout { word, lanes, width: image.size()[0] as usize }, &bytes)
+    arrays.add(ArrayLayout { word, lanes, width: image.size()[0] as usize }, &bytes)
 }

@@ -94,7 +94,7 @@ fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut PageArrays) -> Pa
         area: viewport.area,
         range: viewport.depth,
         scissor: pass.scissor,
-        start: start.map(|start| put_start(start, plan.size[0], arrays)),
+        start: start.map(|start| store_start(start, plan.size[0], arrays)),
         clear_depth: target.and_then(|target| target.clear_depth),
         clear_stencil: target.and_then(|target| target.clear_stencil),
         clear_count: clear_count.map(|clear| clear[0] as f32),
@@ -103,10 +103,10 @@ fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut PageArrays) -> Pa
     }
 }
 
-fn put_start(StartContent { depth, stencil }: &StartContent, width: u32, arrays: &mut PageArrays) -> PageStart {
-    let mut put = |word, bytes: &[u8]| arrays.put(ArrayLayout { word, lanes: 1, width: width as usize }, bytes);
-    let depth = depth.as_ref().map(|depth| put(ArrayWord::F32, depth.bytes()));
-    PageStart { depth, stencil: stencil.as_ref().map(|stencil| put(ArrayWord::U8, stencil.bytes())) }
+fn store_start(StartContent { depth, stencil }: &StartContent, width: u32, arrays: &mut PageArrays) -> PageStart {
+    let mut add = |word, bytes: &[u8]| arrays.add(ArrayLayout { word, lanes: 1, width: width as usize }, bytes);
+    let depth = depth.as_ref().map(|depth| add(ArrayWord::F32, depth.bytes()));
+    PageStart { depth, stencil: stencil.as_ref().map(|stencil| add(ArrayWord::U8, stencil.bytes())) }
 }
 
 fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDraw<'a> {
@@ -144,5 +144,5 @@ fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut PageArrays) -> ArrayInd
         u8::from(part == DrawPart::DarkCap)
     };
     let dark: Vec<u8> = corners.get(range).into_iter().flatten().map(is_dark).collect();
-    arrays.put(ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 0 }, &dark)
+    arrays.add(ArrayLayout { word: ArrayWord::U8, lanes: 1, width: 0 }, &dark)
 }

@@ -45,10 +45,10 @@ pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mu
         })
         .unzip();
     Some(PageReads {
-        texels: arrays.put(ArrayLayout { word: ArrayWord::U32, lanes: 3, width }, bytemuck::cast_slice(&texels)),
-        depths: arrays.put(ArrayLayout { word: ArrayWord::F32, lanes: 1, width }, bytemuck::cast_slice(&depths)),
+        texels: arrays.add(ArrayLayout { word: ArrayWord::U32, lanes: 3, width }, bytemuck::cast_slice(&texels)),
+        depths: arrays.add(ArrayLayout { word: ArrayWord::F32, lanes: 1, width }, bytemuck::cast_slice(&depths)),
         slopes: is_by_plane
-            .then(|| arrays.put(ArrayLayout { word: ArrayWord::F32, lanes: 2, width }, bytemuck::cast_slice(&slopes))),
+            .then(|| arrays.add(ArrayLayout { word: ArrayWord::F32, lanes: 2, width }, bytemuck::cast_slice(&slopes))),
         filter,
     })
 }

@@ -21,7 +21,7 @@ pub enum ColorDepth {
 
 impl ColorDepth {
     /// What becomes of a colour.
-    pub fn kept(self, color: Rgb) -> Rgb {
+    pub fn reduced(self, color: Rgb) -> Rgb {
         let step = u16::from(2 * ROUNDED_BY + 1);
         match self {
             ColorDepth::Exact => color,
@@ -98,7 +98,7 @@ impl<W: Write> AnimatedPng<W> {
         if expected != found {
             return Err(AnimationError::Size { expected, found });
         }
-        let pixels = picture.pixels.iter().map(|color| self.format.colors.kept(*color)).collect();
+        let pixels = picture.pixels.iter().map(|color| self.format.colors.reduced(*color)).collect();
         let picture = Picture { size: found, pixels };
         if let Some(shown) = &self.shown {
             // A picture can't be empty: of one that is the same a pixel is written again.
@@ -190,9 +190,9 @@ mod tests {
     fn pictures_come_back_whatever_changes_between_them() {
         let first = Picture::filled([6, 5], BLACK);
         let mut dot = first.clone();
-        dot.put([5, 4], RED);
+        dot.set([5, 4], RED);
         let mut two = dot.clone();
-        two.put([1, 2], RED);
+        two.set([1, 2], RED);
         let pictures = [first.clone(), dot.clone(), two, dot.clone(), dot, first, Picture::filled([6, 5], RED)];
         assert_eq!(shown(animation(&pictures).expect("an animation")), pictures);
     }
@@ -204,10 +204,10 @@ mod tests {
         let mut state = 1_u32;
         for at in (0..64).flat_map(|y| (0..64).map(move |x| [x, y])) {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            noise.put(at, [(state >> 24) as u8, (state >> 16) as u8, (state >> 8) as u8]);
+            noise.set(at, [(state >> 24) as u8, (state >> 16) as u8, (state >> 8) as u8]);
         }
         let mut dot = noise.clone();
-        dot.put([30, 30], RED);
+        dot.set([30, 30], RED);
         let [one, two] = [vec![noise.clone()], vec![noise, dot]].map(|all| animation(&all).expect("one").len());
         assert!(two < one + 200, "{one} and {two} bytes");
     }
@@ -239,9 +239,9 @@ mod tests {
     #[test]
     fn a_rounded_colour_is_near_and_black_and_white_stay() {
         for value in 0..=255 {
-            let [kept, ..] = ColorDepth::Rounded.kept([value; 3]);
-            assert!(kept.abs_diff(value) <= ROUNDED_BY, "{value} became {kept}");
+            let [reduced, ..] = ColorDepth::Rounded.reduced([value; 3]);
+            assert!(reduced.abs_diff(value) <= ROUNDED_BY, "{value} became {reduced}");
         }
-        assert_eq!([BLACK, [255; 3]].map(|color| ColorDepth::Rounded.kept(color)), [BLACK, [255; 3]]);
+        assert_eq!([BLACK, [255; 3]].map(|color| ColorDepth::Rounded.reduced(color)), [BLACK, [255; 3]]);
     }
 }

@@ -52,7 +52,7 @@ impl Picture {
     }
 
     /// Paints one pixel; nothing outside.
-    pub fn put(&mut self, at: [u32; 2], color: Rgb) {
+    pub fn set(&mut self, at: [u32; 2], color: Rgb) {
         let index = self.index(at);
         if at[0] < self.size[0]
             && let Some(pixel) = self.pixels.get_mut(index)
@@ -64,7 +64,7 @@ impl Picture {
     /// Paints another picture with its top left corner at a place; what sticks out is left away.
     pub fn paste(&mut self, other: &Picture, [left, top]: [u32; 2]) {
         for (row, y) in other.pixels.chunks_exact(other.size[0].max(1) as usize).zip(top..) {
-            row.iter().zip(left..).for_each(|(color, x)| self.put([x, y], *color));
+            row.iter().zip(left..).for_each(|(color, x)| self.set([x, y], *color));
         }
     }
 
@@ -111,10 +111,10 @@ impl Picture {
         for step in i64::from(gap) + 1..=i64::from(gap) + i64::from(width) {
             let (left, top, right, bottom) = (left - step, top - step, right + step, bottom + step);
             for x in left..=right {
-                [top, bottom].into_iter().for_each(|y| self.put_signed(x, y, color));
+                [top, bottom].into_iter().for_each(|y| self.set_signed(x, y, color));
             }
             for y in top..=bottom {
-                [left, right].into_iter().for_each(|x| self.put_signed(x, y, color));
+                [left, right].into_iter().for_each(|x| self.set_signed(x, y, color));
             }
         }
     }
@@ -150,9 +150,9 @@ impl Picture {
         Ok(file)
     }
 
-    fn put_signed(&mut self, x: i64, y: i64, color: Rgb) {
+    fn set_signed(&mut self, x: i64, y: i64, color: Rgb) {
         if let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) {
-            self.put([x, y], color);
+            self.set([x, y], color);
         }
     }
 
@@ -172,7 +172,7 @@ mod tests {
     fn what_sticks_out_is_left_away() {
         let mut picture = Picture::filled([4, 3], BLACK);
         picture.paste(&Picture::filled([3, 3], RED), [2, 1]);
-        picture.put([4, 0], RED);
+        picture.set([4, 0], RED);
         let red: Vec<[u32; 2]> = places(&picture, RED);
         assert_eq!(red, [[2, 1], [3, 1], [2, 2], [3, 2]]);
         assert_eq!((picture.at([4, 0]), picture.at([0, 3]), picture.at([3, 2])), (None, None, Some(RED)));
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn a_png_holds_its_pixels() {
         let mut picture = Picture::filled([3, 2], [1, 2, 3]);
-        picture.put([2, 1], RED);
+        picture.set([2, 1], RED);
         let bytes = picture.to_png().expect("a PNG");
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
         let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];

@@ -19,7 +19,7 @@ pub struct DrawMesh {
     pub extruded: Option<Extruded>,
     /// The fragments that another program's shader has not discarded, where that was noted, in order: the pixel
     /// ([`DrawMesh::pixel_word`]) and the triangle. Corners are not shared then: the three of triangle `t` begin at `3t`.
-    pub kept: Option<Blob<[u32; 2]>>,
+    pub retained: Option<Blob<[u32; 2]>>,
 }
 
 impl DrawMesh {
@@ -30,7 +30,7 @@ impl DrawMesh {
 
     /// The same of data that may be shared.
     pub fn of_blobs(name: impl Into<String>, vertices: Blob<[f32; 4]>, indices: Blob<u32>) -> DrawMesh {
-        DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, kept: None }
+        DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, retained: None }
     }
 
     /// A mesh whose vertices a vertex shader carries away from a light.
@@ -39,7 +39,7 @@ impl DrawMesh {
         DrawMesh { extruded: Some(extruded), ..DrawMesh::of_blobs(name, vertices, indices) }
     }
 
-    /// Column and row of a pixel in one word, as [`DrawMesh::kept`] has it.
+    /// Column and row of a pixel in one word, as [`DrawMesh::retained`] has it.
     pub fn pixel_word([x, y]: [u32; 2]) -> u32 {
         x | y << 16
     }
@@ -47,7 +47,7 @@ impl DrawMesh {
     /// Is a fragment of a triangle there after the shader, as far as is known?
     pub fn keeps(&self, pixel: [u32; 2], triangle: u32) -> bool {
         let wanted = [DrawMesh::pixel_word(pixel), triangle];
-        self.kept.as_ref().is_none_or(|kept| kept.data().binary_search(&wanted).is_ok())
+        self.retained.as_ref().is_none_or(|retained| retained.data().binary_search(&wanted).is_ok())
     }
 
     /// How many triangles it has.
@@ -64,7 +64,7 @@ impl DrawMesh {
         let mut blobs = vec![vertices, entry(&self.indices)];
         blobs.extend(self.surface.iter().flat_map(|surface| [entry(&surface.normals), entry(&surface.sides)]));
         blobs.extend(self.surface.iter().filter_map(|surface| surface.uvs.as_ref()).map(entry));
-        blobs.extend(self.kept.as_ref().map(entry));
+        blobs.extend(self.retained.as_ref().map(entry));
         blobs
     }
 }

@@ -82,7 +82,7 @@ named_enum! {
         /// What a scene's file holds and no frame shows.
         SceneFile = "scene-file" ("{name}"),
         /// Drawing again what is there from the frame before.
-        Kept = "kept" ("drawing `{name}` again"),
+        Cached = "kept" ("drawing `{name}` again"),
         /// A draw of which no sample showed in the frame before.
         Unseen = "unseen" ("{name}"),
     }

@@ -40,9 +40,9 @@ impl LeftOut {
     }
 
     /// A pass that did not run, since what it makes is there from the frame before.
-    pub fn kept(pass: &Pass) -> LeftOut {
+    pub fn cached(pass: &Pass) -> LeftOut {
         let of = pass.light.map_or_else(|| "the frame".to_owned(), LightId::name);
-        LeftOut::named(Decision::Kept, &pass.name, of, "nothing that makes it has changed since")
+        LeftOut::named(Decision::Cached, &pass.name, of, "nothing that makes it has changed since")
     }
 
     /// Triangles that a light gives nothing.

@@ -46,7 +46,7 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
     }
     let color = pass.color.as_ref().map(|target| (target.attachment, target.layer));
     let depth = pass.depth_stencil.as_ref().map(|target| (target.attachment, target.layer));
-    if color.into_iter().chain(depth).any(|(id, layer)| plan.held_layer(id, layer).is_none()) {
+    if color.into_iter().chain(depth).any(|(id, layer)| plan.stored_layer(id, layer).is_none()) {
         problems.push("it draws a face that its light's map leaves out".to_owned());
     }
     let has_stencil = pass.depth_stencil.as_ref().is_some_and(|target| {

@@ -13,18 +13,18 @@
 //! ```
 
 mod buffers;
+mod cache_key;
 mod count_bits;
 mod coverage;
 mod decided_by;
 mod decision;
-mod held;
 mod image;
-mod kept;
 mod left_out;
 pub mod lint;
 mod raster;
 mod recorded;
 mod split;
+mod stored;
 pub mod text;
 mod unseen;
 pub mod words;
@@ -117,7 +117,7 @@ pub struct Attachment {
     pub format: wgpu::TextureFormat,
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// 1, or the faces of a shadow map; the memory is [`FramePlan::held_layers`].
+    /// 1, or the faces of a shadow map; the memory is [`FramePlan::stored_layers`].
     pub layers: u32,
 }
 
@@ -207,7 +207,7 @@ pub struct PlanMap {
     #[serde(default)]
     pub repeats_edge: bool,
     /// Its texture stays from frame to frame while what draws it is the same.
-    pub is_kept: bool,
+    pub is_cached: bool,
 }
 
 impl PlanMap {

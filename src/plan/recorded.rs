@@ -73,7 +73,7 @@ impl Attachment {
 
     /// The format that the GPU is given: depths of 16 and 24 bits can't be copied everywhere, so they are kept as the
     /// floats next to them, of which each is another.
-    pub fn held_format(&self) -> TextureFormat {
+    pub fn stored_format(&self) -> TextureFormat {
         match self.format {
             TextureFormat::Depth16Unorm | TextureFormat::Depth24Plus => TextureFormat::Depth32Float,
             TextureFormat::Depth24PlusStencil8 => TextureFormat::Depth32FloatStencil8,
@@ -114,6 +114,6 @@ impl Draw {
     /// May its shader discard fragments without it being known which? `mesh` is the draw's.
     pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
         matches!(self.program, Program::Recorded { may_discard: ShaderEffect::Yes | ShaderEffect::Unknown, .. })
-            && mesh.kept.is_none()
+            && mesh.retained.is_none()
     }
 }

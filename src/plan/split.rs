@@ -24,7 +24,7 @@ impl FramePlan {
         let passes = self.passes.iter().enumerate().flat_map(parts).collect();
         let mut plan = FramePlan { passes, ..self.clone() };
         // What a draw leaves in a map is seen only if it is drawn again.
-        plan.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_kept = false);
+        plan.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_cached = false);
         plan
     }
 }

@@ -19,8 +19,8 @@ impl Display for FramePlan {
         for (index, attachment) in self.attachments.iter().enumerate() {
             let [width, height] = attachment.size;
             let (name, format, layers) = (&attachment.name, attachment.format, attachment.layers);
-            let held = self.held_layers(AttachmentId(index));
-            let left_out = if held < layers { format!(", {held} in memory") } else { String::new() };
+            let stored = self.stored_layers(AttachmentId(index));
+            let left_out = if stored < layers { format!(", {stored} in memory") } else { String::new() };
             writeln!(f, "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s){left_out}")?;
         }
         for (index, mesh) in self.meshes.iter().enumerate() {

@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn each_api_is_told_the_same_in_its_own_words() {
+    fn each_api_is_reported_the_same_in_its_own_words() {
         has(RasterApi::WebGpu, "depthCompare: \"greater\",");
         has(
             RasterApi::WebGpu,
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_that_do_the_same_are_told_once() {
+    fn faces_that_do_the_same_are_reported_once() {
         let face = face_sentence(z_fail().face(false));
         assert_eq!(face, "its test always passes; one that fails the depth test adds 1 (255 becomes 0)");
         let light = RasterState::visible_surface(ColorWrite::Add)

@@ -27,7 +27,7 @@ pub struct TestBench {
     /// The draw's tests.
     pub state: RasterState,
     /// What the pixel holds.
-    pub held: DepthStencil,
+    pub stored: DepthStencil,
     /// Of the next fragment.
     pub depth: f32,
     /// The oldest first.
@@ -57,7 +57,7 @@ impl Default for TestBench {
         let [front, back] = [StencilOperation::DecrementWrap, StencilOperation::IncrementWrap].map(face);
         TestBench {
             state: state.with_faces(front, back, 0),
-            held: DepthStencil { depth: 0.5, stencil: 0 },
+            stored: DepthStencil { depth: 0.5, stencil: 0 },
             depth: 0.25,
             pushed: Vec::new(),
             count: 0,
@@ -69,9 +69,9 @@ impl TestBench {
     /// Tests a fragment of one side, and keeps what comes out.
     pub fn push(&mut self, front_facing: bool) {
         let fragment = IncomingFragment { depth: self.depth, front_facing };
-        let before = self.held;
+        let before = self.stored;
         let outcome = stencil_machine::test(&self.state, fragment, before);
-        self.held = outcome.after;
+        self.stored = outcome.after;
         self.count += 1;
         let words = words(&self.state, fragment, before, &outcome);
         self.pushed.push(TestedDraw { number: self.count, words });
@@ -128,7 +128,7 @@ mod tests {
     fn what_is_said_is_what_the_machine_did() {
         let mut bench = TestBench::default();
         bench.push(false);
-        assert_eq!(bench.held, DepthStencil { depth: 0.5, stencil: 1 });
+        assert_eq!(bench.stored, DepthStencil { depth: 0.5, stencil: 1 });
         let said = &bench.pushed[0].words;
         assert_eq!(
             said,
@@ -148,6 +148,6 @@ mod tests {
     fn old_fragments_are_forgotten_and_numbers_go_on() {
         let mut bench = TestBench::default();
         (0..300).for_each(|_| bench.push(false));
-        assert_eq!((bench.pushed.len(), bench.pushed[0].number, bench.held.stencil), (MOST_PUSHED, 101, 44));
+        assert_eq!((bench.pushed.len(), bench.pushed[0].number, bench.stored.stencil), (MOST_PUSHED, 101, 44));
     }
 }

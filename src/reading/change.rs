@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Changes that are kept.
-const MOST_KEPT: usize = 6;
+const MOST_CACHED: usize = 6;
 /// How much light the ground keeps.
 const GROUND_LIGHT: f32 = 0.42;
 
@@ -100,7 +100,7 @@ fn is_pair(of: &[Arc<Image>; 2], pair: [&Arc<Image>; 2]) -> bool {
 }
 
 fn keep<T>(items: &mut Vec<T>, item: T) {
-    if items.len() >= MOST_KEPT {
+    if items.len() >= MOST_CACHED {
         items.remove(0);
     }
     items.push(item);

@@ -161,7 +161,7 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
                         "pixel {x}, {y}: {begins}{up} faces add 1, {down} take 1 away, {idle} do not count here: \
                          {first}{up} − {down} = {}{}",
                         i64::from(began) + i64::from(up) - i64::from(down),
-                        if in_float { String::new() } else { kept_in(&settings) }
+                        if in_float { String::new() } else { in_bits(&settings) }
                     )
                 }
             });
@@ -190,7 +190,7 @@ fn has_volumes(step: &Step) -> bool {
 fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
     let of_light = light.and_then(|light| known.capture.lights.get(light));
     let in_floats = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
-    let told = |marked: u64, all: u64| {
+    let counted = |marked: u64, all: u64| {
         format!("{} of {} pixels have a count other than 0", format::count(marked), format::count(all))
     };
     if in_floats {
@@ -204,7 +204,7 @@ fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
         let all: u64 = tally.values().sum();
         let most = tally.keys().next_back().copied().unwrap_or(0);
         let marked = all - tally.get(&0).copied().unwrap_or(0);
-        return vec![told(marked, all), format!("the highest count is {}", numbers::count_in_float(most as f32))];
+        return vec![counted(marked, all), format!("the highest count is {}", numbers::count_in_float(most as f32))];
     }
     let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) else {
         return Vec::new();
@@ -221,7 +221,7 @@ fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
             format::count(beyond)
         ),
     };
-    vec![told(all - counts[0], all), highest]
+    vec![counted(all - counts[0], all), highest]
 }
 
 fn triangles(known: &ExplainContext, step: &Step) -> ExplainFact {
@@ -302,7 +302,7 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     // What the stencil test of the light pass lets through.
     let (formula, what) = match known.capture.decided_by(index) {
         DecidedBy::StencilCount { .. } => {
-            (format!("light is added where count = 0{}", kept_in(&settings)), "the count 0")
+            (format!("light is added where count = 0{}", in_bits(&settings)), "the count 0")
         }
         DecidedBy::Flattened if is_flattened => {
             let formula = "light is added where the stencil is even: a shadow adds 1 to its receiver's even mark";
@@ -324,7 +324,7 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
 }
 
 /// In which bits a count is kept, where that is not in all eight.
-fn kept_in(settings: &VolumeSettings) -> String {
+fn in_bits(settings: &VolumeSettings) -> String {
     match CountBits::of_mask(settings.mask().into()) {
         CountBits::EIGHT => String::new(),
         bits => format!(", kept in {bits}"),
@@ -360,9 +360,9 @@ fn labels(known: &ExplainContext, step: &Step) -> ExplainFact {
     if let Some(light) = known.capture.lights.get(index) {
         if let Some(shadow) = &light.shadow {
             let counts = shadow.histogram();
-            let told = PixelLabel::ALL.into_iter().zip(counts);
-            let told = told.map(|(label, count)| format!("{} {}", format::count(count), label.name()));
-            here.push(told.collect::<Vec<_>>().join(", "));
+            let counted = PixelLabel::ALL.into_iter().zip(counts);
+            let counted = counted.map(|(label, count)| format!("{} {}", format::count(count), label.name()));
+            here.push(counted.collect::<Vec<_>>().join(", "));
         }
         match &light.truth {
             Some(truth) => {

@@ -83,9 +83,9 @@ impl SurfaceFragments {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
         let corner = |right: f64, down: f64| {
-            let sight = self.surface.sight([f64::from(x) + right, f64::from(y) + down]);
-            let distance = (height - fragment.plane.dot(sight.from)) / fragment.plane.dot(sight.along);
-            (distance.is_finite() && distance > 0.0).then(|| eye + sight.at(distance))
+            let ray = self.surface.ray([f64::from(x) + right, f64::from(y) + down]);
+            let distance = (height - fragment.plane.dot(ray.from)) / fragment.plane.dot(ray.along);
+            (distance.is_finite() && distance > 0.0).then(|| eye + ray.at(distance))
         };
         Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
     }
@@ -158,9 +158,9 @@ impl DrawnTriangles {
     fn at(&self, [x, y]: [u32; 2], surface: &PixelUnprojection) -> Option<FragmentInputs> {
         let place = self.place([x, y])?;
         let (mesh, [a, b, c]) = triangle(&self.plan, place)?;
-        let sight = surface.sight([f64::from(x) + 0.5, f64::from(y) + 0.5]);
+        let ray = surface.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]);
         let across = (b - a).cross(c - a);
-        let relative = sight.at(across.dot(a - sight.from) / across.dot(sight.along));
+        let relative = ray.at(across.dot(a - ray.from) / across.dot(ray.along));
         let area = across.length_squared();
         let shares = [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(relative - from)) / area);
         let data = mesh.surface.as_ref()?;
@@ -238,7 +238,7 @@ fn xyz(value: [f32; 4]) -> DVec4 {
 #[derive(Debug)]
 pub struct PixelUnprojection {
     measure: DepthMeasure,
-    sights: CameraRays,
+    rays: CameraRays,
     /// World space.
     pub eye: DVec3,
     /// Where lines of sight meet: homogeneous, world space.
@@ -253,7 +253,7 @@ impl PixelUnprojection {
         let [width, height] = capture.size.map(f64::from);
         PixelUnprojection {
             measure: DepthMeasure::of_camera(capture),
-            sights: camera.sights(width / height),
+            rays: camera.rays(width / height),
             eye: camera.eye,
             meeting: camera.eye_position(),
             size: [width, height],
@@ -263,12 +263,12 @@ impl PixelUnprojection {
     /// World position of the surface at the middle of a pixel; `None` where there is none.
     pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
         let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
-        Some(self.eye + self.sight([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
+        Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
     }
 
     /// The line of sight through a texel position.
-    fn sight(&self, [x, y]: [f64; 2]) -> Ray {
+    fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         let [width, height] = self.size;
-        self.sights.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))
+        self.rays.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))
     }
 }

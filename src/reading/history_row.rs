@@ -76,7 +76,7 @@ impl HistoryCells {
                 cells.part = Some(one.part);
                 (cells.what, cells.of) = named(one);
                 cells.side = side(one);
-                cells.outcome = outcome(one.fate);
+                cells.outcome = outcome(one.outcome);
             }
         }
         cells
@@ -129,8 +129,8 @@ pub fn side(one: &TriangleEvent) -> &'static str {
     if one.shows_outside() { "front" } else { "back" }
 }
 
-fn outcome(fate: FragmentOutcome) -> EventOutcome {
-    match fate {
+fn outcome(outcome: FragmentOutcome) -> EventOutcome {
+    match outcome {
         FragmentOutcome::Tested { stencil, depth, operation } => EventOutcome::Tested { depth, stencil, operation },
         FragmentOutcome::Culled => EventOutcome::Nothing("culled"),
         FragmentOutcome::Clipped(ClipPlane::Near) => EventOutcome::Nothing("clipped at near"),

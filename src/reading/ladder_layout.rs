@@ -54,17 +54,17 @@ pub struct CountStretch {
     pub count: i32,
 }
 
-/// Places everything on the ray within `room` points, if need be by folding more rungs; `near` is the near plane's
+/// Places everything on the ray within `height` points, if need be by folding more rungs; `near` is the near plane's
 /// distance in metres, `selected` a rung, `open` rungs that are not to be folded. Also the height of a line.
 pub fn place(
     ladder: &Ladder,
     near: f64,
     selected: Option<usize>,
     open: &[Range<usize>],
-    room: f32,
+    height: f32,
 ) -> (Vec<PlacedMark>, f32) {
-    let fitting = ((room / LEAST_LINE) as usize + 1).saturating_sub(OTHERS).min(MOST_RUNGS);
-    let is_whole = |marks: &Vec<LadderMark>| LEAST_LINE * (marks.len() - 1) as f32 <= room;
+    let fitting = ((height / LEAST_LINE) as usize + 1).saturating_sub(OTHERS).min(MOST_RUNGS);
+    let is_whole = |marks: &Vec<LadderMark>| LEAST_LINE * (marks.len() - 1) as f32 <= height;
     let mut marks_of = [(MOST_RUNGS, ENDS), (fitting, ENDS), (fitting, 1)]
         .into_iter()
         .map(|(most, ends)| marks(ladder, near, selected, open, [most, ends]));
@@ -77,7 +77,7 @@ pub fn place(
         let first = fewer.iter().position(is_whole).unwrap_or(fewer.len() - 1);
         fewer.into_iter().nth(first).unwrap_or(all)
     };
-    let line = (room / (marks.len() - 1) as f32).clamp(LEAST_LINE, LINE);
+    let line = (height / (marks.len() - 1) as f32).clamp(LEAST_LINE, LINE);
     let scale = ladder.surface.unwrap_or_else(|| middle_distance(ladder).unwrap_or(near * 10.0));
     let share = |distance: f64| if distance.is_finite() { distance / (distance + scale) } else { 1.0 };
     let distance = |rung: usize| ladder.rungs[rung].distance;
@@ -89,7 +89,7 @@ pub fn place(
         LadderMark::Surface => share(scale),
         LadderMark::Infinity => 1.0,
     };
-    let height = (line * (marks.len() - 1) as f32).max(room.min(LEAST_HEIGHT));
+    let height = (line * (marks.len() - 1) as f32).max(height.min(LEAST_HEIGHT));
     let mut placed: Vec<PlacedMark> = marks.into_iter().map(|mark| (mark, share_of(mark) as f32 * height)).collect();
     for index in 1..placed.len() {
         placed[index].1 = placed[index].1.max(placed[index - 1].1 + line);
@@ -145,7 +145,7 @@ fn marks(
         rungs.take_while(|rung| nearer(rung.distance, rung.added)).count()
     });
     let edges = [Some(0), Some(before_near), before_surface, selected, Some(ladder.rungs.len())];
-    let is_kept = |rung: usize| {
+    let is_shown = |rung: usize| {
         let near_edge = |edge: usize| rung + ends >= edge && rung < edge + ends;
         ladder.rungs.len() <= most
             || edges.iter().flatten().any(|edge| near_edge(*edge))
@@ -163,7 +163,7 @@ fn marks(
             break;
         }
         match marks.last_mut() {
-            _ if is_kept(rung) => marks.push(LadderMark::Rung(rung)),
+            _ if is_shown(rung) => marks.push(LadderMark::Rung(rung)),
             Some(LadderMark::More(_, to)) if *to == rung => *to += 1,
             _ => marks.push(LadderMark::More(rung, rung + 1)),
         }
@@ -290,12 +290,12 @@ mod tests {
         let ladder = ladder(Some(6.5), &rungs);
         let rungs_of =
             |placed: &[PlacedMark]| placed.iter().filter(|(mark, _)| matches!(mark, LadderMark::Rung(_))).count();
-        for (room, all) in [(400.0, true), (300.0, true), (215.0, true), (180.0, false), (140.0, false)] {
-            let (placed, line) = place(&ladder, 0.1, None, &[], room);
-            assert!((LEAST_LINE..=LINE).contains(&line), "{line} in {room}");
-            assert_eq!(rungs_of(&placed) == 12, all, "in {room}: {placed:?}");
+        for (height, all) in [(400.0, true), (300.0, true), (215.0, true), (180.0, false), (140.0, false)] {
+            let (placed, line) = place(&ladder, 0.1, None, &[], height);
+            assert!((LEAST_LINE..=LINE).contains(&line), "{line} in {height}");
+            assert_eq!(rungs_of(&placed) == 12, all, "in {height}: {placed:?}");
             let [first, last] = [placed.first(), placed.last()].map(|one| one.expect("a mark").1);
-            assert!(first >= -1e-3 && last <= room + 1e-3, "{placed:?} lies in {room}");
+            assert!(first >= -1e-3 && last <= height + 1e-3, "{placed:?} lies in {height}");
             assert!(placed.windows(2).all(|pair| pair[1].1 - pair[0].1 >= line - 1e-3), "{placed:?}");
             let ends = stretches(&ladder, &placed).last().map(|one| one.count);
             assert_eq!(ends, Some(ladder.count), "the sum is the same");

@@ -106,7 +106,7 @@ impl MapDecision {
     pub fn sentence(&self) -> String {
         let place = self.place_words();
         let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
-        let told = match (self.middle.is_caster, distance(self.middle.stored), distance(self.middle.depth)) {
+        let facts = match (self.middle.is_caster, distance(self.middle.stored), distance(self.middle.depth)) {
             (false, _, _) => format!("Texel {place} holds no caster"),
             (true, Some(stored), Some(own)) => {
                 format!("Texel {place} holds a caster {stored} from the light, and this surface is at {own}")
@@ -118,13 +118,13 @@ impl MapDecision {
         };
         let all = self.compared.len();
         if let Some(says) = self.gpu_says {
-            return format!("{told}: too close to tell by depths computed anew; the GPU's own say {says}.");
+            return format!("{facts}: too close to tell by depths computed anew; the GPU's own say {says}.");
         }
         let follows = match self.lit() {
             lit if all > 1 => format!("of the {all} texels read, {lit} hold nothing nearer to the light"),
             0 => "it is nearer, so the light pass adds nothing".to_owned(),
             _ => "nothing nearer is stored, so the light pass adds the light".to_owned(),
         };
-        format!("{told}: {follows}.")
+        format!("{facts}: {follows}.")
     }
 }

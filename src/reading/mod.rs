@@ -14,6 +14,7 @@
 //! ```
 
 pub mod bench;
+pub mod capture_point;
 pub mod change;
 pub mod coordinates;
 pub mod counts;
@@ -28,7 +29,6 @@ pub mod left_out;
 pub mod map_decision;
 pub mod map_readers;
 pub mod meshes;
-pub mod moment;
 pub mod object_ids;
 pub mod outcomes;
 pub mod pick_ray;

@@ -64,8 +64,8 @@ fn draw(anatomy: &Anatomy, capture: &Capture) -> Vec<u32> {
     ids
 }
 
-/// Calls `put` with each pixel whose middle lies in a triangle, and how near it is there.
-pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut put: impl FnMut(usize, f64)) {
+/// Calls `add` with each pixel whose middle lies in a triangle, and how near it is there.
+pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut add: impl FnMut(usize, f64)) {
     let [a, b, c] = corners.map(|(place, _)| place);
     let area = (b - a).perp_dot(c - a);
     if area == 0.0 {
@@ -81,7 +81,7 @@ pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut put: im
                 [(c - b).perp_dot(at - b), (a - c).perp_dot(at - c), (b - a).perp_dot(at - a)].map(|s| s / area);
             if shares.iter().all(|share| *share >= 0.0) {
                 let near = shares[0] * corners[0].1 + shares[1] * corners[1].1 + shares[2] * corners[2].1;
-                put(y * width + x, near);
+                add(y * width + x, near);
             }
         }
     }

@@ -5,22 +5,22 @@ use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 
 /// The line of sight through the middle of a pixel.
-pub fn sight(capture: &Capture, at: [u32; 2]) -> Ray {
-    sight_at(capture, at.map(|texel| f64::from(texel) + 0.5))
+pub fn ray(capture: &Capture, at: [u32; 2]) -> Ray {
+    ray_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }
 
 /// The line of sight through any position in texels.
-pub fn sight_at(capture: &Capture, at: [f64; 2]) -> Ray {
+pub fn ray_at(capture: &Capture, at: [f64; 2]) -> Ray {
     let [width, height] = capture.size.map(f64::from);
     let place = DVec2::new(at[0] / width * 2.0 - 1.0, 1.0 - at[1] / height * 2.0);
-    capture.camera.sights(width / height).through(place)
+    capture.camera.rays(width / height).through(place)
 }
 
 /// The surface at a pixel by the end of the frame, world space; `None` where there is none.
 pub fn surface(capture: &Capture, at: [u32; 2]) -> Option<DVec3> {
     let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
     let distance = capture.depth.distance(frame.depth.image.depth_at(at)?)?;
-    Some(capture.camera.eye + sight(capture, at).at(distance))
+    Some(capture.camera.eye + ray(capture, at).at(distance))
 }
 
 /// A homogeneous point of the world in view space, the view along −z.

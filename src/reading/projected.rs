@@ -125,18 +125,18 @@ pub fn near_plane(capture: &Capture) -> DVec4 {
 
 /// The part of a polygon on one side of a plane through the origin.
 pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    let mut clipped = Vec::with_capacity(polygon.len() + 1);
     for (index, &corner) in polygon.iter().enumerate() {
         let next = polygon[(index + 1) % polygon.len()];
         let [here, there] = [plane.dot(corner), plane.dot(next)];
         if here >= 0.0 {
-            kept.push(corner);
+            clipped.push(corner);
         }
         if (here < 0.0) != (there < 0.0) {
-            kept.push(corner.lerp(next, here / (here - there)));
+            clipped.push(corner.lerp(next, here / (here - there)));
         }
     }
-    kept
+    clipped
 }
 
 #[cfg(test)]

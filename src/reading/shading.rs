@@ -6,7 +6,7 @@ use crate::history::PixelHistory;
 use crate::numbers;
 use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
 use crate::reading::fragments::PixelUnprojection;
-use crate::reading::pick_ray::sight_at;
+use crate::reading::pick_ray::ray_at;
 use crate::scene::Shading;
 use crate::truth::PixelLabel;
 use glam::{DVec2, DVec3, DVec4};
@@ -240,7 +240,7 @@ impl LightTerms {
 /// last that passed in ambient light, which all surfaces are drawn in first.
 pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
-        let one = event.triangle().filter(|one| one.fate.passed())?;
+        let one = event.triangle().filter(|one| one.outcome.passed())?;
         let pass = plan.passes.get(event.pass)?;
         let draw = pass.draws.get(one.draw)?;
         let eye = plan.views.get(pass.view.0)?.eye.as_dvec4();
@@ -308,8 +308,8 @@ struct SeenTriangle<'a> {
 impl SeenTriangle<'_> {
     /// The point of the triangle's plane behind the middle of a pixel.
     fn point(&self, [x, y]: [u32; 2]) -> DVec3 {
-        let sight = sight_at(self.capture, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
-        sight.at(self.normal.dot(self.corners[0] - sight.from) / self.normal.dot(sight.along))
+        let ray = ray_at(self.capture, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
+        ray.at(self.normal.dot(self.corners[0] - ray.from) / self.normal.dot(ray.along))
     }
 }
 

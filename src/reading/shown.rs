@@ -8,10 +8,10 @@
 use crate::capture::{
     Capture, CapturedLight, CapturedTruth, FrameTarget, FrameTruth, Image, PixelFormat, Snapshot, StepTests,
 };
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent, MapLayer};
-use crate::reading::moment::CapturePoint;
 use std::sync::Arc;
 
 named_enum! {

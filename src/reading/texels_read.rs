@@ -128,10 +128,10 @@ impl TexelReaders {
             }
             TexelReader::Textures(fragments) => {
                 let decision = TextureDecision::of(capture, fragments, light, pixel)?;
-                let told = LightLetThrough::new(capture, &decision, pixel);
+                let text_of = LightLetThrough::new(capture, &decision, pixel);
                 Some(match capture.decided_by(light) {
-                    DecidedBy::Silhouettes => TexelsRead::Silhouettes(told),
-                    _ => TexelsRead::ReceiverTexture(told),
+                    DecidedBy::Silhouettes => TexelsRead::Silhouettes(text_of),
+                    _ => TexelsRead::ReceiverTexture(text_of),
                 })
             }
             TexelReader::None => None,

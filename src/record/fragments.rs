@@ -47,7 +47,7 @@ pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe,
 ///
 /// # Errors
 /// There are more than `most`, or the GPU fails.
-pub fn kept(
+pub fn retained(
     probe: &Probe,
     gpu: ProbeGpu<'_>,
     state: &PassState,
@@ -56,15 +56,15 @@ pub fn kept(
     most: u64,
 ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
     // Enough for one layer of fragments; more where they are more.
-    let mut room = most.min(u64::from(size[0]) * u64::from(size[1]));
+    let mut capacity = most.min(u64::from(size[0]) * u64::from(size[1]));
     loop {
-        let log = log(probe, gpu, state, draws, size, room)?;
+        let log = log(probe, gpu, state, draws, size, capacity)?;
         let read = |offset: u64, bytes: u64| {
             let read = readback::buffer(gpu.device, gpu.queue, &log, offset, bytes);
             read.ok_or("the GPU did not say which fragments it keeps")
         };
         let count = u64::from(word(&read(0, HEAD)?, 0));
-        if count <= room {
+        if count <= capacity {
             let record = |record: &[u8]| {
                 let pixel = word(record, 0);
                 ([pixel as u16, (pixel >> 16) as u16], word(record, 1))
@@ -75,7 +75,7 @@ pub fn kept(
         if count > most {
             return Err(TOO_MANY);
         }
-        room = count;
+        capacity = count;
     }
 }
 
@@ -91,9 +91,9 @@ fn log(
     state: &PassState,
     draws: &[(DrawCommand, u32)],
     size: [u32; 2],
-    room: u64,
+    capacity: u64,
 ) -> Result<wgpu::Buffer, &'static str> {
-    let bytes = HEAD + FRAGMENT_RECORD * room.max(1);
+    let bytes = HEAD + FRAGMENT_RECORD * capacity.max(1);
     if bytes > device.limits().max_storage_buffer_binding_size {
         return Err(TOO_MANY);
     }

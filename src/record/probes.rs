@@ -85,7 +85,7 @@ impl Probes {
         gpu: ProbeGpu<'_>,
         state: &PassState,
         draw: &DrawCommand,
-        room: &mut ProbeBudget,
+        budget: &mut ProbeBudget,
     ) -> Result<ResolvedVertices, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
         let make = || guarded(gpu.device, || vertices::probe(gpu.device, described));
@@ -95,10 +95,10 @@ impl Probes {
         for part in &parts {
             let corners = corners(gpu, state, described, part)?;
             let all_corners = corners.len() as u64 * instances(part).len() as u64;
-            if all_corners > MOST_CORNERS || all_corners > room.corners {
+            if all_corners > MOST_CORNERS || all_corners > budget.corners {
                 return Err("it has more corners than are followed");
             }
-            room.corners -= all_corners;
+            budget.corners -= all_corners;
             let log = guarded(gpu.device, || vertices::log(&probe, gpu, state, part, corners.len() as u64))?;
             all.add(described, part, &corners, &log)?;
         }
@@ -109,14 +109,14 @@ impl Probes {
     ///
     /// # Errors
     /// Why that can't be found, in words.
-    pub fn kept(
+    pub fn retained(
         &mut self,
         gpu: ProbeGpu<'_>,
         state: &PassState,
         draw: &DrawCommand,
         landed: &ResolvedVertices,
         size: [u32; 2],
-        room: &mut ProbeBudget,
+        budget: &mut ProbeBudget,
     ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
         let make = || guarded(gpu.device, || fragments::probe(gpu.device, described));
@@ -127,9 +127,9 @@ impl Probes {
         if draws.len() > MOST_INSTANCES {
             return Err("it has more instances than are followed fragment by fragment");
         }
-        let kept = guarded(gpu.device, || fragments::kept(&probe, gpu, state, &draws, size, room.fragments))?;
-        room.fragments -= kept.len() as u64;
-        Ok(kept)
+        let retained = guarded(gpu.device, || fragments::retained(&probe, gpu, state, &draws, size, budget.fragments))?;
+        budget.fragments -= retained.len() as u64;
+        Ok(retained)
     }
 }
 

@@ -345,7 +345,7 @@ impl RecordingTools {
             Some(session) => session,
             none => none.insert(Session::new(Some(&adapter.name))?),
         };
-        of.capture = session.held_against_itself(&of.plan, &of.capture, &Progress::default())?;
+        of.capture = session.compared_with_rerun(&of.plan, &of.capture, &Progress::default())?;
         Ok(())
     }
 }

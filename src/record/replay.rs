@@ -21,12 +21,12 @@ pub struct FrameReplay {
     of_target: BTreeMap<RawTarget, wgpu::Texture>,
     before: Vec<(RawTarget, RawContents)>,
     /// What each target held last.
-    held: BTreeMap<RawTarget, RawContents>,
+    contents: BTreeMap<RawTarget, RawContents>,
     events: Vec<RawEvent>,
     groups: Vec<String>,
     limits: Vec<String>,
     probes: Probes,
-    room: ProbeBudget,
+    budget: ProbeBudget,
     draws: usize,
 }
 
@@ -222,9 +222,9 @@ impl FrameReplay {
             if format.has_depth_aspect() && contents.depth.is_none() {
                 self.limit(&format!("what {format:?} holds can't be copied, so that its depths are not known"));
             }
-            let held = self.held.entry(*target).or_default();
-            pictures::share(contents, held);
-            held.clone_from(contents);
+            let last = self.contents.entry(*target).or_default();
+            pictures::share(contents, last);
+            last.clone_from(contents);
         }
         all
     }
@@ -247,7 +247,7 @@ impl FrameReplay {
     }
 
     fn draw(&mut self, gpu: ProbeGpu<'_>, targets: &PassTargets, state: &PassState, draw: &DrawCommand) -> RawDraw {
-        let landed = self.probes.landed(gpu, state, draw, &mut self.room).unwrap_or_else(|why| {
+        let landed = self.probes.landed(gpu, state, draw, &mut self.budget).unwrap_or_else(|why| {
             self.limit(&format!("a draw has states alone: {why}"));
             ResolvedVertices::default()
         });
@@ -268,9 +268,10 @@ impl FrameReplay {
         let is_followed =
             !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
         let is_asked = is_followed && fragment.may_discard == ShaderEffect::Yes;
-        let kept =
-            is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size, &mut self.room)).and_then(|kept| {
-                kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
+        let retained = is_asked
+            .then(|| self.probes.retained(gpu, state, draw, &landed, size, &mut self.budget))
+            .and_then(|retained| {
+                retained.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
             });
         let ResolvedVertices { positions, triangles, instances } = landed;
         RawDraw {
@@ -284,7 +285,7 @@ impl FrameReplay {
             stencil: described.and_then(|described| state.stencil(described)),
             blend: described.and_then(states::blend),
             fragment,
-            kept,
+            retained,
             samples: described.map_or(1, |described| described.multisample.count),
         }
     }

@@ -175,8 +175,8 @@ fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], reco
     let at = code.plain(Expression::AtomicResult { ty: unsigned, comparison: false });
     code.push(Statement::Atomic { pointer: count, fun: AtomicFunction::Add, value: one, result: Some(at) });
     let records = code.emitted(Expression::AccessIndex { base: log, index: 1 });
-    let room = code.emitted(Expression::ArrayLength(records));
-    let fits = code.emitted(Expression::Binary { op: BinaryOperator::Less, left: at, right: room });
+    let capacity = code.emitted(Expression::ArrayLength(records));
+    let fits = code.emitted(Expression::Binary { op: BinaryOperator::Less, left: at, right: capacity });
     let outer = std::mem::replace(&mut code.body, Block::new());
     let pointer = code.emitted(Expression::Access { base: records, index: at });
     let value = code.emitted(Expression::Compose { ty: record, components });

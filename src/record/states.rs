@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// What a pass has been told and still holds.
 #[derive(Debug, Clone, Default)]
 pub struct PassState {
-    held: BTreeMap<StateSlot, PassCommand>,
+    commands: BTreeMap<StateSlot, PassCommand>,
 }
 
 /// What a state is of: the kind, and which of its kind.
@@ -56,11 +56,11 @@ impl PassState {
     /// Notes a command; is it a state?
     pub fn note(&mut self, command: &PassCommand) -> bool {
         match command {
-            PassCommand::Unbound => self.held.retain(|slot, _| slot.outlasts_bundles()),
+            PassCommand::Unbound => self.commands.retain(|slot, _| slot.outlasts_bundles()),
             PassCommand::Immediates { offset, data } => {
                 for (offset, word) in (*offset..).step_by(4).zip(data.chunks(4)) {
                     let word = PassCommand::Immediates { offset, data: word.to_vec() };
-                    self.held.insert(StateSlot::Immediates(offset), word);
+                    self.commands.insert(StateSlot::Immediates(offset), word);
                 }
             }
             command => {
@@ -68,7 +68,7 @@ impl PassState {
                 if let PassCommand::Pipeline { described, .. } = command {
                     self.clear_immediates(described);
                 }
-                self.held.insert(slot, command.clone());
+                self.commands.insert(slot, command.clone());
             }
         }
         true
@@ -76,17 +76,17 @@ impl PassState {
 
     /// A pipeline of another layout finds zeros.
     fn clear_immediates(&mut self, next: &Arc<PipelineSource>) {
-        let is_same = self.pipeline().is_some_and(|held| match (&held.layout, &next.layout) {
-            (Some(held), Some(next)) => held.real == next.real,
-            _ => Arc::ptr_eq(held, next),
+        let is_same = self.pipeline().is_some_and(|current| match (&current.layout, &next.layout) {
+            (Some(current), Some(next)) => current.real == next.real,
+            _ => Arc::ptr_eq(current, next),
         });
         if is_same {
             return;
         }
         // How much a layout of wgpu's own has room for is not known.
-        let room = next.layout.as_ref().map_or(0, |layout| layout.immediate_size);
-        self.held.retain(|slot, _| !matches!(slot, StateSlot::Immediates(offset) if *offset >= room));
-        for command in self.held.values_mut() {
+        let bytes = next.layout.as_ref().map_or(0, |layout| layout.immediate_size);
+        self.commands.retain(|slot, _| !matches!(slot, StateSlot::Immediates(offset) if *offset >= bytes));
+        for command in self.commands.values_mut() {
             if let PassCommand::Immediates { data, .. } = command {
                 data.fill(0);
             }
@@ -95,11 +95,11 @@ impl PassState {
 
     /// All of it, the pipeline first.
     pub fn commands(&self) -> impl Iterator<Item = &PassCommand> {
-        self.held.values()
+        self.commands.values()
     }
 
     pub fn pipeline(&self) -> Option<&Arc<PipelineSource>> {
-        match self.held.get(&StateSlot::Pipeline) {
+        match self.commands.get(&StateSlot::Pipeline) {
             Some(PassCommand::Pipeline { described, .. }) => Some(described),
             _ => None,
         }
@@ -107,14 +107,14 @@ impl PassState {
 
     /// The index buffer, its format, where it begins.
     pub fn index_buffer(&self) -> Option<(&wgpu::Buffer, wgpu::IndexFormat, u64)> {
-        match self.held.get(&StateSlot::IndexBuffer) {
+        match self.commands.get(&StateSlot::IndexBuffer) {
             Some(PassCommand::IndexBuffer { buffer, format, offset, .. }) => Some((buffer, *format, *offset)),
             _ => None,
         }
     }
 
     fn reference(&self) -> u8 {
-        match self.held.get(&StateSlot::StencilReference) {
+        match self.commands.get(&StateSlot::StencilReference) {
             Some(PassCommand::StencilReference(reference)) => *reference as u8,
             _ => 0,
         }
@@ -122,11 +122,11 @@ impl PassState {
 
     /// Where clip space lands in a target of that size.
     pub fn view(&self, [width, height]: [u32; 2]) -> RawView {
-        let (viewport, depth_range) = match self.held.get(&StateSlot::Viewport) {
+        let (viewport, depth_range) = match self.commands.get(&StateSlot::Viewport) {
             Some(PassCommand::Viewport { area, depth }) => (*area, *depth),
             _ => ([0.0, 0.0, width as f32, height as f32], [0.0, 1.0]),
         };
-        let scissor = match self.held.get(&StateSlot::Scissor) {
+        let scissor = match self.commands.get(&StateSlot::Scissor) {
             Some(PassCommand::Scissor(area)) => Some(area.map(|value| value.min(i32::MAX as u32) as i32)),
             _ => None,
         };

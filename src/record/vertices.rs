@@ -58,8 +58,8 @@ pub fn log(
 ) -> Result<PositionLog, &'static str> {
     let ProbeGpu { device, queue } = gpu;
     let instances = instances(draw).len() as u64;
-    let room = corners * instances;
-    let size = HEAD + RECORD * room.max(1);
+    let capacity = corners * instances;
+    let size = HEAD + RECORD * capacity.max(1);
     if size > device.limits().max_storage_buffer_binding_size {
         return Err("it has more corners than are followed");
     }

@@ -305,9 +305,9 @@ pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     let chart_width = (width - GAP * (columns - 1) as f64) / columns as f64;
     let rows = scenes.len().div_ceil(columns);
     let gaps = rows.saturating_sub(1) as f64 * GAP / 2.0;
-    let room = page.height.map_or(CHART_HEIGHT, |height| (height - top - below - gaps) / rows.max(1) as f64);
+    let height = page.height.map_or(CHART_HEIGHT, |height| (height - top - below - gaps) / rows.max(1) as f64);
     let least = if rows > 1 { LEAST_STACKED_HEIGHT } else { LEAST_CHART_HEIGHT };
-    let frame = ChartFrame::new(report, &scenes, [chart_width, room.max(least)], page.compact);
+    let frame = ChartFrame::new(report, &scenes, [chart_width, height.max(least)], page.compact);
     let mut bottom = top;
     for (index, (scene, rows)) in scenes.iter().enumerate() {
         let column = index % columns;

@@ -19,7 +19,7 @@ const STEP: f64 = 0.4;
 /// From the feet to the eye, metres, of a body that is not wider than that.
 const EYE: f64 = 1.7;
 /// What is moved at once lasts so long at most, seconds.
-const MOMENT: f64 = 1.0 / 120.0;
+const TIME_STEP: f64 = 1.0 / 120.0;
 /// Who is so far below all that there is falls for ever, metres.
 const BEYOND: f64 = 5.0;
 /// Heights that differ by less are one: rounding, metres.
@@ -81,36 +81,36 @@ impl WalkerBody {
             return from;
         }
         let lengths = by.length() / (self.radius / 2.0);
-        let steps = (seconds / MOMENT).max(lengths).ceil().clamp(1.0, MOST_STEPS as f64);
+        let steps = (seconds / TIME_STEP).max(lengths).ceil().clamp(1.0, MOST_STEPS as f64);
         // Of a way that is longer than all steps, what is left is not gone.
-        let step = by / steps.max(lengths);
-        let moment = seconds / steps;
+        let way = by / steps.max(lengths);
+        let time = seconds / steps;
         let mut now = from;
         for _ in 0..steps as usize {
-            now = self.step(now, step, moment, (walls, collides));
+            now = self.step(now, way, time, (walls, collides));
         }
         now.is_beyond = walls.lowest().is_none_or(|lowest| now.feet.y < lowest - BEYOND);
         now
     }
 
-    fn step(&self, from: Footing, by: DVec3, moment: f64, (walls, collides): (&Walls, bool)) -> Footing {
+    fn step(&self, from: Footing, by: DVec3, step: f64, (walls, collides): (&Walls, bool)) -> Footing {
         let aside = self.gone(walls, from.feet, by, collides);
-        let gone = self.settled(walls, (from, aside), moment);
+        let gone = self.settled(walls, (from, aside), step);
         let head_meets = gone.feet.y > from.feet.y + LEVEL && collides && self.is_blocked(walls, gone.feet);
         // A step up that the head has no room for is not made, and what is under the feet holds them still.
-        if head_meets { self.settled(walls, (from, from.feet), moment) } else { gone }
+        if head_meets { self.settled(walls, (from, from.feet), step) } else { gone }
     }
 
     /// On its feet over a place, or a moment farther down.
-    fn settled(&self, walls: &Walls, (from, at): (Footing, DVec3), moment: f64) -> Footing {
-        let fallen = at.y - from.falls_by * moment - GRAVITY * moment * moment / 2.0;
+    fn settled(&self, walls: &Walls, (from, at): (Footing, DVec3), step: f64) -> Footing {
+        let fallen = at.y - from.falls_by * step - GRAVITY * step * step / 2.0;
         // Who walks goes down steps on their feet.
         let lowest = if from.is_on_ground { at.y - STEP } else { fallen };
         match self.ground(walls, at, [lowest, at.y + STEP]) {
             Some(height) => Footing { feet: at.with_y(height), falls_by: 0.0, is_on_ground: true, ..from },
             None => Footing {
                 feet: at.with_y(fallen),
-                falls_by: from.falls_by + GRAVITY * moment,
+                falls_by: from.falls_by + GRAVITY * step,
                 is_on_ground: false,
                 ..from
             },
@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_edge_of_the_world_one_falls_and_it_is_told() {
+    fn beyond_the_edge_of_the_world_one_falls_and_it_is_reported() {
         let walls = world(&[]);
         let off = walked(&walls, at([19.0, 0.0, 0.0]), DVec3::X, 1.5);
         assert!(!off.is_on_ground && !off.is_beyond && off.feet.y < 0.0, "{off:?}");

@@ -16,7 +16,7 @@ const AMBIENT: [f32; 3] = [0.15; 3];
 ///
 /// let scene = SceneBuilder::new("a box over a floor")
 ///     .object(Object::of("floor", shapes::quad([6.0, 6.0])?))
-///     .object(Object::of("box", shapes::cuboid([0.8, 0.6, 0.8])?).turned([0.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]))
+///     .object(Object::of("box", shapes::cuboid([0.8, 0.6, 0.8])?).rotated([0.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]))
 ///     .light(Light::point([1.0, 4.0, 1.5]))
 ///     .seen_from([1.5, 3.0, 5.0], [0.0, 0.3, 0.0])
 ///     .build();
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_told_apart_and_darkness_is_kept() {
+    fn names_are_distinguished_and_darkness_is_kept() {
         let ball = || Object::of("ball", shapes::sphere(1.0, 8, 4).expect("a ball"));
         let scene = SceneBuilder::new("three").objects([ball(), ball(), ball()]).lights([]).build();
         let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();

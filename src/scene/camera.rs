@@ -137,7 +137,7 @@ impl Camera {
     /// Where a count may be taken for all lines of sight: the eye, or of a parallel camera, whose lines begin at the near
     /// plane, the middle of that.
     pub fn counting_place(&self) -> DVec3 {
-        if self.is_parallel() { self.eye + self.sights(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
+        if self.is_parallel() { self.eye + self.rays(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
     }
 
     /// The name of [`Camera::counting_place`], for people.
@@ -146,7 +146,7 @@ impl Camera {
     }
 
     /// The lines of sight of a picture of this width over height.
-    pub fn sights(&self, aspect: f64) -> CameraRays {
+    pub fn rays(&self, aspect: f64) -> CameraRays {
         let half = self.half_height();
         CameraRays {
             world_from_view: self.world_from_view(),
@@ -330,7 +330,7 @@ mod tests {
             let clip_from_relative =
                 camera.clip_from_view(1.5, &curve) * DMat4::from_mat3(camera.world_from_view().transpose());
             for at in [DVec2::ZERO, DVec2::new(-0.8, 0.3), DVec2::new(1.0, -1.0)] {
-                let Ray { from, along } = camera.sights(1.5).through(at);
+                let Ray { from, along } = camera.rays(1.5).through(at);
                 for distance in [0.5, 3.0, 17.0] {
                     let clip = clip_from_relative * (from + along * distance).extend(1.0);
                     let place = clip.truncate() / clip.w;

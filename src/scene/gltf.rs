@@ -82,17 +82,17 @@ pub(in crate::scene) fn load_mesh(
     pictures: &mut ImageLoader,
     last: &mut Option<OpenedGltf>,
 ) -> Result<Mesh, SceneError> {
-    let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
+    let failed = |reason: String| SceneError::Read { file: file.to_owned(), reason };
     let opened = match last.take().filter(|opened| opened.document.file == file) {
         Some(opened) => opened,
         None => {
             let document = GltfDocument::open(file)?;
-            let nodes = GltfNodes::new(&document.root).map_err(told)?;
+            let nodes = GltfNodes::new(&document.root).map_err(failed)?;
             OpenedGltf { document, nodes }
         }
     };
     let OpenedGltf { document, nodes } = last.insert(opened);
-    mesh_at(document, nodes, pointer, pictures).map_err(told)
+    mesh_at(document, nodes, pointer, pictures).map_err(failed)
 }
 
 fn mesh_at(
@@ -169,8 +169,8 @@ fn read(document: &GltfDocument, file: &Path) -> GltfResult<LoadedGltf> {
             (None, _) => (Arc::new(in_world(document, &nodes, &mut meshes, node, index)?), format!("/nodes/{node}")),
         };
         if mesh.triangles().is_empty() {
-            let told = mesh.not_taken().first().map(|one| format!("{}: {}", one.what, one.because));
-            let because = told.unwrap_or_else(|| "it has no triangle with three different corners".to_owned());
+            let failed = mesh.not_taken().first().map(|one| format!("{}: {}", one.what, one.because));
+            let because = failed.unwrap_or_else(|| "it has no triangle with three different corners".to_owned());
             refusals.refuse(quoted(&name), because);
             continue;
         }

@@ -59,7 +59,7 @@ impl Object {
 
     /// The object turned about the fixed x, then y, then z axis.
     #[must_use]
-    pub fn turned(mut self, rotate_degrees: impl Into<DVec3>) -> Object {
+    pub fn rotated(mut self, rotate_degrees: impl Into<DVec3>) -> Object {
         self.pose.rotate_degrees = rotate_degrees.into();
         self
     }
@@ -146,7 +146,7 @@ impl Pose {
 
     /// In the same place, turned so that what was its z axis is up.
     pub fn with_z_up(&self) -> Pose {
-        self.turned_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
+        self.rotated_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
     }
 
     fn rotation(&self) -> DQuat {
@@ -155,7 +155,7 @@ impl Pose {
     }
 
     /// The same scale, turned and moved as one rigid thing about a point.
-    fn turned_about(&self, pivot: DVec3, turn: DQuat) -> Pose {
+    fn rotated_about(&self, pivot: DVec3, turn: DQuat) -> Pose {
         Pose::of(self.scale, turn * self.rotation(), pivot + turn * (self.translate - pivot))
     }
 }
@@ -211,7 +211,7 @@ impl Motion {
         let rotate_degrees = pose.rotate_degrees + self.spin_degrees_per_second * seconds;
         let moved = Pose { translate, rotate_degrees, ..*pose };
         match self.turn_of_swing(seconds) {
-            Some((pivot, turn)) => moved.turned_about(pivot, turn),
+            Some((pivot, turn)) => moved.rotated_about(pivot, turn),
             None => moved,
         }
     }

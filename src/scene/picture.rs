@@ -256,7 +256,7 @@ impl ImageLoader {
         Ok(self.add(path, picture))
     }
 
-    /// The picture in these bytes, which are asked for once; `path` tells it from others, and `told` names it in an error.
+    /// The picture in these bytes, which are asked for once; `path` tells it from others, and `described` names it in an error.
     ///
     /// # Errors
     /// As [`ImageLoader::load`], or why there are no bytes; in a few words.
@@ -264,7 +264,7 @@ impl ImageLoader {
     pub fn load_bytes(
         &mut self,
         path: &Path,
-        [name, told]: [&str; 2],
+        [name, described]: [&str; 2],
         bytes: impl FnOnce() -> Result<Vec<u8>, String>,
     ) -> Result<Arc<TextureImage>, String> {
         if let Some(known) = self.known.get(path) {
@@ -273,8 +273,9 @@ impl ImageLoader {
         if let Some(why) = self.broken.get(path) {
             return Err(why.clone());
         }
-        let told = |error: ImageError| format!("{} {error}", told);
-        let picture = bytes().and_then(|bytes| TextureImage::decode(name.to_owned(), &bytes, self.left).map_err(told));
+        let described = |error: ImageError| format!("{} {error}", described);
+        let picture =
+            bytes().and_then(|bytes| TextureImage::decode(name.to_owned(), &bytes, self.left).map_err(described));
         let picture = picture.inspect_err(|why| {
             self.broken.insert(path.to_owned(), why.clone());
         })?;

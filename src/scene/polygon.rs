@@ -71,6 +71,6 @@ fn cut_ears(flat: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     earcut::Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &no_holes, &mut indices);
     let area = |[a, b, c]: [usize; 3]| (flat[b] - flat[a]).perp_dot(flat[c] - flat[a]);
     let (triples, _) = indices.as_chunks::<3>();
-    let turned = triples.iter().map(|&[a, b, c]| if area([a, b, c]) < 0.0 { [a, c, b] } else { [a, b, c] });
-    (!triples.is_empty()).then(|| turned.collect())
+    let flipped = triples.iter().map(|&[a, b, c]| if area([a, b, c]) < 0.0 { [a, c, b] } else { [a, b, c] });
+    (!triples.is_empty()).then(|| flipped.collect())
 }

@@ -48,9 +48,9 @@ impl Scene {
             let mut light = self.lights[index % self.lights.len()].clone();
             let turns = (index / self.lights.len()) as f64 * GOLDEN;
             let around = if light.is_directional() { DVec3::ZERO } else { middle };
-            let turned = DMat3::from_rotation_y(turns * TAU) * (light.position.truncate() - around) + around;
+            let rotated = DMat3::from_rotation_y(turns * TAU) * (light.position.truncate() - around) + around;
             if turns > 0.0 {
-                light.position = turned.extend(light.position.w);
+                light.position = rotated.extend(light.position.w);
             }
             light
         };

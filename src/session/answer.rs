@@ -128,7 +128,7 @@ impl Session {
             }
             Ask::DiagnosisOf(_) => {
                 let frame = of_frame()?;
-                self.make_room(&frame.plan);
+                self.free_memory_for(&frame.plan);
                 let (scene, request) = frame.made()?;
                 Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, InjectedFault::None, progress)?))
             }
@@ -153,8 +153,8 @@ impl Session {
     }
 
     /// Lets no more be tried than there is room for beside the frame of a plan that is shown.
-    pub fn make_room(&mut self, plan: &FramePlan) {
+    pub fn free_memory_for(&mut self, plan: &FramePlan) {
         let shares_memory = self.adapter().kind == "cpu";
-        self.set_room(shares_memory.then(|| plan.bytes() + MOST_OF_A_TRIAL));
+        self.set_memory_budget(shares_memory.then(|| plan.bytes() + MOST_OF_A_TRIAL));
     }
 }

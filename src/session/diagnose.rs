@@ -51,7 +51,7 @@ impl Session {
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
-        let (given, choice, plan) = self.plan_mended(scene, request, fault, &Fix::default())?;
+        let (given, choice, plan) = self.plan_fixed(scene, request, fault, &Fix::default())?;
         let capture = self.capture_plan(&given, &plan)?;
         let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture));
         let run = DiagnosisRun { scene: given, choice, plan, capture, judged };
@@ -70,16 +70,16 @@ impl Session {
             casting: &casting,
         };
         let mut found = wrong_regions(&facts, &run);
-        let told = found.len().min(Diagnosis::MOST_REGIONS);
-        let rest = &found[told..];
+        let listed = found.len().min(Diagnosis::MOST_REGIONS);
+        let rest = &found[listed..];
         let rest = RemainingRegions {
             regions: rest.len(),
             pixels: rest.iter().map(|region| region.pixels.len() as u64).sum(),
         };
-        found.truncate(told);
+        found.truncate(listed);
         progress.start(found.len() + 1);
         let mut runs = TrialRuns { scene, request, fault, traced: &traced, progress, done: Vec::new() };
-        let mut told = Vec::new();
+        let mut listed = Vec::new();
         for region in &found {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
@@ -87,10 +87,10 @@ impl Session {
             let case = self.case(&facts, region)?;
             let suspicions = rules::suspicions(&facts, &case);
             let causes = self.proven(&mut runs, region, &run.judged.wrong, suspicions)?;
-            told.push(described(&facts, &case, causes, size));
+            listed.push(described(&facts, &case, causes, size));
             progress.advance();
         }
-        let advice = self.advice(&mut runs, &told, &run.judged.wrong, run.choice.technique())?;
+        let advice = self.advice(&mut runs, &listed, &run.judged.wrong, run.choice.technique())?;
         Ok(Diagnosis {
             scene: scene.name.clone(),
             technique: request.choice.technique(),
@@ -105,43 +105,43 @@ impl Session {
                 .flat_map(|(_, mesh)| mesh.findings(&lights))
                 .collect(),
             flags: flags(scene, &traced, progress)?,
-            regions: told,
+            regions: listed,
             rest,
             advice,
         })
     }
 
     /// The frame with a mend made, and the plan that left it: to show before and after.
-    pub fn capture_mended(
+    pub fn capture_fixed(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
         fault: InjectedFault,
-        mend: &Fix,
+        fix: &Fix,
     ) -> Result<(Capture, FramePlan), SessionError> {
-        let (scene, _, plan) = self.plan_mended(scene, request, fault, mend)?;
+        let (scene, _, plan) = self.plan_fixed(scene, request, fault, fix)?;
         Ok((self.capture_plan(&scene, &plan)?, plan))
     }
 
     /// The fault first, then the mend: what is wrong stays wrong but where the mend changes it.
-    pub(super) fn plan_mended(
+    pub(super) fn plan_fixed(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
         fault: InjectedFault,
-        mend: &Fix,
+        fix: &Fix,
     ) -> Result<(Scene, Choice, FramePlan), SessionError> {
         let (given, mut choice) = fault.applied(scene, &request.choice);
         let mut given = given.into_owned();
-        mend.apply(&mut given, &mut choice)?;
+        fix.apply(&mut given, &mut choice)?;
         let job =
-            PlanRequest { scene: &given, size: mend.size(request.size), choice: &choice, cache: &mut self.geometry };
+            PlanRequest { scene: &given, size: fix.size(request.size), choice: &choice, cache: &mut self.geometry };
         let fresh = technique::plan(job)?;
         let mut plan = fresh.clone();
         if let InjectedFault::Plan(change) = fault {
             change(&mut plan);
         }
-        mend.edit(&mut plan, &fresh);
+        fix.edit(&mut plan, &fresh);
         Ok((given, choice, plan))
     }
 
@@ -260,7 +260,7 @@ fn described(facts: &FrameFacts, case: &RegionSamples, causes: Vec<CauseFound>, 
             casters.extend(sample.miscounted(facts, light).into_iter().map(|(name, ..)| name));
             let flattened = sample.history.iter().flat_map(|history| history.triangles());
             let flattened = flattened.filter(|(event, one)| {
-                event.light == Some(light) && one.part == DrawPart::PlanarShadow && one.fate.passed()
+                event.light == Some(light) && one.part == DrawPart::PlanarShadow && one.outcome.passed()
             });
             casters.extend(flattened.filter_map(|(_, one)| one.caster.clone()));
         }
@@ -317,7 +317,7 @@ fn flags(scene: &Scene, traced: &TracedScene, progress: &Progress) -> Result<Vec
                     cause,
                     pixels,
                     at: at.map(|pixel| crate::accuracy::place(*pixel, traced.truth.size)),
-                    mend: Fix::scene(index, &scene.objects[index].name, change),
+                    fix: Fix::scene(index, &scene.objects[index].name, change),
                 });
             }
         }

@@ -51,11 +51,11 @@ impl Session {
                 _ => Proof::NotIt,
             };
             let mut of_light = Vec::new();
-            for FrameSuspicion { cause, evidence, mended } in suspicions(plan, id, light.position) {
+            for FrameSuspicion { cause, evidence, fixed } in suspicions(plan, id, light.position) {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let pixels_left = judge(self, &mended)?;
+                let pixels_left = judge(self, &fixed)?;
                 let proof = proof_of(pixels_left);
                 of_light.push(FrameCauseFound {
                     cause,
@@ -97,20 +97,20 @@ impl Session {
     ) -> Result<Option<FrameCauseFound>, SessionError> {
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
         let without = |cause, plan: &FramePlan| suspicion(cause, plan, light, position);
-        let Some(FrameSuspicion { mut mended, .. }) = without(first.cause, plan) else { return Ok(None) };
+        let Some(FrameSuspicion { mut fixed, .. }) = without(first.cause, plan) else { return Ok(None) };
         let mut joined = first.clone();
         loop {
             let mut best: Option<(u64, FrameSuspicion)> = None;
             let is_in = |cause: Cause| cause == first.cause || joined.together_with.contains(&cause);
             for cause in found.iter().map(|one| one.cause).filter(|cause| !is_in(*cause)) {
-                let Some(found) = without(cause, &mended) else { continue };
-                let left = judge(self, &found.mended)?;
+                let Some(found) = without(cause, &fixed) else { continue };
+                let left = judge(self, &found.fixed)?;
                 if left < best.as_ref().map_or(joined.pixels_left, |(best, _)| *best) {
                     best = Some((left, found));
                 }
             }
-            let Some((left, FrameSuspicion { cause, evidence, mended: plan })) = best else { break };
-            (joined.pixels_left, joined.proof, mended) = (left, proof_of(left), plan);
+            let Some((left, FrameSuspicion { cause, evidence, fixed: plan })) = best else { break };
+            (joined.pixels_left, joined.proof, fixed) = (left, proof_of(left), plan);
             joined.together_with.push(cause);
             joined.evidence = format!("{}; {evidence}", joined.evidence);
         }

@@ -75,10 +75,10 @@ fn sharing(mut state: DrawState, known: &[Arc<Image>], last: &mut [Option<Arc<Im
     let [color, depth, stencil] = frame_aspects(&mut state.snapshot);
     for (aspect, last) in [color, depth, stencil, state.target.as_mut()].into_iter().zip(last) {
         let Some(aspect) = aspect else { continue };
-        let mut held = last.iter().chain(known);
-        if let Some(equal) = held.clone().find(|held| **held == aspect.image) {
+        let mut earlier = last.iter().chain(known);
+        if let Some(equal) = earlier.clone().find(|earlier| **earlier == aspect.image) {
             aspect.image = equal.clone();
-        } else if let Some(shared) = held.find_map(|held| aspect.image.sharing(held)) {
+        } else if let Some(shared) = earlier.find_map(|earlier| aspect.image.sharing(earlier)) {
             aspect.image = Arc::new(shared);
         }
         *last = Some(aspect.image.clone());

@@ -115,7 +115,8 @@ mod tests {
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), [65, 65]);
         let plan = session.plan(&scene, &request).expect("a plan");
         let covering = plan.covering([32, 32]);
-        let mut log = |room: u32| session.executor.log_fragments(&plan, [32, 32], &covering, room).expect("a log");
+        let mut log =
+            |capacity: u32| session.executor.log_fragments(&plan, [32, 32], &covering, capacity).expect("a log");
         let whole = log(covering.len() as u32);
         assert_eq!(whole.counted as usize, whole.fragments.len());
         assert!(whole.fragments.len() > 6, "{whole:?}");

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 /// Bytes of GPU memory that choices may hold together while others are timed. A software GPU's are this
 /// program's own.
-const KEPT_BYTES: u64 = 64 << 20;
+const CACHED_BYTES: u64 = 64 << 20;
 
 /// What to measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,19 +151,21 @@ impl Session {
             measured.extend(row);
             (0..steps).for_each(|_| progress.advance());
         }
-        let plans = self.kept(scene, what.size, &measured)?;
-        let mut kept = Vec::with_capacity(plans.len());
+        let plans = self.prepared_frames(scene, what.size, &measured)?;
+        let mut prepared_frames = Vec::with_capacity(plans.len());
         for plan in &plans {
             go_on(self)?;
-            kept.push(plan.as_ref().map(|plan| self.executor.prepare(plan)).transpose()?);
+            prepared_frames.push(plan.as_ref().map(|plan| self.executor.prepare(plan)).transpose()?);
         }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
-            for (((row, item), kept), gpu) in measured.iter_mut().zip(&items).zip(&kept).zip(&mut gpu) {
+            for (((row, item), prepared_frames), gpu) in
+                measured.iter_mut().zip(&items).zip(&prepared_frames).zip(&mut gpu)
+            {
                 progress.turn_to(*item);
                 go_on(self)?;
                 let (plan, made);
-                let ready = match kept {
+                let ready = match prepared_frames {
                     Some(ready) => ready,
                     None => {
                         plan = self.plan(scene, &CaptureRequest::new(row.choice.clone(), what.size))?;
@@ -190,11 +192,11 @@ impl Session {
         &mut self,
         scene: &Scene,
         what: &Measurement,
-        moments: MotionFrames,
+        motion: MotionFrames,
         progress: &Progress,
     ) -> Result<Vec<MeasuredTechnique>, SessionError> {
-        progress.start(what.choices.len() * (moments.frames + 1));
-        let first = moments.moves.at(scene, moments.from);
+        progress.start(what.choices.len() * (motion.frames + 1));
+        let first = motion.moves.at(scene, motion.from);
         let traced = self.traced(&first, what.size, &Progress::default())?;
         let mut reference = ReferencePictures::new(&first, &traced);
         let mut moving = Vec::with_capacity(what.choices.len());
@@ -216,8 +218,8 @@ impl Session {
             self.executor.time(&ready, false)?;
             plans.push(plan);
         }
-        for (turn, seconds) in moments.all().enumerate() {
-            let scene = moments.moves.at(scene, seconds);
+        for (turn, seconds) in motion.all().enumerate() {
+            let scene = motion.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
             let mut reference = ReferencePictures::new(&scene, &traced);
             // What comes just before slows a frame, or not: each moment begins with another choice, every other one backwards.
@@ -227,16 +229,16 @@ impl Session {
                 order.reverse();
             }
             for index in order {
-                let ((item, measured, cache), kept) = (&mut moving[index], &plans[index]);
+                let ((item, measured, cache), prepared_frames) = (&mut moving[index], &plans[index]);
                 progress.turn_to(*item);
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
                 // A frame comes after the one before it, not after rays.
-                let before = self.executor.prepare(kept)?;
+                let before = self.executor.prepare(prepared_frames)?;
                 self.executor.time(&before, false)?;
                 let mut made = None;
-                let ready = if moments.moves == MovingPart::Nothing {
+                let ready = if motion.moves == MovingPart::Nothing {
                     measured.setups.push(Duration::ZERO);
                     before
                 } else {
@@ -280,7 +282,7 @@ impl Session {
         let cache = &mut GeometryCache::default();
         let start = Instant::now();
         let plan = technique::plan(PlanRequest { scene, size: what.size, choice, cache })?;
-        if self.room.is_some_and(|most| plan.bytes() > most) {
+        if self.memory_budget.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }
         let plan = self.without_unseen(plan, choice)?;
@@ -301,24 +303,24 @@ impl Session {
         }))
     }
 
-    /// The plans of those that stay set up for all of their frames: the smallest first, until [`KEPT_BYTES`] are
+    /// The plans of those that stay set up for all of their frames: the smallest first, until [`CACHED_BYTES`] are
     /// used.
-    fn kept(
+    fn prepared_frames(
         &mut self,
         scene: &Scene,
         size: [u32; 2],
         measured: &[MeasuredTechnique],
     ) -> Result<Vec<Option<FramePlan>>, SessionError> {
-        let mut kept: Vec<Option<FramePlan>> = measured.iter().map(|_| None).collect();
+        let mut prepared_frames: Vec<Option<FramePlan>> = measured.iter().map(|_| None).collect();
         let mut smallest_first: Vec<usize> = (0..measured.len()).collect();
         smallest_first.sort_by_key(|index| measured[*index].bytes);
-        let mut left = KEPT_BYTES;
+        let mut left = CACHED_BYTES;
         for index in smallest_first {
             let row = &measured[index];
             let Some(rest) = left.checked_sub(row.bytes) else { break };
             left = rest;
-            kept[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size))?);
+            prepared_frames[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size))?);
         }
-        Ok(kept)
+        Ok(prepared_frames)
     }
 }

@@ -127,7 +127,7 @@ pub enum SessionError {
     },
     /// More than there is [room](Session::set_room) for.
     #[error("it takes {} MiB, and no more than {} MiB are tried here: `stencilscope diagnose` tries it", needed >> 20, most >> 20)]
-    NoRoom {
+    OverBudget {
         /// Bytes of GPU memory.
         needed: u64,
         /// Bytes of GPU memory.
@@ -159,7 +159,7 @@ pub struct Session {
     traced: Option<Arc<truth::TracedScene>>,
     /// Of the scene to which a stress case converges.
     limit: Option<Arc<truth::TracedScene>>,
-    room: Option<u64>,
+    memory_budget: Option<u64>,
     walls: WallCache,
 }
 
@@ -183,7 +183,7 @@ impl Session {
             geometry: GeometryCache::default(),
             traced: None,
             limit: None,
-            room: None,
+            memory_budget: None,
             walls: WallCache::default(),
         })
     }
@@ -196,8 +196,8 @@ impl Session {
 
     /// Bytes of GPU memory that a frame may take which nobody asked to see: a row of a report, a mend that is tried.
     /// `None`, as at first: what the GPU has. For a GPU whose memory is this program's own.
-    pub fn set_room(&mut self, bytes: Option<u64>) {
-        self.room = bytes;
+    pub fn set_memory_budget(&mut self, bytes: Option<u64>) {
+        self.memory_budget = bytes;
     }
 
     /// Forgets all that is kept between runs: meshes' edges and planes, buffers, pipelines, the traced scene.
@@ -323,8 +323,8 @@ impl Session {
     }
 
     fn assemble(&self, scene: &Scene, plan: &FramePlan, output: ExecutorOutput, timing: Timing) -> Capture {
-        let kept = plan.passes.iter().zip(&output.kept).filter(|(_, is_kept)| **is_kept);
-        let left_out = plan.left_out.iter().cloned().chain(kept.map(|(pass, _)| LeftOut::kept(pass))).collect();
+        let cached = plan.passes.iter().zip(&output.from_cache).filter(|(_, is_cached)| **is_cached);
+        let left_out = plan.left_out.iter().cloned().chain(cached.map(|(pass, _)| LeftOut::cached(pass))).collect();
         let lights =
             scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.counts).zip(output.maps));
         let lights = lights.map(|((light, planned), ((shadow, count), faces))| CapturedLight {

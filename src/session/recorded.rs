@@ -9,7 +9,7 @@ use crate::progress::Progress;
 impl Session {
     /// Computes each draw of another program's frame anew, from what was stored before it, and notes at how many pixels
     /// that leaves something else than was stored.
-    pub fn held_against_itself(
+    pub fn compared_with_rerun(
         &mut self,
         plan: &FramePlan,
         capture: &Capture,

@@ -37,10 +37,10 @@ impl Session {
         let [.., depth_passes, fragments] = &stencils[..] else { return Err(SessionError::NoTests { step }) };
         let cleared = clears_stencil(&plan.passes[step]).filter(|_| draw.is_none_or(|draw| draw == 0));
         let start = plan.passes[step].recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.stencil.as_ref());
-        let put = start.filter(|_| draw.is_none_or(|draw| draw == 0));
+        let start_stencil = start.filter(|_| draw.is_none_or(|draw| draw == 0));
         let before = match (cleared, stencils.len().checked_sub(3).map(|index| &stencils[index])) {
-            (None, _) if let Some(put) = put => {
-                Arc::new(Image::packed(PixelFormat::U8, plan.size, put.data().to_vec()))
+            (None, _) if let Some(start_stencil) = start_stencil => {
+                Arc::new(Image::packed(PixelFormat::U8, plan.size, start_stencil.data().to_vec()))
             }
             (None, Some(before)) => before.clone(),
             (cleared, _) => Arc::new(Image::uniform(PixelFormat::U8, plan.size, &[cleared.unwrap_or(0)])),
@@ -105,7 +105,7 @@ fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(
         Some(_) => wgpu::TextureFormat::Depth24PlusStencil8,
         None => wgpu::TextureFormat::Depth32FloatStencil8,
     };
-    counting.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_kept = false);
+    counting.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_cached = false);
     Some((counting, counted))
 }
 

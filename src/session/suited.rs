@@ -33,7 +33,7 @@ impl Session {
             }
             match self.tried_on(scene, &traced, choice) {
                 Ok(one) => suited.push(one),
-                Err(SessionError::Plan(_) | SessionError::Gpu(_) | SessionError::NoRoom { .. }) => {}
+                Err(SessionError::Plan(_) | SessionError::Gpu(_) | SessionError::OverBudget { .. }) => {}
                 Err(error) => return Err(error),
             }
             progress.advance();
@@ -44,7 +44,7 @@ impl Session {
 
     fn tried_on(&mut self, scene: &Scene, traced: &TracedScene, choice: Choice) -> Result<TechniqueFit, SessionError> {
         let plan = self.plan(scene, &CaptureRequest::new(choice.clone(), traced.truth.size))?;
-        self.check_room(&plan)?;
+        self.check_memory_budget(&plan)?;
         let ready = self.executor.prepare_apart(&plan)?;
         let runs = if self.executor.time(&ready, false)? >= LONG { 1 } else { RUNS };
         let frames: Vec<Duration> = (0..runs).map(|_| self.executor.time(&ready, false)).collect::<Result<_, _>>()?;

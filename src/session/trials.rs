@@ -41,30 +41,30 @@ pub(super) struct TrialRuns<'a> {
 
 impl Session {
     /// What a mend leaves wrong. Only its labels are kept, but of techniques that darken in the picture.
-    fn run_mended(&mut self, runs: &TrialRuns, mend: &Fix) -> Result<WrongPixels, SessionError> {
-        let (scene, _, plan) = self.plan_mended(runs.scene, runs.request, runs.fault, mend)?;
-        self.check_room(&plan)?;
+    fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
+        let (scene, _, plan) = self.plan_fixed(runs.scene, runs.request, runs.fault, fix)?;
+        self.check_memory_budget(&plan)?;
         if planar::darkens_in_the_picture(&plan) {
             // What is too dark is not told from a larger picture.
-            if mend.larger.is_some() {
-                return self.run_mended(runs, &Fix { larger: None, ..mend.clone() });
+            if fix.larger.is_some() {
+                return self.run_fixed(runs, &Fix { larger: None, ..fix.clone() });
             }
             let capture = self.capture_plan(&scene, &plan)?;
             return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
         }
         let ready = self.executor.prepare_once(&plan)?;
         let mut labels = self.executor.labels(ready)?;
-        if let Some(times) = mend.larger {
+        if let Some(times) = fix.larger {
             // What the middles of the picture's own pixels show.
             labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
         }
         Ok(judged(&plan, runs.traced, &labels, None).wrong)
     }
 
-    pub(super) fn check_room(&self, plan: &FramePlan) -> Result<(), SessionError> {
+    pub(super) fn check_memory_budget(&self, plan: &FramePlan) -> Result<(), SessionError> {
         let needed = plan.bytes();
-        match self.room {
-            Some(most) if needed > most => Err(SessionError::NoRoom { needed, most }),
+        match self.memory_budget {
+            Some(most) if needed > most => Err(SessionError::OverBudget { needed, most }),
             _ => Ok(()),
         }
     }
@@ -82,37 +82,36 @@ impl Session {
         for mut suspicion in suspicions {
             let mut best: Option<(Fix, Proof, u64)> = None;
             let mut small: Option<(Fix, u64)> = None;
-            for mend in std::mem::take(&mut suspicion.mends) {
-                let (proof, left) = match self.run_once(runs, &mend)? {
+            for fix in std::mem::take(&mut suspicion.fixes) {
+                let (proof, left) = match self.run_once(runs, &fix)? {
                     Ok(after) => judge(region, before, &after, size),
                     Err(because) => {
-                        suspicion.evidence.push_str(&format!(" ({mend} can't be run: {because})"));
+                        suspicion.evidence.push_str(&format!(" ({fix} can't be run: {because})"));
                         continue;
                     }
                 };
                 if best.as_ref().is_none_or(|(_, of_best, least)| (proof, left) < (*of_best, *least)) {
-                    best = Some((mend.clone(), proof, left));
+                    best = Some((fix.clone(), proof, left));
                 }
                 if proof == Proof::Proven {
                     break;
                 }
-                let is_smaller = mend.technique.is_none() && proof == Proof::Part;
+                let is_smaller = fix.technique.is_none() && proof == Proof::Part;
                 if is_smaller && small.as_ref().is_none_or(|(_, least)| left < *least) {
-                    small = Some((mend, left));
+                    small = Some((fix, left));
                 }
             }
             // What another technique mends wholly, this one may mend nearly.
             let is_other = best.as_ref().is_some_and(|(best, ..)| best.technique.is_some());
-            let staying =
-                small.filter(|_| is_other).map(|(mend, pixels_left)| FixWithinTechnique { mend, pixels_left });
-            if let Some(FixWithinTechnique { mend, pixels_left }) = &staying {
-                suspicion.evidence.push_str(&format!("; to {mend} leaves {pixels_left} of {}", region.pixels.len()));
+            let staying = small.filter(|_| is_other).map(|(fix, pixels_left)| FixWithinTechnique { fix, pixels_left });
+            if let Some(FixWithinTechnique { fix, pixels_left }) = &staying {
+                suspicion.evidence.push_str(&format!("; to {fix} leaves {pixels_left} of {}", region.pixels.len()));
             }
-            let (mend, proof, left) = match best {
-                Some((mend, proof, left)) => (Some(mend), proof, Some(left)),
+            let (fix, proof, left) = match best {
+                Some((fix, proof, left)) => (Some(fix), proof, Some(left)),
                 None => (None, Proof::NotRun, None),
             };
-            tried.push(TriedCause { suspicion, mend, proof, left, staying, together_with: Vec::new() });
+            tried.push(TriedCause { suspicion, fix, proof, left, staying, together_with: Vec::new() });
         }
         if !tried.iter().any(|one| one.proof == Proof::Proven) {
             self.try_together(runs, region, before, &mut tried)?;
@@ -131,10 +130,10 @@ impl Session {
         let helps = |one: &&TriedCause| one.proof == Proof::Part;
         let least = if tried.iter().filter(helps).count() > 1 { Proof::Part } else { Proof::NotIt };
         let mut members: Vec<usize> =
-            (0..tried.len()).filter(|index| tried[*index].mend.is_some() && tried[*index].proof <= least).collect();
+            (0..tried.len()).filter(|index| tried[*index].fix.is_some() && tried[*index].proof <= least).collect();
         members.sort_by_key(|index| (tried[*index].proof, tried[*index].left));
         members.truncate(MOST_TOGETHER);
-        let mend_of = |index: &usize| tried[*index].mend.clone().unwrap_or_default();
+        let fix_of = |index: &usize| tried[*index].fix.clone().unwrap_or_default();
         let mut pairs = Vec::new();
         for (at, first) in members.iter().enumerate() {
             for second in &members[at + 1..] {
@@ -145,11 +144,11 @@ impl Session {
             pairs.push(members.clone());
         }
         for group in pairs {
-            let mends: BTreeSet<Fix> = group.iter().map(mend_of).collect();
-            if mends.len() < group.len() {
+            let fixes: BTreeSet<Fix> = group.iter().map(fix_of).collect();
+            if fixes.len() < group.len() {
                 continue;
             }
-            let all = mends.iter().fold(Fix::default(), |all, mend| all.and(mend));
+            let all = fixes.iter().fold(Fix::default(), |all, fix| all.and(fix));
             // What can't be run proves nothing; why, each has said of its own mend.
             let Ok(after) = self.run_once(runs, &all)? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
@@ -171,19 +170,19 @@ impl Session {
     }
 
     /// What a mend leaves wrong, or why it can't be run. Each is run once for all regions.
-    fn run_once(&mut self, runs: &mut TrialRuns, mend: &Fix) -> Result<Result<WrongPixels, String>, SessionError> {
+    fn run_once(&mut self, runs: &mut TrialRuns, fix: &Fix) -> Result<Result<WrongPixels, String>, SessionError> {
         if runs.progress.is_cancelled() {
             return Err(SessionError::Cancelled);
         }
-        if let Some((_, done)) = runs.done.iter().find(|(of, _)| of == mend) {
+        if let Some((_, done)) = runs.done.iter().find(|(of, _)| of == fix) {
             return Ok(done.clone());
         }
-        let done = match self.run_mended(runs, mend) {
+        let done = match self.run_fixed(runs, fix) {
             Ok(wrong) => Ok(wrong),
             Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
             Err(because) => Err(because.to_string()),
         };
-        runs.done.push((mend.clone(), done.clone()));
+        runs.done.push((fix.clone(), done.clone()));
         Ok(done)
     }
 
@@ -200,10 +199,10 @@ impl Session {
         let proven = |region: &RegionFound| {
             let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
             let count = 1 + region.causes.first().map_or(0, |cause| cause.together_with.len());
-            let mends = first.take(count).filter_map(|cause| cause.mend.clone());
-            mends.fold(Fix::default(), |all, mend| all.and(&mend))
+            let fixes = first.take(count).filter_map(|cause| cause.fix.clone());
+            fixes.fold(Fix::default(), |all, fix| all.and(&fix))
         };
-        let all = regions.iter().map(proven).fold(Fix::default(), |all, mend| all.and(&mend));
+        let all = regions.iter().map(proven).fold(Fix::default(), |all, fix| all.and(&fix));
         if !all.is_empty() {
             self.run_once(runs, &all)?.ok();
         }
@@ -214,15 +213,15 @@ impl Session {
         }
         // For who wants to keep the technique: all that its settings can do.
         self.run_once(runs, &Fix { technique: None, ..all })?.ok();
-        let left = runs.done.iter().filter_map(|(mend, done)| Some((done.as_ref().ok()?.count(), mend.weight(), mend)));
+        let left = runs.done.iter().filter_map(|(fix, done)| Some((done.as_ref().ok()?.count(), fix.weight(), fix)));
         let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
         let least = |keeps: bool| {
-            let asked = helps.iter().filter(|(.., mend)| !keeps || mend.technique.is_none());
+            let asked = helps.iter().filter(|(.., fix)| !keeps || fix.technique.is_none());
             asked.min_by_key(|(left, weight, _)| (*left, *weight))
         };
-        let staying = least(true).map(|(left, _, mend)| (*mend, *left));
+        let staying = least(true).map(|(left, _, fix)| (*fix, *left));
         let advice =
-            |(left, _, mend): &(u64, usize, &Fix)| Advice::new(mend, *left, before).or_staying(technique, staying);
+            |(left, _, fix): &(u64, usize, &Fix)| Advice::new(fix, *left, before).or_staying(technique, staying);
         Ok(least(false).map(advice))
     }
 }

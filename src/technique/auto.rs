@@ -138,7 +138,7 @@ impl AutoPolicy {
     }
 
     /// A caster whose umbra holds all of another.
-    fn holder(&self, index: usize) -> Option<usize> {
+    fn umbra_caster(&self, index: usize) -> Option<usize> {
         let corners = self.boxes[index].corners();
         let holds = |occluder: &Option<ConvexOccluder>| {
             occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
@@ -180,7 +180,7 @@ impl AutoPolicy {
         {
             return no_volume(Decision::View, format!("it lies {beside}"));
         }
-        if let Some(other) = self.holder(index) {
+        if let Some(other) = self.umbra_caster(index) {
             let because = format!("{} holds all of it in its umbra", frame.placed[other].object.name);
             return no_volume(Decision::Umbra, because);
         }
@@ -291,19 +291,19 @@ impl VolumePolicy for AutoPolicy {
         decided
     }
 
-    fn held_by_parts(&self, frame: &mut FrameBuilder, index: usize) -> (Vec<bool>, Option<LeftOut>) {
+    fn in_umbra_of_parts(&self, frame: &mut FrameBuilder, index: usize) -> (Vec<bool>, Option<LeftOut>) {
         if !frame.common.allows(Decision::Umbra) {
             return (Vec::new(), None);
         }
         let placed = &frame.placed[index];
         let mesh = &placed.object.mesh;
         let connectivity = frame.job.cache.connectivity(mesh);
-        let held = umbra::held_by_parts(&placed.world, mesh.triangles(), &connectivity, self.position);
-        let count = held.iter().filter(|is_held| **is_held).count() as u64;
+        let in_umbra = umbra::in_umbra_of_parts(&placed.world, mesh.triangles(), &connectivity, self.position);
+        let count = in_umbra.iter().filter(|is_in_umbra| **is_in_umbra).count() as u64;
         let because = "another part of it holds them in its umbra";
         let left_out = LeftOut::counted(Decision::Umbra, count, &placed.object.name, because);
-        let is_needed = !held.is_empty();
-        (held, is_needed.then_some(left_out))
+        let is_needed = !in_umbra.is_empty();
+        (in_umbra, is_needed.then_some(left_out))
     }
 
     fn may_overflow(&self, casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {

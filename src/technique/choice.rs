@@ -188,15 +188,15 @@ mod tests {
     }
 
     #[test]
-    fn what_a_folder_tells_is_read_as_far_as_it_is_offered() {
-        let told = [("filter", "pcf:9999"), ("bias-normal", "NaN"), ("bias-slope", "3"), ("cull", "sideways")];
-        let told = told.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+    fn what_a_folder_reports_is_read_as_far_as_it_is_offered() {
+        let settings = [("filter", "pcf:9999"), ("bias-normal", "NaN"), ("bias-slope", "3"), ("cull", "sideways")];
+        let settings = settings.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
         let expected = MapSettings { bias_slope: 3.0, ..MapSettings::read(&SettingMap::new()) };
-        assert_eq!(MapSettings::read(&told), expected);
+        assert_eq!(MapSettings::read(&settings), expected);
     }
 
     #[test]
-    fn what_has_no_effect_is_told() {
+    fn what_has_no_effect_is_reported() {
         let off = |technique: Technique, changes: &[(&str, &str)]| {
             let choice = with(technique, changes);
             let keys = technique.settings().iter().map(|spec| spec.key);

@@ -113,7 +113,8 @@ fn add_textures(frame: &mut FrameBuilder, receivers: &[FlatReceiver], light: Lig
             continue;
         }
         let towards_light = receiver.receiver.plane;
-        let towards_light = if towards_light.at(light_position) < 0.0 { towards_light.turned() } else { towards_light };
+        let towards_light =
+            if towards_light.at(light_position) < 0.0 { towards_light.flipped() } else { towards_light };
         let mut draws = Vec::new();
         for caster in 0..frame.placed.len() {
             let triangles = caster_triangles(frame, receiver, towards_light, caster);

@@ -145,7 +145,7 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
         }),
         projects_backwards: false,
         repeats_edge: false,
-        is_kept: settings.keeps,
+        is_cached: settings.keeps,
     });
 }
 

@@ -17,7 +17,7 @@ const EDGE_ON: f64 = 1e-4;
 pub fn leave_out_hidden(frame: &mut FrameBuilder) {
     let [width, height] = frame.job.size.map(f64::from);
     let view = ViewVolume::new(&frame.job.scene.camera, width / height);
-    let mut kept = Vec::new();
+    let mut shown_pieces = Vec::new();
     let mut reduced = vec![None; frame.placed.len()];
     for piece in std::mem::take(&mut frame.pieces) {
         let index = piece.object;
@@ -26,13 +26,13 @@ pub fn leave_out_hidden(frame: &mut FrameBuilder) {
         }
         match &reduced[index] {
             Some(ShownTriangles::Triangles(shows)) => {
-                kept.extend(subset(frame, piece, |triangle| shows[triangle as usize]))
+                shown_pieces.extend(subset(frame, piece, |triangle| shows[triangle as usize]))
             }
             Some(ShownTriangles::Nothing) => (),
-            _ => kept.push(piece),
+            _ => shown_pieces.push(piece),
         }
     }
-    frame.pieces = kept;
+    frame.pieces = shown_pieces;
 }
 
 #[derive(Clone)]

@@ -75,7 +75,7 @@ pub fn add_map(
         lookup: None,
         projects_backwards: settings.projects_backwards,
         repeats_edge: settings.repeats_edge,
-        is_kept: settings.keeps,
+        is_cached: settings.keeps,
     });
 }
 

@@ -127,7 +127,7 @@ pub trait VolumePolicy {
 
     /// Of each triangle of a caster: another part of the caster holds its part in the umbra, and so it needs no volume.
     /// Empty: none. With what is said of it.
-    fn held_by_parts(&self, _frame: &mut FrameBuilder, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
+    fn in_umbra_of_parts(&self, _frame: &mut FrameBuilder, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
         (Vec::new(), None)
     }
 
@@ -286,7 +286,7 @@ fn volumes_of(
         all.left_out.extend(left_out);
         let Some(form) = form else { continue };
         let (casters, because) = who_casts(frame, light, index, settings, by_vertex_shader);
-        let (hidden, because_hidden) = decides.held_by_parts(frame, index);
+        let (hidden, because_hidden) = decides.in_umbra_of_parts(frame, index);
         all.left_out.extend(because.into_iter().chain(because_hidden));
         let of = CasterVolume { light, index, casters, hidden: &hidden, form };
         let made = match by_vertex_shader && hidden.is_empty() && !form.ends_on_plane() {
@@ -400,12 +400,12 @@ fn count_in_stencil(
     }
     let mask = settings.mask().into();
     frame.mask_pass(light, &[SurfaceDrawing::shadow(), SurfaceDrawing::lit().where_stencil(mask, 0)]);
-    let kept = match CountBits::of_mask(mask) {
+    let in_bits = match CountBits::of_mask(mask) {
         CountBits::EIGHT => String::new(),
         bits => format!(" in {bits}"),
     };
     let purpose = format!(
-        "Adds the light where the count is zero{kept}, and raises the count there, so that no pixel is lit twice. \
+        "Adds the light where the count is zero{in_bits}, and raises the count there, so that no pixel is lit twice. \
          Everywhere else the surface is inside a shadow volume and stays dark."
     );
     frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
@@ -429,13 +429,13 @@ fn begin(
     settings: &VolumeSettings,
     volumes: &[VolumePlan],
 ) -> (u32, Option<CountStart>) {
-    let kept = |start: u32| if settings.counts_in_float { start } else { start & u32::from(settings.mask()) };
+    let in_bits = |start: u32| if settings.counts_in_float { start } else { start & u32::from(settings.mask()) };
     if settings.starts_at_eye {
         let start = eye_count::at(frame, light, volumes);
-        return (start, Some(CountStart::Eye(kept(start))));
+        return (start, Some(CountStart::Eye(in_bits(start))));
     }
     let start = volumes.iter().map(|volume| volume.begins_with).sum();
-    (start, Some(kept(start)).filter(|kept| *kept != 0).map(CountStart::FarEnd))
+    (start, Some(in_bits(start)).filter(|in_bits| *in_bits != 0).map(CountStart::FarEnd))
 }
 
 /// What a count of these counts at a surface; `None` if there are none.

@@ -47,7 +47,7 @@ pub struct CameraProjection {
     /// Of the picture, in pixels.
     pub size: DVec2,
     camera: Camera,
-    sights: CameraRays,
+    rays: CameraRays,
     view_from_world: DMat3,
 }
 
@@ -59,7 +59,7 @@ impl CameraProjection {
         CameraProjection {
             size: DVec2::new(width, height),
             camera: *camera,
-            sights: camera.sights(width / height),
+            rays: camera.rays(width / height),
             view_from_world: camera.world_from_view().transpose(),
         }
     }
@@ -69,7 +69,7 @@ impl CameraProjection {
         let in_view = self.view_from_world * (point - self.camera.eye);
         let distance = -in_view.z;
         // The line of sight through the middle is there at this distance.
-        let middle = self.view_from_world * self.sights.through(DVec2::ZERO).at(distance);
+        let middle = self.view_from_world * self.rays.through(DVec2::ZERO).at(distance);
         let half = self.camera.half_height_at(distance);
         let at = (in_view - middle).truncate() / DVec2::new(half * self.size.x / self.size.y, half);
         ((at * DVec2::new(0.5, -0.5) + 0.5) * self.size, distance)
@@ -78,7 +78,7 @@ impl CameraProjection {
     /// The point at this place of the picture, so far along the view axis.
     pub fn point(&self, at: DVec2, distance: f64) -> DVec3 {
         let at = (at / self.size - 0.5) * DVec2::new(2.0, -2.0);
-        self.camera.eye + self.sights.through(at).at(distance)
+        self.camera.eye + self.rays.through(at).at(distance)
     }
 
     /// How wide a pixel is so far away, metres.

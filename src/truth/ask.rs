@@ -4,8 +4,8 @@
 //! is for people, and for telling causes apart.
 
 use super::chart::OriginRay;
+use super::hierarchy::SearchLimit;
 use super::packet::RayPacket;
-use super::pencil::SearchLimit;
 use super::shadow::OccludingTriangle;
 use super::{TracedSurface, Tracer, TriangleSource};
 use crate::math::{Sign, side_of_triangle};
@@ -81,8 +81,8 @@ impl Tracer {
         let mut found = Vec::new();
         let mut bundle = RayPacket::new(OriginRay::To);
         bundle.push(seen.point);
-        of.pencil.for_each_meeting(&bundle, |met, corners, _| {
-            let mut occluder = OccludingTriangle::new(of.pencil.origin, met, corners);
+        of.hierarchy.for_each_meeting(&bundle, |met, corners, _| {
+            let mut occluder = OccludingTriangle::new(of.hierarchy.origin, met, corners);
             if self.lies_between(of, &mut occluder, &seen.surface) {
                 found.push(met.index as usize);
             }
@@ -120,7 +120,7 @@ impl Tracer {
         for end in ends {
             let mut bundle = RayPacket::new(OriginRay::To);
             bundle.push(end);
-            of.pencil.for_each_meeting(&bundle, |met, _, _| {
+            of.hierarchy.for_each_meeting(&bundle, |met, _, _| {
                 found.push(met.index as usize);
                 SearchLimit::NOTHING
             });

@@ -243,18 +243,18 @@ impl DirectionProjection {
         let mut polygon: Vec<DVec3> = corners.iter().map(|corner| along_face(face, *corner)).collect();
         for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
             let inwards = side + DVec3::Z * (1.0 + OVERLAP);
-            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            let mut clipped = Vec::with_capacity(polygon.len() + 1);
             for (index, from) in polygon.iter().enumerate() {
                 let to = polygon[(index + 1) % polygon.len()];
                 let (inside, inside_next) = (inwards.dot(*from), inwards.dot(to));
                 if inside >= 0.0 {
-                    kept.push(*from);
+                    clipped.push(*from);
                 }
                 if (inside >= 0.0) != (inside_next >= 0.0) {
-                    kept.push(*from + (to - *from) * (inside / (inside - inside_next)));
+                    clipped.push(*from + (to - *from) * (inside / (inside - inside_next)));
                 }
             }
-            polygon = kept;
+            polygon = clipped;
         }
         let is_on_face = !polygon.is_empty();
         is_on_face.then(|| bounds(polygon.into_iter().map(|point| self.projected(point)), face, PADDING))
@@ -323,12 +323,12 @@ fn face_of(direction: DVec3) -> usize {
 
 /// A point in a face's own coordinates: two across the face, the third along its axis.
 fn along_face(face: usize, point: DVec3) -> DVec3 {
-    let turned = match face / 2 {
+    let rotated = match face / 2 {
         0 => point.yzx(),
         1 => point.zxy(),
         _ => point,
     };
-    if face % 2 == 1 { turned.with_z(-turned.z) } else { turned }
+    if face % 2 == 1 { rotated.with_z(-rotated.z) } else { rotated }
 }
 
 fn whole_face(face: usize) -> ProjectedBox {

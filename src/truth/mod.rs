@@ -18,8 +18,8 @@
 mod ask;
 mod chart;
 mod coarse;
+mod hierarchy;
 mod packet;
-mod pencil;
 mod shadow;
 #[cfg(test)]
 mod tests;
@@ -35,8 +35,8 @@ use crate::progress::Progress;
 use crate::scene::{Ray, Scene};
 use chart::OriginRay;
 use glam::DVec3;
+use hierarchy::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use packet::RayPacket;
-use pencil::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use rayon::prelude::*;
 use shadow::LightRays;
 use tree::set_bits;
@@ -160,16 +160,16 @@ impl Tracer {
         let is_seen = |index: usize| world.object(index).visible;
         let casts = |index: usize| world.object(index).casts;
         let triangles = &world.triangles;
-        let pencil_of = |(position, range)| LightRays {
+        let rays_of = |(position, range)| LightRays {
             position,
             range,
-            pencil: RayOriginHierarchy::new(RayKind::Light, position, triangles, casts),
+            hierarchy: RayOriginHierarchy::new(RayKind::Light, position, triangles, casts),
         };
         let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
         let lights: Vec<_> = scene.lights.iter().map(|light| (light.homogeneous(), range(light))).collect();
         let (eye, lights) = rayon::join(
             || RayOriginHierarchy::new(RayKind::Eye, scene.camera.eye_position(), triangles, is_seen),
-            || lights.into_par_iter().map(pencil_of).collect(),
+            || lights.into_par_iter().map(rays_of).collect(),
         );
         let most_rounding = 3.0 * POINT_ROUNDING * scene.camera.eye.abs().max_element()
             + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);

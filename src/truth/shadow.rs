@@ -1,8 +1,8 @@
 //! Whether anything lies between a light and surfaces.
 
 use super::chart::OriginRay;
+use super::hierarchy::{Hit, PlaneRounding, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use super::packet::RayPacket;
-use super::pencil::{Hit, PlaneRounding, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use super::tree::set_bits;
 use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, TracedSurface, Tracer};
 use crate::math::{Sign, side_of_triangle};
@@ -14,7 +14,7 @@ pub struct LightRays {
     pub position: DVec4,
     /// Of a lamp that fades: nothing at this distance, metres, is lit.
     pub range: Option<f64>,
-    pub pencil: RayOriginHierarchy,
+    pub hierarchy: RayOriginHierarchy,
 }
 
 impl LightRays {
@@ -80,7 +80,7 @@ impl Tracer {
         if bundle.len() == 0 {
             return;
         }
-        light.pencil.for_each_meeting(&bundle, |met, corners, met_lines| {
+        light.hierarchy.for_each_meeting(&bundle, |met, corners, met_lines| {
             let mut occluder = None;
             let mut dark = 0;
             for line in set_bits(met_lines) {
@@ -89,7 +89,7 @@ impl Tracer {
                     continue;
                 };
                 let occluder =
-                    occluder.get_or_insert_with(|| OccludingTriangle::new(light.pencil.origin, met, corners));
+                    occluder.get_or_insert_with(|| OccludingTriangle::new(light.hierarchy.origin, met, corners));
                 if self.lies_between(light, occluder, surface) {
                     labels[lines[line]] = SHADOW;
                     dark |= 1 << line;
@@ -112,7 +112,7 @@ impl Tracer {
         if other == surface.triangle {
             return false;
         }
-        let place = surface.point - light.pencil.origin;
+        let place = surface.point - light.hierarchy.origin;
         let height = occluder.plane.height(place);
         let of_height = occluder.rounding.of_height(place);
         let is_sure = |of_point: f64| height.abs() > of_height + occluder.normal_span * of_point;

@@ -1,14 +1,14 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
 use super::chart::OriginRay;
+use super::hierarchy::{RayKind, RayOriginHierarchy, SearchLimit, side_of};
 use super::packet::RayPacket;
-use super::pencil::{RayKind, RayOriginHierarchy, SearchLimit, side_of};
 use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};
 
 /// Which triangles each of up to 16 lines meets.
-fn met<const N: usize>(pencil: &RayOriginHierarchy, lines: [OriginRay; N]) -> [Vec<u32>; N] {
+fn met<const N: usize>(hierarchy: &RayOriginHierarchy, lines: [OriginRay; N]) -> [Vec<u32>; N] {
     let mut bundle = RayPacket::new(match lines[0] {
         OriginRay::To(_) => OriginRay::To,
         OriginRay::Through(_) => OriginRay::Through,
@@ -20,7 +20,7 @@ fn met<const N: usize>(pencil: &RayOriginHierarchy, lines: [OriginRay; N]) -> [V
         }
     }
     let mut met = lines.map(|_| Vec::new());
-    pencil.for_each_meeting(&bundle, |triangle, _, lines| {
+    hierarchy.for_each_meeting(&bundle, |triangle, _, lines| {
         set_bits(lines).for_each(|line| met[line].push(triangle.index));
         SearchLimit::NOTHING
     });
@@ -60,12 +60,12 @@ fn a_line_through_an_edge_or_a_vertex_meets_exactly_one_triangle_of_a_sheet() {
     for center in centers {
         // A light's line to a point in the sheet would end there; an eye's goes on.
         let whose = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
-        let pencil = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
+        let hierarchy = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
         // Halves: vertices, middles of edges and of diagonals.
         for y in -5..=5 {
             for x in -5..=5 {
                 let point = DVec3::new(f64::from(x) / 2.0, f64::from(y) / 2.0, 0.0);
-                let [met] = met(&pencil, [through(center, point)]);
+                let [met] = met(&hierarchy, [through(center, point)]);
                 let count = met.len();
                 assert_eq!(count, 1, "from {center} through {point}");
             }
@@ -86,7 +86,7 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
     let mut crossed = 0;
     for center in [DVec4::new(0.0, 0.0, 5.0, 1.0), DVec4::new(3.0, 3.0, 3.0, 1.0), DVec4::new(1.0, 1.0, 0.0, 0.0)] {
         let whose = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
-        let pencil = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
+        let hierarchy = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
         for i in -4..=4 {
             for j in -4..=4 {
                 for point in [
@@ -99,7 +99,7 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
                     } else {
                         through(center, point)
                     };
-                    let [met] = met(&pencil, [line]);
+                    let [met] = met(&hierarchy, [line]);
                     let balance: i32 = met.iter().map(|index| side(&triangles[*index as usize], center)).sum();
                     assert_eq!(balance, 0, "from {center} through {point}: {met:?}");
                     crossed += met.len();
@@ -170,7 +170,7 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
             _ => (point(reach) + offset).extend(1.0),
         };
         for whose in [RayKind::Eye, RayKind::Light] {
-            let pencil = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
+            let hierarchy = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
             for bundle in 0..8 {
                 let middle = triangles[bundle * 3][1];
                 let spread = [reach, reach * 1e-3][bundle % 2];
@@ -191,7 +191,7 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
                         (RayKind::Eye, false) => OriginRay::Along(target - center.truncate()),
                     }
                 });
-                for (line, met) in lines.into_iter().zip(met(&pencil, lines)) {
+                for (line, met) in lines.into_iter().zip(met(&hierarchy, lines)) {
                     for (index, corners) in (0..).zip(triangles) {
                         let (is_met, is_on) = (met.contains(&index), is_on_line(corners, center, line));
                         let must_be = is_on && is_on_the_way(corners, center, line);
@@ -236,13 +236,13 @@ fn the_side_of_a_far_center_is_exact() {
             let corners = [corner, corner + along, corner + across];
             let center = (corner + towards * distance).extend(1.0);
             let exact = side_of_triangle(corners, center);
-            let told = side_of(center, &corners);
+            let side = side_of(center, &corners);
             assert_eq!(
-                told.map(|(side, _)| side),
+                side.map(|(side, _)| side),
                 Some(exact).filter(|side| side.value() != 0),
                 "{corners:?} {center}"
             );
-            quick += usize::from(told.is_some_and(|(_, is_near)| !is_near));
+            quick += usize::from(side.is_some_and(|(_, is_near)| !is_near));
         }
     }
     assert!(quick > 1000, "{quick}");

@@ -12,7 +12,7 @@ pub struct PictureRays {
     /// What rays are relative to, world space.
     pub eye: DVec3,
     pub is_parallel: bool,
-    sights: CameraRays,
+    rays: CameraRays,
     size: [f64; 2],
 }
 
@@ -24,7 +24,7 @@ impl PictureRays {
             far: f64::INFINITY,
             eye: camera.eye,
             is_parallel: camera.is_parallel(),
-            sights: camera.sights(size[0] / size[1]),
+            rays: camera.rays(size[0] / size[1]),
             size,
         }
     }
@@ -46,11 +46,11 @@ impl PictureRays {
 
     /// The ray through a point by [`PictureRays::across`] and [`PictureRays::down`].
     pub fn ray_through(&self, [x, y]: [f64; 2]) -> Ray {
-        self.sights.through(DVec2::new(x, y))
+        self.rays.through(DVec2::new(x, y))
     }
 
     /// World direction of the view's axis.
     pub fn axis(&self) -> DVec3 {
-        self.sights.axis()
+        self.rays.axis()
     }
 }

@@ -19,7 +19,7 @@ pub struct Adapter {
 
 impl Adapter {
     /// The limits asked for, with room for one bind group and two storage buffers of our own.
-    fn with_room(&self, asked: &wgpu::Limits) -> wgpu::Limits {
+    fn with_margin(&self, asked: &wgpu::Limits) -> wgpu::Limits {
         let most = self.inner.limits();
         let more = |by: u32, asked: u32, most: u32| asked.max(most.min(asked.saturating_add(by)));
         wgpu::Limits {
@@ -38,7 +38,7 @@ impl AdapterInterface for Adapter {
     fn request_device(&self, asked: &wgpu::DeviceDescriptor<'_>) -> Pin<Box<dyn RequestDeviceFuture>> {
         let mut wanted = asked.clone();
         wanted.required_features |= WANTED & self.inner.features();
-        wanted.required_limits = self.with_room(&asked.required_limits);
+        wanted.required_limits = self.with_margin(&asked.required_limits);
         if asked.required_features.intersects(ray_tracing::NOT_WRAPPED) {
             // The adapter hides them: it must not give them either.
             wanted.required_features = wgpu::Features::all();

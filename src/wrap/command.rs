@@ -289,8 +289,8 @@ impl PassCommand {
     }
 
     pub fn bind_group(index: u32, group: Option<&BindGroup>, offsets: &[u32]) -> PassCommand {
-        let held = |group: &BindGroup| BoundGroup { real: group.inner.clone(), entries: group.entries.clone() };
-        PassCommand::BindGroup { index, group: group.map(held), offsets: offsets.to_vec() }
+        let bound = |group: &BindGroup| BoundGroup { real: group.inner.clone(), entries: group.entries.clone() };
+        PassCommand::BindGroup { index, group: group.map(bound), offsets: offsets.to_vec() }
     }
 
     /// One by one what it is, so that there is a state after each draw.

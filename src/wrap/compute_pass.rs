@@ -9,7 +9,7 @@ use wgpu::custom::{
 pub struct ComputePass {
     /// `None` where the encoder had been finished.
     inner: Option<wgpu::ComputePass<'static>>,
-    kept: Option<ComputePassCommands>,
+    commands: Option<ComputePassCommands>,
 }
 
 /// What is written beside.
@@ -37,21 +37,21 @@ impl ComputePass {
             let descriptor = wgpu::ComputePassDescriptor { label: descriptor.label, timestamp_writes };
             encoder.begin_compute_pass(&descriptor).forget_lifetime()
         });
-        let kept = list.map(|list| ComputePassCommands {
+        let commands = list.map(|list| ComputePassCommands {
             list: list.clone(),
             label: descriptor.label.map(str::to_owned),
             timestamps,
             commands: Vec::new(),
         });
-        ComputePass { inner, kept }
+        ComputePass { inner, commands }
     }
 
     fn call(&mut self, command: impl Fn(&mut wgpu::ComputePass<'_>) + Send + Sync + 'static) {
         if let Some(pass) = &mut self.inner {
             command(pass);
         }
-        if let Some(kept) = &mut self.kept {
-            kept.commands.push(ComputeCommand(Box::new(command)));
+        if let Some(commands) = &mut self.commands {
+            commands.commands.push(ComputeCommand(Box::new(command)));
         }
     }
 }
@@ -60,7 +60,7 @@ impl Drop for ComputePass {
     fn drop(&mut self) {
         // The real pass ends here.
         self.inner = None;
-        if let Some(ComputePassCommands { list, label, timestamps, commands }) = self.kept.take() {
+        if let Some(ComputePassCommands { list, label, timestamps, commands }) = self.commands.take() {
             list.push(EncoderCommand::ComputePass { label, timestamps, commands });
         }
     }

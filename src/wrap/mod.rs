@@ -53,8 +53,8 @@ pub(crate) trait WrappedObject {
 const FOREIGN: &str = "an object of another instance than the one that is recorded";
 
 macro_rules! real {
-    ($($held:ty: $wrap:ty => $real:ty;)*) => { $(
-        impl WrappedObject for $held {
+    ($($program:ty: $wrap:ty => $real:ty;)*) => { $(
+        impl WrappedObject for $program {
             type Object = $real;
 
             fn real(&self) -> &$real {

@@ -11,7 +11,7 @@ use wgpu::custom::{
 pub struct RenderPass {
     /// `None` where the encoder had been finished.
     inner: Option<wgpu::RenderPass<'static>>,
-    kept: Option<(CommandList, PassTargets, Vec<PassCommand>)>,
+    recorded: Option<(CommandList, PassTargets, Vec<PassCommand>)>,
 }
 
 impl RenderPass {
@@ -21,7 +21,7 @@ impl RenderPass {
         targets: PassTargets,
     ) -> RenderPass {
         let inner = encoder.as_mut().map(|encoder| targets.begin(encoder, true, true).forget_lifetime());
-        RenderPass { inner, kept: list.map(|list| (list.clone(), targets, Vec::new())) }
+        RenderPass { inner, recorded: list.map(|list| (list.clone(), targets, Vec::new())) }
     }
 
     /// Does it, and keeps it to be done again.
@@ -29,7 +29,7 @@ impl RenderPass {
         if let Some(pass) = &mut self.inner {
             on(pass);
         }
-        if let Some((.., commands)) = &mut self.kept {
+        if let Some((.., commands)) = &mut self.recorded {
             commands.push(command());
         }
     }
@@ -38,7 +38,7 @@ impl RenderPass {
         if let Some(pass) = &mut self.inner {
             draw.encode(pass);
         }
-        if let Some((.., commands)) = &mut self.kept {
+        if let Some((.., commands)) = &mut self.recorded {
             commands.push(PassCommand::Draw(draw));
         }
     }
@@ -48,7 +48,7 @@ impl Drop for RenderPass {
     fn drop(&mut self) {
         // The real pass ends here.
         self.inner = None;
-        if let Some((list, targets, commands)) = self.kept.take() {
+        if let Some((list, targets, commands)) = self.recorded.take() {
             list.push(EncoderCommand::RenderPass(targets, commands));
         }
     }
@@ -232,12 +232,12 @@ impl RenderPassInterface for RenderPass {
         if let Some(pass) = &mut self.inner {
             pass.execute_bundles(bundles.iter().map(|bundle| &bundle.inner));
         }
-        if let Some((.., commands)) = &mut self.kept {
-            let held = |bundle: &&RenderBundle| PassCommand::Bundle {
+        if let Some((.., commands)) = &mut self.recorded {
+            let commands_of = |bundle: &&RenderBundle| PassCommand::Bundle {
                 real: bundle.inner.clone(),
                 commands: bundle.commands.clone(),
             };
-            commands.extend(bundles.iter().map(held));
+            commands.extend(bundles.iter().map(commands_of));
         }
     }
 }

@@ -94,7 +94,7 @@ impl SharedDevice {
 /// Submissions that a program may wait for. What is older than all that are kept is waited for with the oldest: it ends no later.
 #[derive(Debug, Default)]
 struct Submissions {
-    kept: VecDeque<wgpu::SubmissionIndex>,
+    waiting: VecDeque<wgpu::SubmissionIndex>,
     /// The number of the first that is kept.
     first: u64,
 }
@@ -103,16 +103,16 @@ impl Submissions {
     const MOST: usize = 1024;
 
     fn add(&mut self, index: wgpu::SubmissionIndex) -> u64 {
-        self.kept.push_back(index);
-        if self.kept.len() > Self::MOST {
-            self.kept.pop_front();
+        self.waiting.push_back(index);
+        if self.waiting.len() > Self::MOST {
+            self.waiting.pop_front();
             self.first += 1;
         }
-        self.first + self.kept.len() as u64 - 1
+        self.first + self.waiting.len() as u64 - 1
     }
 
     fn real(&self, number: u64) -> Option<wgpu::SubmissionIndex> {
         let at = number.saturating_sub(self.first) as usize;
-        self.kept.get(at).cloned()
+        self.waiting.get(at).cloned()
     }
 }

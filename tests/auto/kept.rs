@@ -24,7 +24,7 @@ fn maps(capture: &Capture) -> Vec<Vec<u8>> {
 
 /// Passes that were not run since their map is there.
 fn kept(capture: &Capture) -> usize {
-    capture.left_out.iter().filter(|left| left.decision == Some(Decision::Kept)).count()
+    capture.left_out.iter().filter(|left| left.decision == Some(Decision::Cached)).count()
 }
 
 /// A frame after another that keeps its map, against one that draws all of it.
@@ -65,7 +65,7 @@ fn a_map_is_drawn_again_only_where_what_makes_it_has_changed() {
 
 /// Draw by draw, what each leaves in the map is seen, though the map is there already.
 #[test]
-fn draws_of_a_kept_map_are_told_apart() {
+fn draws_of_a_kept_map_are_distinguished() {
     let mut session = session();
     let mut scene = scene();
     scene.objects.push(cuboid("other", [1.0, 1.0, -0.5], [1.5, 1.5, 0.5]));

@@ -78,7 +78,7 @@ type Settings<'a> = &'a [(&'a str, &'a str)];
 
 /// What a setting makes wrong, a setting mends.
 #[test]
-fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_mended_by_it() {
+fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_fixed_by_it() {
     let mut session = session();
     let clamped_in_turn = [("operations", "clamp"), ("faces", "two-pass"), ("order", "subtract-first")];
     let cases: [(Cause, Settings, &str); 4] = [
@@ -87,7 +87,7 @@ fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_mended_by_it() {
         (Cause::OperationOrder, &clamped_in_turn, "set operations = wrap"),
         (Cause::MissingLightCap, &[("caps", "none")], "set caps = both"),
     ];
-    for (cause, settings, mend) in cases {
+    for (cause, settings, fix) in cases {
         let provoked = |seed| {
             let of = if settings == [("caps", "none")] { Cause::MissingDarkCap } else { cause };
             Provocation { choice: choice(Technique::ZFail, settings), fault: None, ..provoke(of, seed) }
@@ -95,7 +95,7 @@ fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_mended_by_it() {
         let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoked(seed))).find(|found| found.is_bad());
         let found = found.expect("a wrong pixel");
         assert!(proven(&found).contains(&cause), "{cause}: {}", told(&found));
-        assert!(told(&found).contains(mend), "{cause}: {}", told(&found));
+        assert!(told(&found).contains(fix), "{cause}: {}", told(&found));
     }
 }
 
@@ -119,7 +119,7 @@ fn a_silhouette_that_does_not_fit_its_picture_is_outside_the_map() {
 
 /// Where one shadow ends in the middle of a pixel and the next begins there, rounding leaves a hole in the dark.
 #[test]
-fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
+fn a_hole_where_two_shadows_meet_is_reported_with_the_distance_of_their_sides() {
     let case = StressCase::named("seam").expect("a case");
     let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
     let provoked = |technique| Provocation {
@@ -150,7 +150,7 @@ fn a_hole_where_two_shadows_meet_is_told_with_the_distance_of_their_sides() {
 
 /// Strips of a hundred kilometres are cut where the picture ends, and rounding moves the cut.
 #[test]
-fn what_is_cut_beside_the_border_is_told_with_the_length_of_what_is_cut() {
+fn what_is_cut_beside_the_border_is_reported_with_the_length_of_what_is_cut() {
     let case = StressCase::named("long-edge").expect("a case");
     let CaseNumber::Scene(scene) = case.drives else { panic!("it drives a scene") };
     let request = request_with(Technique::ZFail, &[], [640, 480]);
@@ -242,7 +242,7 @@ fn the_eye_in_the_shadow_of_the_sun_is_named_too() {
 
 /// The truth honours flags: they are told of apart, and nothing is wrong.
 #[test]
-fn flags_are_told_of_with_what_they_take_away() {
+fn flags_are_reported_of_with_what_they_take_away() {
     let mut session = session();
     for cause in [Cause::NotReceiving, Cause::NotCasting, Cause::Undrawn] {
         let mut provoked = provoke(Cause::DoubleBlend, 0);
@@ -263,19 +263,19 @@ fn flags_are_told_of_with_what_they_take_away() {
 }
 
 #[test]
-fn advice_mends_the_whole_frame() {
+fn advice_fixes_the_whole_frame() {
     let mut session = session();
     let provoked = provoke(Cause::FarClip, 0);
     let advice = diagnose(&mut session, &provoked).advice.expect("advice");
     assert_eq!(
-        (advice.mend.settings.get("depth").map(String::as_str), advice.wrong_left),
+        (advice.fix.settings.get("depth").map(String::as_str), advice.wrong_left),
         (Some("reversed-infinite"), 0)
     );
 }
 
 /// A larger map would mend it, but is not tried: what else mends it is.
 #[test]
-fn what_there_is_no_room_for_is_told_and_not_tried() {
+fn what_there_is_no_room_for_is_reported_and_not_tried() {
     let mut session = session();
     let coarse = |seed| Provocation {
         choice: choice(Technique::PlanarTexture, &[("size", "64")]),
@@ -285,23 +285,23 @@ fn what_there_is_no_room_for_is_told_and_not_tried() {
     // Twice the size is too little, four times is enough.
     let needs_four = |one: &Provocation, session: &mut Session| {
         let found = found(&diagnose(session, one));
-        found.is_some_and(|found| found.mend.is_some_and(|mend| mend.settings.get("size").is_some_and(|n| n == "256")))
+        found.is_some_and(|found| found.fix.is_some_and(|fix| fix.settings.get("size").is_some_and(|n| n == "256")))
     };
     let provoked = (0..SEEDS).map(coarse).find(|one| needs_four(one, &mut session)).expect("too coarse a texture");
     let larger = request_with(Technique::PlanarTexture, &[("size", "256")], SMALL);
     let too_little = session.plan(&provoked.scene, &larger).expect("a plan").bytes() - 1;
-    session.set_room(Some(too_little));
+    session.set_memory_budget(Some(too_little));
     let diagnosis = diagnose(&mut session, &provoked);
     let found = found(&diagnosis).expect("a region");
     assert_eq!((found.cause, found.proof), (Cause::Aliasing, Proof::Proven), "{}", told(&diagnosis));
-    assert_eq!(found.mend.expect("a mend").technique, Some(Technique::ZFail));
+    assert_eq!(found.fix.expect("a mend").technique, Some(Technique::ZFail));
     assert!(found.evidence.contains("(set size = 256 can't be run"), "{}", found.evidence);
     assert!(!found.evidence.contains("size = 128 can't"), "{}", found.evidence);
 }
 
 /// What meshes are like is told where all casts right, too.
 #[test]
-fn meshes_are_told_of_with_places() {
+fn meshes_are_reported_of_with_places() {
     let mut session = session();
     for (cause, count) in [(Cause::OpenMesh, 4), (Cause::SplitVertices, 36), (Cause::NonManifold, 4)] {
         let mut provoked = provoke(cause, 0);

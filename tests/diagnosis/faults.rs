@@ -12,7 +12,7 @@ pub fn without(part: DrawPart) -> PlanFault {
 }
 
 /// Caps with their corners in another order: the same triangles, counted the same way.
-pub fn turned_caps() -> PlanFault {
+pub fn flipped_caps() -> PlanFault {
     Box::new(turn_caps)
 }
 

@@ -89,7 +89,7 @@ impl Dice {
 
     /// A mesh over the floor, under a lamp.
     fn with(&mut self, mesh: Mesh) -> Scene {
-        let caster = Object::of("caster", mesh).at(self.place()).turned(self.degrees());
+        let caster = Object::of("caster", mesh).at(self.place()).rotated(self.degrees());
         scene(self.eye(), [0.0, 0.3, 0.0], self.lamp(), vec![floor(), caster])
     }
 
@@ -203,7 +203,7 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             (lone_sphere(dice), choice(Technique::Projective, &[("size", "2048"), ("border", "off")]), None)
         }
         Cause::OperationOrder => (dice.any_scene(), choice(Technique::ZFail, &[("operations", "clamp")]), None),
-        Cause::CapFighting => (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::turned_caps())),
+        Cause::CapFighting => (dice.any_scene(), choice(Technique::ZFail, &[]), Some(faults::flipped_caps())),
         Cause::DoubleBlend => (flat_scene(dice), choice(Technique::Planar, &[("blend", "twice")]), None),
         Cause::ZFighting => (flat_scene(dice), choice(Technique::Planar, &[("z-fighting", "none")]), None),
         Cause::OffReceiver => (over_a_table(dice), choice(Technique::Planar, &[("stencil", "off")]), None),
@@ -361,7 +361,7 @@ fn panes(light: DVec3, onto: DVec3, half: f64, count: u32) -> impl Iterator<Item
 /// The lamp is a ten-millionth of a metre over a tilted sheet.
 fn lamp_on_a_sheet(dice: &mut Dice) -> Scene {
     let tilt = dice.between(20.0, 40.0);
-    let sheet = Object::of("sheet", shapes::quad([0.8; 2]).expect("a sheet")).turned([tilt, 0.0, 0.0]);
+    let sheet = Object::of("sheet", shapes::quad([0.8; 2]).expect("a sheet")).rotated([tilt, 0.0, 0.0]);
     let over = DVec3::new(dice.between(-0.1, 0.1), 1e-7, dice.between(-0.1, 0.1));
     let lamp = DVec3::Y + DMat3::from_rotation_x(tilt.to_radians()) * over;
     scene(dice.eye(), [0.0, 0.3, 0.0], Light::point(lamp), vec![floor(), sheet.at([0.0, 1.0, 0.0])])
@@ -388,7 +388,7 @@ fn before_many(dice: &mut Dice) -> Scene {
 
 /// Nothing but what is flat.
 fn flat_scene(dice: &mut Dice) -> Scene {
-    let caster = cuboid("box", dice.place(), [dice.between(0.4, 0.9), 0.4, 0.6]).turned(dice.degrees());
+    let caster = cuboid("box", dice.place(), [dice.between(0.4, 0.9), 0.4, 0.6]).rotated(dice.degrees());
     scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), caster])
 }
 
@@ -435,14 +435,14 @@ fn round_receiver(dice: &mut Dice) -> Scene {
 fn lone_sphere(dice: &mut Dice) -> Scene {
     let flat =
         Object { receives: false, ..Object::of("board", shapes::quad([0.8, 0.5]).expect("a board")).at(dice.place()) };
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), flat.turned(dice.degrees())])
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), flat.rotated(dice.degrees())])
 }
 
 fn wall_behind_lamp(dice: &mut Dice) -> Scene {
     let wall =
-        Object::of("wall", shapes::quad([6.0, 3.0]).expect("a wall")).at([0.0, 1.5, -2.0]).turned([90.0, 0.0, 0.0]);
+        Object::of("wall", shapes::quad([6.0, 3.0]).expect("a wall")).at([0.0, 1.5, -2.0]).rotated([90.0, 0.0, 0.0]);
     let board = [dice.between(0.0, 0.2), dice.between(1.2, 1.4), 1.5];
-    let board = Object::of("board", shapes::quad([0.5; 2]).expect("a board")).at(board).turned([90.0, 0.0, 0.0]);
+    let board = Object::of("board", shapes::quad([0.5; 2]).expect("a board")).at(board).rotated([90.0, 0.0, 0.0]);
     let eye = [dice.between(0.6, 1.4), 3.0, 4.5];
     scene(eye, [0.0, 0.8, -1.0], Light::point([0.0, 1.2, dice.between(0.3, 0.6)]), vec![floor(), wall, board])
 }
@@ -454,7 +454,7 @@ fn shelf_between(dice: &mut Dice) -> Scene {
 }
 
 fn ring_alone(dice: &mut Dice) -> Scene {
-    let ring = Object::of("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring")).at([0.0, 1.0, 0.0]).turned([
+    let ring = Object::of("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring")).at([0.0, 1.0, 0.0]).rotated([
         dice.between(60.0, 100.0),
         dice.between(0.0, 60.0),
         0.0,

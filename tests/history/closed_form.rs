@@ -152,8 +152,8 @@ fn z_pass_plus_begins_with_the_count_of_the_near_plane() {
         why.starts_with("the near plane is in 3 volumes; 3 volume faces in front of the surface pass the depth test"),
         "{why}"
     );
-    let clipped = pixel.history().triangles().filter(|(_, one)| one.fate.note().is_some());
-    let notes: Vec<_> = clipped.map(|(event, one)| (event.pass_name.as_str(), one.fate.note())).collect();
+    let clipped = pixel.history().triangles().filter(|(_, one)| one.outcome.note().is_some());
+    let notes: Vec<_> = clipped.map(|(event, one)| (event.pass_name.as_str(), one.outcome.note())).collect();
     assert_eq!(notes, [("volumes", Some("clipped: it is nearer than the near plane")); 3]);
 }
 
@@ -206,7 +206,7 @@ fn a_triangle_that_is_culled_or_clipped_says_why() {
         let (capture, plan) = frame(&mut session, &scene, Technique::ZFail, &[("depth", depth)], SIZE);
         let history = session.history(&plan, &capture, INSIDE).expect("a history");
         assert!(history.agrees(), "{depth}: {:?}", history.disagreements());
-        assert_eq!(ambient(&history), fates.map(|fate| format!("ambient: {fate}")), "{depth}");
+        assert_eq!(ambient(&history), fates.map(|outcome| format!("ambient: {outcome}")), "{depth}");
     }
 }
 
@@ -271,7 +271,7 @@ fn why_names_the_test_that_failed_and_what_nobody_asked() {
 
 /// 300 volumes: the ladder's count, and what eight bits hold of it.
 #[test]
-fn beyond_eight_bits_both_counts_are_told() {
+fn beyond_eight_bits_both_counts_are_reported() {
     let pane = |index: u32| {
         let mut pane = square(&format!("pane {index}"), 1.0 + f64::from(index) * 1e-3, 1.0);
         pane.visible = false;
@@ -299,12 +299,12 @@ fn a_pixel_outside_the_picture_is_an_error() {
 
 #[test]
 #[should_panic(expected = "stencil is 6, not 5, after pass 2")]
-fn a_failed_assertion_tells_what_was_found() {
+fn a_failed_assertion_reports_what_was_found() {
     rendered(Technique::ZFail, &[ALL]).at(INSIDE).stencil_after("volumes", 5);
 }
 
 #[test]
 #[should_panic(expected = "dark cap of inner, triangle")]
-fn a_failed_assertion_tells_the_history() {
+fn a_failed_assertion_reports_the_history() {
     rendered(Technique::ZFail, &[]).at(INSIDE).label(0, PixelLabel::Lit);
 }

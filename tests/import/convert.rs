@@ -20,7 +20,7 @@ fn converted(session: &mut Session, name: &str) -> (FramePlan, Capture) {
     let frame = read(&recording(name)).expect("a recording");
     let ConvertedFrame { plan, capture, .. } = convert(&frame, name).expect("a frame");
     assert_eq!(lint::check(&plan), []);
-    let capture = session.held_against_itself(&plan, &capture, &Progress::default()).expect("checked");
+    let capture = session.compared_with_rerun(&plan, &capture, &Progress::default()).expect("checked");
     (plan, capture)
 }
 
@@ -33,7 +33,7 @@ fn differing(capture: &Capture) -> Vec<RecomputeDifference> {
 }
 
 #[test]
-fn roles_and_the_counted_side_are_told_by_the_states() {
+fn roles_and_the_counted_side_are_reported_by_the_states() {
     let mut session = session();
     for (name, side) in [("ogre", CountedSide::InFront), ("ogre-inside", CountedSide::AsNeeded)] {
         let (plan, capture) = converted(&mut session, name);
@@ -65,7 +65,7 @@ fn a_draw_that_was_stored_wrong_is_marked_with_its_count() {
     let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
     let stencil = &mut volumes.draws[0].raster.stencil;
     std::mem::swap(&mut stencil.front, &mut stencil.back);
-    let capture = session.held_against_itself(&plan, &capture, &Progress::default()).expect("checked");
+    let capture = session.compared_with_rerun(&plan, &capture, &Progress::default()).expect("checked");
     let differs: Vec<u64> = differing(&capture).iter().map(|differs| differs.stencil).collect();
     let most = differs.iter().max().expect("draws");
     assert!(*most > 1000, "{differs:?}");

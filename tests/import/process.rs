@@ -90,7 +90,7 @@ fn each_failure_has_its_own_words() {
 }
 
 #[test]
-fn a_program_that_shows_nothing_is_named_with_the_mend() {
+fn a_program_that_shows_nothing_is_named_with_the_fix() {
     let cases: [(&str, &[&str]); 5] = [
         ("error program there is none", &["`game` can't be run", "check the name"]),
         ("error died with exit code 3", &["`game` ended with exit code 3 before frame 10: alas", "xvfb-run -a"]),

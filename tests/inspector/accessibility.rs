@@ -35,13 +35,13 @@ pub fn known(technique: Technique) -> Inspector {
     let history = session.history(&frame.plan, &frame.capture, pick).expect("a history");
     let mut inspector = pictures::inspector(&frame, pick);
     inspector.set_plan(frame.plan.clone());
-    inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));
-    inspector.tell(AnatomyOf {}, Ok(pictures::anatomy(&mut session, &frame)));
+    inspector.take_in(HistoryOf { at: pick }, Ok(Arc::new(history)));
+    inspector.take_in(AnatomyOf {}, Ok(pictures::anatomy(&mut session, &frame)));
     let measured = MeasuredReport { report: one_scene(), left_out: Vec::new() };
-    inspector.tell(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
-    inspector.tell(DiagnosisOf {}, Ok(Arc::new(found())));
+    inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
+    inspector.take_in(DiagnosisOf {}, Ok(Arc::new(found())));
     let nested = StressRows::new(rows("nested", |_, _| 0));
-    inspector.tell(StressOf { cases: Vec::new() }, Ok(Arc::new(nested)));
+    inspector.take_in(StressOf { cases: Vec::new() }, Ok(Arc::new(nested)));
     inspector
 }
 

@@ -90,7 +90,7 @@ fn tints_of_overlays_are_in_it() {
     let image = |value| Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[value]));
     let tests = StepTests { step: 1, draw: None, fragments: image(1), depth_passes: image(1), stencil: image(0) };
     change(&mut harness, |inspector| {
-        inspector.tell(TestsOf { step: 1, draw: None }, Ok(Arc::new(TestOutcomes::new(tests))))
+        inspector.take_in(TestsOf { step: 1, draw: None }, Ok(Arc::new(TestOutcomes::new(tests))))
     });
     let shown = exported(&mut harness, ExportKind::AsShown);
     for (x, count) in [(3, COUNTS[1]), (30, COUNTS[0])] {
@@ -139,7 +139,7 @@ fn edges_that_count_twice_have_their_number() {
         let many = many.filter(|edge| edge.multiplicity.unsigned_abs() > 1).count();
         let mut harness = harness_of(pictures::inspector(&frame, [10, 10]));
         change(&mut harness, |inspector| inspector.lay_over(Overlay::Silhouettes));
-        change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy)));
+        change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
         let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
         if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
             let window = harness.render().expect("a picture");
@@ -169,7 +169,7 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
         harness.state_mut().inspector.lay_over(overlay);
     }
     harness.run_steps(2);
-    change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy)));
+    change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
     let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
     assert_eq!((plain.size, shown.size), (size, size));
     let differing = plain.pixels().zip(shown.pixels()).filter(|(a, b)| a != b).count();

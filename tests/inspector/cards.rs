@@ -129,7 +129,7 @@ fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
         let mut inspector = inspector(with_truth(z_fail(SIZE)));
         inspector.pick([3, 4]);
         let mut harness = harness_in(inspector, [1280.0, height]);
-        change(&mut harness, |inspector| inspector.tell(HistoryOf { at: [3, 4] }, Ok(Arc::new(history.clone()))));
+        change(&mut harness, |inspector| inspector.take_in(HistoryOf { at: [3, 4] }, Ok(Arc::new(history.clone()))));
         let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
         // Down to the status bar.
         assert!(ladder.height() >= 120.0 && ladder.bottom() <= height - 24.0, "{ladder:?} in {height}");
@@ -165,13 +165,13 @@ fn pictures_of_cards_can_be_drawn() {
         for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
             let inspector = || {
                 let mut inspector = pictures::inspector(&frame, pick);
-                inspector.tell(AnatomyOf {}, Ok(anatomy.clone()));
+                inspector.take_in(AnatomyOf {}, Ok(anatomy.clone()));
                 inspector.set_picture_kind(PictureKind::Error);
                 inspector.set_theme(theme);
                 inspector
             };
             gallery.show(&format!("cards-{name}-{theme:?}").to_lowercase(), sizes, inspector, |harness| {
-                harness.state_mut().inspector.tell(HistoryOf { at: pick }, Ok(history.clone()));
+                harness.state_mut().inspector.take_in(HistoryOf { at: pick }, Ok(history.clone()));
                 view(harness);
                 harness.run_steps(1);
             });

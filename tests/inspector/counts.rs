@@ -26,7 +26,7 @@ fn whoever_looks_at_the_stencil_sees_the_counts_where_there_is_none() {
 }
 
 #[test]
-fn the_read_out_tells_the_count_and_what_eight_bits_would_make_of_it() {
+fn the_read_out_reports_the_count_and_what_eight_bits_would_make_of_it() {
     let harness = picked(counted_in_floats(), [1, 0]);
     harness.get_by_label("Dark under light 1: its count is 256.");
     harness.get_by_label_contains("Eight bits would read 0 and light this pixel.");

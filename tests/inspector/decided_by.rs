@@ -22,7 +22,7 @@ fn panels(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> (Ha
     inspector.set_capture(Arc::new(capture.clone()));
     inspector.pick(dark);
     let mut harness = harness_in(inspector, TALL);
-    change(&mut harness, |inspector| inspector.tell(HistoryOf { at: dark }, Ok(Arc::new(history))));
+    change(&mut harness, |inspector| inspector.take_in(HistoryOf { at: dark }, Ok(Arc::new(history))));
     (harness, capture)
 }
 

@@ -10,12 +10,12 @@ use stencilscope::diagnosis::{
 };
 use stencilscope::session::InjectedFault;
 
-fn cause(cause: Cause, mend: Fix, proof: Proof, left: u64) -> CauseFound {
+fn cause(cause: Cause, fix: Fix, proof: Proof, left: u64) -> CauseFound {
     let evidence = format!("evidence of {cause}");
     CauseFound {
         cause,
         evidence,
-        mend: Some(mend),
+        fix: Some(fix),
         proof,
         pixels_left: Some(left),
         staying: None,
@@ -69,7 +69,7 @@ pub fn found() -> Diagnosis {
         ],
         rest: RemainingRegions { regions: 2, pixels: 5 },
         advice: Some(Advice {
-            mend: z_fail(),
+            fix: z_fail(),
             wrong_left: 0,
             sentence: "To mend it, use z-fail.".to_owned(),
             staying: None,
@@ -78,7 +78,7 @@ pub fn found() -> Diagnosis {
 }
 
 fn tell(inspector: &mut Inspector, diagnosis: Diagnosis) {
-    inspector.tell(DiagnosisOf {}, Ok(Arc::new(diagnosis)));
+    inspector.take_in(DiagnosisOf {}, Ok(Arc::new(diagnosis)));
 }
 
 fn opened(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
@@ -158,7 +158,7 @@ fn causes_have_their_evidence_proof_and_meaning() {
 }
 
 #[test]
-fn a_mend_is_applied_and_shown_before_and_after() {
+fn a_fix_is_applied_and_shown_before_and_after() {
     let mut harness = with_regions();
     harness.state_mut().actions.clear();
     click_button(&mut harness, "Apply the mend: use z-fail");
@@ -241,7 +241,7 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
 #[test]
 fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
     let bias = Fix::setting("bias-slope", "4");
-    let staying = Some(FixWithinTechnique { mend: bias.clone(), pixels_left: 1 });
+    let staying = Some(FixWithinTechnique { fix: bias.clone(), pixels_left: 1 });
     let mut diagnosis = found();
     diagnosis.technique = Technique::ShadowMap;
     let acne = cause(Cause::Acne, Fix::technique(Technique::ZFail), Proof::Proven, 0);

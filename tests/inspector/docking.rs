@@ -132,7 +132,7 @@ fn wherever_tabs_are_dropped_and_borders_are_dragged_every_panel_stays_and_can_b
 
 /// As a program before this one stored it: a panel a point wide, and a group in a tab.
 #[test]
-fn a_layout_that_was_broken_before_is_mended_when_it_is_opened() {
+fn a_layout_that_was_broken_before_is_fixed_when_it_is_opened() {
     let pane = |panel: &str| serde_json::json!({ "Pane": panel });
     let tabs = |children: &[u64]| serde_json::json!({ "Container": { "Tabs": { "children": children, "active": children[0] } } });
     let row = |children: &[u64], shares: serde_json::Value| {

@@ -29,7 +29,7 @@ fn state_of_volumes() -> Harness<'static, Seen> {
 }
 
 #[test]
-fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
+fn the_state_of_a_volume_pass_is_reported_in_a_sentence_and_in_three_apis_words() {
     let mut harness = state_of_volumes();
     harness.get_by_label_contains("one that fails the depth test adds 1 (255 becomes 0)");
     harness.get_by_label_contains("depthFailOp: \"increment-wrap\"");
@@ -42,7 +42,7 @@ fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
 }
 
 #[test]
-fn what_an_api_has_unless_told_otherwise_is_marked_and_what_was_set_is_not() {
+fn what_an_api_has_unless_reported_otherwise_is_marked_and_what_was_set_is_not() {
     let mut harness = state_of_volumes();
     for (api, defaults, set) in [
         (
@@ -76,7 +76,7 @@ fn what_an_api_has_unless_told_otherwise_is_marked_and_what_was_set_is_not() {
 }
 
 #[test]
-fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
+fn a_capture_folder_reports_the_state_as_its_plan_has_it() {
     let mut inspector = over("tori", Technique::ZFail);
     let capture = Arc::clone(inspector.capture().expect("a capture"));
     inspector.open_folder(None);

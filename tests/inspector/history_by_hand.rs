@@ -51,7 +51,7 @@ fn triangle(
     primitive: u32,
     is_front: bool,
     depth: f32,
-    fate: FragmentOutcome,
+    outcome: FragmentOutcome,
 ) -> TriangleEvent {
     TriangleEvent {
         draw: usize::from(part == DrawPart::DarkCap),
@@ -66,7 +66,7 @@ fn triangle(
         faces_inwards: part == DrawPart::DarkCap,
         lights: (part == DrawPart::Surface).then_some(Visibility::Everywhere),
         depth,
-        fate,
+        outcome,
     }
 }
 
@@ -78,9 +78,10 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
     let mut making = Making { events: Vec::new(), held, after: Vec::new() };
     making.push(0, PixelEventKind::ClearDepth, held);
     making.push(0, PixelEventKind::ClearStencil, held);
-    let fate = FragmentOutcome::Tested { stencil: TestResult::Always, depth: TestResult::Passed, operation: None };
-    let floor = |fate| PixelEventKind::Triangle(Box::new(triangle("floor", DrawPart::Surface, 0, true, surface, fate)));
-    making.push(0, floor(fate), PixelValues { depth: surface, ..held });
+    let outcome = FragmentOutcome::Tested { stencil: TestResult::Always, depth: TestResult::Passed, operation: None };
+    let floor =
+        |outcome| PixelEventKind::Triangle(Box::new(triangle("floor", DrawPart::Surface, 0, true, surface, outcome)));
+    making.push(0, floor(outcome), PixelValues { depth: surface, ..held });
     making.end_pass(0);
     for (index, (part, is_front, distance)) in faces.iter().enumerate() {
         let depth = NEAR / distance;
@@ -103,9 +104,9 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
             (false, false) => (StencilOperation::IncrementWrap, making.held.stencil.wrapping_add(1)),
         };
         let test = if passes { TestResult::Passed } else { TestResult::Failed };
-        let fate = FragmentOutcome::Tested { stencil: TestResult::Always, depth: test, operation: Some(operation) };
+        let outcome = FragmentOutcome::Tested { stencil: TestResult::Always, depth: test, operation: Some(operation) };
         let name = if *part == DrawPart::Side { "sides of box" } else { "dark cap of box" };
-        let one = triangle(name, *part, index as u32, *is_front, depth, fate);
+        let one = triangle(name, *part, index as u32, *is_front, depth, outcome);
         making.push(1, PixelEventKind::Triangle(Box::new(one)), PixelValues { stencil, ..making.held });
     }
     making.end_pass(1);
@@ -113,8 +114,8 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         let is_lit = making.held.stencil == 0;
         let stencil = if is_lit { TestResult::Passed } else { TestResult::Failed };
         let depth = if is_lit { TestResult::Passed } else { TestResult::NotReached };
-        let fate = FragmentOutcome::Tested { stencil, depth, operation: Some(StencilOperation::Keep) };
-        making.push(pass, floor(fate), making.held);
+        let outcome = FragmentOutcome::Tested { stencil, depth, operation: Some(StencilOperation::Keep) };
+        making.push(pass, floor(outcome), making.held);
         making.end_pass(pass);
     }
     PixelHistory {

@@ -17,7 +17,7 @@ fn draw(
 ) {
     let sizes: &[[u32; 2]] = if gallery.folder.is_some() { &SIZES } else { gallery.sizes() };
     gallery.show(&format!("history-{name}"), sizes, inspector, |harness| {
-        change(harness, |inspector| inspector.tell(HistoryOf { at: history.pixel }, Ok(Arc::new(history.clone()))));
+        change(harness, |inspector| inspector.take_in(HistoryOf { at: history.pixel }, Ok(Arc::new(history.clone()))));
         if let Some(rung) = select {
             click_rung(harness, rung);
         }
@@ -70,7 +70,7 @@ fn pictures_of_histories_can_be_drawn() {
     wrong.events.remove(7);
     let late = || {
         let mut inspector = by_hand();
-        inspector.tell(HistoryOf { at: [3, 4] }, Ok(Arc::new(history([3, 4], &FACES))));
+        inspector.take_in(HistoryOf { at: [3, 4] }, Ok(Arc::new(history([3, 4], &FACES))));
         inspector.pick([9, 9]);
         inspector
     };

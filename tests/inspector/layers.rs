@@ -72,7 +72,7 @@ fn the_picked_texel_says_what_it_lets_through() {
 }
 
 #[test]
-fn the_sentence_tells_what_these_techniques_ask() {
+fn the_sentence_reports_what_these_techniques_ask() {
     for (technique, reason) in [
         ("planar-texture", "The texture of this flat receiver lets less than half of the light through here"),
         ("projective", "The silhouette of another object falls here."),

@@ -50,7 +50,7 @@ fn choose_object(harness: &mut Harness<Seen>, name: &str) {
 }
 
 #[test]
-fn what_an_object_shows_is_told_with_how_it_lies() {
+fn what_an_object_shows_is_reported_with_how_it_lies() {
     let pattern = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
     let scene = common::opened(&pattern.display().to_string());
     let edited = |name: &str| {

@@ -106,7 +106,7 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     turn_on(&mut harness, &["Silhouettes", "Wireframe of volumes", "Receivers", "Casters' names"]);
     assert_eq!(asks::<AnatomyOf>(&harness).len(), 1);
     harness.get_by_label("Looking at the geometry …");
-    change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy)));
+    change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
     for text in [
         "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast",
         "side",

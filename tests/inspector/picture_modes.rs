@@ -55,7 +55,7 @@ fn the_diff_of_counts_is_signed_and_counted() {
 
 /// The light adds where the count is 0: 20 columns. It does not touch depth.
 #[test]
-fn the_diff_of_colours_and_depths_tells_how_many_changed() {
+fn the_diff_of_colours_and_depths_reports_how_many_changed() {
     let mut harness = harness(z_fail(SIZE));
     press(&mut harness, Key::D);
     harness.get_by_label("600 texels changed");
@@ -185,7 +185,7 @@ fn a_bit_is_a_plane_of_two_inks_with_their_counts() {
 }
 
 #[test]
-fn the_depth_legend_has_a_histogram_that_tells_its_bars() {
+fn the_depth_legend_has_a_histogram_that_reports_its_bars() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "Depth");
     let bars = harness.get_by_role(Role::Image);

@@ -104,7 +104,7 @@ fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
         let meshes: Vec<ObjectMesh> = topologies.into_iter().map(mesh).collect();
         let with_meshes = || {
             let mut inspector = inspector(&frame, *pick);
-            inspector.tell(MeshesOf { added: Vec::new() }, Ok(Arc::new(meshes.clone())));
+            inspector.take_in(MeshesOf { added: Vec::new() }, Ok(Arc::new(meshes.clone())));
             inspector
         };
         for (name, view) in *views {
@@ -221,7 +221,7 @@ pub type View = fn(&mut Harness<Seen>);
 
 fn tell_report(harness: &mut Harness<Seen>, report: Report) {
     let measured = MeasuredReport { report, left_out: Vec::new() };
-    harness.state_mut().inspector.tell(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
+    harness.state_mut().inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
 }
 
 const VIEWS: [(&str, View); 13] = [

@@ -80,7 +80,7 @@ impl Monkey {
         [Modifiers::NONE, Modifiers::NONE, Modifiers::COMMAND, Modifiers::SHIFT, Modifiers::ALT][self.below(5)]
     }
 
-    fn tell(&mut self, what: String) {
+    fn report(&mut self, what: String) {
         self.told.push_back(what);
         if self.told.len() > TOLD {
             self.told.pop_front();
@@ -96,13 +96,13 @@ impl Monkey {
             10 => self.wheel(harness),
             11 => {
                 let text = ["0", "12", "-3", "1e309", "NaN", "x", "∞", "…/../"][self.below(8)];
-                self.tell(format!("typed {text}"));
+                self.report(format!("typed {text}"));
                 harness.event(Event::Text(text.to_owned()));
             }
             12 => self.resize(harness),
             13 => {
                 self.at = self.place(harness);
-                self.tell(format!("pointer to {}", self.at));
+                self.report(format!("pointer to {}", self.at));
                 harness.hover_at(self.at);
                 harness.event(Event::MouseMoved(vec2(self.random.unit() as f32 * 80.0 - 40.0, 9.0)));
             }
@@ -112,7 +112,7 @@ impl Monkey {
 
     fn press(&mut self, harness: &mut Harness<Seen>) {
         let (key, modifiers) = (KEYS[self.below(KEYS.len())], self.modifiers());
-        self.tell(format!("{modifiers:?} {key:?}"));
+        self.report(format!("{modifiers:?} {key:?}"));
         match self.below(4) {
             0 => harness.key_down_modifiers(modifiers, key),
             1 => harness.key_up_modifiers(modifiers, key),
@@ -128,7 +128,7 @@ impl Monkey {
     fn click(&mut self, harness: &mut Harness<Seen>) {
         self.at = self.place(harness);
         let button = [PointerButton::Primary, PointerButton::Primary, PointerButton::Secondary][self.below(3)];
-        self.tell(format!("{button:?} click at {}", self.at));
+        self.report(format!("{button:?} click at {}", self.at));
         harness.hover_at(self.at);
         harness.run_steps(1);
         self.button(harness, button, true);
@@ -139,7 +139,7 @@ impl Monkey {
     fn drag(&mut self, harness: &mut Harness<Seen>) {
         self.at = self.place(harness);
         let button = [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle][self.below(3)];
-        self.tell(format!("{button:?} drag from {}", self.at));
+        self.report(format!("{button:?} drag from {}", self.at));
         harness.hover_at(self.at);
         harness.run_steps(1);
         self.button(harness, button, true);
@@ -156,7 +156,7 @@ impl Monkey {
 
     fn wheel(&mut self, harness: &Harness<Seen>) {
         let steps = [1.0, -1.0, 40.0, -40.0, 4000.0, -4000.0][self.below(6)];
-        self.tell(format!("wheel {steps}"));
+        self.report(format!("wheel {steps}"));
         harness.event(Event::MouseWheel {
             unit: egui::MouseWheelUnit::Line,
             delta: vec2(0.0, steps),
@@ -169,7 +169,7 @@ impl Monkey {
     fn resize(&mut self, harness: &mut Harness<Seen>) {
         let size = SIZES[if self.below(2) == 0 { 0 } else { self.below(SIZES.len()) }];
         let scale = [1.0, 1.0, 2.0, 0.75][self.below(4)];
-        self.tell(format!("{size:?} at {scale}"));
+        self.report(format!("{size:?} at {scale}"));
         harness.set_size(size.into());
         harness.set_pixels_per_point(scale);
     }
@@ -177,7 +177,7 @@ impl Monkey {
     /// News from the worker, right, late or bad.
     fn answer(&mut self, harness: &mut Harness<Seen>) {
         let what = self.below(15);
-        self.tell(format!("news {what}"));
+        self.report(format!("news {what}"));
         let bad = || "it failed: try again".to_owned();
         let capture = self.below(self.captures.len());
         let capture = self.captures[capture].clone();
@@ -187,12 +187,12 @@ impl Monkey {
         match what {
             0..3 => inspector.set_capture(capture),
             3 => inspector.update_capture(capture),
-            4 => inspector.tell(HistoryOf { at: pixel }, Err(bad())),
-            5 => inspector.tell(AnatomyOf {}, Err(bad())),
+            4 => inspector.take_in(HistoryOf { at: pixel }, Err(bad())),
+            5 => inspector.take_in(AnatomyOf {}, Err(bad())),
             6 => {
-                inspector.tell(TestsOf { step: pixel[0] as usize, draw: Some(pixel[1] as usize) }, Err(bad()));
+                inspector.take_in(TestsOf { step: pixel[0] as usize, draw: Some(pixel[1] as usize) }, Err(bad()));
             }
-            7 => inspector.tell(TruthOf {}, Err(bad())),
+            7 => inspector.take_in(TruthOf {}, Err(bad())),
             8 => inspector.push_error(format!("broken-{}.obj: no faces: choose another file", pixel[0])),
             9 => inspector.set_job([None, Some("rendering".to_owned())][pixel[0] as usize % 2].clone()),
             10 => {
@@ -282,8 +282,8 @@ fn random_input_over_a_recorded_frame_does_not_panic() {
         let history = session.history(&ogre.plan, &ogre.capture, at).expect("a history");
         let scene = ogre.scene().expect("a scene");
         inspector.pick(at);
-        inspector.tell(HistoryOf { at }, Ok(Arc::new(history)));
-        inspector.tell(AnatomyOf {}, Ok(Arc::new(session.anatomy(scene, None, &ogre.plan))));
+        inspector.take_in(HistoryOf { at }, Ok(Arc::new(history)));
+        inspector.take_in(AnatomyOf {}, Ok(Arc::new(session.anatomy(scene, None, &ogre.plan))));
         run("ogre", seed, inspector, &[Arc::clone(&ogre.capture)]);
     }
 }

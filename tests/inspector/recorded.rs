@@ -14,7 +14,7 @@ pub fn frame(session: &mut Session, name: &str) -> RunFrame {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings").join(name);
     let ConvertedFrame { plan, capture, scene, .. } =
         convert(&read(&folder).expect("a recording"), name).expect("a frame");
-    let capture = session.held_against_itself(&plan, &capture, &Progress::default()).expect("checked");
+    let capture = session.compared_with_rerun(&plan, &capture, &Progress::default()).expect("checked");
     let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
     RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
 }

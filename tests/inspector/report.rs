@@ -11,7 +11,7 @@ fn tell(inspector: &mut Inspector, report: Report) {
 
 fn tell_without(inspector: &mut Inspector, report: Report, left_out: Vec<String>) {
     let question = ReportOf::grid().expect("a grid");
-    inspector.tell(question, Ok(Arc::new(MeasuredReport { report, left_out })));
+    inspector.take_in(question, Ok(Arc::new(MeasuredReport { report, left_out })));
 }
 
 fn showing(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
@@ -144,7 +144,7 @@ fn odd_rows_and_errors_are_shown() {
     let harness = showing(|inspector| {
         tell(inspector, report);
         let question = ReportOf::grid().expect("a grid");
-        inspector.tell(question, Err("no GPU: install mesa-vulkan-drivers".to_owned()));
+        inspector.take_in(question, Err("no GPU: install mesa-vulkan-drivers".to_owned()));
     });
     harness.get_by_label("× no GPU: install mesa-vulkan-drivers");
     harness.get_by_role_and_label(Role::Button, "later: none wrong, 18.2 ms");

@@ -42,7 +42,7 @@ fn a_reason_stands_once_under_all_that_was_left_out_for_it() {
 }
 
 #[test]
-fn what_a_button_does_is_told_beside_it_and_not_below_it() {
+fn what_a_button_does_is_reported_beside_it_and_not_below_it() {
     let mut harness = harness_in(inspector(z_fail(SIZE)), [1024.0, 800.0]);
     for (tab, button, words) in
         [("Report", "Measure", "Measures every technique"), ("Diagnosis", "Diagnose", "Follows rays through the scene")]

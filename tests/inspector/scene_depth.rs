@@ -176,7 +176,7 @@ fn a_large_model_is_drawn_whole_while_it_is_turned() {
     times.sort_by_key(|(all, ..)| *all);
     println!("a frame of {triangles} triangles while it is turned: {:?}", times[times.len() / 2]);
     let start = Instant::now();
-    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail)));
+    harness.state_mut().inspector.take_in(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail)));
     println!("another anatomy is there after {:?}", start.elapsed());
     let start = Instant::now();
     harness.step();

@@ -37,7 +37,7 @@ pub fn over(scene: &Scene) -> Inspector {
     let mut capture = z_fail(SIZE);
     capture.camera = scene.camera;
     inspector.set_capture(Arc::new(capture));
-    inspector.tell(AnatomyOf {}, Ok(anatomy_of(scene, Technique::ZFail)));
+    inspector.take_in(AnatomyOf {}, Ok(anatomy_of(scene, Technique::ZFail)));
     inspector
 }
 
@@ -105,7 +105,7 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
     harness.get_by_label("out of reach: try again");
     show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(anatomies(&harness), 2);
-    change(&mut harness, |inspector| inspector.tell(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail))));
+    change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail))));
     harness.get_by_label(FREE);
     // Until the next frame's is there, that of the one before stays.
     show_capture(&mut harness, z_fail(SIZE));
@@ -209,7 +209,7 @@ fn one_caster_can_be_looked_at_alone() {
     let mut choice = Choice::new(Technique::ZFail);
     choice.set("casters", "all").expect("a setting");
     let mut inspector = over(&scene);
-    inspector.tell(AnatomyOf {}, Ok(anatomy_by(&scene, &choice)));
+    inspector.take_in(AnatomyOf {}, Ok(anatomy_by(&scene, &choice)));
     let mut harness = harness_of(inspector);
     show(&mut harness);
     harness.get_by_label("Without the volumes of what holds everything (floor): choose it to see them.");
@@ -284,8 +284,8 @@ fn time(harness: &mut Harness<Seen>, from: Pos2, by: f32) -> std::time::Duration
 fn looked_at(session: &mut Session, frame: &RunFrame, pick: [u32; 2]) -> Inspector {
     let history = session.history(&frame.plan, &frame.capture, pick).expect("a history");
     let mut inspector = pictures::inspector(frame, pick);
-    inspector.tell(AnatomyOf {}, Ok(pictures::anatomy(session, frame)));
-    inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));
+    inspector.take_in(AnatomyOf {}, Ok(pictures::anatomy(session, frame)));
+    inspector.take_in(HistoryOf { at: pick }, Ok(Arc::new(history)));
     inspector
 }
 

@@ -67,7 +67,7 @@ fn what_another_setting_switches_off_is_dimmed_and_says_why() {
 }
 
 #[test]
-fn epsilon_waits_for_its_mapping_and_tells_how_small_it_is() {
+fn epsilon_waits_for_its_mapping_and_reports_how_small_it_is() {
     let mut harness = settings_of("z-fail");
     let epsilon = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::SpinButton, "epsilon").rect();
     assert!(harness.get_by_role_and_label(Role::SpinButton, "epsilon").accesskit_node().is_disabled());
@@ -99,7 +99,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
     let mut inspector = inspector(z_fail(SIZE));
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let turned = common::mesh(&corners, &[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
-    inspector.tell(
+    inspector.take_in(
         MeshesOf { added: Vec::new() },
         Ok(Arc::new(vec![
             object("box", &common::cuboid("box", [0.0; 3], [1.0; 3]).mesh),
@@ -119,7 +119,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
 #[test]
 fn meshes_of_another_scene_are_not_known_yet() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.tell(
+    inspector.take_in(
         MeshesOf { added: Vec::new() },
         Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])),
     );

@@ -81,7 +81,7 @@ fn a_frame_without_a_map_says_what_to_choose() {
 }
 
 #[test]
-fn what_a_pixel_covers_of_the_map_is_told() {
+fn what_a_pixel_covers_of_the_map_is_reported() {
     let mut harness = picked(capture(), [20, 15]);
     show_tab(&mut harness, "Shadow map");
     harness.run_steps(2);

@@ -41,11 +41,11 @@ pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<StressRow> {
 }
 
 fn add(inspector: &mut Inspector, rows: Vec<StressRow>) {
-    inspector.tell(StressOf { cases: Vec::new() }, Ok(Arc::new(StressRows::new(rows))));
+    inspector.take_in(StressOf { cases: Vec::new() }, Ok(Arc::new(StressRows::new(rows))));
 }
 
 fn fail(inspector: &mut Inspector) {
-    inspector.tell(StressOf { cases: Vec::new() }, Err("the GPU was lost".to_owned()));
+    inspector.take_in(StressOf { cases: Vec::new() }, Err("the GPU was lost".to_owned()));
 }
 
 fn rows_of(inspector: &Inspector) -> Vec<StressRow> {
@@ -134,7 +134,7 @@ fn what_takes_gigabytes_is_not_opened_by_a_click() {
 }
 
 #[test]
-fn what_is_unexpected_opens_and_a_course_is_told() {
+fn what_is_unexpected_opens_and_a_course_is_reported() {
     // Wrong at 256 is known, at 600 it is not.
     let wrong =
         |entrant: &str, value: f64| u64::from(entrant == "z-fail" && [256.0, 512.0, 600.0].contains(&value)) * 7;

@@ -99,7 +99,7 @@ fn p_goes_through_techniques_and_i_through_sizes_of_the_map() {
 }
 
 #[test]
-fn v_lays_silhouettes_and_volumes_over_the_picture_and_speed_and_walls_are_told() {
+fn v_lays_silhouettes_and_volumes_over_the_picture_and_speed_and_walls_are_reported() {
     let mut harness = walking();
     let mut seen = Vec::new();
     for _ in 0..4 {
@@ -337,26 +337,26 @@ fn g_makes_one_fall_land_and_walk_on_the_ground_and_float_again() {
 }
 
 #[test]
-fn who_falls_off_the_world_is_put_back_and_told() {
+fn who_falls_off_the_world_is_put_back_and_reported() {
     let ground = common::square("ground", 0.0, 2.0);
     let mut scene = Scene { objects: vec![ground], ..room() };
     let mut harness = falling_from(DVec3::new(1.5, 1.7, 0.0), &mut scene);
     for _ in 0..2 {
         press(&mut harness, Key::Period);
     }
-    let put_back = "Nothing is below: back where you stood last";
+    let restore_waiting = "Nothing is below: back where you stood last";
     harness.key_down(Key::D);
     let mut lowest = 1.7;
     for _ in 0..400 {
         harness.run_steps(1);
         answer(&mut harness);
         lowest = f64::min(lowest, eye_of(&harness).y);
-        if harness.query_by_label(put_back).is_some() {
+        if harness.query_by_label(restore_waiting).is_some() {
             break;
         }
     }
     harness.key_up(Key::D);
-    harness.get_by_label(put_back);
+    harness.get_by_label(restore_waiting);
     assert!(lowest < -1.0, "{lowest}");
     let eye = eye_of(&harness);
     assert!(eye.x > 1.5 && eye.x < 2.2 && (eye.y - 1.7).abs() < 0.1, "{eye}");

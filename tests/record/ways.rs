@@ -210,7 +210,7 @@ fn what_a_shader_discards_is_known() {
             let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
             assert_eq!(history.disagreements(), [], "{pixel:?}");
             for (_, one) in history.triangles() {
-                fates[usize::from(matches!(one.fate, FragmentOutcome::Discarded(None)))] += 1;
+                fates[usize::from(matches!(one.outcome, FragmentOutcome::Discarded(None)))] += 1;
             }
         }
         fates.map(|count| count > 0)
@@ -225,7 +225,7 @@ fn what_a_shader_discards_is_known() {
     assert_eq!(found(&stage.recorded("nothing", of("nothing", FED), |pass| pass.draw(0..3, 0..1))), [false, true]);
     // Of a shader that can't, nothing is noted.
     let plain = stage.recorded("plain", of("none", FED), |pass| pass.draw(0..3, 0..1));
-    assert!(plain.plan.meshes.iter().all(|mesh| mesh.kept.is_none()) && found(&plain) == [true, false]);
+    assert!(plain.plan.meshes.iter().all(|mesh| mesh.retained.is_none()) && found(&plain) == [true, false]);
 }
 
 /// A bundle's draws are draws like others.

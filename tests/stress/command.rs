@@ -5,7 +5,7 @@ use super::*;
 const QUICK: [&str; 5] = ["stress", "--case", "sliver", "--size", "80x60"];
 
 #[test]
-fn the_command_tells_in_every_form() {
+fn the_command_reports_in_every_form() {
     let folder = folder();
     let volumes = [&QUICK[..], &["-t", "z-fail", "-t", "z-pass"][..]].concat();
     let table = done(folder.path(), &volumes);

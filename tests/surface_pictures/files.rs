@@ -132,7 +132,7 @@ fn a_folder_with_a_pipe_in_it_is_refused_and_not_waited_for() {
 }
 
 #[test]
-fn pixel_tells_the_texel_and_explains_each_key() {
+fn pixel_reports_the_texel_and_explains_each_key() {
     let folder = folder();
     let scene = asset("scenes/pattern.toml");
     let arguments = ["pixel", &scene, "--size", "96x72", "--at", "60,60"];

@@ -240,14 +240,15 @@ impl Here<'_> {
                     && one.part == DrawPart::PlanarShadow
             })
         };
-        let falls = |name: &String| of_light().any(|(_, one)| one.fate.passed() && one.caster.as_ref() == Some(name));
+        let falls =
+            |name: &String| of_light().any(|(_, one)| one.outcome.passed() && one.caster.as_ref() == Some(name));
         let FlattenedShadow { casters, failed_stencil, failed_depth, hidden, .. } = flattened;
         if !casters.is_empty() {
             let does = matches!(pass, LightPassResult::Adds | LightPassResult::Skips);
             return casters.iter().all(falls) && does && self.label() == Some(1);
         }
         let left = failed_stencil + failed_depth + hidden;
-        of_light().all(|(_, one)| !one.fate.passed())
+        of_light().all(|(_, one)| !one.outcome.passed())
             && left >= 1
             && left as usize == of_light().count()
             && pass == LightPassResult::Adds

@@ -31,14 +31,14 @@ impl WorkerState {
         let result = self.next_picture(of, &asked);
         self.is_filming.store(self.film.is_some(), Ordering::Release);
         if self.session.is_some() != had_session {
-            (self.tell)(News::Idle);
+            (self.notify)(News::Idle);
         }
         let result = match result {
-            Ok(None) => return inbox.queue.put_back(Order::Answer { scene: of[0], frame: of[1], asked }),
+            Ok(None) => return inbox.queue.restore_waiting(Order::Answer { scene: of[0], frame: of[1], asked }),
             Ok(Some(filmed)) => Ok(Answer::FilmOf(Arc::new(filmed))),
             Err(reason) => Err(reason),
         };
-        (self.tell)(News::Answered { ticket: asked.ticket, result });
+        (self.notify)(News::Answered { ticket: asked.ticket, result });
     }
 
     /// The film once it is whole; `None` where more is to come. Of one that fails nothing is left.

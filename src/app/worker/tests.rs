@@ -38,8 +38,8 @@ fn over(scene: Scene, name: OpenSpec, technique: Technique) -> (Worker, Receiver
         time: 0.0,
         adapter: None,
     };
-    let (tell, news) = channel();
-    let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
+    let (notify, news) = channel();
+    let worker = Worker::start(start, move |news| drop(notify.send(news))).expect("a thread");
     (worker, news)
 }
 
@@ -157,7 +157,7 @@ fn what_was_set_for_one_scene_is_not_set_for_the_next() {
 }
 
 #[test]
-fn meshes_are_told_object_by_object() {
+fn meshes_are_reported_object_by_object() {
     let (worker, frame, news) = started();
     ask(&worker, frame, 1, MeshesOf { added: Vec::new() });
     let meshes = answer::<MeshesOf>(&news, 1).expect("meshes");
@@ -189,7 +189,7 @@ fn the_last_frame_is_judged_and_timed_when_nothing_else_is_asked() {
 }
 
 #[test]
-fn the_draws_of_a_pass_are_told_and_stale_wishes_for_them_are_dropped() {
+fn the_draws_of_a_pass_are_reported_and_stale_wishes_for_them_are_dropped() {
     let (worker, frame, news) = started();
     ask(&worker, frame + 1, 1, DrawsOf { step: 0 });
     // The order before is obeyed or replaced first: of both only one is answered.
@@ -221,7 +221,7 @@ fn a_frame_that_is_shown_no_more_and_a_cancelled_truth_are_passed_over() {
 }
 
 #[test]
-fn a_pixel_of_the_last_frame_tells_its_history_and_one_outside_why_not() {
+fn a_pixel_of_the_last_frame_reports_its_history_and_one_outside_why_not() {
     let (worker, frame, news) = started();
     ask(&worker, frame, 1, history(32, 20));
     let found = answer::<HistoryOf>(&news, 1).expect("a history");
@@ -249,7 +249,7 @@ fn the_open_scene_is_measured_in_the_size_that_is_shown_without_what_a_window_ha
 }
 
 #[test]
-fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_told() {
+fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_reported() {
     let (worker, frame, news) = started();
     ask(&worker, frame, 1, DiagnosisOf {}).cancel();
     ask(&worker, frame, 2, history(1, 1));

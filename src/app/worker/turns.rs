@@ -47,24 +47,24 @@ impl WorkerState {
             run
         });
         let Some((case, name)) = run.steps.next_case() else {
-            (self.tell)(News::AnswerEnded { ticket: asked.ticket });
+            (self.notify)(News::AnswerEnded { ticket: asked.ticket });
             return self.end_stress();
         };
-        (self.tell)(News::Busy(format!("stress: {name}")));
+        (self.notify)(News::Busy(format!("stress: {name}")));
         match self.session().and_then(|session| session.stress_step(&mut run.steps)) {
             Ok(row) => run.rows.extend(row),
             Err(error) => {
-                (self.tell)(News::Answered { ticket: asked.ticket, result: Err(error.to_string()) });
+                (self.notify)(News::Answered { ticket: asked.ticket, result: Err(error.to_string()) });
                 return self.end_stress();
             }
         }
         asked.progress.advance();
         if run.steps.next_case().is_none_or(|(next, _)| next != case) {
             let rows = StressRows::new(std::mem::take(&mut run.rows));
-            (self.tell)(News::AnsweredPart { ticket: asked.ticket, answer: Answer::StressOf(Arc::new(rows)) });
+            (self.notify)(News::AnsweredPart { ticket: asked.ticket, answer: Answer::StressOf(Arc::new(rows)) });
         }
         self.stress = Some(run);
-        inbox.queue.put_back(Order::Answer { scene: of[0], frame: of[1], asked });
+        inbox.queue.restore_waiting(Order::Answer { scene: of[0], frame: of[1], asked });
     }
 
     /// Hundreds of scenes were open: what was kept of them is of no use any longer.
@@ -72,14 +72,14 @@ impl WorkerState {
         self.stress = None;
         self.session.iter_mut().for_each(Session::forget);
         allocator::give_back();
-        (self.tell)(News::Idle);
+        (self.notify)(News::Idle);
     }
 
     /// Measures the open scene as it was captured last. What is asked of its frame meanwhile is told
     /// in between.
     pub(super) fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::ReportOf(question) = &asked.ask else { return };
-        (self.tell)(News::Busy("measuring every technique".to_owned()));
+        (self.notify)(News::Busy("measuring every technique".to_owned()));
         let result = if of[0] == self.scenes {
             self.measured(question, &asked, inbox).map_err(|error| error.to_string())
         } else {
@@ -88,9 +88,9 @@ impl WorkerState {
         // Where it was cancelled, the window has asked for it.
         if !asked.progress.is_cancelled() {
             let result = result.map(|measured| Answer::ReportOf(Arc::new(measured)));
-            (self.tell)(News::Answered { ticket: asked.ticket, result });
+            (self.notify)(News::Answered { ticket: asked.ticket, result });
         }
-        (self.tell)(News::Idle);
+        (self.notify)(News::Idle);
     }
 
     fn measured(
@@ -104,8 +104,8 @@ impl WorkerState {
         let (Some(session), Some(frame), Some(open)) = (&mut self.session, &self.last, &self.open) else {
             return Err(SessionError::NoFrame);
         };
-        let (tell, frames) = (&self.tell, self.frames);
-        session.make_room(&frame.plan);
+        let (notify, frames) = (&self.notify, self.frames);
+        session.free_memory_for(&frame.plan);
         let (scene, _) = frame.made()?;
         let what = Measurement { choices: question.choices.clone(), size: frame.plan.size, runs: question.runs };
         let mut given_back = Instant::now();
@@ -122,7 +122,7 @@ impl WorkerState {
                 }
                 if asked.ask.kind().holds() != AnswerLifetime::Frame || of == frames {
                     let result = session.answer(&asked.ask, Some(open), Some(frame), &asked.progress);
-                    tell(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
+                    notify(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
                 }
             }
         };

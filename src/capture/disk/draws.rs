@@ -56,9 +56,9 @@ fn state_files(
         let listed = files.unchanged.get_or_insert_default();
         listed.extend(target.unchanged.then(|| name.to_owned()));
     };
-    let mut put = |name: &str, earlier: Option<String>| match earlier {
+    let mut write = |name: &str, earlier: Option<String>| match earlier {
         Some(file) => Ok(file),
-        None => written.put(folder, format!("{stem}.{name}.npy"), &target.image),
+        None => written.write(folder, format!("{stem}.{name}.npy"), &target.image),
     };
     let is_it = |image: &Option<Arc<_>>| image.as_ref().is_some_and(|image| Arc::ptr_eq(image, &target.image));
     match &state.snapshot {
@@ -66,11 +66,11 @@ fn state_files(
             let light = step.light.and_then(|index| Some((index, capture.lights.get(index)?)));
             if frame.target == FrameTarget::Count {
                 let final_file = light.filter(|(_, light)| is_it(&light.count)).map(|(index, _)| count_file(index));
-                files.count = Some(put(COUNT, final_file)?);
+                files.count = Some(write(COUNT, final_file)?);
                 unchanged(&mut files, COUNT);
             } else {
                 let final_file = light.filter(|(_, light)| is_it(&light.shadow)).map(|(index, _)| shadow_file(index));
-                files.labels = Some(put(LABELS, final_file)?);
+                files.labels = Some(write(LABELS, final_file)?);
                 unchanged(&mut files, LABELS);
             }
         }
@@ -81,9 +81,9 @@ fn state_files(
             if is_last {
                 files = map_files(capture, *light, *face);
             } else if holds_colors {
-                files.textures = Some(put(TEXTURES, None)?);
+                files.textures = Some(write(TEXTURES, None)?);
             } else {
-                files.map = Some(put(MAP, None)?);
+                files.map = Some(write(MAP, None)?);
             }
             unchanged(&mut files, if holds_colors { TEXTURES } else { MAP });
         }

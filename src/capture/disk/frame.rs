@@ -106,32 +106,32 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     let mut entry =
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
-        let mut put = ArrayWriter { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface, extruded, kept } = mesh;
+        let mut writer = ArrayWriter { folder, stem: format!("mesh{index:03}"), written: &mut written };
+        let DrawMesh { name, vertices, indices, surface, extruded, retained } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
-            vertices: put.blob::<f32, _>("vertices", vertices, 4)?,
-            indices: put.blob::<u32, _>("indices", indices, 3)?,
+            vertices: writer.blob::<f32, _>("vertices", vertices, 4)?,
+            indices: writer.blob::<u32, _>("indices", indices, 3)?,
             surface: match surface {
                 None => None,
                 Some(SurfaceData { normals, sides, uvs }) => Some(SurfaceEntry {
-                    normals: put.blob::<f32, _>("normals", normals, 4)?,
-                    sides: put.blob::<u32, _>("sides", sides, 1)?,
+                    normals: writer.blob::<f32, _>("normals", normals, 4)?,
+                    sides: writer.blob::<u32, _>("sides", sides, 1)?,
                     uvs: match uvs {
                         None => None,
-                        Some(uvs) => Some(put.blob::<f32, _>("uvs", uvs, 2)?),
+                        Some(uvs) => Some(writer.blob::<f32, _>("uvs", uvs, 2)?),
                     },
                 }),
             },
             extruded: match extruded {
                 None => None,
                 Some(Extruded { corners, carry }) => {
-                    Some(ExtrudedEntry { corners: put.blob::<f32, _>("corners", corners, 8)?, carry: *carry })
+                    Some(ExtrudedEntry { corners: writer.blob::<f32, _>("corners", corners, 8)?, carry: *carry })
                 }
             },
-            kept: match kept {
+            kept: match retained {
                 None => None,
-                Some(kept) => Some(put.blob::<u32, _>("kept", kept, 2)?),
+                Some(retained) => Some(writer.blob::<u32, _>("kept", retained, 2)?),
             },
         });
     }
@@ -148,10 +148,10 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     }
     for (pass, of) in plan.passes.iter().enumerate() {
         let Some(start) = of.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) else { continue };
-        let mut put = ArrayWriter { folder, stem: format!("pass{pass:03}.start"), written: &mut written };
-        let depth = start.depth.as_ref().map(|depth| put.blob::<f32, _>("depth", depth, 1)).transpose()?;
+        let mut writer = ArrayWriter { folder, stem: format!("pass{pass:03}.start"), written: &mut written };
+        let depth = start.depth.as_ref().map(|depth| writer.blob::<f32, _>("depth", depth, 1)).transpose()?;
         let stencil = start.stencil.as_ref();
-        let stencil = stencil.map(|stencil| put.blob::<u8, _>("stencil", stencil, 1)).transpose()?;
+        let stencil = stencil.map(|stencil| writer.blob::<u8, _>("stencil", stencil, 1)).transpose()?;
         entry.starts.push(StartEntry { pass, depth, stencil });
     }
     files::write(&folder.join(FRAME), |out| Ok(serde_json::to_writer(out, &entry)?))
@@ -207,9 +207,9 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         let indices = get.blob::<u32, _>(&indices, 3)?;
         plan.meshes.push(match extruded {
             None => {
-                let kept = kept.map(|file| get.kept_fragments(&file)).transpose()?;
+                let retained = kept.map(|file| get.retained_fragments(&file)).transpose()?;
                 let vertices = get.blob::<f32, _>(&vertices, 4)?;
-                DrawMesh { surface, kept, ..DrawMesh::of_blobs(name, vertices, indices) }
+                DrawMesh { surface, retained, ..DrawMesh::of_blobs(name, vertices, indices) }
             }
             Some(ExtrudedEntry { corners, carry }) => {
                 let corners = get.blob::<f32, _>(&corners, 8)?;
@@ -281,10 +281,10 @@ impl ArrayReader<'_> {
     }
 
     /// The fragments that a shader has kept; they are searched, so that their order counts.
-    fn kept_fragments(&mut self, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
-        let kept = self.blob::<u32, [u32; 2]>(file, 2)?;
-        match kept.data().is_sorted() {
-            true => Ok(kept),
+    fn retained_fragments(&mut self, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
+        let retained = self.blob::<u32, [u32; 2]>(file, 2)?;
+        match retained.data().is_sorted() {
+            true => Ok(retained),
             false => {
                 let reason = "its fragments are not in order".to_owned();
                 Err(CaptureError::Read { file: self.folder.join(file), reason })

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount};
-use crate::diagnosis::mend::Fix;
+use crate::diagnosis::fix::Fix;
 use crate::history::{LightDecision, VolumeCount};
 use crate::plan::{CountBits, CountOf};
 use crate::technique::CountOperations;
@@ -44,8 +44,8 @@ fn clamped(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
         amount(lost, "face"),
         if lost == 1 { "was" } else { "were" },
     );
-    let mends = vec![Fix::setting("operations", "wrap"), Fix::setting("counter", "float")];
-    SuspectedCause::new(Cause::Clamped, evidence, mends, shown_by)
+    let fixes = vec![Fix::setting("operations", "wrap"), Fix::setting("counter", "float")];
+    SuspectedCause::new(Cause::Clamped, evidence, fixes, shown_by)
 }
 
 fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -60,12 +60,12 @@ fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
         if lost == 1 { "takes" } else { "take" },
         if lost == 1 { "was" } else { "were" },
     );
-    let mut mends = vec![Fix::setting("operations", "wrap")];
+    let mut fixes = vec![Fix::setting("operations", "wrap")];
     // Where passes stand in the wrong order, that alone is to be turned round.
     if facts.volumes().is_some_and(|settings| settings.two_pass && settings.takes_away_first) {
-        mends.push(Fix::setting("order", "add-first"));
+        fixes.push(Fix::setting("order", "add-first"));
     }
-    SuspectedCause::new(Cause::OperationOrder, evidence, mends, shown_by)
+    SuspectedCause::new(Cause::OperationOrder, evidence, fixes, shown_by)
 }
 
 fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -100,8 +100,8 @@ fn few_bits(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         bits.modulus(),
         if bits.modulus() == 2 { "holds" } else { "hold" }
     );
-    let mends = vec![Fix::setting("stencil-bits", "8"), Fix::setting("counter", "float")];
-    SuspectedCause::new(Cause::FewBits, evidence, mends, shown_by)
+    let fixes = vec![Fix::setting("stencil-bits", "8"), Fix::setting("counter", "float")];
+    SuspectedCause::new(Cause::FewBits, evidence, fixes, shown_by)
 }
 
 fn parity(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -113,6 +113,6 @@ fn parity(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     })?;
     let evidence =
         format!("{count} volumes contain the surface, an even number, and the one bit that faces turn over ends at 0");
-    let mends = vec![Fix::setting("operations", "wrap")];
-    SuspectedCause::new(Cause::Parity, evidence, mends, shown_by)
+    let fixes = vec![Fix::setting("operations", "wrap")];
+    SuspectedCause::new(Cause::Parity, evidence, fixes, shown_by)
 }

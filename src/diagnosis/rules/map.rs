@@ -8,7 +8,7 @@ use crate::accuracy::Finding;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
-use crate::diagnosis::mend::{Fix, PlanEdit};
+use crate::diagnosis::fix::{Fix, PlanEdit};
 use crate::numbers;
 use crate::plan::{DrawPart, PlanMap};
 use crate::technique::{MapSettings, Technique};
@@ -157,9 +157,9 @@ fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapC
 
 /// Biases as they are by default, and some that are more or less.
 fn bias(constant: i32, slope: f64) -> Fix {
-    let mut mend = Fix::setting("bias-slope", &format!("{slope}"));
-    mend.settings.insert("bias-constant".to_owned(), constant.to_string());
-    mend
+    let mut fix = Fix::setting("bias-slope", &format!("{slope}"));
+    fix.settings.insert("bias-constant".to_owned(), constant.to_string());
+    fix
 }
 
 fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -173,9 +173,9 @@ fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let steps = [(16, 2.0), (64, 4.0), (256, 8.0)];
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
-    let mut mends: Vec<Fix> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
-    mends.push(Fix::technique(Technique::ZFail));
-    SuspectedCause::new(Cause::Acne, evidence, mends, shown_by)
+    let mut fixes: Vec<Fix> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
+    fixes.push(Fix::technique(Technique::ZFail));
+    SuspectedCause::new(Cause::Acne, evidence, fixes, shown_by)
 }
 
 fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -196,12 +196,12 @@ fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
     let steps = [(16, 2.0), (16, 1.0), (4, 0.5)];
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let less = steps.into_iter().filter(|(c, s)| *c < constant || *s < slope);
-    let mut mends: Vec<Fix> = less.map(|(c, s)| bias(c.min(constant), s.min(slope))).collect();
+    let mut fixes: Vec<Fix> = less.map(|(c, s)| bias(c.min(constant), s.min(slope))).collect();
     if facts.map().bias_normal != 0.0 {
-        mends = vec![Fix::setting("bias-normal", "0")];
+        fixes = vec![Fix::setting("bias-normal", "0")];
     }
-    mends.push(Fix::technique(Technique::ZFail));
-    SuspectedCause::new(Cause::PeterPanning, evidence, mends, shown_by)
+    fixes.push(Fix::technique(Technique::ZFail));
+    SuspectedCause::new(Cause::PeterPanning, evidence, fixes, shown_by)
 }
 
 fn aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -226,6 +226,6 @@ fn outside_map(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCaus
         false => "behind what the map looks at".to_owned(),
     };
     let evidence = format!("the surface lies {place}, where nothing is looked up");
-    let mends = vec![Fix::plan(PlanEdit::Refit), Fix::technique(Technique::ZFail)];
-    SuspectedCause::new(Cause::OutsideMap, evidence, mends, shown_by)
+    let fixes = vec![Fix::plan(PlanEdit::Refit), Fix::technique(Technique::ZFail)];
+    SuspectedCause::new(Cause::OutsideMap, evidence, fixes, shown_by)
 }

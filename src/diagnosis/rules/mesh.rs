@@ -2,7 +2,7 @@
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
-use crate::diagnosis::mend::{Fix, ObjectChange};
+use crate::diagnosis::fix::{Fix, ObjectChange};
 use crate::diagnosis::mesh_facts::MeshFacts;
 use crate::geometry::Casters;
 use crate::numbers;
@@ -75,14 +75,14 @@ fn rule(
     let (suspect, (measured, weight)) =
         all.filter_map(|suspect| Some((measure(suspect.mesh)?, suspect))).map(|(m, s)| (s, m)).next()?;
     let Suspect { index, mesh, what, shown_by } = suspect;
-    let mends = match cause {
+    let fixes = match cause {
         Cause::SplitVertices => {
             vec![Fix::scene(index, &mesh.name, ObjectChange::Weld), Fix::setting("casters", "all")]
         }
         _ => vec![Fix::setting("casters", "all")],
     };
     let evidence = format!("{} {measured}; {what}", mesh.name);
-    SuspectedCause::new(cause, evidence, mends, shown_by).map(|suspicion| SuspectedCause { weight, ..suspicion })
+    SuspectedCause::new(cause, evidence, fixes, shown_by).map(|suspicion| SuspectedCause { weight, ..suspicion })
 }
 
 fn edges(count: usize) -> String {

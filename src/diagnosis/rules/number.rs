@@ -2,7 +2,7 @@
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
-use crate::diagnosis::mend::Fix;
+use crate::diagnosis::fix::Fix;
 use crate::math::side_of_triangle;
 use crate::numbers;
 use crate::plan::DrawPart;
@@ -189,8 +189,8 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
     let mut bounds: HashMap<[u32; 2], i32> = HashMap::new();
     for corners in triangles {
         for edge in edges_of(*corners).into_iter().filter(|edge| found.contains_key(&low_first(*edge))) {
-            let turned = side_of_triangle(corners.map(|index| world[index as usize]), light).value();
-            *bounds.entry(low_first(edge)).or_default() += if edge[0] < edge[1] { turned } else { -turned };
+            let side = side_of_triangle(corners.map(|index| world[index as usize]), light).value();
+            *bounds.entry(low_first(edge)).or_default() += if edge[0] < edge[1] { side } else { -side };
         }
     }
     let sides = found.into_iter().filter(|(edge, _)| bounds.get(edge).is_some_and(|times| *times != 0));
@@ -215,8 +215,8 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
         numbers::digits(edge)
     );
     let fits = |times: &u32| facts.plan.size.iter().all(|side| side * times <= MOST_SIDE);
-    let mends = LARGER.into_iter().filter(fits).map(Fix::larger).collect();
-    SuspectedCause::new(Cause::SubpixelEdges, evidence, mends, shown_by)
+    let fixes = LARGER.into_iter().filter(fits).map(Fix::larger).collect();
+    SuspectedCause::new(Cause::SubpixelEdges, evidence, fixes, shown_by)
 }
 
 /// The median length of an object's edges, in pixels where its nearest corner is.

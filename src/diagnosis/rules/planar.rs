@@ -3,7 +3,7 @@
 use crate::capture::{Aspect, Capture, Snapshot};
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
-use crate::diagnosis::mend::Fix;
+use crate::diagnosis::fix::Fix;
 use crate::geometry::planar::FlattenClip;
 use crate::history::{FragmentOutcome, PixelEvent, TestResult, TriangleEvent};
 use crate::math::{Plane, Sign, side_of_triangle};
@@ -82,14 +82,14 @@ fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     }
     let light = case.light();
     let (count, shown_by) = case.shown(|sample| {
-        let passing = flattened(sample, light).filter(|(_, one)| one.fate.passed()).count();
+        let passing = flattened(sample, light).filter(|(_, one)| one.outcome.passed()).count();
         (passing > 1).then_some(passing)
     })?;
     let evidence = format!("{count} flattened triangles cover this pixel, and each darkens it");
-    let mut mend = Fix::setting("blend", "once");
-    mend.settings.insert("stencil".to_owned(), "on".to_owned());
-    let mends = vec![Fix::setting("blend", "once"), mend];
-    SuspectedCause::new(Cause::DoubleBlend, evidence, mends, shown_by)
+    let mut fix = Fix::setting("blend", "once");
+    fix.settings.insert("stencil".to_owned(), "on".to_owned());
+    let fixes = vec![Fix::setting("blend", "once"), fix];
+    SuspectedCause::new(Cause::DoubleBlend, evidence, fixes, shown_by)
 }
 
 /// The flattened triangles of a light over a sample.
@@ -136,7 +136,7 @@ fn off_receiver(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
     let ((name, off), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
         let has_plane = |one: &TriangleEvent| plane_of(facts, one).is_some();
-        let passing = flattened(sample, light).filter(|(_, one)| one.fate.passed() && has_plane(one));
+        let passing = flattened(sample, light).filter(|(_, one)| one.outcome.passed() && has_plane(one));
         let passing: Vec<_> = passing.collect();
         let offs: Vec<(String, f64)> = passing
             .iter()
@@ -153,8 +153,9 @@ fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
     let light = case.light();
     let ((name, shadow, surface), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
-        let fails = |fate: FragmentOutcome| matches!(fate, FragmentOutcome::Tested { depth: TestResult::Failed, .. });
-        let mut failing = flattened(sample, light).filter(|(_, one)| fails(one.fate));
+        let fails =
+            |outcome: FragmentOutcome| matches!(outcome, FragmentOutcome::Tested { depth: TestResult::Failed, .. });
+        let mut failing = flattened(sample, light).filter(|(_, one)| fails(one.outcome));
         let (event, one) = failing.find(|(_, one)| off_plane(facts, one, &seen).is_none())?;
         Some((one.draw_name.clone(), one.depth, event.before.depth))
     })?;
@@ -165,8 +166,8 @@ fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
         numbers::depth(surface),
         amount(steps, "step")
     );
-    let mends = vec![Fix::setting("z-fighting", "depth-off"), Fix::setting("z-fighting", "polygon-offset")];
-    SuspectedCause::new(Cause::ZFighting, evidence, mends, shown_by)
+    let fixes = vec![Fix::setting("z-fighting", "depth-off"), Fix::setting("z-fighting", "polygon-offset")];
+    SuspectedCause::new(Cause::ZFighting, evidence, fixes, shown_by)
 }
 
 /// What a pixel of planar shadows alone tells: what lies on the light's line, but not between.
@@ -217,8 +218,8 @@ fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
     let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
     let over_plane = |point: DVec3| normal.dot(point - seen.corners[0]);
     let light_height = over_plane(source);
-    let turned = if light_height < 0.0 { -1.0 } else { 1.0 };
-    let over_light = |point: &DVec3| turned * (over_plane(*point) - light_height);
+    let flipped = if light_height < 0.0 { -1.0 } else { 1.0 };
+    let over_light = |point: &DVec3| flipped * (over_plane(*point) - light_height);
     // On the line of light and corner, where it meets the plane; a corner level with the light goes to infinity.
     let flattened = |point: &DVec3| {
         let under = light_height - over_plane(*point);

@@ -5,7 +5,7 @@ use crate::accuracy::Finding;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
-use crate::diagnosis::mend::Fix;
+use crate::diagnosis::fix::Fix;
 use crate::numbers;
 use crate::plan::{Decision, DrawPart, LeftOut};
 use crate::technique::Technique;
@@ -182,8 +182,8 @@ fn no_fit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
         );
         // Fitted pictures end beyond their casters, but for rounding.
         let is_fitted = facts.plan.settings.get("fit").is_none_or(|fit| fit == "on");
-        let mend = if is_fitted { Fix::technique(Technique::ZFail) } else { Fix::setting("fit", "on") };
-        return SuspectedCause::new(Cause::OutsideMap, evidence, vec![mend], shown_by);
+        let fix = if is_fitted { Fix::technique(Technique::ZFail) } else { Fix::setting("fit", "on") };
+        return SuspectedCause::new(Cause::OutsideMap, evidence, vec![fix], shown_by);
     }
     let is_its = |left: &&LeftOut| left.names(Decision::Silhouette, &caster);
     let because = facts.plan.left_out.iter().find(is_its).map(|left| left.because.clone());

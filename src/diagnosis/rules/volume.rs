@@ -2,7 +2,7 @@
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
-use crate::diagnosis::mend::{Fix, PlanEdit};
+use crate::diagnosis::fix::{Fix, PlanEdit};
 use crate::geometry::{Extruder, Extrusion, ViewVolume};
 use crate::history::FragmentOutcome;
 use crate::math::{AxisBox, Sign, side_of_triangle};
@@ -253,8 +253,8 @@ fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         return beyond_clamped(facts, case, far?);
     }
     let ((what, count), shown_by) = case.shown(|sample| {
-        let is_clipped = |fate: FragmentOutcome| fate == FragmentOutcome::Clipped(ClipPlane::Far);
-        let faces = sample.volume_events(light).filter(|(_, one)| is_clipped(one.fate)).count();
+        let is_clipped = |outcome: FragmentOutcome| outcome == FragmentOutcome::Clipped(ClipPlane::Far);
+        let faces = sample.volume_events(light).filter(|(_, one)| is_clipped(one.outcome)).count();
         let is_beyond = sample.seen.zip(far).is_some_and(|(seen, far)| facts.tracer.depth_of(seen.point) >= far);
         match (faces, is_beyond) {
             (_, true) => Some(("the surface itself lies".to_owned(), 1)),
@@ -272,8 +272,8 @@ fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     let place = far.map_or_else(|| "at infinity".to_owned(), |far| format!("{} away", numbers::metres(far)));
     let evidence =
         format!("{what} beyond the far plane, {place}, and {} cut away", if count == 1 { "is" } else { "are" });
-    let mends = vec![Fix::setting("depth", "reversed-infinite"), Fix::setting("depth", "standard-finite-clamp")];
-    SuspectedCause::new(Cause::FarClip, evidence, mends, shown_by)
+    let fixes = vec![Fix::setting("depth", "reversed-infinite"), Fix::setting("depth", "standard-finite-clamp")];
+    SuspectedCause::new(Cause::FarClip, evidence, fixes, shown_by)
 }
 
 /// Clamped depth cuts no volume, but a surface beyond the far plane is at the depth of what was not drawn.
@@ -357,8 +357,8 @@ impl ExtrusionInF32 {
                 let far = extruder.carry(place);
                 let way = far.truncate() - place * far.w;
                 let [x, y, z, w] = extruded.carry.far(corner.near).map(f64::from);
-                let told = DVec3::new(x, y, z) + origin * w - place * w;
-                carried.beside = carried.beside.max(way.cross(told).length().atan2(way.dot(told)));
+                let rounded = DVec3::new(x, y, z) + origin * w - place * w;
+                carried.beside = carried.beside.max(way.cross(rounded).length().atan2(way.dot(rounded)));
             }
         }
         Some(carried)
@@ -422,7 +422,7 @@ fn cap_fighting(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
             bits
         };
         let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == DrawPart::Surface);
-        let visible: Vec<_> = visible.filter(|(_, one)| one.fate.passed()).map(|(_, one)| one).collect();
+        let visible: Vec<_> = visible.filter(|(_, one)| one.outcome.passed()).map(|(_, one)| one).collect();
         let visible = visible.last()?;
         let mut caps = sample.volume_events(light).filter(|(_, one)| one.part.includes(DrawPart::LightCap));
         let (event, cap) = caps.find(|(_, one)| corners(one) == corners(visible))?;

@@ -25,9 +25,9 @@ struct DrawRun {
 pub(super) struct PassBuilder<'a> {
     frame: &'a RawFrame,
     stage: &'a FollowedTargets,
-    held: BTreeMap<RawTarget, RawContents>,
+    contents: BTreeMap<RawTarget, RawContents>,
     /// Places whose depth or stencil something other than a draw has set since: a clear, a load, a copy.
-    put: BTreeMap<DrawTarget, [bool; 2]>,
+    written: BTreeMap<DrawTarget, [bool; 2]>,
     run: Option<DrawRun>,
     /// What the steps last showed: colour, depth, stencil.
     shown: [Option<Arc<Image>>; 3],
@@ -45,8 +45,8 @@ impl<'a> PassBuilder<'a> {
         let mut making = PassBuilder {
             frame,
             stage,
-            held: BTreeMap::new(),
-            put: BTreeMap::new(),
+            contents: BTreeMap::new(),
+            written: BTreeMap::new(),
             run: None,
             shown: [None, None, None],
             counting_light: None,
@@ -58,14 +58,14 @@ impl<'a> PassBuilder<'a> {
         };
         for (target, before) in &frame.before {
             making.hold(*target, before.clone());
-            making.put.extend(stage.place(*target).map(|place| (place, [true; 2])));
+            making.written.extend(stage.place(*target).map(|place| (place, [true; 2])));
         }
         making
     }
 
     /// What each face of a depth map holds now, where that is known.
     pub fn face(&self, map: usize, layer: u32) -> Option<Arc<Image>> {
-        self.held.get(&self.stage.target(DrawTarget::Map(map, layer)))?.depth.clone()
+        self.contents.get(&self.stage.target(DrawTarget::Map(map, layer)))?.depth.clone()
     }
 
     pub fn event(&mut self, event: &RawEvent) {
@@ -80,18 +80,18 @@ impl<'a> PassBuilder<'a> {
             }
         }
         // What it leaves is there when the next pass begins, whatever it was.
-        let before = event.depth_target.and_then(|target| self.held.get(&target).cloned()).unwrap_or_default();
+        let before = event.depth_target.and_then(|target| self.contents.get(&target).cloned()).unwrap_or_default();
         self.note(event);
         let Some(target) = event.depth_target else { return };
-        let (Some(place), Some(after)) = (self.stage.place(target), self.held.get(&target)) else { return };
+        let (Some(place), Some(after)) = (self.stage.place(target), self.contents.get(&target)) else { return };
         let changed = [before.depth != after.depth, before.stencil != after.stencil];
         // A clear is one even where it changes nothing: what is counted from then on is another light's.
         let clears = matches!(event.kind, RawKind::Clear { stencil: true, .. });
         self.is_emptied |= place == DrawTarget::Picture && (clears || changed[1]);
         let changed = [changed[0], changed[1] || clears];
         if changed != [false; 2] {
-            let put = self.put.entry(place).or_default();
-            *put = [put[0] || changed[0], put[1] || changed[1]];
+            let written = self.written.entry(place).or_default();
+            *written = [written[0] || changed[0], written[1] || changed[1]];
             self.run = None;
         }
     }
@@ -111,10 +111,10 @@ impl<'a> PassBuilder<'a> {
     fn hold(&mut self, target: RawTarget, RawContents { depth, stencil, color }: RawContents) {
         let size = size_of(self.frame, target);
         let of_size = |image: Option<Arc<Image>>| image.filter(|image| image.size() == size);
-        let held = self.held.entry(target).or_default();
-        held.depth = of_size(depth).or(held.depth.take());
-        held.stencil = of_size(stencil).or(held.stencil.take());
-        held.color = of_size(color).or(held.color.take());
+        let contents = self.contents.entry(target).or_default();
+        contents.depth = of_size(depth).or(contents.depth.take());
+        contents.stencil = of_size(stencil).or(contents.stencil.take());
+        contents.color = of_size(color).or(contents.color.take());
     }
 
     /// Begins a pass for a draw, unless it goes on with the one before; or says why the draw can't be followed.
@@ -167,10 +167,13 @@ impl<'a> PassBuilder<'a> {
     }
 
     fn begin(&mut self, run: DrawRun) {
-        let put =
-            if run.place == DrawTarget::Colors { [false; 2] } else { self.put.remove(&run.place).unwrap_or_default() };
+        let written = if run.place == DrawTarget::Colors {
+            [false; 2]
+        } else {
+            self.written.remove(&run.place).unwrap_or_default()
+        };
         // What it held before its first draw: what is held now may be what that left.
-        let (content, clears) = self.content(run.place, put);
+        let (content, clears) = self.content(run.place, written);
         let light = self.light(&run);
         let (attachment, layer) = match run.place {
             DrawTarget::Picture | DrawTarget::Colors => (super::DEPTH_STENCIL, 0),
@@ -207,9 +210,9 @@ impl<'a> PassBuilder<'a> {
         place: DrawTarget,
         [depth, stencil]: [bool; 2],
     ) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
-        let held = self.held.get(&self.stage.target(place)).cloned().unwrap_or_default();
-        let depth = held.depth.filter(|_| depth);
-        let stencil = held.stencil.filter(|_| stencil);
+        let contents = self.contents.get(&self.stage.target(place)).cloned().unwrap_or_default();
+        let depth = contents.depth.filter(|_| depth);
+        let stencil = contents.stencil.filter(|_| stencil);
         let one_depth = depth.as_deref().and_then(uniform).map(|texel| bytemuck::pod_read_unaligned(&texel));
         let one_stencil = stencil.as_deref().and_then(uniform).map(|texel| texel[0]);
         let rows = |image: Arc<Image>| image.rows().collect::<Vec<_>>().concat();
@@ -254,8 +257,8 @@ impl<'a> PassBuilder<'a> {
     /// What the picture holds now.
     fn snapshot(&mut self) -> FrameSnapshot {
         let size = self.stage.size(self.frame);
-        let of_depth = self.held.get(&self.stage.depth).cloned().unwrap_or_default();
-        let color = self.stage.color.and_then(|color| self.held.get(&color)?.color.clone());
+        let of_depth = self.contents.get(&self.stage.depth).cloned().unwrap_or_default();
+        let color = self.stage.color.and_then(|color| self.contents.get(&color)?.color.clone());
         let mut aspect = |slot: usize, image: Option<Arc<Image>>, format: PixelFormat| {
             let image = image.unwrap_or_else(|| {
                 let texel = vec![0; format.texel_bytes()];
@@ -280,13 +283,13 @@ impl<'a> PassBuilder<'a> {
 /// triangle by its corners: none is shared.
 fn mesh_of(draw: &RawDraw, name: String) -> DrawMesh {
     let (vertices, indices) = (states::vertices(draw), draw.triangles.as_flattened());
-    let Some(kept) = &draw.kept else { return DrawMesh::of_positions(name, vertices, indices.to_vec()) };
+    let Some(retained) = &draw.retained else { return DrawMesh::of_positions(name, vertices, indices.to_vec()) };
     let corners = indices.iter().map(|index| vertices[*index as usize]).collect();
     let word = |(pixel, triangle): &([u16; 2], u32)| [DrawMesh::pixel_word(pixel.map(u32::from)), *triangle];
-    let mut kept: Vec<[u32; 2]> = kept.iter().map(word).collect();
-    kept.sort_unstable();
+    let mut retained: Vec<[u32; 2]> = retained.iter().map(word).collect();
+    retained.sort_unstable();
     let all = (0..indices.len() as u32).collect();
-    DrawMesh { kept: Some(Blob::new(kept)), ..DrawMesh::of_positions(name, corners, all) }
+    DrawMesh { retained: Some(Blob::new(retained)), ..DrawMesh::of_positions(name, corners, all) }
 }
 
 /// The state after draws that left `before`, and one more that left `after`: what none of them changed is unchanged.

@@ -108,11 +108,11 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static st
 
 /// Vertices as wgpu's clip space has them.
 pub(super) fn vertices(draw: &RawDraw) -> Vec<[f32; 4]> {
-    let is_turned = draw.view.depth_range[0] > draw.view.depth_range[1];
+    let is_reversed = draw.view.depth_range[0] > draw.view.depth_range[1];
     let place = |[x, y, z, w]: &[f32; 4]| {
         let y = if draw.view.y_up { *y } else { -y };
         let z = if draw.view.z_from_minus_w { 0.5 * z + 0.5 * w } else { *z };
-        [*x, y, if is_turned { w - z } else { z }, *w]
+        [*x, y, if is_reversed { w - z } else { z }, *w]
     };
     draw.positions.iter().map(place).collect()
 }

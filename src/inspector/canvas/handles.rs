@@ -54,8 +54,8 @@ pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
 
 /// The light's homogeneous position at the scene's start once its handle was moved at a moment.
 pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) -> DVec4 {
-    let turned = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
-    let back = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z)).transpose();
+    let rotated = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
+    let back = DMat3::from_cols(rotated(DVec3::X), rotated(DVec3::Y), rotated(DVec3::Z)).transpose();
     if !light.is_directional() {
         return light.position + (back * by * light.position.w).extend(0.0);
     }

@@ -88,8 +88,8 @@ impl OverlayLines {
         let mut taken = TakenCells::default();
         for ([from, to], multiplicity) in self.counting(placement) {
             let at = from + (to - from) / 2.0;
-            let room = Rect::from_center_size(at, NUMBER_SIZE.into());
-            let is_legible = (to - from).length() >= LEAST_EDGE && seen.contains_rect(room);
+            let area = Rect::from_center_size(at, NUMBER_SIZE.into());
+            let is_legible = (to - from).length() >= LEAST_EDGE && seen.contains_rect(area);
             if is_legible && taken.take(at) {
                 numbers.push((at, multiplicity));
             }
@@ -289,10 +289,10 @@ mod tests {
         for ([from, to], _) in &many {
             let [from, to] = [from, to].map(|end| pos2(end[0] as f32, end[1] as f32));
             let at = from + (to - from) / 2.0;
-            let room = Rect::from_center_size(at, NUMBER_SIZE.into());
+            let area = Rect::from_center_size(at, NUMBER_SIZE.into());
             let [width, height] = NUMBER_SIZE;
             let lies_on = |other: &Pos2| (other.x - at.x).abs() < width && (other.y - at.y).abs() < height;
-            if SEEN.contains_rect(room) && !expected.iter().any(lies_on) {
+            if SEEN.contains_rect(area) && !expected.iter().any(lies_on) {
                 expected.push(at);
             }
         }
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn under_the_pointer_the_nearest_edge_that_counts_twice_is_told_however_short() {
+    fn under_the_pointer_the_nearest_edge_that_counts_twice_is_reported_however_short() {
         let lines = lines(&[
             ([[10.0, 10.0], [14.0, 10.0]], 3),
             ([[10.0, 16.0], [300.0, 16.0]], -2),

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_with_both_outcomes_are_told_from_all_others_and_from_what_volumes_are_made_of_by_every_eye() {
+    fn pixels_with_both_outcomes_are_reported_from_all_others_and_from_what_volumes_are_made_of_by_every_eye() {
         let both = outcome(TestCounts::PASSED | TestCounts::DEPTH_FAILED);
         let outcomes = [TestCounts::PASSED, TestCounts::DEPTH_FAILED, TestCounts::STENCIL_FAILED, TestCounts::UNKNOWN]
             .map(outcome);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn one_up_and_two_up_are_told_apart_and_so_are_one_down_and_two_down() {
+    fn one_up_and_two_up_are_distinguished_and_so_are_one_down_and_two_down() {
         use crate::inspector::look::coloring::count_color;
         for eyes in EYES {
             for [one, two] in [[1, 2], [-1, -2], [2, 3], [-2, -3]] {

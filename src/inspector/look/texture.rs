@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Bytes of textures that are kept, beyond those of the current frame.
-const KEPT_BYTES: usize = 384 << 20;
+const CACHED_BYTES: usize = 384 << 20;
 /// Largest side of a thumbnail in texels: twice the points, for sharp screens.
 const THUMBNAIL_SIDE: u32 = 112;
 
@@ -73,7 +73,7 @@ impl PictureCache {
     pub fn tick(&mut self) {
         self.clock += 1;
         let mut bytes: usize = self.textures.iter().map(|texture| texture.handle.byte_size()).sum();
-        while bytes > KEPT_BYTES {
+        while bytes > CACHED_BYTES {
             let oldest = self.textures.iter().enumerate().min_by_key(|(_, texture)| texture.last_used);
             let Some((index, oldest)) = oldest.filter(|(_, texture)| texture.last_used + 1 < self.clock) else { break };
             bytes -= oldest.handle.byte_size();
@@ -293,7 +293,7 @@ pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
     for (at, color) in places.zip(&colored.pixels) {
         let [red, green, blue, _] = color.to_array();
-        picture.put(at, [red, green, blue]);
+        picture.set(at, [red, green, blue]);
     }
     picture
 }
@@ -305,7 +305,7 @@ pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring, column
     let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
     for (at, color) in places.zip(&colored.pixels).filter(|([x, _], _)| columns.contains(x)) {
         if let Some(under) = picture.at(at) {
-            picture.put(at, over(*color, under));
+            picture.set(at, over(*color, under));
         }
     }
 }
@@ -360,15 +360,15 @@ mod tests {
     fn images_that_left_with_their_capture_are_forgotten() {
         let ctx = Context::default();
         let mut cache = PictureCache::default();
-        let [kept, gone] = [1, 2].map(|value| Arc::new(Image::uniform(PixelFormat::U8, [2, 2], &[value])));
-        for image in [&kept, &gone] {
+        let [cached, gone] = [1, 2].map(|value| Arc::new(Image::uniform(PixelFormat::U8, [2, 2], &[value])));
+        for image in [&cached, &gone] {
             let _kept_by_the_cache = cache.texture(&ctx, image, Coloring::Stencil, TextureSize::Full);
             assert_eq!(cache.histogram(image).iter().sum::<u64>(), 4);
         }
         drop(gone);
         cache.forget_unused();
         assert_eq!(cache.textures.len(), 1);
-        assert!(Arc::ptr_eq(&cache.textures[0].image, &kept));
+        assert!(Arc::ptr_eq(&cache.textures[0].image, &cached));
         assert_eq!(cache.histograms.len(), 1);
     }
 }

@@ -230,22 +230,22 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
 }
 
 /// One line of text, cut off with an ellipsis where there is no room.
-pub fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: TextStyle, color: Color32) {
+pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, color: Color32) {
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
     let galley = ui.painter().layout_job(job);
     ui.painter().galley(at, galley, color);
 }
 
 /// Two words on one line, the second dim, cut off with an ellipsis; `at` is its left end, half way up.
-pub fn two_inks(ui: &Ui, at: egui::Pos2, room: f32, words: [&str; 2], color: Color32) {
+pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
     let mut job = egui::text::LayoutJob::default();
     let format = |color| egui::TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
     job.append(words[0], 0.0, format(color));
     if !words[1].is_empty() {
         job.append(words[1], 4.0, format(of(ui).dim));
     }
-    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
     let galley = ui.painter().layout_job(job);
     ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
 }
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_a_volume_can_be_told_apart_from_the_ground_of_both_themes() {
+    fn parts_of_a_volume_can_be_distinguished_from_the_ground_of_both_themes() {
         for theme in [&DARK, &LIGHT] {
             for ink in [theme.side, theme.light_cap, theme.dark_cap] {
                 assert!(contrast(ink, theme.panel) >= 3.0);

@@ -63,7 +63,7 @@ fn fill_triangle(picture: &mut Picture, corners: [Vertex; 3], clip: Rect, letter
                 |from: Pos2, to: Pos2| ((to - from).x * (at - from).y - (to - from).y * (at - from).x) / doubled;
             let shares = [share(b, c), share(c, a), share(a, b)];
             if let Some(under) = picture.at([x, y]) {
-                picture.put([x, y], over(color(corners, shares, letters), under));
+                picture.set([x, y], over(color(corners, shares, letters), under));
             }
         }
     }

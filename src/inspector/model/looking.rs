@@ -9,9 +9,9 @@ use crate::inspector::action::Overlay;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture::PictureCache;
 use crate::numbers::percent;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::counts;
 use crate::reading::format;
-use crate::reading::moment::CapturePoint;
 use crate::reading::outcomes::TestOutcomes;
 use crate::reading::shown::{PictureKind, ShownPicture};
 use crate::reading::steps;
@@ -133,7 +133,7 @@ pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoSte
     match at.draw.and_then(|draw| draw.checked_sub(1)) {
         Some(draw) => {
             let before = CapturePoint { draw: Some(draw), ..at };
-            if before.is_held(capture) { Ok(before) } else { Err(NoStepBefore::NotKnown) }
+            if before.is_known(capture) { Ok(before) } else { Err(NoStepBefore::NotKnown) }
         }
         None => at.step.checked_sub(1).map(CapturePoint::from).ok_or(NoStepBefore::First),
     }

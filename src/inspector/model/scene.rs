@@ -163,7 +163,7 @@ impl Model {
             }
         }
         if let Some((question, report)) = self.scene.as_ref().and_then(|scene| self.reports.get(&scene.key())) {
-            self.answers.tell(question.clone(), Ok(Arc::clone(report)));
+            self.answers.take_in(question.clone(), Ok(Arc::clone(report)));
         }
         self.note_for_undo();
     }
@@ -228,19 +228,19 @@ impl Model {
         self.restore(after, actions);
     }
 
-    fn restore(&mut self, moment: Option<undo::RunState>, actions: &mut Vec<Action>) {
-        let Some(moment) = moment else { return };
+    fn restore(&mut self, state: Option<undo::RunState>, actions: &mut Vec<Action>) {
+        let Some(state) = state else { return };
         self.animation.is_running = false;
         match &mut self.scene {
-            Some(scene) if scene.source == moment.source => {
-                scene.draft = moment.request;
-                scene.lights_opened = moment.lights_opened;
+            Some(scene) if scene.source == state.source => {
+                scene.draft = state.request;
+                scene.lights_opened = state.lights_opened;
                 self.run_draft(actions);
             }
             _ => {
                 // Another scene was open then: it is opened first.
-                actions.extend(moment.source.clone().map(Action::Open));
-                self.restoring = moment.source.is_some().then_some(moment);
+                actions.extend(state.source.clone().map(Action::Open));
+                self.restoring = state.source.is_some().then_some(state);
             }
         }
     }
@@ -248,13 +248,13 @@ impl Model {
     /// Runs the scene that was opened by taking a change back as it was run then.
     pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
         let is_open =
-            |moment: &mut undo::RunState| self.scene.as_ref().is_some_and(|scene| scene.source == moment.source);
-        if let Some(moment) = self.restoring.take_if(is_open)
+            |state: &mut undo::RunState| self.scene.as_ref().is_some_and(|scene| scene.source == state.source);
+        if let Some(state) = self.restoring.take_if(is_open)
             && let Some(scene) = &mut self.scene
         {
-            scene.choices.insert(moment.request.choice.technique(), moment.request.choice.clone());
-            scene.draft = moment.request;
-            scene.lights_opened = moment.lights_opened;
+            scene.choices.insert(state.request.choice.technique(), state.request.choice.clone());
+            scene.draft = state.request;
+            scene.lights_opened = state.lights_opened;
             self.run_draft(actions);
         }
     }

@@ -5,7 +5,7 @@ use super::Model;
 use crate::ask::{DrawsOf, QuestionKind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
 use crate::history::PixelEvent;
-use crate::reading::moment::CapturePoint;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::shown::{PictureKind, TexelZoom};
 use crate::reading::steps;
 use std::sync::Arc;
@@ -97,8 +97,8 @@ impl Model {
     /// What is shown: what is selected, or what was shown before while that is not known.
     pub fn moment(&self) -> CapturePoint {
         let selected = self.selected();
-        let is_held = self.frame.capture.as_ref().is_none_or(|capture| selected.is_held(capture));
-        if is_held { selected } else { self.selection.stays }
+        let is_known = self.frame.capture.as_ref().is_none_or(|capture| selected.is_known(capture));
+        if is_known { selected } else { self.selection.stays }
     }
 
     /// Another capture takes the place of `before`: what is selected stays where it means the same.
@@ -169,7 +169,7 @@ impl Model {
 
     /// Wants the states after the draws of the selected step, where one of them is looked at and not known.
     pub fn want_draws(&self) -> Reply<StepDraws> {
-        let is_missing = self.frame.capture.as_ref().is_some_and(|capture| !self.selected().is_held(capture));
+        let is_missing = self.frame.capture.as_ref().is_some_and(|capture| !self.selected().is_known(capture));
         if is_missing || self.lacks_draw_before() {
             self.answers.want(DrawsOf { step: self.selection.step })
         } else {

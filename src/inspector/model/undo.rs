@@ -27,26 +27,26 @@ pub struct UndoHistory {
     now: Option<RunState>,
     future: Vec<RunState>,
     /// A button is held, or one walks: what changes now belongs to one step.
-    is_held: bool,
+    is_paused: bool,
     /// The step under way has begun.
     has_begun: bool,
 }
 
 impl UndoHistory {
     /// Tells whether what changes from now on belongs to one step.
-    pub fn hold(&mut self, is_held: bool) {
-        self.has_begun &= is_held;
-        self.is_held = is_held;
+    pub fn hold(&mut self, is_paused: bool) {
+        self.has_begun &= is_paused;
+        self.is_paused = is_paused;
     }
 
     /// The scene is run like this now.
-    pub fn note(&mut self, moment: RunState) {
-        let Some(before) = self.now.replace(moment.clone()) else { return };
-        if before == moment {
+    pub fn note(&mut self, state: RunState) {
+        let Some(before) = self.now.replace(state.clone()) else { return };
+        if before == state {
             return;
         }
-        let only_time_runs = RunRequest { time: moment.request.time, ..before.request.clone() } == moment.request
-            && before.source == moment.source;
+        let only_time_runs = RunRequest { time: state.request.time, ..before.request.clone() } == state.request
+            && before.source == state.source;
         if only_time_runs {
             return;
         }
@@ -54,7 +54,7 @@ impl UndoHistory {
         if self.has_begun {
             return;
         }
-        self.has_begun = self.is_held;
+        self.has_begun = self.is_paused;
         if self.past.len() == MOST {
             self.past.remove(0);
         }
@@ -95,7 +95,7 @@ mod tests {
     use glam::DVec3;
     use std::collections::BTreeSet;
 
-    fn moment(width: u32, time: f64) -> RunState {
+    fn state(width: u32, time: f64) -> RunState {
         let camera = Camera {
             eye: DVec3::Y,
             target: DVec3::ZERO,
@@ -112,18 +112,18 @@ mod tests {
     }
 
     fn widths(undo: &mut UndoHistory) -> Vec<u32> {
-        std::iter::from_fn(|| undo.undo()).map(|moment| moment.request.size[0]).collect()
+        std::iter::from_fn(|| undo.undo()).map(|state| state.request.size[0]).collect()
     }
 
     #[test]
     fn steps_go_back_and_forth_and_a_change_forgets_what_was_undone() {
         let mut undo = UndoHistory::default();
-        (1..=3).for_each(|width| undo.note(moment(width, 0.0)));
-        assert_eq!(undo.undo(), Some(moment(2, 0.0)));
-        assert_eq!(undo.redo(), Some(moment(3, 0.0)));
+        (1..=3).for_each(|width| undo.note(state(width, 0.0)));
+        assert_eq!(undo.undo(), Some(state(2, 0.0)));
+        assert_eq!(undo.redo(), Some(state(3, 0.0)));
         assert_eq!(undo.redo(), None);
         undo.undo();
-        undo.note(moment(9, 0.0));
+        undo.note(state(9, 0.0));
         assert!(!undo.can_redo());
         assert_eq!(widths(&mut undo), [2, 1]);
     }
@@ -131,29 +131,29 @@ mod tests {
     #[test]
     fn what_is_dragged_is_one_step() {
         let mut undo = UndoHistory::default();
-        undo.note(moment(1, 0.0));
+        undo.note(state(1, 0.0));
         undo.hold(true);
-        (2..=5).for_each(|width| undo.note(moment(width, 0.0)));
+        (2..=5).for_each(|width| undo.note(state(width, 0.0)));
         undo.hold(false);
-        undo.note(moment(6, 0.0));
+        undo.note(state(6, 0.0));
         assert_eq!(widths(&mut undo), [5, 1]);
     }
 
     #[test]
     fn a_running_animation_is_no_step_and_neither_is_the_same_again() {
         let mut undo = UndoHistory::default();
-        undo.note(moment(1, 0.0));
-        undo.note(moment(1, 0.5));
-        undo.note(moment(1, 0.5));
+        undo.note(state(1, 0.0));
+        undo.note(state(1, 0.5));
+        undo.note(state(1, 0.5));
         assert!(!undo.can_undo());
-        undo.note(moment(2, 0.5));
-        assert_eq!(undo.undo(), Some(moment(1, 0.5)), "at the moment where it was left");
+        undo.note(state(2, 0.5));
+        assert_eq!(undo.undo(), Some(state(1, 0.5)), "at the moment where it was left");
     }
 
     #[test]
     fn only_so_many_steps_are_kept() {
         let mut undo = UndoHistory::default();
-        (0..500).for_each(|width| undo.note(moment(width, 0.0)));
+        (0..500).for_each(|width| undo.note(state(width, 0.0)));
         assert_eq!(widths(&mut undo).len(), MOST);
     }
 }

@@ -26,7 +26,7 @@ pub struct WalkState {
     /// egui's time of the last step, seconds.
     pub last: Option<f64>,
     /// Mouse movement that no frame shows yet, points.
-    pub turned: Vec2,
+    pub rotation: Vec2,
 }
 
 /// How one stands who weighs something.
@@ -51,7 +51,7 @@ impl Default for WalkState {
             nothing_because: None,
             weight: None,
             last: None,
-            turned: Vec2::ZERO,
+            rotation: Vec2::ZERO,
         }
     }
 }
@@ -95,10 +95,10 @@ impl Model {
     }
 }
 
-fn hold_pointer(ctx: &Context, is_held: bool) {
-    let grab = if is_held { CursorGrab::Locked } else { CursorGrab::None };
+fn hold_pointer(ctx: &Context, is_grabbed: bool) {
+    let grab = if is_grabbed { CursorGrab::Locked } else { CursorGrab::None };
     ctx.send_viewport_cmd(ViewportCommand::CursorGrab(grab));
-    ctx.send_viewport_cmd(ViewportCommand::CursorVisible(!is_held));
+    ctx.send_viewport_cmd(ViewportCommand::CursorVisible(!is_grabbed));
 }
 
 #[cfg(test)]
@@ -108,8 +108,8 @@ mod tests {
     #[test]
     fn the_pointer_is_held_and_hidden_and_let_go() {
         let ctx = Context::default();
-        let sent = |is_held: bool| {
-            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| hold_pointer(ui.ctx(), is_held));
+        let sent = |is_grabbed: bool| {
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| hold_pointer(ui.ctx(), is_grabbed));
             output.textures_delta.clear();
             let is_of_pointer = |command: &ViewportCommand| {
                 matches!(command, ViewportCommand::CursorGrab(_) | ViewportCommand::CursorVisible(_))

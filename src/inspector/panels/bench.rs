@@ -64,9 +64,9 @@ fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
 fn pixel(ui: &mut Ui, own: &mut TestBench) {
     theme::heading(ui, "The pixel holds");
     ui.horizontal(|ui| {
-        number(ui, "stencil held", &mut own.held.stencil);
-        ui.label(theme::number(bits(own.held.stencil)).color(theme::of(ui).dim));
-        depth(ui, "depth held", &mut own.held.depth);
+        number(ui, "stencil held", &mut own.stored.stencil);
+        ui.label(theme::number(bits(own.stored.stencil)).color(theme::of(ui).dim));
+        depth(ui, "depth held", &mut own.stored.depth);
     });
 }
 

@@ -34,8 +34,8 @@ pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
             map: map.as_ref(),
         };
         // Counting a picture is not free: it is done once for each step and pixel.
-        let told = own.of(model.frame.number, &known);
-        for fact in told.iter() {
+        let facts = own.of(model.frame.number, &known);
+        for fact in facts.iter() {
             theme::card(ui).show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 ui.add(Label::new(RichText::new(&fact.formula).color(theme::of(ui).text)).wrap());

@@ -137,8 +137,8 @@ fn list_row(ui: &mut Ui, own: &mut StressPanel, rows: &StressRows, case: &Stress
     let at = pos2(rect.right() - 8.0, rect.center().y);
     let verdict = ui.painter().text(at, egui::Align2::RIGHT_CENTER, word, font, color);
     let left = rect.left() + 8.0;
-    let room = verdict.left() - left - 8.0;
-    theme::line(ui, pos2(left, rect.center().y - 8.0), room, case.name, TextStyle::Body, theme::of(ui).text);
+    let width = verdict.left() - left - 8.0;
+    theme::line(ui, pos2(left, rect.center().y - 8.0), width, case.name, TextStyle::Body, theme::of(ui).text);
     response.on_hover_text(case.lesson);
 }
 

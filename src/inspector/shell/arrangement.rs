@@ -37,18 +37,18 @@ impl TileDrag {
 
     /// Settles it once the tile was dropped, in a window of this size.
     pub fn settle(self, tree: &mut Tree<PanelKind>, size: Vec2) {
-        mend(tree, self.pointer);
+        fix(tree, self.pointer);
         let least = |tree: &Tree<PanelKind>| tree.root.map_or(Vec2::ZERO, |root| least(&tree.tiles, root));
         let (needed, most) = (least(tree), size.max(least(&self.before)));
-        let has_room = needed.x <= most.x && needed.y <= most.y;
-        if has_room && is_whole(tree) {
+        let has_space = needed.x <= most.x && needed.y <= most.y;
+        if has_space && is_whole(tree) {
             return;
         }
         let group = self.pointer.and_then(|at| group_at(&self.before.tiles, at, &|id| id != self.tile));
         *tree = self.before;
         if let Some(group) = group {
             tree.move_tile_to_container(self.tile, group, usize::MAX, false);
-            mend(tree, None);
+            fix(tree, None);
         }
     }
 }
@@ -99,7 +99,7 @@ fn visit(tiles: &Tiles<PanelKind>, tile: TileId, seen: &mut BTreeSet<u64>, panel
 
 /// Takes groups out of tabs, and gives what is new its share. Panels that shared the tabs with a group join that of its
 /// groups which is at `pointer`, or else its first.
-pub fn mend(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
+pub fn fix(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
     share_fairly(tree);
     tree.simplify(&options());
     while let Some((tabs, split)) = split_in_tabs(&tree.tiles) {
@@ -194,7 +194,7 @@ pub fn fit(tree: &mut Tree<PanelKind>, size: Vec2) -> Vec<(TileId, Shares)> {
 }
 
 /// Puts shares back that were changed for one window.
-pub fn put_back(tree: &mut Tree<PanelKind>, shares: Vec<(TileId, Shares)>) {
+pub fn restore_waiting(tree: &mut Tree<PanelKind>, shares: Vec<(TileId, Shares)>) {
     for (id, before) in shares {
         if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(id) {
             linear.shares = before;
@@ -206,10 +206,10 @@ fn fit_tile(tiles: &mut Tiles<PanelKind>, tile: TileId, size: Vec2, before: &mut
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(tile) else { return };
     let (children, is_row) = (linear.children.clone(), linear.dir == LinearDir::Horizontal);
     let along = |size: Vec2| if is_row { size.x } else { size.y };
-    let room = (along(size) - GAP * children.len().saturating_sub(1) as f32).max(0.0);
-    let wished = linear.shares.split(&children, room);
+    let space = (along(size) - GAP * children.len().saturating_sub(1) as f32).max(0.0);
+    let wished = linear.shares.split(&children, space);
     let needed: Vec<f32> = children.iter().map(|child| along(least(tiles, *child))).collect();
-    let lengths = lengths(&wished, &needed, room);
+    let lengths = lengths(&wished, &needed, space);
     if lengths != wished
         && let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(tile)
     {
@@ -222,14 +222,14 @@ fn fit_tile(tiles: &mut Tiles<PanelKind>, tile: TileId, size: Vec2, before: &mut
 }
 
 /// Lengths as they are wished for, but none below what is needed; where there is no room for that, in the same ratio.
-fn lengths(wished: &[f32], needed: &[f32], room: f32) -> Vec<f32> {
+fn lengths(wished: &[f32], needed: &[f32], space: f32) -> Vec<f32> {
     let all: f32 = needed.iter().sum();
-    if all >= room {
-        return needed.iter().map(|needed| needed * room / all.max(1.0)).collect();
+    if all >= space {
+        return needed.iter().map(|needed| needed * space / all.max(1.0)).collect();
     }
     let mut is_short = vec![false; wished.len()];
     loop {
-        let rest: f32 = room - needed.iter().zip(&is_short).filter(|(_, short)| **short).map(|(n, _)| n).sum::<f32>();
+        let rest: f32 = space - needed.iter().zip(&is_short).filter(|(_, short)| **short).map(|(n, _)| n).sum::<f32>();
         let sum: f32 = wished.iter().zip(&is_short).filter(|(_, short)| !**short).map(|(w, _)| w).sum();
         let scale = if sum > 0.0 { rest / sum } else { 0.0 };
         let next = (0..wished.len()).find(|index| !is_short[*index] && wished[*index] * scale < needed[*index]);

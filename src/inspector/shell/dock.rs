@@ -89,7 +89,7 @@ impl Dock {
         arrangement::complete(&mut tree);
         if arrangement::is_whole(&tree) {
             self.tree = tree;
-            arrangement::mend(&mut self.tree, None);
+            arrangement::fix(&mut self.tree, None);
             self.arranged_by_user = true;
         }
     }
@@ -133,7 +133,7 @@ impl Dock {
         self.tree.ui(&mut behavior, ui);
         let Panes { edited, dropped, resized, .. } = behavior;
         if !resized {
-            arrangement::put_back(&mut self.tree, fitted);
+            arrangement::restore_waiting(&mut self.tree, fitted);
         }
         if dropped && let Some(drag) = drag {
             drag.settle(&mut self.tree, size);

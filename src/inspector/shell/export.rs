@@ -62,7 +62,7 @@ impl ExportDialog {
             ExportKind::AsShown => format!("{stem}-{}-as-shown.png", title()?),
             ExportKind::Data => format!("{stem}-{}.npy", model.shown(capture)?.title),
             ExportKind::Steps => format!("{stem}-passes.png"),
-            ExportKind::LightRound => format!("{stem}-{}-round.png", numbers::light(turned(model)?)),
+            ExportKind::LightRound => format!("{stem}-{}-round.png", numbers::light(selected_light(model)?)),
             ExportKind::Page => format!("{stem}.html"),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", model.scene.as_ref()?.name),
@@ -110,7 +110,7 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(runnable(model)?))),
         ExportKind::Steps => return Some(ExportData::Film(FilmSubject::Steps(capture))),
         ExportKind::LightRound => {
-            let light = turned(model)?;
+            let light = selected_light(model)?;
             let request = Box::new(runnable(model)?);
             return Some(ExportData::Film(FilmSubject::LightRound { request, light }));
         }
@@ -140,7 +140,7 @@ fn is_film(kind: ExportKind) -> bool {
 }
 
 /// The light that goes round: the shown one; `None` where there is none that could.
-fn turned(model: &Model) -> Option<usize> {
+fn selected_light(model: &Model) -> Option<usize> {
     let last = model.scene.as_ref()?.draft.lights.len().checked_sub(1)?;
     Some(model.view.light.min(last))
 }

@@ -87,8 +87,8 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenRepl
     ui.add_space(if files.is_empty() { 0.0 } else { 8.0 });
     // What is under the lists stays in sight.
     let others = ui.min_rect().height() + 320.0;
-    let room = (ui.ctx().content_rect().height() - others).clamp(60.0, 400.0);
-    let lists = [("A built-in scene", &dialog.scenes, room), ("A frame of another program", &dialog.frames, 120.0)];
+    let height = (ui.ctx().content_rect().height() - others).clamp(60.0, 400.0);
+    let lists = [("A built-in scene", &dialog.scenes, height), ("A frame of another program", &dialog.frames, 120.0)];
     for (title, entries, height) in lists.into_iter().filter(|(_, entries, _)| !entries.is_empty()) {
         ui.label(theme::note(title));
         let scroll = egui::ScrollArea::vertical().id_salt(title).max_height(height).auto_shrink([false, true]);

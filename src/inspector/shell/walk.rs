@@ -220,9 +220,9 @@ fn next_size(model: &mut Model, actions: &mut Vec<Action>) {
 
 /// Turns and moves the camera by what was asked since the last step, once that one is shown.
 fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
-    let held = |key| ctx.input(|input| input.key_down(key));
-    let goes: DVec3 = KEYS.iter().filter(|key| held(key.key)).map(|key| way(key.command)).sum();
-    model.walk.turned += ctx.input(|input| input.pointer.motion()).unwrap_or(Vec2::ZERO);
+    let is_down = |key| ctx.input(|input| input.key_down(key));
+    let goes: DVec3 = KEYS.iter().filter(|key| is_down(key.key)).map(|key| way(key.command)).sum();
+    model.walk.rotation += ctx.input(|input| input.pointer.motion()).unwrap_or(Vec2::ZERO);
     let now = ctx.input(|input| input.time);
     let needs_walls = model.walk.collides || model.walk.weight.is_some();
     let walls = walls(model);
@@ -237,15 +237,15 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
         model.walk.last = None;
     }
     let is_known = !needs_walls || walls.is_some();
-    if model.activity.is_waiting || !is_known || (!moves && model.walk.turned == Vec2::ZERO) {
+    if model.activity.is_waiting || !is_known || (!moves && model.walk.rotation == Vec2::ZERO) {
         return;
     }
     let passed = model.walk.last.map_or(1.0 / 60.0, |last| (now - last).clamp(0.0, LONGEST));
     model.walk.last = Some(now).filter(|_| moves);
-    let turned = std::mem::take(&mut model.walk.turned);
+    let rotation = std::mem::take(&mut model.walk.rotation);
     let Some(scene) = &mut model.scene else { return };
     let before = scene.draft.camera;
-    turn(&mut scene.draft.camera, turned);
+    turn(&mut scene.draft.camera, rotation);
     let floats = model.walk.weight.is_none();
     let by = direction(&scene.draft.camera, goes, floats && !model.walk.collides) * (model.walk.speed * passed);
     let radius = RADIUS.max(before.near * RADIUS_OF_NEAR);
@@ -324,10 +324,10 @@ fn turn(camera: &mut Camera, by: Vec2) {
     let most = MOST_PITCH.to_radians();
     let wished = (pitch - f64::from(by.y) * TURN.to_radians()).clamp(-most.max(pitch.abs()), most.max(pitch.abs()));
     let side = direction.cross(DVec3::Y).normalize_or(DVec3::X);
-    let turned = DQuat::from_rotation_y(-f64::from(by.x) * TURN.to_radians())
+    let rotation = DQuat::from_rotation_y(-f64::from(by.x) * TURN.to_radians())
         * DQuat::from_axis_angle(side, wished - pitch)
         * ahead;
-    camera.target = camera.eye + turned;
+    camera.target = camera.eye + rotation;
 }
 
 /// A way of the keys in the world, of length 1: over the ground, or along the view where one flies.

@@ -83,12 +83,12 @@ mod tests {
         let surface = RasterState { depth_compare: CompareFunction::Less, ..RasterState::surface() };
         let marks = StencilFace { pass_op: StencilOperation::Replace, ..StencilFace::IGNORE };
         let masks = FaceMasks { reference: 0, read: 0xff, write: 0xff };
-        let turned = RasterState { front_face: FrontFace::Cw, cull: Some(Face::Back), ..surface.clone() };
+        let flipped = RasterState { front_face: FrontFace::Cw, cull: Some(Face::Back), ..surface.clone() };
         let [front, back] = [[marks, StencilFace::IGNORE], [StencilFace::IGNORE, marks]]
             .map(|[front, back]| surface.clone().with_faces(front, back, 0));
         let apart = RasterState { back: Some(masks), ..front.clone() };
         let blends = RasterState { color: ColorWrite::Add, ..surface.clone() };
-        vec![surface, turned, front, back, apart, blends]
+        vec![surface, flipped, front, back, apart, blends]
     }
 
     #[test]

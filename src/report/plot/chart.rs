@@ -41,9 +41,9 @@ impl ChartFrame {
         let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
         let times = rows().flat_map(|row| [row.frame_ms.median, row.frame_ms.min, row.frame_ms.max]);
         let times = scale::range(times, NO_TIMES);
-        let room = size[1] - top - below - BREAK;
+        let height = size[1] - top - below - BREAK;
         // More than half of the chart is not for rows that are all equally right.
-        let most_lanes = ((room * 0.55 / LANE) as usize).max(1);
+        let most_lanes = ((height * 0.55 / LANE) as usize).max(1);
         // The widest words that the axis may have.
         let left = 8.0 + text_width(NONE_WRONG, SMALL_SIZE).max(text_width("0.00001 %", SMALL_SIZE)) + 6.0;
         let [x0, x1] = [left, size[0] - RIGHT];

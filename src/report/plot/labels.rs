@@ -99,8 +99,8 @@ fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[Plo
             return None;
         }
         let [[left, top], [right, bottom]] = [rect.min, rect.max];
-        let room = PlotRect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
-        let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &room)).count();
+        let area = PlotRect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
+        let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &area)).count();
         Some((cost + LINE_COST * lines as f64, text))
     });
     candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, text)| text)

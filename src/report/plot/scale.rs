@@ -14,13 +14,13 @@ const LEAST_RATIO: f64 = 8.0;
 
 /// The range of positive, finite values with some room around them; `fallback` where there are none.
 pub fn range(values: impl Iterator<Item = f64>, fallback: [f64; 2]) -> [f64; 2] {
-    const ROOM: f64 = 1.35;
+    const MARGIN: f64 = 1.35;
     let usable = values.filter(|value| value.is_finite() && *value > 0.0);
     let ends = usable.fold(None, |ends: Option<[f64; 2]>, value| {
         Some(ends.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
     });
     let Some([low, high]) = ends else { return fallback };
-    let [low, high] = [low / ROOM, high * ROOM];
+    let [low, high] = [low / MARGIN, high * MARGIN];
     let missing = (LEAST_RATIO * low / high).max(1.0).sqrt();
     // The smallest and largest numbers there are have no room around them.
     [(low / missing).max(f64::MIN_POSITIVE), (high * missing).min(f64::MAX)]

@@ -116,9 +116,9 @@ fn chart(report: &Report, scene: &str, name: &str) -> SceneChart {
     // Names at the ends of their lines, apart.
     names.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut low = area.min[1] - NAME_HEIGHT;
-    let room = area.max[1] + 4.0 - NAME_HEIGHT * names.len() as f64;
+    let height = area.max[1] + 4.0 - NAME_HEIGHT * names.len() as f64;
     let labels = names.into_iter().enumerate().map(|(index, (y, caption, style))| {
-        low = y.min(room + NAME_HEIGHT * (index + 1) as f64).max(low + NAME_HEIGHT);
+        low = y.min(height + NAME_HEIGHT * (index + 1) as f64).max(low + NAME_HEIGHT);
         PlotText::new([area.max[0] + NAMES, low], caption, SMALL_SIZE, PlotInk::Technique(style))
     });
     let labels = labels.collect();

@@ -68,12 +68,12 @@ fn points_are_at_the_logarithms_of_time_and_error() {
     let chart = chart(&plot);
     let at = |technique: &str| chart.spots.iter().find(|spot| spot.style.technique == technique).expect("a spot").at;
     // The axis has a room of 1.35 at both ends: log10(1.35) of log10(100 · 1.35²) in all.
-    let room = 1.35_f64.log10();
-    let place = |decades: f64| chart.area.min[0] + (decades + room) / (2.0 + 2.0 * room) * chart.area.width();
+    let margin = 1.35_f64.log10();
+    let place = |decades: f64| chart.area.min[0] + (decades + margin) / (2.0 + 2.0 * margin) * chart.area.width();
     for (technique, decades) in [("none", 0.0), ("planar", 1.0), ("z-fail", 2.0)] {
         assert!((at(technique)[0] - place(decades)).abs() < 1e-6, "{technique}");
     }
-    let level = |decades: f64| chart.area.max[1] - (decades + room) / (1.0 + 2.0 * room) * chart.area.height();
+    let level = |decades: f64| chart.area.max[1] - (decades + margin) / (1.0 + 2.0 * margin) * chart.area.height();
     assert!((at("none")[1] - level(1.0)).abs() < 1e-6, "10 %");
     assert!((at("planar")[1] - level(0.0)).abs() < 1e-6, "1 %");
     assert!(chart.band.min[1] < at("z-fail")[1] && at("z-fail")[1] < chart.band.max[1]);

@@ -82,8 +82,8 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
         far: table.far.as_ref().map(finite_number).transpose()?,
     };
     camera.check().map_err(|reason| {
-        let mends = if reason.contains(": ") { "" } else { ": correct it" };
-        SceneFileProblem { at: culprit(table, &camera), reason: format!("{reason}{mends}") }
+        let fixes = if reason.contains(": ") { "" } else { ": correct it" };
+        SceneFileProblem { at: culprit(table, &camera), reason: format!("{reason}{fixes}") }
     })?;
     Ok(camera)
 }

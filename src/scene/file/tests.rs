@@ -117,7 +117,7 @@ fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
 }
 
 #[test]
-fn errors_name_the_line_and_the_mend() {
+fn errors_name_the_line_and_the_fix() {
     let cases = [
         ("ambient =", "ambiant =", 2, "unknown key `ambiant`: did you mean `ambient`?"),
         ("near = 0.05", "neer = 0.05", 6, "did you mean `near`?"),

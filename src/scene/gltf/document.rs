@@ -48,13 +48,13 @@ pub struct GltfDocument {
 impl GltfDocument {
     /// Reads a file and its buffers.
     pub fn open(file: &Path) -> Result<GltfDocument, SceneError> {
-        let told = |reason: String| SceneError::Read { file: file.to_owned(), reason };
-        let bytes = read_plain(file, MOST_BYTES).map_err(|error| told(error.to_string()))?;
+        let failed = |reason: String| SceneError::Read { file: file.to_owned(), reason };
+        let bytes = read_plain(file, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
         let (root, blob) = parse(&bytes, file)?;
-        checked(&root).map_err(told)?;
+        checked(&root).map_err(failed)?;
         let (numbers, left) = (RefCell::default(), Cell::new(FREE_ITEMS));
         let mut document = GltfDocument { root, buffers: Vec::new(), file: file.to_owned(), numbers, left };
-        document.read_buffers(blob).map_err(told)?;
+        document.read_buffers(blob).map_err(failed)?;
         Ok(document)
     }
 
@@ -146,15 +146,15 @@ fn path_of(uri: &str) -> Option<PathBuf> {
 }
 
 fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneError> {
-    let told = |reason: &str| SceneError::Read { file: file.to_owned(), reason: reason.to_owned() };
+    let failed = |reason: &str| SceneError::Read { file: file.to_owned(), reason: reason.to_owned() };
     if bytes.is_empty() {
-        return Err(told("is empty: give a glTF file with content"));
+        return Err(failed("is empty: give a glTF file with content"));
     }
     let is_binary = bytes.starts_with(b"glTF");
     // The crate subtracts the head's length unchecked.
     let length = bytes.get(8..GLB_HEAD).and_then(|length| length.try_into().ok()).map_or(0, u32::from_le_bytes);
     if is_binary && (length as usize) < GLB_HEAD {
-        return Err(told("is a broken .glb (its head is too short): export it again"));
+        return Err(failed("is a broken .glb (its head is too short): export it again"));
     }
     match gltf::Gltf::from_slice_without_validation(bytes) {
         Ok(gltf::Gltf { document, blob }) => Ok((document.into_json(), blob)),
@@ -163,7 +163,7 @@ fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneErro
             line: error.line(),
             reason: format!("is no glTF 2.0 ({}): export the file again", in_a_line(&error.to_string())),
         }),
-        Err(error) => Err(told(&format!("is no glTF 2.0 file ({}): export it again", in_a_line(&error.to_string())))),
+        Err(error) => Err(failed(&format!("is no glTF 2.0 file ({}): export it again", in_a_line(&error.to_string())))),
     }
 }
 

@@ -144,11 +144,11 @@ impl PrimitiveVertices {
         let map = look.map.as_ref();
         let uvs = map.and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, &used));
         // A normal that is none is the triangle's own.
-        let told = |normal: &DVec3| if normal.is_finite() { normal.as_vec3() } else { Vec3::ZERO };
+        let finite = |normal: &DVec3| if normal.is_finite() { normal.as_vec3() } else { Vec3::ZERO };
         Ok(PrimitiveVertices {
             positions,
             triangles,
-            normals: normals.map(|normals| normals.iter().map(told).collect()),
+            normals: normals.map(|normals| normals.iter().map(finite).collect()),
             uvs,
             has_colors: accessor(Semantic::Colors(0)).is_some(),
         })

@@ -16,7 +16,7 @@ use gltf::json::validation::Checked;
 /// Turns may differ from what is said of them by so much, radians.
 const BESIDE: f64 = 1e-3;
 /// Moments at which a motion is held against the turn that it stands for.
-const MOMENTS: usize = 7;
+const SAMPLES: usize = 7;
 
 /// How a node turns, and what hangs on it with it.
 #[derive(Debug, Clone, Copy)]
@@ -94,8 +94,8 @@ impl NodeRotations {
         let still = Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose };
         let rotation = |pose: &Pose| DQuat::from_mat4(&pose.world_from_object());
         let fits = |motion: &Motion| {
-            (1..=MOMENTS).all(|moment| {
-                let degrees = 360.0 * moment as f64 / (MOMENTS + 1) as f64;
+            (1..=SAMPLES).all(|sample| {
+                let degrees = 360.0 * sample as f64 / (SAMPLES + 1) as f64;
                 let wanted = DQuat::from_axis_angle(turn.axis, degrees.to_radians()) * rotation(&still);
                 let found = rotation(&motion.apply(&still, degrees / turn.degrees_per_second));
                 wanted.angle_between(found).min(wanted.angle_between(-found)) <= BESIDE
@@ -174,11 +174,11 @@ fn turn(
         .collect();
     let whole: DVec3 = steps.iter().sum();
     let speed = whole / (end - start);
-    let turned = whole.length();
+    let angle = whole.length();
     let is_steady =
         steps.iter().zip(times.windows(2)).all(|(step, time)| (*step - speed * (time[1] - time[0])).length() <= BESIDE);
-    let turns = turned / std::f64::consts::TAU;
-    if !(is_steady && turns > 0.5 && (turned - turns.round() * std::f64::consts::TAU).abs() <= BESIDE) {
+    let turns = angle / std::f64::consts::TAU;
+    if !(is_steady && turns > 0.5 && (angle - turns.round() * std::f64::consts::TAU).abs() <= BESIDE) {
         return Err(only());
     }
     // Its first key stands for the node's own turn: both are the same, or the start would jump.

@@ -200,20 +200,20 @@ impl ObjChunk {
         for (at, line) in lines(text) {
             let (keyword, rest) = split_keyword(&line);
             let contents = &mut part.contents;
-            let told = |reason| ObjLineProblem { line: before.lines + at + 1, reason };
+            let problem = |reason| ObjLineProblem { line: before.lines + at + 1, reason };
             let mut state = |statement| contents.statements.push((contents.arities.len(), statement));
             match keyword {
                 "v" | "vn" => match vector(keyword, rest) {
                     Ok(vector) if keyword == "v" => contents.positions.push(vector),
                     Ok(vector) => contents.normals.push(vector),
                     Err(reason) => {
-                        part.of_vectors = Some(told(reason));
+                        part.of_vectors = Some(problem(reason));
                         break;
                     }
                 },
                 "vt" => contents.places.push(place(rest)),
                 "f" if part.of_faces.is_none() => {
-                    part.of_faces = contents.add_face(rest, before, all).err().map(told);
+                    part.of_faces = contents.add_face(rest, before, all).err().map(problem);
                 }
                 "o" | "g" => state(ObjStatement::Name(rest.to_owned())),
                 "usemtl" if !rest.is_empty() => state(ObjStatement::Material(rest.to_owned())),

@@ -267,7 +267,7 @@ const THIN_GAP: StressCase = StressCase {
     }),
     also: &[BY_VERTEX_SHADER],
     failures: &[
-        TOLD_IN_F32.at(|width| width < 5e-6).at_most(0.01),
+        FACING_IN_F32.at(|width| width < 5e-6).at_most(0.01),
         fails(SILHOUETTE, "aliasing", "a slit between two texels of the silhouette is in neither")
             .at(|width| width < 5e-3)
             .is_false()

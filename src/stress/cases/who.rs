@@ -41,7 +41,7 @@ pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> Kn
 }
 
 /// What tells facing and far vertices in 24 bits.
-pub const TOLD_IN_F32: KnownFailure = fails(
+pub const FACING_IN_F32: KnownFailure = fails(
     BY_VERTEX_SHADER,
     "f32-limit",
     "a vertex shader tells in 24 bits which way a triangle faces and its vertices go, and the light is too near its plane",

@@ -78,7 +78,7 @@ impl FrameBuilder<'_> {
     }
 
     /// The picture, as it is.
-    fn kept_color(&self) -> ColorTarget {
+    fn stored_color(&self) -> ColorTarget {
         ColorTarget { attachment: self.color, layer: 0, clear: None }
     }
 
@@ -148,7 +148,7 @@ impl FrameBuilder<'_> {
             Some(lit) => self.draws_of(lit, look),
             None => self.surface_draws(look),
         };
-        self.push_pass(light, "light", purpose, Some(self.kept_color()), draws);
+        self.push_pass(light, "light", purpose, Some(self.stored_color()), draws);
     }
 
     /// The mask and light passes of a light that arrives as far as `how` says.
@@ -159,7 +159,7 @@ impl FrameBuilder<'_> {
 
     /// Blends draws over the picture, and tests depth and stencil without changing them.
     pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
-        self.push_pass(light, name, purpose, Some(self.kept_color()), draws);
+        self.push_pass(light, name, purpose, Some(self.stored_color()), draws);
     }
 
     /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in

@@ -16,24 +16,24 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 ///
 /// No other side has it: a bias moves the edge of a shadow on whatever the light grazes, by so many
 /// steps over the tangent of the light's height.
-const HUGGING_BIAS: i32 = -4;
+const GRAZING_BIAS: i32 = -4;
 
 /// A run of a volume's triangles that counts.
 #[derive(Debug, Clone)]
 pub struct CountedPart {
     pub part: DrawPart,
     /// Its triangles face inwards: operations are swapped.
-    pub turned: bool,
+    pub flipped: bool,
     /// Sides that the surface they are thrown by is too near to.
-    pub hugs: bool,
+    pub grazes: bool,
     /// What is added to its indices.
     pub base_vertex: u32,
     pub triangles: Range<usize>,
 }
 
 impl CountedPart {
-    pub fn new(part: DrawPart, turned: bool, triangles: &Range<usize>) -> CountedPart {
-        CountedPart { part, turned, hugs: false, base_vertex: 0, triangles: triangles.clone() }
+    pub fn new(part: DrawPart, flipped: bool, triangles: &Range<usize>) -> CountedPart {
+        CountedPart { part, flipped, grazes: false, base_vertex: 0, triangles: triangles.clone() }
     }
 }
 
@@ -116,7 +116,7 @@ impl CountingMode {
     /// can do without ([`Frame::finish`](crate::technique::frame::Frame::finish)).
     pub(super) fn raster(self, part: &CountedPart, options: &VolumeSettings, step: FaceSelection) -> RasterState {
         let (add, take) = operations(options);
-        let adds_in_front = (self != CountingMode::Behind) != part.turned;
+        let adds_in_front = (self != CountingMode::Behind) != part.flipped;
         let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
         let surface = RasterState::surface();
         let is_never = options.light_caps_never_pass && part.part == DrawPart::LightCap;
@@ -150,7 +150,7 @@ impl CountingMode {
             (_, true) => CompareFunction::Never,
             (_, false) => surface.depth_compare,
         };
-        let adds_in_front = (self != CountingMode::Behind) != part.turned;
+        let adds_in_front = (self != CountingMode::Behind) != part.flipped;
         let depth_bias = depth_bias(part);
         let unclipped_depth = self == CountingMode::Behind;
         let color = ColorWrite::Add;
@@ -168,7 +168,7 @@ impl CountingMode {
 }
 
 fn depth_bias(part: &CountedPart) -> DepthBiasState {
-    let constant = if part.hugs { HUGGING_BIAS } else { 0 };
+    let constant = if part.grazes { GRAZING_BIAS } else { 0 };
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
 

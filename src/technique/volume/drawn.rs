@@ -80,10 +80,11 @@ impl VolumePlan {
     /// The casting triangles themselves, where it is known which they are.
     pub fn casting(&self) -> impl Iterator<Item = CountedPart> {
         let runs = match &self.casting {
-            CastingTriangles::Runs([light_cap, turned]) => vec![(false, light_cap), (true, turned)],
+            CastingTriangles::Runs([light_cap, flipped]) => vec![(false, light_cap), (true, flipped)],
             CastingTriangles::Picked(_) => Vec::new(),
         };
-        let parts = runs.into_iter().map(|(turned, triangles)| CountedPart::new(DrawPart::LightCap, turned, triangles));
+        let parts =
+            runs.into_iter().map(|(flipped, triangles)| CountedPart::new(DrawPart::LightCap, flipped, triangles));
         parts.filter(|part| !part.triangles.is_empty())
     }
 
@@ -91,9 +92,9 @@ impl VolumePlan {
     pub fn casting_triangles(&self, frame: &FrameBuilder, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
         let placed = &frame.placed[self.object];
         let (corners, casters) = match &self.casting {
-            CastingTriangles::Runs([light_cap, turned]) => {
+            CastingTriangles::Runs([light_cap, flipped]) => {
                 let indices = frame.plan.meshes[self.mesh.0].indices.data();
-                (&indices[light_cap.start * 3..turned.end * 3], Casters::All)
+                (&indices[light_cap.start * 3..flipped.end * 3], Casters::All)
             }
             CastingTriangles::Picked(casters) => (placed.object.mesh.triangles().as_flattened(), *casters),
         };
@@ -120,8 +121,8 @@ impl VolumePlan {
     }
 
     pub fn draw(&self, part: &CountedPart, raster: RasterState) -> Draw {
-        let what = match (part.part, part.turned) {
-            (DrawPart::Side, _) if part.hugs => "grazing sides",
+        let what = match (part.part, part.flipped) {
+            (DrawPart::Side, _) if part.grazes => "grazing sides",
             (DrawPart::Side, _) => "sides",
             (DrawPart::LightCap, false) => "light cap",
             (DrawPart::LightCap, true) => "turned light cap",
@@ -140,7 +141,7 @@ impl VolumePlan {
             mesh: self.mesh,
             triangles: part.triangles.start as u32..part.triangles.end as u32,
             base_vertex: part.base_vertex,
-            faces_inwards: part.turned,
+            faces_inwards: part.flipped,
             constants: DrawConstants::default(),
         }
     }
@@ -153,7 +154,7 @@ impl VolumePlan {
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSettings) -> Result<VolumeMesh, LeftOut> {
     let (mesh, parts, far_end) = outlined(frame, of, options);
     let object = frame.placed[of.index].object;
-    if parts.light_cap_turned.end == 0 {
+    if parts.light_cap_flipped.end == 0 {
         let because = match of.casters {
             Casters::All => "every triangle is edge-on to the light",
             Casters::LightFacing => "no triangle faces the light",
@@ -162,11 +163,11 @@ pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSetting
         return Err(LeftOut::new(Decision::NothingCasts, &object.name, because));
     }
     // A bias of sides that hug it is a few steps, and rounding may be more.
-    if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, of.index, of.light, DarkenedObjects::All) {
+    if !parts.grazing_sides.is_empty() && !casters::can_darken(frame, of.index, of.light, DarkenedObjects::All) {
         let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
         return Err(LeftOut::new(Decision::Caster, &object.name, because));
     }
-    let casting = CastingTriangles::Runs([parts.light_cap.clone(), parts.light_cap_turned.clone()]);
+    let casting = CastingTriangles::Runs([parts.light_cap.clone(), parts.light_cap_flipped.clone()]);
     let mut made = VolumeMesh { mesh, casting, needed: Vec::new(), begins_with: 0, left_out: Vec::new() };
     made.add_parts(of.form, &parts, far_end, options.caps[1], &object.name);
     Ok(made)
@@ -178,14 +179,14 @@ fn outlined(
     of: &CasterVolume,
     options: &VolumeSettings,
 ) -> (DrawMesh, VolumeParts, Option<ParallelFarEnd>) {
-    let CasterVolume { light, index, casters, hidden: held, form: VolumeSpec { extrusion, .. } } = *of;
+    let CasterVolume { light, index, casters, hidden, form: VolumeSpec { extrusion, .. } } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
     let extruder = Extruder::new(&placed.world, position, extrusion);
     let mut indices = Vec::new();
     let (is_drawn, by) = (placed.object.visible, options.silhouette);
-    let volume = VolumeRequest { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
+    let volume = VolumeRequest { caster, is_drawn, light: position, casters, hidden, by, extruder: &extruder };
     let parts = frame.job.cache.volume_indices(&volume, &mut indices);
     let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
     let far_point = FarPoint::of(&frame.job.scene.camera).filter(|_| extrusion == Extrusion::Infinite);
@@ -197,10 +198,10 @@ fn outlined(
             let mut near = corners.iter().filter_map(place);
             near.next().zip(near.next()).map(|(from, to)| [from, to])
         };
-        let edges: Vec<_> = corners(0..parts.hugging_sides.end).filter_map(edge).collect();
+        let edges: Vec<_> = corners(0..parts.grazing_sides.end).filter_map(edge).collect();
         let from = far_point.settled(position, &edges);
         let triangle = |corners: &[u32]| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]);
-        let casting = corners(parts.light_cap.start..parts.light_cap_turned.end).map(triangle);
+        let casting = corners(parts.light_cap.start..parts.light_cap_flipped.end).map(triangle);
         let is_point = position.w != 0.0;
         let scale = if is_point { position.w } else { position.truncate().length() };
         let beside = (from - position).length() / scale;
@@ -224,11 +225,11 @@ impl VolumeMesh {
         caster: &str,
     ) {
         let run = CountedPart::new;
-        let hugging = CountedPart { hugs: true, ..run(DrawPart::Side, false, &parts.hugging_sides) };
-        self.needed.extend([run(DrawPart::Side, false, &parts.sides), hugging]);
+        let grazing = CountedPart { grazes: true, ..run(DrawPart::Side, false, &parts.grazing_sides) };
+        self.needed.extend([run(DrawPart::Side, false, &parts.sides), grazing]);
         if form.light_cap {
             self.needed.push(run(DrawPart::LightCap, false, &parts.light_cap));
-            self.needed.push(run(DrawPart::LightCap, true, &parts.light_cap_turned));
+            self.needed.push(run(DrawPart::LightCap, true, &parts.light_cap_flipped));
         }
         if !form.dark_cap {
             return;
@@ -245,7 +246,7 @@ impl VolumeMesh {
             }
             (DarkCap::Fan(triangles, _), _) => {
                 self.needed.push(run(DrawPart::DarkCap, false, triangles));
-                let cap = parts.light_cap.len() + parts.light_cap_turned.len();
+                let cap = parts.light_cap.len() + parts.light_cap_flipped.len();
                 if triangles.len() < cap && draws_dark_caps {
                     let because = format!(
                         "at infinity only its outline matters: {} triangles close what {cap} would",
@@ -258,7 +259,7 @@ impl VolumeMesh {
             (DarkCap::Carried(base), _) => {
                 let carried = |part: CountedPart| CountedPart { base_vertex: *base, ..part };
                 self.needed.push(carried(run(DrawPart::DarkCap, true, &parts.light_cap)));
-                self.needed.push(carried(run(DrawPart::DarkCap, false, &parts.light_cap_turned)));
+                self.needed.push(carried(run(DrawPart::DarkCap, false, &parts.light_cap_flipped)));
             }
         }
     }

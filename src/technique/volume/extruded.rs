@@ -42,13 +42,13 @@ pub fn make(frame: &mut FrameBuilder, of: &CasterVolume) -> VolumeMesh {
     let connectivity = cache.connectivity(caster.mesh);
     let is_closed = connectivity.is_closed() && connectivity.is_oriented() && casters == Casters::LightFacing;
     let of = if is_closed { ExtrudedForm::Closed } else { ExtrudedForm::Prisms(casters) };
-    let ExtrudedVolume { corners, indices, sides, caps, turned_caps } = cache.extruded(caster, eye, of);
+    let ExtrudedVolume { corners, indices, sides, caps, flipped_caps } = cache.extruded(caster, eye, of);
     let carry = Extruder::new(&placed.world, position, form.extrusion).carry_from(eye);
     let name = format!("volume of {}", placed.object.name);
     let mut needed = vec![CountedPart::new(DrawPart::Side, false, &sides)];
     if form.light_cap || form.dark_cap {
-        let runs = [(false, &caps), (true, &turned_caps)];
-        needed.extend(runs.map(|(turned, triangles)| CountedPart::new(DrawPart::Caps, turned, triangles)));
+        let runs = [(false, &caps), (true, &flipped_caps)];
+        needed.extend(runs.map(|(flipped, triangles)| CountedPart::new(DrawPart::Caps, flipped, triangles)));
     }
     VolumeMesh {
         mesh: DrawMesh::of_extruded(name, Extruded { corners, carry }, indices),

@@ -34,9 +34,9 @@ mod tests {
 
     #[test]
     fn a_point_is_held_beyond_the_triangle_and_within_its_outline() {
-        let turned = [SHEET[0], SHEET[2], SHEET[1]];
+        let flipped = [SHEET[0], SHEET[2], SHEET[1]];
         for light in [DVec4::new(0.0, 3.0, 0.0, 1.0), DVec4::new(0.0, 2.0, 0.0, 0.0)] {
-            for triangle in [SHEET, turned] {
+            for triangle in [SHEET, flipped] {
                 assert!(holds(triangle, light, DVec3::ZERO));
                 assert!(!holds(triangle, light, DVec3::new(0.0, 2.0, 0.0)), "between light and triangle");
                 assert!(!holds(triangle, light, DVec3::new(4.0, 0.0, 0.0)), "beside it");

@@ -155,11 +155,11 @@ pub const LINES: &[(&str, Check)] = &[
         let pixel = at(told[0], told[1]);
         let is_added = told[3] == "light is added";
         let color = |step| here.frame.capture.frame_at(step).and_then(|frame| frame.color.image.rgba_at(pixel));
-        let is_kept_away = told[3] == "the stencil test keeps light away" && color(here.step - 1) == color(here.step);
+        let is_blocked = told[3] == "the stencil test keeps light away" && color(here.step - 1) == color(here.step);
         let says = match here.frame.label(here.light(), pixel) {
             Some(0) => is_added,
-            Some(1) => is_kept_away,
-            _ => is_added || is_kept_away,
+            Some(1) => is_blocked,
+            _ => is_added || is_blocked,
         };
         number(told[2]) == f64::from(here.stencil_before(pixel)) && says
     }),

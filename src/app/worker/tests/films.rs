@@ -59,7 +59,7 @@ fn a_film_that_is_cancelled_leaves_nothing() {
 }
 
 #[test]
-fn a_film_that_can_not_be_made_says_why_with_the_mend() {
+fn a_film_that_can_not_be_made_says_why_with_the_fix() {
     let (worker, frame, news) = started();
     round(&worker, frame, 1, Path::new("/no such folder/round.png"));
     let reason = answer::<FilmOf>(&news, 1).expect_err("no such folder");

@@ -23,9 +23,9 @@ pub fn ui(
         wrapped(ui, RichText::new(&advice.sentence).color(theme::of(ui).text));
         if let Some(staying) = &advice.staying {
             let words = format!("Stay with {}, apply all", diagnosis.technique.name());
-            apply_button(ui, own, model, &staying.mend, &words, actions);
+            apply_button(ui, own, model, &staying.fix, &words, actions);
         }
-        apply_button(ui, own, model, &advice.mend, "Apply all", actions);
+        apply_button(ui, own, model, &advice.fix, "Apply all", actions);
         ui.add_space(8.0);
     }
     if let Some(region) = selected {
@@ -81,13 +81,13 @@ fn cause(
         wrapped(ui, theme::note(found.cause.meaning()));
     }
     // Who has chosen this technique is offered first what keeps it.
-    if let Some(FixWithinTechnique { mend, pixels_left }) = &found.staying {
+    if let Some(FixWithinTechnique { fix, pixels_left }) = &found.staying {
         let left = format::counted(*pixels_left, "pixel");
         let words = format!("Stay with {}, {left} left", diagnosis.technique.name());
-        apply_button(ui, own, model, mend, &words, actions);
+        apply_button(ui, own, model, fix, &words, actions);
     }
-    if let Some(mend) = &found.mend {
-        apply_button(ui, own, model, mend, "Apply the mend", actions);
+    if let Some(fix) = &found.fix {
+        apply_button(ui, own, model, fix, "Apply the mend", actions);
     }
 }
 
@@ -96,20 +96,20 @@ fn apply_button(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
     model: &mut Model,
-    mend: &Fix,
+    fix: &Fix,
     words: &str,
     actions: &mut Vec<Action>,
 ) {
-    let choice = model.scene.as_ref().filter(|_| mend.is_a_choice()).and_then(|scene| {
+    let choice = model.scene.as_ref().filter(|_| fix.is_a_choice()).and_then(|scene| {
         let mut choice = scene.draft.choice.clone();
-        mend.choose(&mut choice).ok().map(|()| (scene.draft.choice.clone(), choice))
+        fix.choose(&mut choice).ok().map(|()| (scene.draft.choice.clone(), choice))
     });
     let Some((before, after)) = choice else {
-        wrapped(ui, theme::note(format!("To mend it in the scene: {mend}")));
+        wrapped(ui, theme::note(format!("To mend it in the scene: {fix}")));
         return;
     };
     let is_done = before == after;
-    let button = ui.add_enabled(!is_done, Button::new(format!("{words}: {mend}")));
+    let button = ui.add_enabled(!is_done, Button::new(format!("{words}: {fix}")));
     let hover = if is_done { "It is applied" } else { "Renders the scene so" };
     if button.on_hover_text(hover).on_disabled_hover_text(hover).clicked() {
         model.choose(after.clone(), actions);

@@ -26,8 +26,8 @@ pub struct DiagnosisPanel {
 impl DiagnosisPanel {
     /// Of a diagnosis that says something else nothing is selected.
     pub fn follow(&mut self, diagnosis: &Arc<Diagnosis>) {
-        let is_told = |of: &Arc<Diagnosis>| Arc::ptr_eq(of, diagnosis) || of == diagnosis;
-        if !self.of.as_ref().is_some_and(is_told) {
+        let is_shown = |of: &Arc<Diagnosis>| Arc::ptr_eq(of, diagnosis) || of == diagnosis;
+        if !self.of.as_ref().is_some_and(is_shown) {
             *self = DiagnosisPanel::default();
         }
         self.of = Some(Arc::clone(diagnosis));

@@ -138,8 +138,8 @@ fn region_row(
     let numbered = format!("{} · {title}", index + 1);
     // The last words of a title tell rows apart: they go on in a second line.
     let font = TextStyle::Body.resolve(ui.style());
-    let room = (ui.available_width() - INDENT - 8.0).max(1.0);
-    let lines = ui.painter().layout(numbered.clone(), font, theme::of(ui).text, room);
+    let width = (ui.available_width() - INDENT - 8.0).max(1.0);
+    let lines = ui.painter().layout(numbered.clone(), font, theme::of(ui).text, width);
     let height = lines.size().y + BELOW_TITLE;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     let name = format!("{numbered}: {pixels}, {because}");

@@ -7,9 +7,9 @@ use crate::capture::{Capture, DrawState, DrawSummary, StepDraws};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::LeftOut;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::format;
 use crate::reading::left_out::by_reason;
-use crate::reading::moment::CapturePoint;
 use crate::reading::written::WrittenAspects;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &
 fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Reply<StepDraws>), index: usize) {
     let draw = &capture.steps[model.selection.step].draws[index];
     let is_selected = model.selection.draw == Some(index);
-    let is_missing = is_selected && !model.selected().is_held(capture);
+    let is_missing = is_selected && !model.selected().is_known(capture);
     let is_fetched = is_missing && model.can_ask() && fetched.failed.is_none();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     let mark = recorded::mark(draw);
@@ -130,13 +130,13 @@ fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, (mark, right): (O
         (false, true) => theme::of(ui).faint,
         (false, false) => theme::of(ui).dim,
     };
-    let room = right.left() - left - 8.0;
-    theme::line(ui, pos2(left, row.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
+    let width = right.left() - left - 8.0;
+    theme::line(ui, pos2(left, row.center().y - 7.0), width, &draw.name, TextStyle::Small, color);
 }
 
 /// Under a selected draw whose state is not there and does not come: why.
 fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws>) {
-    if model.selected().is_held(capture) {
+    if model.selected().is_known(capture) {
         return;
     }
     let (text, color) = match &fetched.failed {

@@ -153,20 +153,20 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
         theme::of(ui).dim,
     );
     let left = thumbnail.right() + 8.0;
-    let room = time_rect.left() - left - 4.0;
+    let width = time_rect.left() - left - 4.0;
     // Absence from the frame is seen: what stands beside it is dim.
     let is_beside = steps::is_beside(capture, index);
     let ink = if is_beside { theme::of(ui).dim } else { theme::of(ui).text };
-    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, ink);
+    theme::line(ui, pos2(left, rect.top() + 6.0), width, &title, TextStyle::Body, ink);
     let is_touched = model.history_of_frame().is_some_and(|one| one.is_touched_by(index));
     if is_touched {
         pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), &steps::words(capture, index));
     }
-    let room = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
+    let width = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
     let is_in_group = model.frame.plan.as_ref().is_some_and(|plan| !recorded::groups_of(plan, index).is_empty());
     let light = step.light.filter(|_| is_in_group).map(|light| format!("{} · ", format::light(light)));
     let summary = light.unwrap_or_default() + &if is_beside { BESIDE.to_owned() } else { summary(step) };
-    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary, TextStyle::Small, theme::of(ui).dim);
+    theme::line(ui, pos2(left, rect.top() + 23.0), width, &summary, TextStyle::Small, theme::of(ui).dim);
 }
 
 /// The crosshair of the pick, small: the pass did something to the picked pixel.

@@ -102,9 +102,9 @@ fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
 
 /// Set in by so many levels of groups.
 pub fn indented(ui: &mut Ui, levels: usize, add: impl FnOnce(&mut Ui)) {
-    let mut room = ui.available_rect_before_wrap();
-    room.min.x = (room.min.x + INDENT * levels.min(MOST_INDENTED) as f32).min(room.max.x);
-    ui.scope_builder(UiBuilder::new().max_rect(room), add);
+    let mut area = ui.available_rect_before_wrap();
+    area.min.x = (area.min.x + INDENT * levels.min(MOST_INDENTED) as f32).min(area.max.x);
+    ui.scope_builder(UiBuilder::new().max_rect(area), add);
 }
 
 /// At how many pixels a draw that is computed anew leaves something else than was stored; `None` where it does not.
@@ -129,15 +129,15 @@ pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
     if let Some((plan, draw)) = plan.zip(draw)
         && let Program::Recorded { may_discard, writes_depth } = draw.program
     {
-        let mut tell = |may: ShaderEffect, what: &str| match may {
+        let mut report = |may: ShaderEffect, what: &str| match may {
             ShaderEffect::No => {}
             ShaderEffect::Yes => words += &format!("\nIts shader may {what}, which is not followed"),
             ShaderEffect::Unknown => words += &format!("\nIts shader could not be read: it may {what}"),
         };
         if draw.discards_unknown(&plan.meshes[draw.mesh.0]) {
-            tell(may_discard, "discard fragments");
+            report(may_discard, "discard fragments");
         }
-        tell(writes_depth, "write its own depth");
+        report(writes_depth, "write its own depth");
     }
     words
 }

@@ -115,8 +115,8 @@ fn search(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
         go(model, &search);
     } else if !(field.lost_focus() && escaped) {
         // A filter stays while it has words; an empty field that lost the focus goes.
-        let is_kept = field.has_focus() || matches!(&search, StepSearch::Find(words) if !words.is_empty());
-        own.search = (is_kept || field.gained_focus() || !field.lost_focus()).then_some(search);
+        let stays = field.has_focus() || matches!(&search, StepSearch::Find(words) if !words.is_empty());
+        own.search = (stays || field.gained_focus() || !field.lost_focus()).then_some(search);
     }
 }
 

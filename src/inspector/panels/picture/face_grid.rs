@@ -24,7 +24,7 @@ const SMALL: f32 = 112.0;
 /// Draws the layers of `shown`, named; a click shows one of them large. They leave room for the
 /// legend.
 pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture, coloring: Coloring) {
-    let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::room(rect, shown), 0.0)).shrink(GAP);
+    let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::space_beside(rect, shown), 0.0)).shrink(GAP);
     let (columns, side) = arrangement(area.size(), shown.images.len());
     let rows = shown.images.len().div_ceil(columns);
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {

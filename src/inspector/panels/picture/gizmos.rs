@@ -64,7 +64,7 @@ pub fn ui(
         let id = ui.scope_id().with(("light in the picture", index));
         let name = format!("{} in the picture", HandleKind::Light(index).name());
         let response = grabbed(ui, id, Rect::from_center_size(at, Vec2::splat(GRAB)), &name);
-        let is_held = response.hovered() || response.dragged() || response.has_focus();
+        let is_active = response.hovered() || response.dragged() || response.has_focus();
         let away = match (before_eye, outwards) {
             (None, _) => ", behind the eye",
             (Some(_), Some(_)) => ", out of view this way",
@@ -72,7 +72,7 @@ pub fn ui(
         };
         let name = HandleKind::Light(index).name();
         let response = response.on_hover_text(format!("{name}{away}: drag it, or use the arrow keys"));
-        sign(ui, whole, at, is_held, outwards);
+        sign(ui, whole, at, is_active, outwards);
         let mut by = response.drag_delta() / placement.scale;
         if let Some([right, up]) = arrows(ui, &response) {
             by += Vec2::new(right as f32, -up as f32) * placement.size[1] as f32;
@@ -82,7 +82,7 @@ pub fn ui(
         }
         // In the plane parallel to the picture, behind the eye as far as before it.
         let depth = (point - camera.eye).dot(ahead).abs().max(camera.near);
-        let place = |x: f32, y: f32| pick_ray::sight_at(capture, [f64::from(x), f64::from(y)]).at(depth);
+        let place = |x: f32, y: f32| pick_ray::ray_at(capture, [f64::from(x), f64::from(y)]).at(depth);
         let moved: DVec3 = place(by.x, by.y) - place(0.0, 0.0);
         draft.lights[index].position = moved_light(&draft.lights[index], draft.time, moved, anchor);
         changed = true;
@@ -100,7 +100,7 @@ fn beyond(whole: Rect, way: [f64; 2]) -> Pos2 {
 }
 
 /// A sun, dark under light so that it shows on any picture; of a light out of view, with an arrow the way it is.
-fn sign(ui: &Ui, whole: Rect, at: Pos2, is_held: bool, outwards: Option<Vec2>) {
+fn sign(ui: &Ui, whole: Rect, at: Pos2, is_active: bool, outwards: Option<Vec2>) {
     let painter = ui.painter_at(whole);
     let colors = theme::of(ui);
     let ink = theme::DARK.lit;
@@ -118,7 +118,7 @@ fn sign(ui: &Ui, whole: Rect, at: Pos2, is_held: bool, outwards: Option<Vec2>) {
         }
     }
     painter.circle_filled(at, 4.5, ink);
-    if is_held {
+    if is_active {
         painter.circle_stroke(at, 15.0, Stroke::new(1.5, colors.selected));
     }
 }

@@ -26,7 +26,7 @@ const MOST_VALUES: usize = 12;
 const MOST_MISREAD: usize = 4;
 
 /// What the legend takes of a picture of this size, points.
-pub fn room(rect: Rect, shown: &ShownPicture) -> f32 {
+pub fn space_beside(rect: Rect, shown: &ShownPicture) -> f32 {
     if fits(rect, shown.kind) { width(rect, shown.kind) + 12.0 } else { 0.0 }
 }
 

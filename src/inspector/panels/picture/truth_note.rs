@@ -17,7 +17,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture) {
     if !model.view.wants_truth() || is_known {
         return;
     }
-    let width = WIDTH.min(rect.width() - 24.0 - legend::room(rect, shown)).max(96.0);
+    let width = WIDTH.min(rect.width() - 24.0 - legend::space_beside(rect, shown)).max(96.0);
     let place = Rect::from_min_size(pos2(rect.left() + 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(place).sense(Sense::CLICK | Sense::DRAG).id_salt("truth note");

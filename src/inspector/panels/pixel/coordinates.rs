@@ -1,6 +1,6 @@
 //! The picked pixel's point, or a corner of its triangle, in every space, with the matrices between them.
 
-use super::told::{PickedHistory, PixelPanel};
+use super::picked::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -12,14 +12,20 @@ use egui::{CollapsingHeader, Grid, Label, Ui};
 const DIGITS: u32 = 4;
 
 /// Folded until somebody asks.
-pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, (capture, at): (&Capture, [u32; 2]), told: &PickedHistory) {
+pub fn ui(
+    ui: &mut Ui,
+    own: &mut PixelPanel,
+    model: &Model,
+    (capture, at): (&Capture, [u32; 2]),
+    picked: &PickedHistory,
+) {
     // Another program's camera is a guess, and so is its unit.
     if capture.origin.is_some() {
         return;
     }
     let header = CollapsingHeader::new("Coordinates").id_salt("coordinates");
     header.show(ui, |ui| {
-        let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
+        let history = picked.history.as_ref().filter(|_| picked.is_of_pick && picked.wrong.is_empty());
         let place = match (history, &model.frame.plan) {
             (Some(history), Some(plan)) => PixelCoordinates::of(capture, at).with_vertices(capture, plan, history),
             _ => PixelCoordinates::of(capture, at),

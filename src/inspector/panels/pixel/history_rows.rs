@@ -1,16 +1,16 @@
 //! "History" in the Pixel panel: one row an event, in the order in which they happened.
 
-use super::room::HistoryRows;
-use super::told::{PickedHistory, PixelPanel};
+use super::picked::{PickedHistory, PixelPanel};
+use super::row_budget::HistoryRows;
 use crate::capture::Capture;
 use crate::history::{PixelEvent, PixelHistory, TestResult};
 use crate::inspector::action::PanelKind;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::DrawPart;
+use crate::reading::capture_point::CapturePoint;
 use crate::reading::format;
 use crate::reading::history_row::{EventOutcome, HistoryCells, line, short, sign};
-use crate::reading::moment::CapturePoint;
 use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use egui::{pos2, vec2};
 
@@ -24,28 +24,28 @@ pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,
     model: &mut Model,
-    told: &PickedHistory,
+    picked: &PickedHistory,
     (capture, at): (&Capture, [u32; 2]),
     rows: HistoryRows,
 ) -> f32 {
-    heading(ui, own, model, told, at);
+    heading(ui, own, model, picked, at);
     if !model.can_ask() {
         let text = "A capture folder holds pictures and no geometry, so what happened between them is not known. Open \
                     the scene itself, or run `stencilscope pixel SCENE --at X,Y`.";
         ui.add(egui::Label::new(theme::note(text)).wrap());
         return ui.cursor().top();
     }
-    if let Some(reason) = &told.failed {
+    if let Some(reason) = &picked.failed {
         let text = RichText::new(format!("× There is no history: {reason}")).color(theme::of(ui).error);
         ui.add(egui::Label::new(text).wrap());
         return ui.cursor().top();
     }
-    let Some(history) = &told.history else { return ui.cursor().top() };
+    let Some(history) = &picked.history else { return ui.cursor().top() };
     let drawn = ui.scope(|ui| {
-        if told.is_late {
+        if picked.is_late {
             ui.set_opacity(GREYED);
         }
-        wrong(ui, &told.wrong);
+        wrong(ui, &picked.wrong);
         let shown = shown(own, model, history);
         table(ui, own, model, (capture, history), &shown, rows);
         let end = ui.cursor().top();
@@ -56,13 +56,13 @@ pub fn ui(
 }
 
 /// Title, how many events, and the switch; while another pixel's are waited for, that.
-fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, told: &PickedHistory, at: [u32; 2]) {
+fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHistory, at: [u32; 2]) {
     ui.horizontal(|ui| {
         theme::heading(ui, "History");
-        if !model.can_ask() || told.failed.is_some() {
+        if !model.can_ask() || picked.failed.is_some() {
             return;
         }
-        let Some(history) = told.history.as_ref().filter(|_| !told.is_late) else {
+        let Some(history) = picked.history.as_ref().filter(|_| !picked.is_late) else {
             let job = model.activity.job.as_ref().map_or_else(String::new, |job| format!(": {job}"));
             let text = theme::note(format!("waiting for {}, {}{job} …", at[0], at[1]));
             ui.add(egui::Label::new(text).truncate());
@@ -73,7 +73,7 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, told: &PickedHistor
         let counted = format::counted(all as u64, "event");
         let text = if count < all { format!("{count} of {counted}") } else { counted };
         ui.label(theme::note(text));
-        if told.wrong.is_empty() && history.captured.is_some() {
+        if picked.wrong.is_empty() && history.captured.is_some() {
             let agrees = ui.label(theme::note("· as the GPU stored it"));
             agrees.on_hover_text("After every pass the events make what was captured here, bit for bit");
         }
@@ -150,7 +150,7 @@ fn table(
 struct HistoryColumns {
     pass: f32,
     what: f32,
-    what_room: f32,
+    what_width: f32,
     side: f32,
     depth: f32,
     stencil: Option<f32>,
@@ -170,7 +170,7 @@ impl HistoryColumns {
         HistoryColumns {
             pass: row.left() + 20.0,
             what,
-            what_room: side - what - 4.0,
+            what_width: side - what - 4.0,
             side,
             depth,
             stencil: has_stencil.then_some(stencil),
@@ -279,7 +279,7 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     }
     // Of both words more has to be seen than the first.
     let what = if cells.part == Some(DrawPart::PlanarShadow) { "flat" } else { cells.what.as_str() };
-    theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [what, &cells.of], ink);
+    theme::two_inks(ui, pos2(columns.what, middle), columns.what_width, [what, &cells.of], ink);
     painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
     match cells.outcome {
         EventOutcome::Cleared => {}

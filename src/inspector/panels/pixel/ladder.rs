@@ -1,7 +1,7 @@
 //! The ladder: the view ray through the picked pixel from the eye (top) to infinity, with every face
 //! of a light's shadow volumes on it, what each added, and the count as it runs.
 
-use super::told::{PickedHistory, PixelPanel};
+use super::picked::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
 use crate::history::{FragmentOutcome, Ladder, PixelHistory, Rung, VolumeCount};
 use crate::inspector::look::theme;
@@ -19,31 +19,31 @@ use std::ops::Range;
 /// Room above the eye and below infinity, points.
 const MARGIN: f32 = 12.0;
 /// The least between eye and infinity, points: less can't be read, and the panel scrolls.
-const LEAST_ROOM: f32 = 120.0;
+const LEAST_HEIGHT: f32 = 120.0;
 /// Points that the running count moves for one, at most, and in all.
 const COUNT_STEP: f32 = 10.0;
-const COUNT_ROOM: f32 = 40.0;
+const COUNT_WIDTH: f32 = 40.0;
 
 /// Folded rungs that a click opens: of more, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
 /// Does this frame count volumes, so that there is a ladder?
-pub fn is_shown(told: &PickedHistory, capture: &Capture) -> bool {
-    told.history.is_some() && capture.counts_volumes()
+pub fn is_shown(picked: &PickedHistory, capture: &Capture) -> bool {
+    picked.history.is_some() && capture.counts_volumes()
 }
 
-/// Draws the ladder of `light` under the history, if it can be in `room` points; nothing where no volumes are counted.
+/// Draws the ladder of `light` under the history, if it can be in `height` points; nothing where no volumes are counted.
 pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,
     model: &mut Model,
-    told: &PickedHistory,
+    picked: &PickedHistory,
     (capture, light): (&Capture, usize),
-    room: f32,
+    height: f32,
 ) {
     let top = ui.cursor().top();
-    let Some(history) = &told.history else { return };
-    if !is_shown(told, capture) || !capture.decided_by(light).counts_volumes() {
+    let Some(history) = &picked.history else { return };
+    if !is_shown(picked, capture) || !capture.decided_by(light).counts_volumes() {
         return;
     }
     ui.horizontal(|ui| {
@@ -59,11 +59,11 @@ pub fn ui(
         of.map(|of| words.on_hover_text(of.meaning()));
     });
     ui.scope(|ui| {
-        if told.is_late {
+        if picked.is_late {
             ui.set_opacity(0.4);
         }
         match history.ladder(light, &capture.depth) {
-            Some(ladder) => drawn(ui, own, model, (capture, history), (light, &ladder), top + room),
+            Some(ladder) => drawn(ui, own, model, (capture, history), (light, &ladder), top + height),
             None => {
                 let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
                 ui.add(egui::Label::new(theme::note(none)).wrap());
@@ -128,7 +128,7 @@ fn added(value: i32) -> String {
 struct LadderColumns {
     ray: f32,
     name: f32,
-    name_room: f32,
+    name_width: f32,
     distance: f32,
     added: f32,
     steps: f32,
@@ -138,11 +138,11 @@ struct LadderColumns {
 impl LadderColumns {
     fn of(rect: Rect) -> LadderColumns {
         let count = rect.right() - 6.0;
-        let steps = count - 26.0 - COUNT_ROOM;
+        let steps = count - 26.0 - COUNT_WIDTH;
         let added = steps - 10.0;
         let distance = added - 34.0;
         let (ray, name) = (rect.left() + 20.0, rect.left() + 40.0);
-        LadderColumns { ray, name, name_room: distance - 50.0 - name, distance, added, steps, count }
+        LadderColumns { ray, name, name_width: distance - 50.0 - name, distance, added, steps, count }
     }
 }
 
@@ -159,8 +159,8 @@ fn drawn(
     let chosen = model.selected_in(history);
     let selected = chosen.and_then(|event| ladder.rungs.iter().position(|rung| rung.event == event));
     let open = own.unfolded.get(&light).map_or(&[][..], Vec::as_slice);
-    let room = (bottom - ui.cursor().top() - 2.0 * MARGIN).max(LEAST_ROOM);
-    let (placed, line) = place(ladder, capture.camera.near, selected, open, room);
+    let height = (bottom - ui.cursor().top() - 2.0 * MARGIN).max(LEAST_HEIGHT);
+    let (placed, line) = place(ladder, capture.camera.near, selected, open, height);
     let height = placed.last().map_or(0.0, |(_, y)| *y) + 2.0 * MARGIN;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     response.widget_info(|| {
@@ -283,11 +283,11 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     let (part, of) = named(one);
     let ink = if counts { theme::of(ui).text } else { theme::of(ui).faint };
     let what = format!("{part}, {}", side(one));
-    theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [&what, &of], ink);
+    theme::two_inks(ui, pos2(columns.name, y), columns.name_width, [&what, &of], ink);
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
     let is_clipped =
-        matches!(one.fate, FragmentOutcome::Clipped(_) | FragmentOutcome::Discarded(_) | FragmentOutcome::Culled);
+        matches!(one.outcome, FragmentOutcome::Clipped(_) | FragmentOutcome::Discarded(_) | FragmentOutcome::Culled);
     let distance = if is_clipped { "clipped".to_owned() } else { short(capture, rung.distance) };
     painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
     if !counts {
@@ -330,7 +330,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
     let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     let words =
-        |text: &str, color: Color32| theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [text, ""], color);
+        |text: &str, color: Color32| theme::two_inks(ui, pos2(columns.name, y), columns.name_width, [text, ""], color);
     let number = |x: f32, text: String, color: Color32| {
         painter.text(pos2(x, y), Align2::RIGHT_CENTER, text, theme::number_font(theme::SMALL_SIZE), color);
     };
@@ -353,7 +353,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             painter.rect_filled(bar, CornerRadius::same(1), theme::of(ui).text);
             let of = surface_name(history).unwrap_or("");
             let words = ["surface", of];
-            theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::of(ui).text);
+            theme::two_inks(ui, pos2(columns.name, y), columns.name_width, words, theme::of(ui).text);
             number(
                 columns.distance,
                 ladder.surface.map(|at| short(capture, at)).unwrap_or_default(),
@@ -397,7 +397,7 @@ fn surface_name(history: &PixelHistory) -> Option<&str> {
 fn paint_count(ui: &Ui, columns: LadderColumns, top: f32, ladder: &Ladder, stretches: &[CountStretch]) {
     let counts = || stretches.iter().map(|one| one.count).chain([0]);
     let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };
-    let step = (COUNT_ROOM / (most - least).max(1) as f32).min(COUNT_STEP);
+    let step = (COUNT_WIDTH / (most - least).max(1) as f32).min(COUNT_STEP);
     let x = |count: i32| columns.steps + 4.0 + (count - least) as f32 * step;
     let painter = ui.painter();
     if let (Some(first), Some(last)) = (stretches.first(), stretches.last()) {

@@ -4,10 +4,10 @@ pub mod coordinates;
 pub mod history_rows;
 pub mod ladder;
 pub mod map;
-pub mod room;
+pub mod picked;
+pub mod row_budget;
 pub mod run;
 pub mod shading;
-pub mod told;
 
 use crate::accuracy::Finding;
 use crate::capture::{Capture, CapturedLight, FrameSnapshot};
@@ -29,10 +29,10 @@ use crate::reading::shown::{PictureKind, has_truth};
 use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 
-use told::PickedHistory;
-pub use told::PixelPanel;
+use picked::PickedHistory;
+pub use picked::PixelPanel;
 
-/// Height of a row of values where room is short, points.
+/// Height of a row of values where row_budget is short, points.
 const TIGHT_ROW: f32 = 18.0;
 
 /// Draws the panel.
@@ -42,9 +42,9 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         return;
     };
     let Some(at) = model.selection.pick else { return how_to_pick(ui, model) };
-    let told = own.told(model);
+    let picked = own.picked_history(model);
     let size = ui.available_size();
-    let is_tight = room::is_tight(size);
+    let is_tight = row_budget::is_tight(size);
     let gap = if is_tight { 4.0 } else { 8.0 };
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         if is_tight {
@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, own, model, &told, (&capture, at), map.as_ref());
+        sentence(ui, own, model, &picked, (&capture, at), map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
@@ -64,18 +64,18 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
                 map::ui(ui, model, &capture, decision);
             }
         }
-        shading::ui(ui, model, &capture, &told);
-        coordinates::ui(ui, own, model, (&capture, at), &told);
+        shading::ui(ui, model, &capture, &picked);
+        coordinates::ui(ui, own, model, (&capture, at), &picked);
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);
         ui.add_space(gap);
-        let events = told.history.as_ref().map_or(0, |history| history.events.len());
-        let rows = room::rows(bottom - ui.cursor().top(), events, ladder::is_shown(&told, &capture));
-        // The card of a selected event moves the ladder, and takes none of its room: else its rungs would fold under
+        let events = picked.history.as_ref().map_or(0, |history| history.events.len());
+        let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::is_shown(&picked, &capture));
+        // The card of a selected event moves the ladder, and takes none of its row_budget: else its rungs would fold under
         // the pointer.
-        let end = history_rows::ui(ui, own, model, &told, (&capture, at), rows);
+        let end = history_rows::ui(ui, own, model, &picked, (&capture, at), rows);
         ui.add_space(gap);
-        ladder::ui(ui, own, model, &told, (&capture, light), bottom - end - gap);
+        ladder::ui(ui, own, model, &picked, (&capture, light), bottom - end - gap);
     });
 }
 
@@ -119,16 +119,16 @@ fn sentence(
     ui: &mut Ui,
     own: &mut PixelPanel,
     model: &Model,
-    told: &PickedHistory,
+    picked: &PickedHistory,
     (capture, at): (&Capture, [u32; 2]),
     map: Option<&MapDecision>,
 ) {
     let light = light_in_question(model, capture, at);
     // One that is wrong explains nothing.
-    let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
-    let is_waiting = !told.is_of_pick && told.failed.is_none() && model.can_ask();
-    let held = own.sentence.take().filter(|_| is_waiting && !told.is_late);
-    let verdict = held.unwrap_or_else(|| {
+    let history = picked.history.as_ref().filter(|_| picked.is_of_pick && picked.wrong.is_empty());
+    let is_waiting = !picked.is_of_pick && picked.failed.is_none() && model.can_ask();
+    let last = own.sentence.take().filter(|_| is_waiting && !picked.is_late);
+    let verdict = last.unwrap_or_else(|| {
         let verdict = Verdict::of(capture, light, at);
         match history {
             Some(history) => verdict.with_history(history),

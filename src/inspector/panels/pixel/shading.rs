@@ -1,6 +1,6 @@
 //! How the picked pixel's surface answers each light: the cosine, and the formula's terms.
 
-use super::told::PickedHistory;
+use super::picked::PickedHistory;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -9,9 +9,9 @@ use crate::reading::shading::{SurfaceShading, TextureTerm, digits, three};
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
 /// Folded until somebody asks.
-pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, told: &PickedHistory) {
-    let (Some(history), Some(plan)) = (&told.history, &model.frame.plan) else { return };
-    if capture.origin.is_some() || !told.is_of_pick || !told.wrong.is_empty() {
+pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, picked: &PickedHistory) {
+    let (Some(history), Some(plan)) = (&picked.history, &model.frame.plan) else { return };
+    if capture.origin.is_some() || !picked.is_of_pick || !picked.wrong.is_empty() {
         return;
     }
     let header = CollapsingHeader::new("Shading").id_salt("shading");

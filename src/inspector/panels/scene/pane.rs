@@ -150,9 +150,9 @@ fn labels(ui: &Ui, stage: &SceneStage, lens: &Lens, rect: Rect) {
             }
         }
         let Some(at) = lens.place(label.at).filter(|at| rect.contains(*at)) else { continue };
-        let room = Rect::from_center_size(at, vec2(7.0 * label.text.chars().count() as f32 + 10.0, 18.0));
-        if taken.iter().all(|other| !other.intersects(room)) {
-            taken.push(room);
+        let area = Rect::from_center_size(at, vec2(7.0 * label.text.chars().count() as f32 + 10.0, 18.0));
+        if taken.iter().all(|other| !other.intersects(area)) {
+            taken.push(area);
             plate(&painter, at, Align2::CENTER_CENTER, &label.text, label.of.is_some(), colors);
         }
     }

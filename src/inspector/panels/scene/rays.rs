@@ -30,9 +30,9 @@ pub fn ui(
     let colors = theme::of(ui);
     let reach = 4.0 * stage.radius;
     let surface = pick_ray::surface(capture, at);
-    let sight = pick_ray::sight(capture, at);
-    let start = capture.camera.eye + sight.from;
-    let end = surface.unwrap_or_else(|| start + sight.along.normalize() * reach);
+    let ray = pick_ray::ray(capture, at);
+    let start = capture.camera.eye + ray.from;
+    let end = surface.unwrap_or_else(|| start + ray.along.normalize() * reach);
     if let Some(ends) = lens.line([start, end]) {
         painter.line_segment(ends, Stroke::new(1.5, colors.text));
     }

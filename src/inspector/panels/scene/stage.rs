@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// An object holds others if it is so large, in parts of the whole.
-const HOLDER: f64 = 0.5;
+const ENCLOSES: f64 = 0.5;
 /// Triangles share a corner, and its shade, where their normals differ by less than this cosine's angle.
 const SMOOTH: f32 = 0.8;
 /// How far volumes go beyond what there is to see, in parts of its radius.
@@ -74,16 +74,16 @@ pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
         |points: &mut dyn Iterator<Item = DVec3>| bounds(points).map_or(0.0, |(low, high)| (high - low).length());
     let whole = size(&mut anatomy.objects.iter().flat_map(|object| object.positions.iter().copied()));
     let sizes = anatomy.objects.iter().map(|object| size(&mut object.positions.iter().copied()));
-    let large: Vec<bool> = sizes.map(|size| size >= HOLDER * whole).collect();
+    let large: Vec<bool> = sizes.map(|size| size >= ENCLOSES * whole).collect();
     // Where all are, none holds another.
     if large.contains(&false) { large } else { vec![false; large.len()] }
 }
 
 /// The middle and half of what there is to see: all objects but those that hold the others.
 pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
-    let held = anatomy.objects.iter().zip(holders).filter(|(object, holds)| !**holds && is_seen(object));
+    let casters = anatomy.objects.iter().zip(holders).filter(|(object, holds)| !**holds && is_seen(object));
     let camera = &anatomy.camera;
-    match bounds(&mut held.flat_map(|(object, _)| object.positions.iter().copied())) {
+    match bounds(&mut casters.flat_map(|(object, _)| object.positions.iter().copied())) {
         Some((low, high)) if low != high => ((low + high) / 2.0, (high - low).length() / 2.0),
         // An eye alone sees as far as its target.
         _ => (camera.target, (camera.target - camera.eye).length().clamp(1e-3, 1e6) / 2.0),
@@ -156,8 +156,8 @@ impl SceneStage {
         }
         let StageBuilder { mut stage, geometry, .. } = build;
         if choice.caster.is_none() {
-            let held_back = anatomy.volumes.iter().map(|volume| volume.caster).filter(|caster| holders[*caster]);
-            stage.left_out = held_back.map(|caster| anatomy.objects[caster].name.clone()).collect();
+            let casters_left_out = anatomy.volumes.iter().map(|volume| volume.caster).filter(|caster| holders[*caster]);
+            stage.left_out = casters_left_out.map(|caster| anatomy.objects[caster].name.clone()).collect();
         }
         stage.geometry = Arc::new(geometry);
         stage
@@ -237,9 +237,9 @@ impl StageBuilder<'_> {
         }
         self.stage.is_cut |= found.iter().flatten().any(|corner| *corner == NONE);
         found.retain(|corners| !corners.contains(&NONE));
-        let room = self.room_for_triangles();
-        self.stage.is_cut |= found.len() > room;
-        found.truncate(room);
+        let left = self.triangles_left();
+        self.stage.is_cut |= found.len() > left;
+        found.truncate(left);
         match (inside, object.visible) {
             (_, false) => self.geometry.shells.extend(found),
             (Some(_), true) => self.geometry.holders.extend(found),
@@ -279,7 +279,7 @@ impl StageBuilder<'_> {
     }
 
     /// How many more triangles the GPU is given, of all kinds together.
-    fn room_for_triangles(&self) -> usize {
+    fn triangles_left(&self) -> usize {
         let ViewportGeometry { solids, holders, shells, .. } = &self.geometry;
         MOST_TRIANGLES.saturating_sub(solids.len() + holders.len() + shells.len())
     }
@@ -318,7 +318,7 @@ impl StageBuilder<'_> {
                     }
                     *slot
                 });
-                match corners.contains(&NONE) || self.room_for_triangles() == 0 {
+                match corners.contains(&NONE) || self.triangles_left() == 0 {
                     true => self.stage.is_cut = true,
                     false => self.geometry.shells.push(corners),
                 }
@@ -411,9 +411,9 @@ impl StageBuilder<'_> {
 
     fn shell(&mut self, places: [DVec3; 3], color: Color32) {
         let corners = places.map(|place| self.vertex(place, Vec3::ZERO, color));
-        let has_room = self.room_for_triangles() > 0;
-        self.stage.is_cut |= !has_room;
-        self.geometry.shells.extend(Some(corners).filter(|corners| has_room && !corners.contains(&NONE)));
+        let has_space = self.triangles_left() > 0;
+        self.stage.is_cut |= !has_space;
+        self.geometry.shells.extend(Some(corners).filter(|corners| has_space && !corners.contains(&NONE)));
     }
 
     fn line(&mut self, ends: [DVec3; 2], width: f32, color: Color32) {

@@ -47,15 +47,15 @@ struct ModelSurroundings {
 
 impl ModelSurroundings {
     fn at(pose: Pose, scene: &OpenScene) -> Option<ModelSurroundings> {
-        let [opened, turned] =
+        let [opened, rotated] =
             [scene.loaded[0].pose, pose].map(|pose| Object { pose, ..scene.loaded[0].clone() }.world_positions());
-        let (before, around) = (SceneBounds::of(&opened)?, SceneBounds::of(&turned)?);
+        let (before, around) = (SceneBounds::of(&opened)?, SceneBounds::of(&rotated)?);
         let floor = scene.loaded.get(1).map(|floor| floor.pose);
         let lower = DVec3::Y * (around.lowest() - before.lowest());
         Some(ModelSurroundings {
             floor: floor.map(|floor| Pose { translate: floor.translate + lower, ..floor }),
             light: around.light().position,
-            camera: around.camera(&turned),
+            camera: around.camera(&rotated),
         })
     }
 }

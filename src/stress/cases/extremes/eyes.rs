@@ -46,8 +46,8 @@ const LIGHT_BEHIND_EYE: StressCase = StressCase {
     name: "light-behind-eye",
     lesson: "the light is behind the eye, and a caster between eye and near plane: it is not drawn, but casts",
     drives: CaseNumber::Scene(|_| {
-        let board = Object::of("board", shapes::quad([0.3; 2])?).turned([90.0, 0.0, 0.0]).at([0.1, 1.1, 3.5]);
-        let wall = Object::of("wall", shapes::quad([6.0, 4.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.0, -2.0]);
+        let board = Object::of("board", shapes::quad([0.3; 2])?).rotated([90.0, 0.0, 0.0]).at([0.1, 1.1, 3.5]);
+        let wall = Object::of("wall", shapes::quad([6.0, 4.0])?).rotated([90.0, 0.0, 0.0]).at([0.0, 1.0, -2.0]);
         let mut scene =
             scene([0.0, 1.0, 4.0], [0.0, 1.0, 0.0], Light::point([0.2, 1.4, 8.0]), vec![floor(3.0)?, wall, board]);
         scene.camera.near = 1.0;

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 /// All of them.
 pub const ALL: &[StressCase] = &[
     LIGHT_AT_SHEET,
-    TURNED_SHEET,
+    FLIPPED_SHEET,
     LAMP_AT_CEILING,
     LIGHT_IN_NEAR_PLANE,
     LIGHT_INSIDE_MESH,
@@ -39,7 +39,7 @@ const LIGHT_AT_SHEET: StressCase = StressCase {
     least: |_| LeastShares { lit: 0.005, because: "only the sheet's top is lit", ..LeastShares::USUAL },
     also: &[BY_VERTEX_SHADER],
     failures: &[
-        TOLD_IN_F32.at(|distance| distance < 5e-6).at_most(0.1),
+        FACING_IN_F32.at(|distance| distance < 5e-6).at_most(0.1),
         NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.99),
         FAR_CORNERS,
         ONE_MATRIX.at_most(0.99),
@@ -67,11 +67,11 @@ const ONE_MATRIX: KnownFailure = fails(
 .at(|distance| distance < 5e-6)
 .is_missing();
 
-const TURNED_SHEET: StressCase = StressCase {
+const FLIPPED_SHEET: StressCase = StressCase {
     name: "turned-sheet",
     lesson: "the same with the sheet turned: no coordinate of its corners or of the light is alike",
     drives: CaseNumber::Scene(|distance| {
-        let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).turned([30.0, 0.0, 0.0]).at([0.0, 1.0, 0.0]);
+        let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).rotated([30.0, 0.0, 0.0]).at([0.0, 1.0, 0.0]);
         let over = DMat3::from_rotation_x(30.0_f64.to_radians()) * DVec3::new(0.1, 0.8 * distance, 0.15);
         let light = Light::point(DVec3::Y + over);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
@@ -79,8 +79,8 @@ const TURNED_SHEET: StressCase = StressCase {
     least: |_| LeastShares::USUAL,
     failures: &[
         // It takes the light to be in the sheet's plane, and then nothing casts.
-        TOLD_IN_F32.at(|distance| distance < 5e-7).is_missing().at_most(0.66),
-        TOLD_IN_F32.at(|distance| distance < 5e-6).at_most(0.03),
+        FACING_IN_F32.at(|distance| distance < 5e-7).is_missing().at_most(0.66),
+        FACING_IN_F32.at(|distance| distance < 5e-6).at_most(0.03),
         NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.62),
         NEARER_THAN_MAP.at(|distance| distance < 5e-6).at_most(0.1),
         fails(MAP, "aliasing", "the sheet's edge is a few texels from where the map begins")
@@ -179,7 +179,7 @@ const LIGHT_IN_FACE_PLANE: StressCase = StressCase {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.5, ulps(1.0, steps), 0.25]), objects))
     }),
     also: &[LIGHT_FACING, BY_VERTEX_SHADER],
-    failures: &[TOLD_IN_F32.at(|step| step > 0.0).is_false().at_most(0.01)],
+    failures: &[FACING_IN_F32.at(|step| step > 0.0).is_false().at_most(0.01)],
     ..PLAIN
 };
 
@@ -226,7 +226,7 @@ const SUN_ALONG_RECEIVER: StressCase = StressCase {
     name: "sun-along-receiver",
     lesson: "the sun shines level: the floor is edge-on and in no light, the wall behind the box has its shadow",
     drives: CaseNumber::Scene(|_| {
-        let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
+        let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).rotated([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
         let objects = vec![floor(3.0)?, wall, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::directional(DVec3::new(0.2, 0.0, 1.0)), objects))
     }),

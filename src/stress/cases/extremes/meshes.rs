@@ -36,7 +36,7 @@ const BOTH_SIDES: StressCase = StressCase {
     parameter: "eye turned",
     values: &[0.0, 180.0],
     drives: CaseNumber::Scene(|degrees| {
-        let sheet = Object::of("sheet", shapes::quad([1.0; 2])?).turned([70.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]);
+        let sheet = Object::of("sheet", shapes::quad([1.0; 2])?).rotated([70.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]);
         let mut scene = over_floor(vec![sheet])?;
         let (sin, cos) = degrees.to_radians().sin_cos();
         scene.camera.eye = DVec3::new(1.5 * cos + 5.0 * sin, 3.0, 5.0 * cos - 1.5 * sin);
@@ -85,7 +85,7 @@ const MOBIUS: StressCase = StressCase {
             [[a, c, d], [a, d, b]]
         });
         let strip = Object::of("strip", shapes::triangles(&points, &quads.collect::<Vec<_>>())?);
-        over_floor(vec![strip.turned([20.0, 0.0, 0.0]).at([0.0, 1.0, 0.0])])
+        over_floor(vec![strip.rotated([20.0, 0.0, 0.0]).at([0.0, 1.0, 0.0])])
     }),
     failures: &[NO_SELF_SHADOW.at_most(0.0006)],
     ..PLAIN
@@ -159,7 +159,7 @@ const T_JUNCTION: StressCase = StressCase {
         ];
         let triangles = [[0, 1, 2], [0, 2, 3], [1, 5, 6], [1, 6, 4], [4, 6, 7], [4, 7, 2]];
         over_floor(vec![
-            Object::of("wall", shapes::triangles(&points, &triangles)?).turned([-20.0, 0.0, 0.0]).at([0.0, 0.8, 0.0]),
+            Object::of("wall", shapes::triangles(&points, &triangles)?).rotated([-20.0, 0.0, 0.0]).at([0.0, 0.8, 0.0]),
         ])
     }),
     ..PLAIN
@@ -170,9 +170,9 @@ const COINCIDENT: StressCase = StressCase {
     lesson: "the same triangle twice, and then with its other side: two volumes fill the same space",
     parameter: "turned",
     values: &[0.0, 1.0],
-    drives: CaseNumber::Scene(|turned| {
+    drives: CaseNumber::Scene(|rotated| {
         let points = [[-0.6, 0.0, 0.4], [0.6, 0.0, 0.4], [0.0, 0.3, -0.6]];
-        let second = if turned == 0.0 { [0, 1, 2] } else { [0, 2, 1] };
+        let second = if rotated == 0.0 { [0, 1, 2] } else { [0, 2, 1] };
         over_floor(vec![Object::of("pair", shapes::triangles(&points, &[[0, 1, 2], second])?).at([0.0, 0.8, 0.0])])
     }),
     ..PLAIN

@@ -24,7 +24,7 @@ const ACROSS_LIGHT: StressCase = StressCase {
     name: "across-light",
     lesson: "a wall reaches from below the light to above it: what is above must not be thrown on the floor",
     drives: CaseNumber::Scene(|_| {
-        let wall = Object::of("wall", shapes::quad([1.0, 2.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -0.3]);
+        let wall = Object::of("wall", shapes::quad([1.0, 2.0])?).rotated([90.0, 0.0, 0.0]).at([0.0, 1.5, -0.3]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.3, 1.7, 0.8]), vec![floor(3.0)?, wall]))
     }),
     also: &[UNCLIPPED],
@@ -53,8 +53,8 @@ const BEHIND_PROJECTOR: StressCase = StressCase {
     name: "behind-projector",
     lesson: "a wall behind the light: a slide's picture has a mirror image there unless q ≤ 0 is left out",
     drives: CaseNumber::Scene(|_| {
-        let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
-        let board = Object::of("board", shapes::quad([0.5; 2])?).turned([90.0, 0.0, 0.0]).at([0.1, 1.3, 1.5]);
+        let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).rotated([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
+        let board = Object::of("board", shapes::quad([0.5; 2])?).rotated([90.0, 0.0, 0.0]).at([0.1, 1.3, 1.5]);
         Ok(scene([1.0, 3.0, 4.5], [0.0, 0.8, -1.0], Light::point([0.0, 1.2, 0.5]), vec![floor(3.0)?, wall, board]))
     }),
     also: &[REVERSED],

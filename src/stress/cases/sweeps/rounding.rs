@@ -38,7 +38,7 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
     const SIZE: DVec2 = DVec2::new(320.0, 240.0);
     let (eye, target, lamp) = ([0.3, 3.1, 4.2], [0.0; 3], DVec3::new(1.3, 6.1, 0.7));
     let camera = Camera::looking(eye, target);
-    let sights = camera.sights(SIZE.x / SIZE.y);
+    let rays = camera.rays(SIZE.x / SIZE.y);
     let mut sheets = [Vec::new(), Vec::new()];
     let places = (0..20).flat_map(|column| {
         (0..11).map(move |row| DVec2::new(20.5, 70.5) + DVec2::new(column as f64, row as f64) * 14.0)
@@ -49,7 +49,7 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
             [0.754_877_666, 0.569_840_291, 0.618_033_989].map(|step: f64| (step * index as f64).fract());
         let along = DVec3::new((turn * PI).cos(), 0.0, (turn * PI).sin());
         let across = along.cross(DVec3::Y);
-        let way = sights.through((middle / SIZE * 2.0 - 1.0) * DVec2::new(1.0, -1.0)).along;
+        let way = rays.through((middle / SIZE * 2.0 - 1.0) * DVec2::new(1.0, -1.0)).along;
         let width = 2.0 * camera.half_height_at(-camera.eye.y / way.y) / SIZE.y;
         let seen = camera.eye - way * (camera.eye.y / way.y) + across * (pixels * width);
         // On the way from what is seen to the lamp, so that the shadow falls there.

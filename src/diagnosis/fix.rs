@@ -274,7 +274,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_mends_are_one_that_says_both() {
+    fn two_fixes_are_one_that_says_both() {
         let both = Fix::setting("casters", "all").and(&Fix::setting("operations", "wrap"));
         assert_eq!(both.describe(), "set casters = all, set operations = wrap");
         assert_eq!(both.and(&both), both);

@@ -6,22 +6,22 @@ use super::GpuError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MemoryBudget {
     most: u64,
-    held: u64,
+    used: u64,
 }
 
 impl MemoryBudget {
     /// Nothing is held yet, of `most` bytes.
     pub fn of(most: u64) -> MemoryBudget {
-        MemoryBudget { most, held: 0 }
+        MemoryBudget { most, used: 0 }
     }
 
     /// Holds so many bytes more.
     pub fn take(&mut self, bytes: u64) -> Result<(), GpuError> {
-        self.held = self.held.saturating_add(bytes);
-        if self.held <= self.most {
+        self.used = self.used.saturating_add(bytes);
+        if self.used <= self.most {
             return Ok(());
         }
-        let [needed, most] = [self.held, self.most].map(|bytes| format!("{} MiB", bytes.div_ceil(1 << 20)));
+        let [needed, most] = [self.used, self.most].map(|bytes| format!("{} MiB", bytes.div_ceil(1 << 20)));
         Err(GpuError::TooLarge { what: "the frame".to_owned(), needed: format!("at least {needed}"), most })
     }
 }

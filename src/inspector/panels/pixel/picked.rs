@@ -15,7 +15,7 @@ pub struct PixelPanel {
     /// Rungs of each light's ladder that were opened from a fold: of this history.
     pub unfolded: BTreeMap<usize, Vec<Range<usize>>>,
     /// The history that was told last.
-    told: Weak<PixelHistory>,
+    shown: Weak<PixelHistory>,
     /// The history that was checked last, and where it contradicts the GPU, in words.
     checked: Weak<PixelHistory>,
     wrong: Vec<String>,
@@ -44,13 +44,13 @@ pub struct PickedHistory {
 
 impl PixelPanel {
     /// What is told of the pick now; of another history than before nothing is unfolded.
-    pub fn told(&mut self, model: &Model) -> PickedHistory {
+    pub fn picked_history(&mut self, model: &Model) -> PickedHistory {
         let reply = model.want_history();
         let history = reply.latest().filter(|_| reply.failed.is_none()).cloned();
         if let Some(history) = &reply.ready
-            && !std::ptr::eq(self.told.as_ptr(), Arc::as_ptr(history))
+            && !std::ptr::eq(self.shown.as_ptr(), Arc::as_ptr(history))
         {
-            self.told = Arc::downgrade(history);
+            self.shown = Arc::downgrade(history);
             self.unfolded.clear();
             self.scrolls_to_selected = true;
         }

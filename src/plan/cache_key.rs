@@ -8,9 +8,9 @@ impl FramePlan {
     /// A hash of all that decides what an attachment holds when the frame is done; stable within a process
     /// only. `None` where that is more than the passes that draw into it alone, by position or in one colour,
     /// and where the plan does not say that it is kept.
-    pub fn kept_by(&self, id: AttachmentId) -> Option<u64> {
+    pub fn cache_key(&self, id: AttachmentId) -> Option<u64> {
         let map = self.map_in(id)?;
-        if !map.is_kept {
+        if !map.is_cached {
             return None;
         }
         let mut hasher = FixedState::default().build_hasher();

@@ -15,7 +15,7 @@ const GRAZING: f64 = 0.002;
 const EDGE_ON: f64 = 1e-6;
 
 /// Puts the edges whose sides hug a triangle of `caster` last, the order kept otherwise; how many they are.
-pub fn put_hugging_last(
+pub fn move_grazing_last(
     silhouette: &mut [SilhouetteEdge],
     caster: Caster,
     light: DVec4,
@@ -23,7 +23,7 @@ pub fn put_hugging_last(
 ) -> usize {
     let triangles = caster.mesh.triangles();
     let is_grazed = |corners: &[u32; 3]| is_grazed(caster, *corners, light, GRAZING);
-    let hugs: Box<dyn Fn(Edge) -> bool> = match edges {
+    let grazes: Box<dyn Fn(Edge) -> bool> = match edges {
         Some(edges) => Box::new(move |edge| {
             let index = edges.edges().binary_search(&edge);
             index.is_ok_and(|index| edges.incident(index).any(|(triangle, _)| is_grazed(&triangles[triangle])))
@@ -35,8 +35,8 @@ pub fn put_hugging_last(
             Box::new(move |edge| grazed.binary_search(&edge).is_ok())
         }
     };
-    silhouette.sort_by_cached_key(|edge| hugs(edge.edge));
-    silhouette.len() - silhouette.partition_point(|edge| !hugs(edge.edge))
+    silhouette.sort_by_cached_key(|edge| grazes(edge.edge));
+    silhouette.len() - silhouette.partition_point(|edge| !grazes(edge.edge))
 }
 
 /// Does the light lie so nearly in the plane of some triangle that single precision can't tell its side?
@@ -64,14 +64,14 @@ mod tests {
 
     /// A level square, and a triangle that stands on one of its edges.
     #[test]
-    fn sides_along_a_grazed_triangle_hug_it() {
+    fn sides_along_a_grazed_triangle_graze_it() {
         let positions =
             vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 0.0, -1.0), DVec3::NEG_Z, DVec3::new(0.5, 1.0, 0.0)];
         let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 1, 4]];
         let mesh = MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh");
         let caster = Caster { mesh: &mesh, pose: &Pose::default(), world: mesh.positions() };
         let edges = EdgeList::new(mesh.triangles(), 5);
-        let hugging = |light: DVec4| {
+        let grazing = |light: DVec4| {
             let (mut facings, mut found) = (Facings::default(), Vec::new());
             CasterPlanes::new(caster.world, mesh.triangles()).facings(
                 caster.world,
@@ -82,18 +82,18 @@ mod tests {
             facings.keep_casting(Casters::All);
             silhouette(&edges, &facings, &mut found);
             let (mut by_search, all) = (found.clone(), found.len());
-            let count = put_hugging_last(&mut found, caster, light, Some(&edges));
-            assert_eq!(put_hugging_last(&mut by_search, caster, light, None), count);
+            let count = move_grazing_last(&mut found, caster, light, Some(&edges));
+            assert_eq!(move_grazing_last(&mut by_search, caster, light, None), count);
             assert_eq!(by_search, found);
             let names: Vec<[u32; 2]> = found[all - count..].iter().map(|of| [of.edge.low, of.edge.high]).collect();
             names
         };
         // The square's edges but the one it shares: that one goes on in the standing triangle, or bounds both.
-        let low_sun = hugging(DVec4::new(0.3, 1e-4, 1.0, 0.0));
+        let low_sun = grazing(DVec4::new(0.3, 1e-4, 1.0, 0.0));
         assert!([[0, 3], [1, 2], [2, 3]].iter().all(|edge| low_sun.contains(edge)), "{low_sun:?}");
         assert!(!low_sun.contains(&[0, 4]) && !low_sun.contains(&[1, 4]), "{low_sun:?}");
-        assert_eq!(hugging(DVec4::new(0.3, 0.01, 1.0, 0.0)), [[0; 2]; 0]);
-        let low_lamp = hugging(DVec4::new(0.5, 0.001, 9.0, 1.0));
+        assert_eq!(grazing(DVec4::new(0.3, 0.01, 1.0, 0.0)), [[0; 2]; 0]);
+        let low_lamp = grazing(DVec4::new(0.5, 0.001, 9.0, 1.0));
         assert!([[0, 3], [1, 2], [2, 3]].iter().all(|edge| low_lamp.contains(edge)), "{low_lamp:?}");
     }
 }

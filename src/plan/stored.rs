@@ -5,7 +5,7 @@ use super::{Attachment, AttachmentId, FramePlan, PlanMap};
 impl PlanMap {
     /// Where a face lies in the map's texture, which has only those that are drawn; `None` for one that is left
     /// out, or that the map does not have.
-    pub fn held_layer(&self, face: u32) -> Option<u32> {
+    pub fn stored_layer(&self, face: u32) -> Option<u32> {
         let before = self.faces.get(..=face as usize)?;
         before.last()?.map(|_| before.iter().flatten().count() as u32 - 1)
     }
@@ -18,9 +18,9 @@ impl FramePlan {
     }
 
     /// Where a layer of an attachment lies in its texture; `None` where it is left out.
-    pub fn held_layer(&self, id: AttachmentId, layer: u32) -> Option<u32> {
+    pub fn stored_layer(&self, id: AttachmentId, layer: u32) -> Option<u32> {
         match self.map_in(id) {
-            Some(map) => map.held_layer(layer),
+            Some(map) => map.stored_layer(layer),
             None => Some(layer),
         }
     }
@@ -29,21 +29,21 @@ impl FramePlan {
     ///
     /// # Panics
     /// If the id is of another plan.
-    pub fn held_layers(&self, id: AttachmentId) -> u32 {
+    pub fn stored_layers(&self, id: AttachmentId) -> u32 {
         let drawn = |map: &PlanMap| (map.faces.iter().flatten().count() as u32).max(1);
         self.map_in(id).map_or_else(|| self.attachment(id).layers, drawn)
     }
 
     /// Texels of all layers that an attachment's texture has.
-    pub(crate) fn held_texels(&self, id: AttachmentId) -> u64 {
+    pub(crate) fn stored_texels(&self, id: AttachmentId) -> u64 {
         let [width, height] = self.attachment(id).size.map(u64::from);
-        width * height * u64::from(self.held_layers(id))
+        width * height * u64::from(self.stored_layers(id))
     }
 
     /// Of all its texels.
     pub(crate) fn attachment_bytes(&self, id: AttachmentId) -> u64 {
         let Attachment { format, .. } = self.attachment(id);
         // Depth32FloatStencil8 has no fixed size; drivers keep four bytes and one.
-        self.held_texels(id) * u64::from(format.block_copy_size(None).unwrap_or(5))
+        self.stored_texels(id) * u64::from(format.block_copy_size(None).unwrap_or(5))
     }
 }

@@ -31,7 +31,7 @@ impl CapturePoint {
     }
 
     /// Does the capture know the state at this moment?
-    pub fn is_held(self, capture: &Capture) -> bool {
+    pub fn is_known(self, capture: &Capture) -> bool {
         let Some(index) = self.draw else { return true };
         let draws = draws(capture, self.step);
         index + 1 >= draws.len() || draws[index].after.is_some()
