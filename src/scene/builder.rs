@@ -1,8 +1,8 @@
 //! A scene in code, piece by piece. What is not said is placed as for a scene file: without a camera all
 //! is in view from the front and a little above, and without lights a lamp stands above and in front.
 
+use super::camera::placement::SceneBounds;
 use super::names::ObjectNames;
-use super::placement::SceneBounds;
 use super::{Camera, Light, Object, Scene};
 use glam::DVec3;
 

@@ -4,54 +4,39 @@
 //! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes the name of any of them. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
-mod body;
 mod builder;
 pub mod builtin;
 mod camera;
-mod collision;
 mod error;
-pub mod file;
-#[cfg(feature = "program")]
-mod gltf;
+pub mod files;
 mod light;
 mod material;
 mod mesh;
-mod model;
-mod model_scene;
 mod names;
 mod not_taken;
-pub mod obj;
 mod object;
-mod open;
 mod picture;
-mod placement;
-#[cfg(feature = "program")]
-mod ply;
-mod polygon;
-mod read_text;
 mod refine;
 pub mod shapes;
 mod suggestion;
 mod vary;
-mod wall_tree;
+pub mod walking;
 
-pub use body::{Footing, WalkerBody};
 pub use builder::SceneBuilder;
+pub use camera::placement::SceneBounds;
 pub use camera::{Camera, CameraRays, Projection, Ray};
-pub use collision::{WallCache, Walls};
 use error::FileProblem;
 pub use error::SceneError;
+pub use files::{OpenSpec, UpAxis, file, files_of, is_model, is_scene_file, model_scene, obj, open};
 pub use light::{Light, MOST_LIGHTS};
 pub use material::{Material, Shading};
 pub use mesh::{Mesh, MeshBuilder, MeshError, MeshGroup};
-pub use model_scene::{UpAxis, model_scene};
 pub use not_taken::Unsupported;
 pub use object::{Motion, Object, Orbit, Pose, PoseBits, Swing};
-pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
 pub use picture::{ImageError, MaterialTexture, MipLevel, TextureImage};
-pub use placement::SceneBounds;
 pub use suggestion::{nearest, suggestion};
 pub use vary::VaryError;
+pub use walking::{Footing, WalkerBody, WallCache, Walls};
 
 use std::collections::BTreeMap;
 

@@ -3,11 +3,12 @@
 //! glTF and PLY are read in builds with the program alone; others say so.
 
 use super::model_scene::{self, UpAxis};
-use super::picture::ImageLoader;
+use super::obj;
 use super::read_text::stem;
-use super::{Mesh, Scene, SceneError, obj};
 #[cfg(feature = "program")]
 use super::{gltf, ply};
+use crate::scene::picture::ImageLoader;
+use crate::scene::{Mesh, Scene, SceneError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

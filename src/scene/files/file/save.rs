@@ -335,7 +335,7 @@ fn short(value: f32) -> f64 {
 mod tests {
     use super::*;
     use crate::scene::builtin;
-    use crate::scene::file::load;
+    use crate::scene::files::file::load;
     use std::collections::BTreeMap;
     use std::path::Path;
 

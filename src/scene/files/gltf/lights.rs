@@ -7,9 +7,9 @@
 use super::document::GltfResult;
 use super::named;
 use super::nodes::GltfNodes;
+use crate::scene::camera::placement::SceneBounds;
+use crate::scene::files::read_text::quoted;
 use crate::scene::not_taken::UnsupportedList;
-use crate::scene::placement::SceneBounds;
-use crate::scene::read_text::quoted;
 use crate::scene::{Camera, Light, MOST_LIGHTS, Projection};
 use glam::DVec3;
 use gltf::json::Root;

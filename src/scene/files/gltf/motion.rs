@@ -6,8 +6,8 @@
 use super::document::{GltfDocument, GltfResult};
 use super::named;
 use super::nodes::{GltfNodes, pose_of, unit};
+use crate::scene::files::read_text::quoted;
 use crate::scene::not_taken::UnsupportedList;
-use crate::scene::read_text::quoted;
 use crate::scene::{Motion, Orbit, Pose};
 use glam::{DQuat, DVec3};
 use gltf::json::animation::{Animation, Channel, Interpolation, Property};

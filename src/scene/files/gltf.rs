@@ -17,12 +17,12 @@ mod nodes;
 
 pub use document::files_of;
 
-use super::names::ObjectNames;
-use super::not_taken::{Unsupported, UnsupportedList};
-use super::picture::ImageLoader;
-use super::placement::SceneBounds;
 use super::read_text::{quoted, stem};
-use super::{Camera, Light, Material, Mesh, Motion, Object, SceneError, Shading};
+use crate::scene::camera::placement::SceneBounds;
+use crate::scene::names::ObjectNames;
+use crate::scene::not_taken::{Unsupported, UnsupportedList};
+use crate::scene::picture::ImageLoader;
+use crate::scene::{Camera, Light, Material, Mesh, Motion, Object, SceneError, Shading};
 use document::{GltfDocument, GltfResult};
 use glam::{DMat4, DVec3};
 use gltf::json::{Index, mesh};

@@ -5,11 +5,12 @@
 //! binary ones are read by `ply_rs_bw`, those of text here, as it takes no `.5` and no `nan`. What else a file holds is named
 //! ([`NotTaken`](super::NotTaken)).
 
-use super::mesh::is_usable_uv;
-use super::not_taken::UnsupportedList;
+use super::polygon;
 use super::read_text::{MOST_TEXT, decoded, quoted};
-use super::{FileProblem, Mesh, MeshBuilder, SceneError, polygon};
 use crate::files::{ReadError, read_plain};
+use crate::scene::mesh::is_usable_uv;
+use crate::scene::not_taken::UnsupportedList;
+use crate::scene::{FileProblem, Mesh, MeshBuilder, SceneError};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use ply_rs_bw::parser::{self, Parser};
 use ply_rs_bw::ply::{

@@ -3,6 +3,8 @@
 //! A pinhole's lines of sight meet in the eye. Those of a parallel projection have one direction: they meet at
 //! infinity, and the eye point only says where distances are measured from.
 
+pub(super) mod placement;
+
 use crate::math::depth::DepthCurve;
 use crate::math::projection;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};

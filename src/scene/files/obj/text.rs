@@ -3,8 +3,8 @@
 //! Vertex colours, points, lines and curves are left out. A place in a picture that is broken is none, as no mesh is worth
 //! less without.
 
+use crate::scene::files::read_text::quoted;
 use crate::scene::mesh::is_usable_uv;
-use crate::scene::read_text::quoted;
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 use std::borrow::Cow;

@@ -2,7 +2,7 @@
 
 use crate::files::read_plain;
 use crate::scene::SceneError;
-use crate::scene::read_text::quoted;
+use crate::scene::files::read_text::quoted;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf::json::validation::{Error, Validate};

@@ -6,10 +6,10 @@
 //! point of its axis is found by a search for the least of a convex function). A move is made in short steps of
 //! equal length, each with the way that gravity adds to it, `v t + g t² / 2`, so that equal moves end alike.
 
-use super::Walls;
 use super::collision::{MOST_STEPS, PUSHES, SLACK, closest};
 use super::wall_tree::Wall;
 use crate::math::AxisBox;
+use crate::scene::Walls;
 use glam::{DVec2, DVec3};
 
 /// Metres a second squared.

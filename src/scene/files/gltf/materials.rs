@@ -6,9 +6,9 @@
 
 use super::document::{GltfDocument, GltfResult};
 use super::named;
+use crate::scene::files::read_text::quoted;
 use crate::scene::not_taken::UnsupportedList;
 use crate::scene::picture::{ImageLoader, MOST_FILE};
-use crate::scene::read_text::quoted;
 use crate::scene::{Material, MaterialTexture};
 use glam::{Vec2, Vec3};
 use gltf::json::material::AlphaMode;

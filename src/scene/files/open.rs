@@ -1,9 +1,10 @@
 //! A scene by whatever names it: a built-in name, a scene file or a model.
 
-use super::builtin::{self, Builtin};
+use super::file;
 use super::model::{self, ModelFormat};
-use super::suggestion::nearest;
-use super::{Scene, SceneError, UpAxis, file};
+use crate::scene::builtin::{self, Builtin};
+use crate::scene::suggestion::nearest;
+use crate::scene::{Scene, SceneError, UpAxis};
 use std::path::{Path, PathBuf};
 
 /// What to open, and how a bare model is completed.

@@ -7,8 +7,8 @@
 //! step that can't be mended, as in a corner too narrow, is not made.
 
 use super::wall_tree::{Wall, WallTree};
-use super::{Object, PoseBits, Scene};
 use crate::last_used::LastUsed;
+use crate::scene::{Object, PoseBits, Scene};
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Reading a text file whole, with the ways in which that fails told apart.
 
-use super::SceneError;
 use crate::files::{ReadError, read_plain};
+use crate::scene::SceneError;
 use std::path::Path;
 
 /// Bytes of the largest text that is read.

@@ -7,11 +7,11 @@
 mod materials;
 mod text;
 
-use super::mesh::is_usable_uv;
-use super::picture::ImageLoader;
 use super::polygon;
 use super::read_text::{quoted, read_old_text};
-use super::{FileProblem, Mesh, MeshBuilder, MeshGroup, SceneError, Shading};
+use crate::scene::mesh::is_usable_uv;
+use crate::scene::picture::ImageLoader;
+use crate::scene::{FileProblem, Mesh, MeshBuilder, MeshGroup, SceneError, Shading};
 use glam::{DVec3, Vec2};
 use materials::{MaterialLibraries, ObjTexture};
 use std::path::{Path, PathBuf};

@@ -2,9 +2,9 @@
 
 #[cfg(feature = "program")]
 use super::gltf;
-use super::names::ObjectNames;
-use super::placement::SceneBounds;
-use super::{Material, Mesh, MeshBuilder, Object, Scene, SceneError, Shading};
+use crate::scene::camera::placement::SceneBounds;
+use crate::scene::names::ObjectNames;
+use crate::scene::{Material, Mesh, MeshBuilder, Object, Scene, SceneError, Shading};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;

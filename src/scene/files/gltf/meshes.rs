@@ -3,10 +3,10 @@
 use super::document::{GltfDocument, GltfResult};
 use super::materials::{GltfMaterials, GltfTexture, PrimitiveMaterial};
 use super::named;
+use crate::scene::files::polygon;
+use crate::scene::files::read_text::quoted;
 use crate::scene::mesh::is_usable_uv;
 use crate::scene::not_taken::UnsupportedList;
-use crate::scene::polygon;
-use crate::scene::read_text::quoted;
 use crate::scene::{Mesh, MeshBuilder, MeshGroup, Shading};
 use foldhash::fast::RandomState;
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};

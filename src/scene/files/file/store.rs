@@ -2,8 +2,9 @@
 
 use super::save::{SaveError, SavedScene, save};
 use crate::files::{from_beside, read_plain, write_whole};
-use crate::scene::read_text::stem;
-use crate::scene::{Scene, model};
+use crate::scene::Scene;
+use crate::scene::files::model;
+use crate::scene::files::read_text::stem;
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -6,14 +6,14 @@ use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, ObjectTable, OrbitTable, SceneTable, SpannedNumber,
     SpannedText, SpannedTriple, SwingTable, TechniqueTable,
 };
-use crate::scene::model::{self, ModelReader};
+use crate::scene::camera::placement::SceneBounds;
+use crate::scene::files::model::{self, ModelReader};
+use crate::scene::files::read_text::{quoted, stem};
 use crate::scene::names::ObjectNames;
-use crate::scene::placement::SceneBounds;
 use crate::scene::suggestion;
 use crate::scene::{
     Camera, Light, Material, MaterialTexture, Mesh, MeshGroup, Motion, Object, Orbit, Pose, Projection, Scene, Shading,
     Swing, TechniqueRequest,
-    read_text::{quoted, stem},
 };
 use glam::DVec3;
 use std::collections::BTreeMap;

@@ -5,9 +5,9 @@
 //! ([`UnsupportedList`]).
 
 use crate::files::read_plain;
+use crate::scene::files::read_text::{decoded, quoted};
 use crate::scene::not_taken::UnsupportedList;
 use crate::scene::picture::ImageLoader;
-use crate::scene::read_text::{decoded, quoted};
 use crate::scene::{Material, MaterialTexture, Shading};
 use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};

@@ -5,7 +5,7 @@
 //! side in front, so that lit, shadowed and turned-away parts all show and the shadow falls to
 //! where the eye sees the floor.
 
-use super::{Camera, Light};
+use crate::scene::{Camera, Light};
 use glam::DVec3;
 
 /// From the middle of what is looked at towards the eye.

@@ -26,8 +26,9 @@ mod tables;
 pub use save::{SaveError, SavedScene, save};
 pub use store::{StoreError, store};
 
+use super::model;
 use super::read_text::{read_text, stem};
-use super::{Scene, SceneError, model};
+use crate::scene::{Scene, SceneError};
 use problem::SceneFileProblem;
 use std::path::{Path, PathBuf};
 

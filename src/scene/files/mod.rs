@@ -1,0 +1,26 @@
+//! Scenes and models from files: scene files, glTF, OBJ and PLY, and the name of any of them.
+//!
+//! ```text
+//! open.rs ─► file.rs         scene files (TOML), read and saved
+//!         ├► model.rs ─► obj.rs, ply.rs, gltf.rs   models by their files' endings
+//!         │              └► model_scene.rs         a bare model gets a floor, a light and a camera
+//!         └► builtin
+//! ```
+//!
+//! Files are read without trust: sizes are bounded before memory is taken, and every error names the file, the place and
+//! how to fix it.
+
+pub mod file;
+#[cfg(feature = "program")]
+mod gltf;
+mod model;
+mod model_scene;
+pub mod obj;
+mod open;
+#[cfg(feature = "program")]
+mod ply;
+mod polygon;
+pub(super) mod read_text;
+
+pub use model_scene::{UpAxis, model_scene};
+pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};
