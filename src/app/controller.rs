@@ -59,8 +59,8 @@ pub struct Controller {
 impl Drop for Controller {
     /// Long work stops: the program ends.
     fn drop(&mut self) {
-        self.inspector.make_way();
-        self.inspector.cancel(QuestionKind::FilmOf);
+        self.inspector.model.answers.make_way();
+        self.inspector.model.cancel(QuestionKind::FilmOf);
     }
 }
 
@@ -105,7 +105,7 @@ impl Controller {
 
     /// Is anything being found out? How far that is changes without news.
     pub fn is_answering(&self) -> bool {
-        self.inspector.answers().is_waiting()
+        self.inspector.model.answers.is_waiting()
     }
 
     /// Takes in what woke the window, but for what is the window's own.
@@ -120,7 +120,7 @@ impl Controller {
                 let next = self.reader.go_on(&self.notify);
                 self.say_if_failed(next);
             }
-            WindowNews::FileChanged(file) => self.inspector.offer_reload(file),
+            WindowNews::FileChanged(file) => self.inspector.model.activity.changed_file = Some(file),
             WindowNews::Repaint(_) | WindowNews::Access(_) => {}
         }
     }
@@ -155,9 +155,9 @@ impl Controller {
             }
             News::Answered { ticket, result } => self.inspector.answer(ticket, result, true),
             News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
-            News::AnswerEnded { ticket } => self.inspector.end_answer(ticket),
+            News::AnswerEnded { ticket } => self.inspector.model.answers.end(ticket),
             News::Exported(exported) => self.end_export(exported),
-            News::Dropped(what) => self.inspector.push_error(what),
+            News::Dropped(what) => self.inspector.model.push_error(what),
             News::Failed(reason) => self.inspector.push_failure(reason),
         }
     }
@@ -166,20 +166,20 @@ impl Controller {
         if let Err(NoReader { ticket, why }) = begun {
             let reason = format!("no pixel can be linked with its texel now: {why}; run the frame again");
             self.inspector.answer(ticket, Err(reason.clone()), true);
-            self.inspector.push_error(reason);
+            self.inspector.model.push_error(reason);
         }
     }
 
     fn show(&mut self, capture: Arc<Capture>) {
         self.inspector.set_capture(capture);
         if let Some(step) = self.first_step.take() {
-            self.inspector.select_step(step);
+            self.inspector.model.select_step(step);
         }
         if std::mem::take(&mut self.first_is_error) {
-            self.inspector.set_picture_kind(PictureKind::Error);
+            self.inspector.model.choose_picture(PictureKind::Error);
         }
         if let Some(pick) = self.first_pick.take() {
-            self.inspector.pick(pick);
+            self.inspector.model.selection.pick = Some(pick);
         }
     }
 
@@ -187,11 +187,11 @@ impl Controller {
     pub fn act(&mut self, action: Action) {
         let order = match action {
             Action::Open(name) => {
-                self.inspector.make_way();
+                self.inspector.model.answers.make_way();
                 Order::Open(name)
             }
             Action::Run(request) => {
-                self.inspector.make_way();
+                self.inspector.model.answers.make_way();
                 Order::Run { scene: self.scene, request }
             }
             Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
@@ -201,7 +201,7 @@ impl Controller {
             Action::BrowseExport { path } => return self.browse_export(&path),
             Action::Reload => {
                 let Some(request) = self.inspector.draft() else { return };
-                self.inspector.make_way();
+                self.inspector.model.answers.make_way();
                 Order::Reload { request }
             }
             Action::Export { kind, path, replace } => match self.inspector.export(kind) {
@@ -230,7 +230,7 @@ impl Controller {
             },
             Action::OpenStress { case, value, entrant } => {
                 let Some(case) = StressCase::named(case) else { return };
-                self.inspector.make_way();
+                self.inspector.model.answers.make_way();
                 Order::OpenCase { case, value, entrant }
             }
             Action::OpenReportRow { technique, settings } => {
@@ -239,7 +239,7 @@ impl Controller {
         };
         if !self.worker.order(order) {
             let lost = "the worker thread is gone: close the window and start again";
-            self.inspector.push_error(lost.to_owned());
+            self.inspector.model.push_error(lost.to_owned());
         }
     }
 
@@ -249,15 +249,15 @@ impl Controller {
             Some(problem) => self.end_export(problem),
             None => {
                 self.inspector.begin_export();
-                self.inspector.start(FilmOf { subject, path });
+                self.inspector.model.answers.start(FilmOf { subject, path });
             }
         }
     }
 
     /// Answers what follows from the shown capture.
     fn read(&mut self, asked: PendingQuestion) {
-        let Some(capture) = self.inspector.capture().cloned() else { return };
-        let reading = ReadRequest { asked, capture, plan: self.inspector.plan().cloned() };
+        let Some(capture) = self.inspector.model.frame.capture.as_ref().cloned() else { return };
+        let reading = ReadRequest { asked, capture, plan: self.inspector.model.frame.plan.as_ref().cloned() };
         let begun = self.reader.read(reading, &self.notify);
         self.say_if_failed(begun);
     }
@@ -266,7 +266,7 @@ impl Controller {
     fn open_report_row(&mut self, row: TechniqueRequest) {
         match Choice::parse(&row) {
             Ok(choice) => self.inspector.choose(choice).into_iter().for_each(|action| self.act(action)),
-            Err(error) => self.inspector.push_error(error.to_string()),
+            Err(error) => self.inspector.model.push_error(error.to_string()),
         }
     }
 
@@ -288,7 +288,7 @@ impl Controller {
             }
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
-            self.inspector.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+            self.inspector.model.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
         }
     }
 
@@ -305,7 +305,7 @@ impl Controller {
             }
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
-            self.inspector.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+            self.inspector.model.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
         }
     }
 
@@ -323,7 +323,7 @@ impl Controller {
         let now = self.inspector.remembered();
         if self.watch.is_some() && now != self.remembered {
             if let Err(reason) = memory::store(&now) {
-                self.inspector.push_error(reason);
+                self.inspector.model.push_error(reason);
             }
             self.remembered = now;
         }

@@ -117,7 +117,7 @@ impl Headless {
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
-            let is_busy = self.controller.inspector.is_busy() || self.controller.is_answering();
+            let is_busy = self.controller.inspector.model.activity.job.is_some() || self.controller.is_answering();
             match self.news.recv_timeout(if is_busy { PATIENCE } else { SILENCE }) {
                 Ok(news) => {
                     self.controller.wake(news);

@@ -57,7 +57,7 @@ impl App {
     fn draw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(surface) = &mut self.surface else { return };
         let mut actions = Vec::new();
-        let is_watching = self.controller.inspector.answers().has_progress();
+        let is_watching = self.controller.inspector.model.answers.has_progress();
         surface.draw(event_loop, &self.ctx, |ui| {
             actions.extend(self.controller.inspector.ui(ui));
             if is_watching {
@@ -66,7 +66,7 @@ impl App {
         });
         if let Some(reason) = surface.take_grab_failure() {
             let words = format!("the pointer can't be held ({reason}): walking turns until it meets an edge");
-            self.controller.inspector.push_error(words);
+            self.controller.inspector.model.push_error(words);
         }
         if !actions.is_empty() {
             actions.into_iter().for_each(|action| self.controller.act(action));
@@ -82,7 +82,7 @@ impl ApplicationHandler<WindowNews> for App {
         }
         match WindowSurface::new(event_loop, &self.ctx, self.proxy.clone(), self.adapter.as_deref()) {
             Ok(mut surface) => {
-                if let Some(capture) = self.controller.inspector.capture() {
+                if let Some(capture) = self.controller.inspector.model.frame.capture.as_ref() {
                     surface.set_title(title(capture));
                 }
                 surface.request_redraw();
@@ -109,7 +109,9 @@ impl ApplicationHandler<WindowNews> for App {
             }
             news => {
                 self.controller.wake(news);
-                if let (Some(surface), Some(capture)) = (&mut self.surface, self.controller.inspector.capture()) {
+                if let (Some(surface), Some(capture)) =
+                    (&mut self.surface, self.controller.inspector.model.frame.capture.as_ref())
+                {
                     surface.set_title(title(capture));
                 }
                 self.redraw();

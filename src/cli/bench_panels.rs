@@ -71,10 +71,10 @@ mod measured {
     /// Each tab in front, the pointer moving over all of the window.
     pub fn tabs(panels: &mut Headless) -> String {
         let middle = width_of(panels) / 2;
-        panels.inspector().pick([middle, 200]);
+        panels.inspector().model.selection.pick = Some([middle, 200]);
         let mut text = String::new();
         for panel in PanelKind::ALL {
-            panels.inspector().show_panel(panel);
+            panels.inspector().model.requests.panels.push(panel);
             for _ in 0..4 {
                 panels.point([0.5, 0.5]);
             }
@@ -95,14 +95,14 @@ mod measured {
                 verdict(total, LIMIT_PANELS_MS)
             );
         }
-        panels.inspector().show_panel(PanelKind::Picture);
-        panels.inspector().show_panel(PanelKind::Pixel);
+        panels.inspector().model.requests.panels.push(PanelKind::Picture);
+        panels.inspector().model.requests.panels.push(PanelKind::Pixel);
         text
     }
 
     /// The Scene tab's view is dragged about: all of it is drawn anew each frame.
     pub fn orbit(panels: &mut Headless) -> String {
-        panels.inspector().show_panel(PanelKind::Scene);
+        panels.inspector().model.requests.panels.push(PanelKind::Scene);
         let middle = [0.55, 0.4];
         // The worker may have to look at the geometry first.
         if let Err(error) = panels.settle() {
@@ -134,7 +134,7 @@ mod measured {
         let drawn: Result<Vec<f64>, AppError> = drawn.collect();
         let drawn = drawn.map_or_else(|error| error.to_string(), |times| format!("{:.2}", median(times)));
         panels.frame(vec![button(false)]);
-        panels.inspector().show_panel(PanelKind::Picture);
+        panels.inspector().model.requests.panels.push(PanelKind::Picture);
         let all = |of: fn(&FrameCost) -> Duration| median(costs.iter().map(|cost| ms(of(cost))).collect());
         let total = all(FrameCost::total);
         format!(
@@ -147,7 +147,7 @@ mod measured {
     }
 
     fn width_of(panels: &mut Headless) -> u32 {
-        panels.inspector().capture().map_or(2, |capture| capture.size[0])
+        panels.inspector().model.frame.capture.as_ref().map_or(2, |capture| capture.size[0])
     }
 
     /// Is another frame wished for while nothing happens?
@@ -167,10 +167,10 @@ mod measured {
         let mut in_next = 0;
         panels.key(Modifiers::NONE, Key::Home);
         for round in 0..FRAMES {
-            let before = panels.inspector().step();
+            let before = panels.inspector().model.selection.step;
             let key = if round % 2 == 0 { Key::ArrowRight } else { Key::ArrowLeft };
             let cost = panels.key(Modifiers::NONE, key);
-            in_next += usize::from(panels.inspector().step() != before);
+            in_next += usize::from(panels.inspector().model.selection.step != before);
             costs.push(ms(cost.total()));
         }
         format!(

@@ -148,15 +148,15 @@ mod shots {
             PictureSubject { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
             PictureSubject {
                 kind: Error,
-                asks: Some(|panels| panels.start(DiagnosisOf {})),
+                asks: Some(|panels| panels.model.answers.start(DiagnosisOf {})),
                 ..shot("diagnosis", "inside", ZPass, &[Picture, Pixel, Diagnosis])
             },
             PictureSubject {
-                asks: Some(|panels| ReportOf::grid().into_iter().for_each(|report| panels.start(report))),
+                asks: Some(|panels| ReportOf::grid().into_iter().for_each(|report| panels.model.answers.start(report))),
                 ..shot("report-tab", "table", ShadowMap, &[Picture, Pixel, Report])
             },
             PictureSubject {
-                asks: Some(|panels| panels.start(StressOf { cases: STRESSED.to_vec() })),
+                asks: Some(|panels| panels.model.answers.start(StressOf { cases: STRESSED.to_vec() })),
                 ..shot("stress-tab", "tori", ZFail, &[Picture, Pixel, Stress])
             },
             PictureSubject {
@@ -236,18 +236,18 @@ mod shots {
     fn take(shot: &PictureSubject, adapter: Option<&str>, window: ([f32; 2], f32)) -> Result<Picture, CliError> {
         let mut panels = opened(shot.scene, shot.technique, adapter, window)?;
         let inspector = panels.inspector();
-        inspector.set_theme(shot.theme);
-        let steps = inspector.capture().map_or_else(Vec::new, |capture| capture.steps.clone());
+        inspector.model.theme = shot.theme;
+        let steps = inspector.model.frame.capture.as_ref().map_or_else(Vec::new, |capture| capture.steps.clone());
         if let Some(step) = steps.iter().position(|step| !shot.step.is_empty() && step.name.contains(shot.step)) {
-            inspector.select_step(step);
+            inspector.model.select_step(step);
         }
-        inspector.set_picture_kind(shot.kind);
+        inspector.model.choose_picture(shot.kind);
         if let Some(pick) = shot.pick {
-            inspector.pick(pick);
+            inspector.model.selection.pick = Some(pick);
         }
-        shot.panels.iter().for_each(|panel| inspector.show_panel(*panel));
+        shot.panels.iter().for_each(|panel| inspector.model.requests.panels.push(*panel));
         if let Some(overlay) = shot.overlay {
-            inspector.lay_over(overlay);
+            inspector.model.modes.overlays.insert(overlay);
         }
         if let Some(technique) = shot.compared {
             inspector.compare_with(technique);

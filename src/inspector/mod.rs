@@ -17,7 +17,7 @@
 mod action;
 mod canvas;
 mod look;
-mod model;
+pub mod model;
 mod panels;
 mod shell;
 mod tours;
@@ -29,7 +29,7 @@ pub use shell::export::ExportData;
 pub use shell::open_dialog::SceneEntry;
 pub use tours::{TOURS, Tour, TourMove, TourStop};
 
-use crate::ask::{Answer, Answers, Question, QuestionKind, RunRequest};
+use crate::ask::{Answer, Question, QuestionKind, RunRequest};
 use crate::capture::{Capture, Image};
 use crate::plan::FramePlan;
 use crate::reading::capture_point::CapturePoint;
@@ -51,7 +51,8 @@ use std::time::Duration;
 /// All panels and what they remember.
 #[derive(Debug)]
 pub struct Inspector {
-    model: Model,
+    /// What the panels look at, and what is selected in it.
+    pub model: Model,
     panels: Panels,
     dock: Dock,
     open_dialog: OpenDialog,
@@ -151,26 +152,11 @@ impl Inspector {
     pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) {
         let failure = result.as_ref().err().cloned();
         match (self.model.answers.answer(ticket, result, is_last), failure) {
-            (Some(QuestionKind::FilmOf), Some(reason)) => self.push_error(reason),
+            (Some(QuestionKind::FilmOf), Some(reason)) => self.model.push_error(reason),
             (Some(QuestionKind::TruthOf), Some(_)) => self.model.view.older_truth = None,
             (Some(kind), None) => self.model.take_in(kind),
             _ => {}
         }
-    }
-
-    /// Nothing more comes of what was asked with this ticket.
-    pub fn end_answer(&mut self, ticket: u64) {
-        self.model.answers.end(ticket);
-    }
-
-    /// Another picture is asked for, and must not wait: long work stops.
-    pub fn make_way(&mut self) {
-        self.model.answers.make_way();
-    }
-
-    /// What is known of frame and scene.
-    pub fn answers(&self) -> &Answers {
-        &self.model.answers
     }
 
     /// Takes in what is known of a question without being asked.
@@ -180,16 +166,6 @@ impl Inspector {
         if is_known {
             self.model.take_in(Q::KIND);
         }
-    }
-
-    /// Asks a question that takes long, as its panel does.
-    pub fn start<Q: Question>(&mut self, question: Q) {
-        self.model.answers.start(question);
-    }
-
-    /// Stops what is being found out of a kind, as its panel does.
-    pub fn cancel(&mut self, kind: QuestionKind) {
-        self.model.cancel(kind);
     }
 
     /// Another scene is open, to be run as `draft` says.
@@ -214,16 +190,6 @@ impl Inspector {
         self.model.answers.know_plan();
     }
 
-    /// What was run for the capture that is shown; `None` for a capture folder.
-    pub fn plan(&self) -> Option<&Arc<FramePlan>> {
-        self.model.frame.plan.as_ref()
-    }
-
-    /// The file of the open scene, or one that it is made of, changed.
-    pub fn offer_reload(&mut self, file: String) {
-        self.model.activity.changed_file = Some(file);
-    }
-
     /// What is to be remembered until the window is opened again.
     pub fn remembered(&self) -> StoredSettings {
         let layout = self.dock.layout();
@@ -239,26 +205,11 @@ impl Inspector {
         }
     }
 
-    /// Shows a tab.
-    pub fn show_panel(&mut self, panel: PanelKind) {
-        self.model.requests.panels.push(panel);
-    }
-
-    /// Lays an overlay over the picture.
-    pub fn lay_over(&mut self, overlay: Overlay) {
-        self.model.modes.overlays.insert(overlay);
-    }
-
     /// Shows the same frame made with another technique beside the picture, under a divider.
     pub fn compare_with(&mut self, technique: Technique) {
         let compare =
             Comparison { with: ComparedWith::Technique(technique), ..Comparison::new(self.model.selection.step) };
         self.model.modes.compare = Some(compare);
-    }
-
-    /// Dark or light.
-    pub fn set_theme(&mut self, theme: ThemeChoice) {
-        self.model.theme = theme;
     }
 
     /// Runs the open scene like this; what has to be done for it.
@@ -315,7 +266,7 @@ impl Inspector {
                 self.begin_export();
             }
             (Err(reason), Some(dialog)) => dialog.error = Some(reason),
-            (Err(reason), None) => self.push_error(reason),
+            (Err(reason), None) => self.model.push_error(reason),
         }
     }
 
@@ -335,11 +286,6 @@ impl Inspector {
         self.model.textures.forget_unused();
     }
 
-    /// Shows the same frame, of which more is known. What is selected stays, and playing goes on.
-    pub fn update_capture(&mut self, capture: Arc<Capture>) {
-        self.model.update_capture(capture);
-    }
-
     /// Index of the selected event in the history of the picked pixel.
     pub fn selected_event(&self) -> Option<usize> {
         let history = self.model.history_of_frame()?;
@@ -353,11 +299,6 @@ impl Inspector {
         actions
     }
 
-    /// The capture that is shown, with all that is known of it by now.
-    pub fn capture(&self) -> Option<&Arc<Capture>> {
-        self.model.frame.capture.as_ref()
-    }
-
     /// What is being done, in a few words; `None` when nothing is.
     pub fn set_job(&mut self, job: Option<String>) {
         // Nothing is done: what failed is not waited for.
@@ -365,41 +306,11 @@ impl Inspector {
         self.model.activity.job = job;
     }
 
-    /// Is anything being done?
-    pub fn is_busy(&self) -> bool {
-        self.model.activity.job.is_some()
-    }
-
     /// A scene could not be opened, or its frame not be made: a tour that waits for it says so, and it is told until
     /// one can be.
     pub fn push_failure(&mut self, error: String) {
         self.tours.note_error(&error);
         self.model.push_failure(error);
-    }
-
-    /// Shows an error with its mend until it is dismissed; what was shown before stays.
-    pub fn push_error(&mut self, error: String) {
-        self.model.push_error(error);
-    }
-
-    /// The errors that are shown.
-    pub fn errors(&self) -> &[String] {
-        &self.model.activity.errors
-    }
-
-    /// Index of the selected step.
-    pub fn step(&self) -> usize {
-        self.model.selection.step
-    }
-
-    /// Selects a step; the last one if there are fewer.
-    pub fn select_step(&mut self, step: usize) {
-        self.model.select_step(step);
-    }
-
-    /// Index of the selected draw of that step; `None`: the step as a whole.
-    pub fn draw(&self) -> Option<usize> {
-        self.model.selection.draw
     }
 
     /// Selects a draw of a step; the whole step if it has fewer.
@@ -411,11 +322,6 @@ impl Inspector {
     pub fn shown_images(&self) -> Vec<Arc<Image>> {
         let shown = |capture: &Arc<Capture>| self.model.shown(capture);
         self.model.frame.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
-    }
-
-    /// The picked pixel of the picture.
-    pub fn picked(&self) -> Option<[u32; 2]> {
-        self.model.selection.pick
     }
 
     /// The texel that a pixel reads of the shadow map in its tab: index of the face, column and row. `None`
@@ -430,41 +336,16 @@ impl Inspector {
         self.panels.shadow_map.readers(&self.model)?.depth_of(pixel)
     }
 
-    /// Picks a pixel.
-    pub fn pick(&mut self, at: [u32; 2]) {
-        self.model.selection.pick = Some(at);
-    }
-
     /// The kind of picture that is shown.
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.model.frame.capture.as_ref()?;
         self.model.shown(capture).map(|shown| shown.kind)
     }
 
-    /// Shows what each step writes.
-    pub fn follow_steps(&mut self) {
-        self.model.view.follow_steps();
-    }
-
-    /// Wishes for a kind of picture.
-    pub fn set_picture_kind(&mut self, kind: PictureKind) {
-        self.model.choose_picture(kind);
-    }
-
-    /// How large texels are shown.
-    pub fn zoom(&self) -> TexelZoom {
-        self.model.view.zoom
-    }
-
     /// Shows texels in a size, `center` (in texels) in the middle.
     pub fn set_zoom(&mut self, zoom: TexelZoom, center: [f64; 2]) {
         self.model.view.zoom = zoom;
         self.model.view.center = center;
-    }
-
-    /// Is the scene playing?
-    pub fn is_playing(&self) -> bool {
-        self.model.selection.playing.is_some()
     }
 }
 

@@ -212,7 +212,7 @@ fn arrows_step_whatever_button_has_the_focus_and_leave_it_there() {
         press(&mut harness, Key::End);
         let before = focus_on(&mut harness, role, label);
         press(&mut harness, Key::ArrowLeft);
-        assert_eq!((harness.state().inspector.step(), focused(&harness)), (1, Some(before)), "{label}");
+        assert_eq!((harness.state().inspector.model.selection.step, focused(&harness)), (1, Some(before)), "{label}");
     }
 }
 
@@ -222,7 +222,7 @@ fn what_arrows_move_itself_keeps_them() {
     show(&mut harness, &["Shadow map"]);
     focus_on(&mut harness, Role::Canvas, "Shadow map canvas");
     press(&mut harness, Key::ArrowLeft);
-    assert_eq!(harness.state().inspector.step(), 3, "the texel moves");
+    assert_eq!(harness.state().inspector.model.selection.step, 3, "the texel moves");
     harness.get_by_role_and_label(Role::Button, "Clear");
 }
 
@@ -231,13 +231,13 @@ fn space_plays_and_t_animates_while_the_picture_has_the_focus_and_space_presses_
     let mut harness = harness(z_fail(SIZE));
     focus_on(&mut harness, Role::Canvas, "Picture canvas");
     press(&mut harness, Key::Space);
-    assert!(harness.state().inspector.is_playing());
+    assert!(harness.state().inspector.model.selection.playing.is_some());
     press(&mut harness, Key::Space);
-    assert!(!harness.state().inspector.is_playing());
+    assert!(!harness.state().inspector.model.selection.playing.is_some());
     focus_on(&mut harness, Role::Button, "Depth");
     press(&mut harness, Key::Space);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
-    assert!(!harness.state().inspector.is_playing());
+    assert!(!harness.state().inspector.model.selection.playing.is_some());
 }
 
 #[test]
@@ -245,12 +245,12 @@ fn escape_leaves_a_field_or_a_button_before_it_takes_the_pick_away() {
     let mut harness = picked(z_fail(SIZE), [3, 4]);
     focus_on(&mut harness, Role::Button, "Depth");
     press(&mut harness, Key::Escape);
-    assert_eq!(harness.state().inspector.picked(), Some([3, 4]));
+    assert_eq!(harness.state().inspector.model.selection.pick, Some([3, 4]));
     press_with(&mut harness, Modifiers::COMMAND, Key::F);
     press(&mut harness, Key::Escape);
-    assert_eq!(harness.state().inspector.picked(), Some([3, 4]));
+    assert_eq!(harness.state().inspector.model.selection.pick, Some([3, 4]));
     press(&mut harness, Key::Escape);
-    assert_eq!(harness.state().inspector.picked(), None);
+    assert_eq!(harness.state().inspector.model.selection.pick, None);
 }
 
 #[test]

@@ -50,8 +50,8 @@ fn is_near(a: Rgb, b: Rgb, by: u8) -> bool {
 
 fn at_volumes() -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.select_step(1);
-    inspector.set_picture_kind(PictureKind::Stencil);
+    inspector.model.select_step(1);
+    inspector.model.choose_picture(PictureKind::Stencil);
     harness_of(inspector)
 }
 
@@ -86,7 +86,7 @@ fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
 #[test]
 fn tints_of_overlays_are_in_it() {
     let mut harness = at_volumes();
-    change(&mut harness, |inspector| inspector.lay_over(Overlay::Tests));
+    change(&mut harness, |inspector| inspector.model.modes.overlays.extend([Overlay::Tests]));
     let image = |value| Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[value]));
     let tests = StepTests { step: 1, draw: None, fragments: image(1), depth_passes: image(1), stencil: image(0) };
     change(&mut harness, |inspector| {
@@ -138,7 +138,7 @@ fn edges_that_count_twice_have_their_number() {
         let many = anatomy.silhouettes.iter().flat_map(|silhouette| &silhouette.edges);
         let many = many.filter(|edge| edge.multiplicity.unsigned_abs() > 1).count();
         let mut harness = harness_of(pictures::inspector(&frame, [10, 10]));
-        change(&mut harness, |inspector| inspector.lay_over(Overlay::Silhouettes));
+        change(&mut harness, |inspector| inspector.model.modes.overlays.extend([Overlay::Silhouettes]));
         change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
         let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
         if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
@@ -166,7 +166,7 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     let anatomy = pictures::anatomy(&mut session, &frame);
     let mut harness = harness_of(pictures::inspector(&frame, [10, 10]));
     for overlay in [Overlay::Silhouettes, Overlay::Names, Overlay::Receivers, Overlay::Volumes] {
-        harness.state_mut().inspector.lay_over(overlay);
+        harness.state_mut().inspector.model.modes.overlays.insert(overlay);
     }
     harness.run_steps(2);
     change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
@@ -181,13 +181,13 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     let letters = shown.pixels().filter(|pixel| is_near(*pixel, [0xd9, 0xdc, 0xe3], 16)).count();
     assert!(plates > 400 && letters > 30, "names are written: {plates}, {letters}");
     let window = harness.render().expect("a picture");
-    change(&mut harness, |inspector| inspector.set_theme(ThemeChoice::Light));
+    change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Light);
     let light = exported(&mut harness, ExportKind::AsShown);
     assert_ne!(light.bytes, shown.bytes, "in the window's theme");
     if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
         let folder = Path::new(&folder);
         window.save(folder.join("as-shown-window.png")).expect("written");
-        change(&mut harness, |inspector| inspector.set_theme(ThemeChoice::Dark));
+        change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Dark);
         let start = std::time::Instant::now();
         let Some(ExportData::AsShown(drawing)) = harness.state_mut().inspector.export(ExportKind::AsShown) else {
             panic!("a drawing")

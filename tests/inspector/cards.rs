@@ -55,7 +55,7 @@ fn the_banner_of_walking_and_the_legend_are_beside_each_other() {
 #[test]
 fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
-    change(&mut harness, |inspector| inspector.select_step(1));
+    change(&mut harness, |inspector| inspector.model.select_step(1));
     let fixed = ["Compare", "Overlay", "Fit", "1:1", "Walk", "Picture canvas"];
     let places = |harness: &Harness<Seen>| fixed.map(|label| rect(harness, label));
     let before = places(&harness);
@@ -99,10 +99,10 @@ fn of_several_faces_none_is_compared_and_the_buttons_keep_their_place() {
 fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         let mut inspector = inspector(z_fail(SIZE));
-        inspector.select_step(1);
-        inspector.set_picture_kind(PictureKind::Stencil);
-        inspector.set_theme(theme);
-        inspector.pick([30, 15]);
+        inspector.model.select_step(1);
+        inspector.model.choose_picture(PictureKind::Stencil);
+        inspector.model.theme = theme;
+        inspector.model.selection.pick = Some([30, 15]);
         let mut harness = harness_of(inspector);
         let canvas = rect(&harness, "Picture canvas");
         let picture = harness.render().expect("a picture");
@@ -127,7 +127,7 @@ fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
     let history = history_by_hand::history([3, 4], &history_by_hand::FACES);
     for height in [800.0, 900.0, 1000.0, 1080.0] {
         let mut inspector = inspector(with_truth(z_fail(SIZE)));
-        inspector.pick([3, 4]);
+        inspector.model.selection.pick = Some([3, 4]);
         let mut harness = harness_in(inspector, [1280.0, height]);
         change(&mut harness, |inspector| inspector.take_in(HistoryOf { at: [3, 4] }, Ok(Arc::new(history.clone()))));
         let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
@@ -155,8 +155,8 @@ fn pictures_of_cards_can_be_drawn() {
         ("error-counts", |harness| click_button(harness, "Counts")),
         ("error-walking", |harness| click(harness, "Walk")),
         ("stencil", |harness| {
-            harness.state_mut().inspector.select_step(1);
-            harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+            harness.state_mut().inspector.model.select_step(1);
+            harness.state_mut().inspector.model.choose_picture(PictureKind::Stencil);
         }),
         ("help", |harness| press(harness, Key::F1)),
     ];
@@ -166,8 +166,8 @@ fn pictures_of_cards_can_be_drawn() {
             let inspector = || {
                 let mut inspector = pictures::inspector(&frame, pick);
                 inspector.take_in(AnatomyOf {}, Ok(anatomy.clone()));
-                inspector.set_picture_kind(PictureKind::Error);
-                inspector.set_theme(theme);
+                inspector.model.choose_picture(PictureKind::Error);
+                inspector.model.theme = theme;
                 inspector
             };
             gallery.show(&format!("cards-{name}-{theme:?}").to_lowercase(), sizes, inspector, |harness| {

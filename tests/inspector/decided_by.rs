@@ -20,7 +20,7 @@ fn panels(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> (Ha
     let mut inspector = Inspector::new(Vec::new());
     inspector.set_scene(scene, RunRequest::of(scene, request.choice.clone(), SIZE));
     inspector.set_capture(Arc::new(capture.clone()));
-    inspector.pick(dark);
+    inspector.model.selection.pick = Some(dark);
     let mut harness = harness_in(inspector, TALL);
     change(&mut harness, |inspector| inspector.take_in(HistoryOf { at: dark }, Ok(Arc::new(history))));
     (harness, capture)

@@ -135,13 +135,17 @@ fn a_region_goes_to_its_pixel_its_history_and_the_step_that_decided() {
     harness.get_by_label("and 2 smaller of 5 pixels");
     click_role(&mut harness, Role::Row, FIRST);
     let seen = harness.state();
-    assert_eq!((seen.inspector.picked(), seen.inspector.step()), (Some([5, 6]), 1), "after the volumes");
+    assert_eq!(
+        (seen.inspector.model.selection.pick, seen.inspector.model.selection.step),
+        (Some([5, 6]), 1),
+        "after the volumes"
+    );
     assert!(asks::<HistoryOf>(&harness).contains(&HistoryOf { at: [5, 6] }));
     assert!(!asks::<TruthOf>(&harness).is_empty(), "the error picture is wished for");
     // By keyboard alike.
     focus_role(&mut harness, Role::Row, SECOND);
     press(&mut harness, Key::Enter);
-    assert_eq!(harness.state().inspector.picked(), Some([9, 4]));
+    assert_eq!(harness.state().inspector.model.selection.pick, Some([9, 4]));
     harness.get_by_label("evidence of split-vertices");
     harness.get_by_label("12 pixels stay wrong");
     harness.get_by_label("To mend it in the scene: weld the vertices of box");
@@ -182,7 +186,7 @@ fn another_scene_forgets_what_was_found() {
     let mut other = scene();
     other.name = "another".to_owned();
     change(&mut harness, |inspector| inspector.set_scene(&other, run_request(Technique::ZFail)));
-    assert!(harness.state().inspector.answers().last::<DiagnosisOf>().is_none());
+    assert!(harness.state().inspector.model.answers.last::<DiagnosisOf>().is_none());
     assert!(harness.query_by_role_and_label(Role::Row, FIRST).is_none());
 }
 

@@ -5,7 +5,7 @@ use super::*;
 use stencilscope::ask::DrawsOf;
 
 fn at(harness: &Harness<Seen>) -> (usize, Option<usize>) {
-    (harness.state().inspector.step(), harness.state().inspector.draw())
+    (harness.state().inspector.model.selection.step, harness.state().inspector.model.selection.draw)
 }
 
 /// Steps that draws were asked for of.
@@ -19,7 +19,7 @@ fn ones(harness: &Harness<Seen>) -> u64 {
 }
 
 fn update(harness: &mut Harness<Seen>, capture: Capture) {
-    change(harness, |inspector| inspector.update_capture(Arc::new(capture)));
+    change(harness, |inspector| inspector.model.update_capture(Arc::new(capture)));
 }
 
 #[test]
@@ -89,9 +89,9 @@ fn buttons_and_rows_select_draws_and_say_which() {
 #[test]
 fn picture_pixel_and_status_bar_show_the_state_after_the_draw() {
     let mut inspector = inspector(with_draws(z_fail(SIZE)));
-    inspector.pick([3, 20]);
-    inspector.select_step(1);
-    inspector.set_picture_kind(PictureKind::Stencil);
+    inspector.model.selection.pick = Some([3, 20]);
+    inspector.model.select_step(1);
+    inspector.model.choose_picture(PictureKind::Stencil);
     let mut harness = harness_of(inspector);
     assert_eq!(ones(&harness), 599);
     harness.get_by_label("0000 0001");

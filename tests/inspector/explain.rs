@@ -78,10 +78,10 @@ fn what_an_api_has_unless_reported_otherwise_is_marked_and_what_was_set_is_not()
 #[test]
 fn a_capture_folder_reports_the_state_as_its_plan_has_it() {
     let mut inspector = over("tori", Technique::ZFail);
-    let capture = Arc::clone(inspector.capture().expect("a capture"));
+    let capture = Arc::clone(inspector.model.frame.capture.as_ref().expect("a capture"));
     inspector.open_folder(None);
     inspector.set_capture(capture);
-    inspector.select_step(1);
+    inspector.model.select_step(1);
     let mut harness = harness_in(inspector, [1600.0, 1200.0]);
     show_tab(&mut harness, "State");
     harness.get_by_label("As the capture's plan tells it");
@@ -91,7 +91,7 @@ fn a_capture_folder_reports_the_state_as_its_plan_has_it() {
 #[test]
 fn each_pass_is_explained_with_the_scenes_own_numbers() {
     let mut inspector = over("rings", Technique::ZFail);
-    inspector.pick([80, 60]);
+    inspector.model.selection.pick = Some([80, 60]);
     let mut harness = harness_in(inspector, [1600.0, 1600.0]);
     show_tab(&mut harness, "Explain");
     press(&mut harness, Key::Home);
@@ -112,7 +112,16 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
 #[test]
 fn what_was_left_out_stands_there_with_its_reason() {
     let inspector = over("tori", Technique::Auto);
-    let left = inspector.capture().expect("a capture").left_out.first().cloned().expect("auto leaves something out");
+    let left = inspector
+        .model
+        .frame
+        .capture
+        .as_ref()
+        .expect("a capture")
+        .left_out
+        .first()
+        .cloned()
+        .expect("auto leaves something out");
     let mut harness = harness_in(inspector, [1600.0, 3000.0]);
     show_tab(&mut harness, "Explain");
     assert!(harness.query_all_by_label(&left.to_string()).count() > 0);
@@ -125,11 +134,11 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     click_button(&mut harness, "Tour of z-fail");
     harness.run_steps(3);
     harness.get_by_label("What every pixel shows");
-    assert_eq!(harness.state().inspector.step(), 0);
+    assert_eq!(harness.state().inspector.model.selection.step, 0);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
     click_button(&mut harness, "Next stop");
     harness.run_steps(3);
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
     click_button(&mut harness, "Next stop");
     harness.run_steps(3);
@@ -141,8 +150,8 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     click_button(&mut harness, "Next stop");
     harness.run_steps(3);
     let inspector = &harness.state().inspector;
-    let [x, y] = inspector.picked().expect("a pixel");
-    let shadow = inspector.capture().expect("a capture").lights[0].shadow.clone().expect("labels");
+    let [x, y] = inspector.model.selection.pick.expect("a pixel");
+    let shadow = inspector.model.frame.capture.as_ref().expect("a capture").lights[0].shadow.clone().expect("labels");
     assert_eq!(shadow.byte_at([x, y]), Some(1), "it picks a pixel in shadow");
     click_button(&mut harness, "Stop before");
     harness.get_by_label("The same in the API's words");
@@ -185,7 +194,9 @@ fn a_stop_whose_frame_can_not_be_made_says_why_and_is_tried_again_or_skipped() {
     harness.get_by_label_contains("stop 2 of");
     let asked = &harness.state().actions[before..];
     assert!(matches!(asked, [Action::Run(_)]), "the next stop tries again: {asked:?}");
-    change(&mut harness, |inspector| inspector.set_capture(Arc::clone(shown.capture().expect("a capture"))));
+    change(&mut harness, |inspector| {
+        inspector.set_capture(Arc::clone(shown.model.frame.capture.as_ref().expect("a capture")))
+    });
     assert!(harness.query_by_label_contains("can't be made").is_none());
     assert!(harness.query_by_label("The frame is being made …").is_none(), "the tour went on");
 }
@@ -198,7 +209,7 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     harness.get_by_label("The frame is being made …");
     // As the app does: the scene is opened with the technique of before, and captured.
     let mut opened = over("rings", Technique::ZFail);
-    let capture = Arc::clone(opened.capture().expect("a capture"));
+    let capture = Arc::clone(opened.model.frame.capture.as_ref().expect("a capture"));
     let draft = *opened.draft().expect("a draft");
     let rings = common::opened("rings");
     let inspector = &mut harness.state_mut().inspector;
@@ -209,10 +220,15 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     assert_eq!(request.choice.technique(), Technique::Planar);
     harness.get_by_label("The frame is being made …");
     opened = over("rings", Technique::Planar);
-    change(&mut harness, |inspector| inspector.set_capture(Arc::clone(opened.capture().expect("a capture"))));
+    change(&mut harness, |inspector| {
+        inspector.set_capture(Arc::clone(opened.model.frame.capture.as_ref().expect("a capture")))
+    });
     harness.get_by_label_contains("Planar shadows know one kind of receiver");
     let inspector = &harness.state().inspector;
-    assert_eq!(inspector.capture().expect("a capture").steps[inspector.step()].name, "receivers");
+    assert_eq!(
+        inspector.model.frame.capture.as_ref().expect("a capture").steps[inspector.model.selection.step].name,
+        "receivers"
+    );
 }
 
 #[test]
@@ -223,6 +239,6 @@ fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
     harness.run_steps(3);
     harness.get_by_label("tour of z-fail, stop 1 of 7");
     let mut picked = over("tori", Technique::ZFail);
-    picked.pick([80, 60]);
+    picked.model.selection.pick = Some([80, 60]);
     assert!(harness_in(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());
 }

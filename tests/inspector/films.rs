@@ -8,7 +8,7 @@ fn started() -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
     let inspector = &mut harness.state_mut().inspector;
     let Some(ExportData::Film(subject)) = inspector.export(ExportKind::Steps) else { panic!("a film") };
-    inspector.start(FilmOf { subject, path: "a.png".to_owned() });
+    inspector.model.answers.start(FilmOf { subject, path: "a.png".to_owned() });
     harness.run_steps(2);
     harness
 }
@@ -44,7 +44,7 @@ fn the_film_is_of_the_frame_that_is_shown_and_of_the_scene_as_it_is_run() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "shadow-map");
     let inspector = &mut harness.state_mut().inspector;
-    let capture = inspector.capture().cloned().expect("a frame");
+    let capture = inspector.model.frame.capture.as_ref().cloned().expect("a frame");
     let Some(ExportData::Film(FilmSubject::Steps(shown))) = inspector.export(ExportKind::Steps) else {
         panic!("steps")
     };
@@ -85,7 +85,7 @@ fn it_is_cancelled_where_it_says_how_far_it_is() {
     click_button(&mut harness, "Cancel");
     assert!(last_asked::<FilmOf>(&harness).progress.is_cancelled());
     assert!(harness.query_by_label("animation begins").is_none());
-    assert!(is_offered(&mut harness, STEPS) && harness.state().inspector.errors().is_empty());
+    assert!(is_offered(&mut harness, STEPS) && harness.state().inspector.model.activity.errors.is_empty());
 }
 
 #[test]

@@ -11,7 +11,7 @@ fn told(harness: &mut Harness<Seen>, steps: usize) -> Vec<(usize, PictureKind)> 
     press(harness, Key::Home);
     let mut told = Vec::new();
     for _ in 0..steps {
-        told.push((harness.state().inspector.step(), kind(harness)));
+        told.push((harness.state().inspector.model.selection.step, kind(harness)));
         press(harness, Key::ArrowRight);
     }
     told
@@ -44,9 +44,13 @@ fn no_two_steps_show_the_same_picture() {
 #[test]
 fn a_step_that_the_next_frame_does_not_have_gives_way_to_the_whole_frame() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.select_step(1);
+    harness.state_mut().inspector.model.select_step(1);
     show_capture(&mut harness, cube_map());
-    assert_eq!((harness.state().inspector.step(), kind(&harness)), (3, PictureKind::Color), "no map pass instead");
+    assert_eq!(
+        (harness.state().inspector.model.selection.step, kind(&harness)),
+        (3, PictureKind::Color),
+        "no map pass instead"
+    );
 }
 
 #[test]
@@ -54,10 +58,10 @@ fn a_mask_is_looked_at_by_its_row_and_stepped_away_from() {
     let mut harness = harness(z_fail(SIZE));
     harness.get_by_label("3 · light");
     click(&mut harness, "mask");
-    assert_eq!((harness.state().inspector.step(), kind(&harness)), (2, PictureKind::Mask));
+    assert_eq!((harness.state().inspector.model.selection.step, kind(&harness)), (2, PictureKind::Mask));
     harness.get_by_label("beside the frame");
     press(&mut harness, Key::ArrowRight);
-    assert_eq!(harness.state().inspector.step(), 3);
+    assert_eq!(harness.state().inspector.model.selection.step, 3);
 }
 
 #[test]
@@ -74,7 +78,7 @@ fn a_kind_that_was_chosen_stays_until_auto_is_chosen_again() {
 #[test]
 fn before_and_after_a_step_are_of_one_kind() {
     let mut harness = harness(z_fail(SIZE));
-    change(&mut harness, |inspector| inspector.select_step(1));
+    change(&mut harness, |inspector| inspector.model.select_step(1));
     click_button(&mut harness, "Before");
     assert_eq!(kind(&harness), PictureKind::Stencil);
     harness.get_by_label_contains("stencil before step 2");

@@ -14,7 +14,7 @@ pub const DARK: [u32; 2] = [3, 4];
 
 fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.pick(at);
+    inspector.model.selection.pick = Some(at);
     harness_in(inspector, TALL)
 }
 
@@ -54,10 +54,10 @@ fn a_pick_is_asked_about_once_and_again_when_it_moves_or_the_frame_changes() {
     let mut harness = picked(DARK);
     harness.run_steps(3);
     assert_eq!(asked(&harness), [DARK]);
-    change(&mut harness, |inspector| inspector.pick([4, 4]));
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([4, 4]));
     answer(&mut harness, history([4, 4], &FACES));
     assert_eq!(asked(&harness), [DARK, [4, 4]]);
-    change(&mut harness, |inspector| inspector.update_capture(Arc::new(z_fail(SIZE))));
+    change(&mut harness, |inspector| inspector.model.update_capture(Arc::new(z_fail(SIZE))));
     assert_eq!(asked(&harness).len(), 2, "the same frame, of which more is known");
     show_capture(&mut harness, z_fail(SIZE));
     assert_eq!(asked(&harness), [DARK, [4, 4], [4, 4]]);
@@ -108,7 +108,10 @@ fn a_click_selects_and_a_double_click_goes_to_the_step() {
     let mut harness = answered(&FACES);
     let row = "pass 2: dark cap of box, back; depth ✗, stencil always; +1; 0 → 1";
     click(&mut harness, row);
-    assert_eq!((harness.state().inspector.selected_event(), harness.state().inspector.step()), (Some(7), 3));
+    assert_eq!(
+        (harness.state().inspector.selected_event(), harness.state().inspector.model.selection.step),
+        (Some(7), 3)
+    );
     harness.get_by_label(
         "dark cap of box, triangle 5, back, at 40.000 m: behind the surface, fails the depth test; increment-wrap: stencil 0 to 1",
     );
@@ -118,7 +121,7 @@ fn a_click_selects_and_a_double_click_goes_to_the_step() {
     harness.get_by_label(row).click();
     harness.get_by_label(row).click();
     harness.run_steps(8);
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
 }
 
 #[test]
@@ -128,7 +131,7 @@ fn the_menu_of_an_event_goes_to_its_step_and_to_its_triangle_in_the_scene() {
     harness.get_by_label(row).click_secondary();
     harness.run_steps(3);
     click(&mut harness, "Go to this step");
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
     harness.get_by_label(row).click_secondary();
     harness.run_steps(3);
     click(&mut harness, "Show the triangle in the Scene tab");
@@ -145,7 +148,7 @@ fn the_selected_event_is_gone_to_by_keys_alone() {
     assert_eq!(harness.state().inspector.selected_event(), Some(5));
     focus_role(&mut harness, Role::Button, "Go to draw 1 of step 2, volumes");
     press(&mut harness, Key::Enter);
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
 }
 
 #[test]
@@ -166,10 +169,10 @@ fn a_rung_selects_its_row_and_a_row_its_rung() {
 fn the_selected_triangle_stays_where_the_next_pixel_has_it_too() {
     let mut harness = answered(&FACES);
     click(&mut harness, "rung: side of box, triangle 4, back, at 10.000 m: +1, count 2");
-    change(&mut harness, |inspector| inspector.pick([4, 4]));
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([4, 4]));
     answer(&mut harness, history([4, 4], &FACES));
     assert_eq!(harness.state().inspector.selected_event(), Some(6));
-    change(&mut harness, |inspector| inspector.pick([5, 4]));
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([5, 4]));
     answer(&mut harness, history([5, 4], &[]));
     assert_eq!(harness.state().inspector.selected_event(), None);
 }
@@ -199,7 +202,7 @@ fn the_sentence_on_top_counts_the_faces() {
         "3 volume faces behind the surface fail the depth test: 2 back, 1 front; count 1, so the light pass skips it.";
     harness.get_by_label(why);
     let lit = [30, 4];
-    change(&mut harness, |inspector| inspector.pick(lit));
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some(lit));
     harness.get_by_label("The volume faces behind the surface cancel out, so the light pass adds the light.");
     answer(&mut harness, history(lit, &[]));
     harness.get_by_label("Lit by light 1: its stencil count is 0.");
@@ -210,7 +213,7 @@ fn the_sentence_on_top_counts_the_faces() {
 #[test]
 fn an_answer_about_another_pixel_is_dropped_and_the_last_one_stays_greyed() {
     let mut harness = answered(&FACES);
-    harness.state_mut().inspector.pick([4, 4]);
+    harness.state_mut().inspector.model.selection.pick = Some([4, 4]);
     harness.run_steps(1);
     assert_eq!(rows(&harness).len(), 10, "the last one stays");
     harness.run_steps(2);
@@ -230,7 +233,7 @@ fn what_failed_is_said_and_not_asked_again_until_the_pick_moves() {
     harness.run_steps(3);
     harness.get_by_label("× There is no history: the GPU was lost: open the scene again");
     assert_eq!(asked(&harness).len(), 1);
-    change(&mut harness, |inspector| inspector.pick([4, 4]));
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([4, 4]));
     assert_eq!(asked(&harness).len(), 2);
     assert!(harness.query_by_label_contains("There is no history").is_none());
 }
@@ -239,7 +242,7 @@ fn what_failed_is_said_and_not_asked_again_until_the_pick_moves() {
 fn a_folder_says_what_histories_need() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.open_folder(None);
-    inspector.pick(DARK);
+    inspector.model.selection.pick = Some(DARK);
     let mut harness = harness_in(inspector, TALL);
     assert_eq!(asked(&harness), [[0; 2]; 0]);
     answer(&mut harness, history(DARK, &FACES));
@@ -301,7 +304,7 @@ fn folded_rungs_open_by_a_click_or_by_enter_and_fold_again() {
     assert_eq!(rungs(&harness), 4);
     enter(&mut harness, "+296 more, adding 0");
     assert_eq!(rungs(&harness), 104);
-    change(&mut harness, |inspector| inspector.pick([3, 5]));
+    change(&mut harness, |inspector| inspector.model.selection.pick = Some([3, 5]));
     answer(&mut harness, history([3, 5], &faces));
     assert_eq!(rungs(&harness), 4, "another pixel has other faces");
     assert!(harness.query_by_label("Fold").is_none());
@@ -312,7 +315,7 @@ fn a_dragged_pick_ends_with_the_answer_for_its_last_place() {
     let mut harness = answered(&FACES);
     // Each answer comes when the pick has moved on, the last one but one again after the last.
     for x in 4..=9 {
-        harness.state_mut().inspector.pick([x, 4]);
+        harness.state_mut().inspector.model.selection.pick = Some([x, 4]);
         harness.run_steps(1);
         answer(&mut harness, history([x - 1, 4], &FACES));
     }
@@ -408,7 +411,7 @@ fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_
     let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
     let place = PixelCoordinates::of(&frame.capture, at).with_vertices(&frame.capture, &frame.plan, &history);
     let mut inspector = explain::over("tetrahedron", Technique::ZFail);
-    inspector.pick(at);
+    inspector.model.selection.pick = Some(at);
     let mut harness = harness_in(inspector, TALL);
     harness.get_by_label("Coordinates").click();
     harness.run_steps(20);
@@ -437,7 +440,7 @@ fn shading_unfolds_into_its_terms_with_the_texel() {
     let history = session.history(&frame.plan, &frame.capture, at).expect("a history");
     let shaded = SurfaceShading::of(&frame.capture, &frame.plan, &history).expect("a surface");
     let [column, row] = shaded.texture.expect("a picture").texel;
-    inspector.pick(at);
+    inspector.model.selection.pick = Some(at);
     let mut harness = harness_in(inspector, TALL);
     answer(&mut harness, history);
     assert!(harness.query_by_label("texture").is_none(), "folded at first");

@@ -71,7 +71,7 @@ fn pictures_of_histories_can_be_drawn() {
     let late = || {
         let mut inspector = by_hand();
         inspector.take_in(HistoryOf { at: [3, 4] }, Ok(Arc::new(history([3, 4], &FACES))));
-        inspector.pick([9, 9]);
+        inspector.model.selection.pick = Some([9, 9]);
         inspector
     };
     draw(&gallery, "by-hand-late", late, &wrong, None);

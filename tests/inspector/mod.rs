@@ -115,7 +115,7 @@ fn harness_in(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
 
 /// The answer to what follows from the capture.
 fn found(inspector: &Inspector, asked: &PendingQuestion) -> Result<Answer, String> {
-    asked.ask.read_from(inspector.capture().expect("a frame"), inspector.plan())
+    asked.ask.read_from(inspector.model.frame.capture.as_ref().expect("a frame"), inspector.model.frame.plan.as_ref())
 }
 
 /// What was asked, in order.
@@ -155,7 +155,7 @@ fn harness(capture: Capture) -> Harness<'static, Seen> {
 /// The panels over a capture of which a pixel is picked.
 fn picked(capture: Capture, at: [u32; 2]) -> Harness<'static, Seen> {
     let mut inspector = inspector(capture);
-    inspector.pick(at);
+    inspector.model.selection.pick = Some(at);
     harness_of(inspector)
 }
 
@@ -309,35 +309,35 @@ fn choose(harness: &mut Harness<Seen>, list: &str, entry: &str) {
 #[test]
 fn it_opens_at_the_last_step_and_keys_walk_pass_by_pass() {
     let mut harness = harness(z_fail(SIZE));
-    assert_eq!(harness.state().inspector.step(), 3);
+    assert_eq!(harness.state().inspector.model.selection.step, 3);
     harness.get_by_label("step 3 of 3");
     press(&mut harness, Key::ArrowLeft);
-    assert_eq!(harness.state().inspector.step(), 1, "the mask is no step of the frame");
+    assert_eq!(harness.state().inspector.model.selection.step, 1, "the mask is no step of the frame");
     press(&mut harness, Key::Home);
     harness.get_by_label("step 1 of 3");
     press(&mut harness, Key::ArrowLeft);
-    assert_eq!(harness.state().inspector.step(), 0, "there is nothing before the first step");
+    assert_eq!(harness.state().inspector.model.selection.step, 0, "there is nothing before the first step");
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label("step 2 of 3");
     press(&mut harness, Key::End);
     press(&mut harness, Key::ArrowRight);
-    assert_eq!(harness.state().inspector.step(), 3);
+    assert_eq!(harness.state().inspector.model.selection.step, 3);
 }
 
 #[test]
 fn buttons_scrubber_and_tree_select_steps() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Previous step");
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
     click(&mut harness, "Next step");
-    assert_eq!(harness.state().inspector.step(), 3);
+    assert_eq!(harness.state().inspector.model.selection.step, 3);
     click(&mut harness, "2 · volumes");
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
     harness.get_by_label("Why volumes is there.");
     harness.get_by_label("sides of box");
     harness.get_by_label("Step scrubber").set_value_accesskit(1.0);
     harness.run_steps(2);
-    assert_eq!(harness.state().inspector.step(), 0);
+    assert_eq!(harness.state().inspector.model.selection.step, 0);
 }
 
 #[test]
@@ -345,31 +345,31 @@ fn a_light_in_the_tree_selects_its_last_pass() {
     let mut harness = harness(z_fail(SIZE));
     press(&mut harness, Key::Home);
     click_role(&mut harness, Role::TreeItem, "Light 1 · point");
-    assert_eq!(harness.state().inspector.step(), 3);
+    assert_eq!(harness.state().inspector.model.selection.step, 3);
 }
 
 #[test]
 fn many_errors_leave_room_for_the_picture_and_go_at_once() {
     let mut harness = harness(z_fail(SIZE));
     for index in 0..60 {
-        harness.state_mut().inspector.push_error(format!("{index}.obj: no faces: choose another file"));
+        harness.state_mut().inspector.model.push_error(format!("{index}.obj: no faces: choose another file"));
     }
     harness.run_steps(4);
     assert!(harness.get_by_label("Picture canvas").rect().height() > 200.0);
     click_button(&mut harness, "Dismiss all");
-    assert!(harness.state().inspector.errors().is_empty());
+    assert!(harness.state().inspector.model.activity.errors.is_empty());
 }
 
 #[test]
 fn space_plays_to_the_end_and_stops() {
     let mut harness = harness(z_fail(SIZE));
     press(&mut harness, Key::Space);
-    assert!(harness.state().inspector.is_playing());
-    assert_eq!(harness.state().inspector.step(), 0, "at the end it starts again");
+    assert!(harness.state().inspector.model.selection.playing.is_some());
+    assert_eq!(harness.state().inspector.model.selection.step, 0, "at the end it starts again");
     // A frame of the harness is a quarter of a second.
     harness.run_steps(14);
-    assert_eq!(harness.state().inspector.step(), 3);
-    assert!(!harness.state().inspector.is_playing());
+    assert_eq!(harness.state().inspector.model.selection.step, 3);
+    assert!(!harness.state().inspector.model.selection.playing.is_some());
 }
 
 #[test]
@@ -379,15 +379,15 @@ fn control_g_goes_to_a_number_and_control_f_finds_a_pass() {
     harness.get_by_label("Go to step").type_text("2");
     harness.run_steps(2);
     press(&mut harness, Key::Enter);
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.model.selection.step, 1);
     press_with(&mut harness, Modifiers::COMMAND, Key::F);
     harness.get_by_label("Find a pass").type_text("mask");
     harness.run_steps(2);
     assert!(harness.query_by_label("2 · volumes").is_none(), "passes without the word are hidden");
     press(&mut harness, Key::ArrowLeft);
-    assert_eq!(harness.state().inspector.step(), 1, "a text field keeps its keys");
+    assert_eq!(harness.state().inspector.model.selection.step, 1, "a text field keeps its keys");
     press(&mut harness, Key::Enter);
-    assert_eq!(harness.state().inspector.step(), 2);
+    assert_eq!(harness.state().inspector.model.selection.step, 2);
 }
 
 #[test]
@@ -395,27 +395,33 @@ fn a_right_click_picks_and_arrows_step_all_the_same() {
     let mut harness = harness(z_fail(SIZE));
     harness.get_by_label("No pixel is picked.");
     pick_by_mouse(&mut harness, [12, 7], SIZE);
-    assert_eq!(harness.state().inspector.picked(), Some([12, 7]));
+    assert_eq!(harness.state().inspector.model.selection.pick, Some([12, 7]));
     press(&mut harness, Key::ArrowLeft);
-    assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some([12, 7])));
+    assert_eq!(
+        (harness.state().inspector.model.selection.step, harness.state().inspector.model.selection.pick),
+        (1, Some([12, 7]))
+    );
     for (modifiers, key, expected) in [
         (Modifiers::SHIFT, Key::ArrowRight, [13, 7]),
         (Modifiers::SHIFT, Key::ArrowUp, [13, 6]),
         (Modifiers::COMMAND | Modifiers::SHIFT, Key::ArrowDown, [13, 16]),
     ] {
         press_with(&mut harness, modifiers, key);
-        assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some(expected)));
+        assert_eq!(
+            (harness.state().inspector.model.selection.step, harness.state().inspector.model.selection.pick),
+            (1, Some(expected))
+        );
     }
     harness.get_by_label("13, 16");
     press(&mut harness, Key::Escape);
-    assert_eq!(harness.state().inspector.picked(), None);
+    assert_eq!(harness.state().inspector.model.selection.pick, None);
 }
 
 #[test]
 fn the_read_out_says_why_a_pixel_is_dark_and_how_its_values_ran() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.pick([3, 4]);
-    inspector.select_step(1);
+    inspector.model.selection.pick = Some([3, 4]);
+    inspector.model.select_step(1);
     let harness = harness_of(inspector);
     harness.get_by_label("Dark under light 1: its stencil count is 1.");
     harness.get_by_label("0000 0001");
@@ -434,10 +440,10 @@ fn a_count_below_zero_is_shown_with_its_sign() {
 #[test]
 fn every_label_has_its_own_sentence() {
     let mut with_background = inspector(z_fail(SIZE));
-    with_background.pick([39, 4]);
+    with_background.model.selection.pick = Some([39, 4]);
     harness_of(with_background).get_by_label("Background: no surface is at this pixel.");
     let mut lit = inspector(z_fail(SIZE));
-    lit.pick([30, 4]);
+    lit.model.selection.pick = Some([30, 4]);
     harness_of(lit).get_by_label("Lit by light 1: its stencil count is 0.");
 }
 
@@ -501,13 +507,17 @@ fn the_wheel_zooms_at_the_pointer_and_the_buttons_go_back() {
     harness.run_steps(2);
     wheel(&mut harness, 400.0);
     harness.run_steps(9);
-    assert!(matches!(harness.state().inspector.zoom(), TexelZoom::Pixels(pixels) if pixels > 30.0));
+    assert!(matches!(harness.state().inspector.model.view.zoom, TexelZoom::Pixels(pixels) if pixels > 30.0));
     mouse(&mut harness, at, PointerButton::Secondary);
-    assert_eq!(harness.state().inspector.picked(), Some([10, 10]), "the texel under the pointer stayed there");
+    assert_eq!(
+        harness.state().inspector.model.selection.pick,
+        Some([10, 10]),
+        "the texel under the pointer stayed there"
+    );
     click_button(&mut harness, "1:1");
-    assert_eq!(harness.state().inspector.zoom(), TexelZoom::Pixels(1.0));
+    assert_eq!(harness.state().inspector.model.view.zoom, TexelZoom::Pixels(1.0));
     click_button(&mut harness, "Fit");
-    assert_eq!(harness.state().inspector.zoom(), TexelZoom::Fit);
+    assert_eq!(harness.state().inspector.model.view.zoom, TexelZoom::Fit);
 }
 
 #[test]
@@ -598,11 +608,13 @@ fn a_dropped_file_is_opened() {
 #[test]
 fn an_error_stays_until_dismissed_and_so_does_the_picture() {
     let mut harness = harness(z_fail(SIZE));
-    change(&mut harness, |inspector| inspector.push_error("nothing.obj: no such file: check the path".to_owned()));
+    change(&mut harness, |inspector| {
+        inspector.model.push_error("nothing.obj: no such file: check the path".to_owned())
+    });
     harness.get_by_label("nothing.obj: no such file: check the path");
     harness.get_by_label("step 3 of 3");
     click(&mut harness, "Dismiss");
-    assert!(harness.state().inspector.errors().is_empty());
+    assert!(harness.state().inspector.model.activity.errors.is_empty());
     assert!(harness.query_by_label_contains("no such file").is_none());
 }
 
@@ -611,7 +623,7 @@ fn why_a_scene_could_not_be_opened_goes_once_one_is_and_other_errors_stay() {
     let mut harness = harness(z_fail(SIZE));
     let inspector = &mut harness.state_mut().inspector;
     inspector.push_failure("nothing.obj: no such file: check the path".to_owned());
-    inspector.push_error("out.png can't be written: choose another place".to_owned());
+    inspector.model.push_error("out.png can't be written: choose another place".to_owned());
     harness.run_steps(2);
     harness.get_by_label("nothing.obj: no such file: check the path");
     show_capture(&mut harness, z_fail(SIZE));
@@ -641,7 +653,7 @@ fn a_capture_folder_is_looked_at_but_not_run() {
 #[test]
 fn the_smallest_capture_and_an_empty_one_are_shown() {
     let mut one = inspector(z_fail([1, 1]));
-    one.pick([0, 0]);
+    one.model.selection.pick = Some([0, 0]);
     let mut harness = harness_of(one);
     for kind in ["Stencil", "Depth", "Mask", "Colour"] {
         click_button(&mut harness, kind);
@@ -660,7 +672,7 @@ fn a_map_larger_than_the_gpus_textures_is_shown() {
     let map = capture.lights[0].map.as_mut().expect("a map");
     map.faces[1] = Arc::new(Image::uniform(PixelFormat::Depth32F, [16_384, 16_384], &0.5_f32.to_le_bytes()));
     let mut inspector = inspector(capture);
-    inspector.select_step(0);
+    inspector.model.select_step(0);
     let harness = harness_in(inspector, [640.0, 400.0]);
     harness.get_by_label_contains("16384×16384");
 }
@@ -677,13 +689,13 @@ fn nothing_is_redrawn_while_nothing_changes() {
 #[test]
 fn another_capture_keeps_the_step_that_means_the_same() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.select_step(1);
-    inspector.pick([30, 20]);
+    inspector.model.select_step(1);
+    inspector.model.selection.pick = Some([30, 20]);
     let mut other = z_fail([20, 10]);
     other.steps.insert(0, other.steps[0].clone());
     inspector.set_capture(Arc::new(other));
-    assert_eq!(inspector.step(), 2, "volumes");
-    assert_eq!(inspector.picked(), None, "outside the smaller picture");
+    assert_eq!(inspector.model.selection.step, 2, "volumes");
+    assert_eq!(inspector.model.selection.pick, None, "outside the smaller picture");
 }
 
 #[test]
@@ -697,5 +709,5 @@ fn key_presses_that_come_in_one_frame_all_count() {
         }
     }
     harness.run_steps(2);
-    assert_eq!(harness.state().inspector.step(), 0);
+    assert_eq!(harness.state().inspector.model.selection.step, 0);
 }

@@ -24,17 +24,17 @@ const Z_FAIL: [(&str, View); 9] = [
     ("lines", |harness| overlays(harness, &["Silhouettes", "Wireframe of volumes", "Casters' names"])),
     ("receivers", |harness| overlays(harness, &["Receivers", "Silhouettes"])),
     ("tests", |harness| {
-        harness.state_mut().inspector.select_step(1);
+        harness.state_mut().inspector.model.select_step(1);
         overlays(harness, &["Depth and stencil tests"]);
     }),
     ("overdraw", |harness| {
-        harness.state_mut().inspector.select_step(1);
-        harness.state_mut().inspector.set_picture_kind(PictureKind::Overdraw);
+        harness.state_mut().inspector.model.select_step(1);
+        harness.state_mut().inspector.model.choose_picture(PictureKind::Overdraw);
     }),
 ];
 
 const SHADOW_MAP: [(&str, View); 2] = [
-    ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
+    ("depth", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Depth)),
     ("map", |harness| {
         show_tab(harness, "Shadow map");
         click_button(harness, "Show the picked pixel's texel");
@@ -42,8 +42,8 @@ const SHADOW_MAP: [(&str, View); 2] = [
 ];
 
 fn stencil(harness: &mut Harness<Seen>) {
-    harness.state_mut().inspector.select_step(1);
-    change(harness, |inspector| inspector.set_picture_kind(PictureKind::Stencil));
+    harness.state_mut().inspector.model.select_step(1);
+    change(harness, |inspector| inspector.model.choose_picture(PictureKind::Stencil));
 }
 
 fn overlays(harness: &mut Harness<Seen>, names: &[&str]) {

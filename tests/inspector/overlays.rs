@@ -39,7 +39,7 @@ fn tests() -> StepTests {
 #[test]
 fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.select_step(1);
+    harness.state_mut().inspector.model.select_step(1);
     turn_on(&mut harness, &["Depth and stencil tests"]);
     harness.get_by_label("Overlay · 1");
     assert_eq!(asks::<TestsOf>(&harness), [TestsOf { step: 1, draw: None }]);
@@ -52,7 +52,7 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
         assert!(harness.query_all_by_label(pixels).next().is_some(), "{name}: {pixels}");
     }
     assert!(harness.query_all_by_label_contains("their number does not tell which").next().is_some());
-    change(&mut harness, |inspector| inspector.select_step(3));
+    change(&mut harness, |inspector| inspector.model.select_step(3));
     assert!(asks::<TestsOf>(&harness).contains(&TestsOf { step: 3, draw: None }));
     reply::<TestsOf>(&mut harness, Err("no room: make it smaller".to_owned()));
     harness.run_steps(2);
@@ -62,7 +62,7 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
 #[test]
 fn overdraw_is_a_picture_of_how_many_fragments_came() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.select_step(1);
+    harness.state_mut().inspector.model.select_step(1);
     harness.run_steps(1);
     click_button(&mut harness, "Overdraw");
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
@@ -73,7 +73,7 @@ fn overdraw_is_a_picture_of_how_many_fragments_came() {
     harness.get_by_label("Fragments a pixel");
     harness.get_by_label("112 in all");
     harness.get_by_label_contains("overdraw after step 2");
-    change(&mut harness, |inspector| inspector.select_step(2));
+    change(&mut harness, |inspector| inspector.model.select_step(2));
     assert!(is_disabled(&harness, "Overdraw"), "a step without draws");
 }
 

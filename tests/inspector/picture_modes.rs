@@ -6,8 +6,8 @@ use stencilscope::ask::{CaptureOf, DrawsOf};
 
 fn at_volumes() -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.select_step(1);
-    change(&mut harness, |inspector| inspector.set_picture_kind(PictureKind::Stencil));
+    harness.state_mut().inspector.model.select_step(1);
+    change(&mut harness, |inspector| inspector.model.choose_picture(PictureKind::Stencil));
     harness
 }
 
@@ -67,7 +67,7 @@ fn the_diff_of_colours_and_depths_reports_how_many_changed() {
 #[test]
 fn before_a_draw_is_after_the_one_before_it() {
     let mut harness = harness(with_draws(z_fail(SIZE)));
-    harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+    harness.state_mut().inspector.model.choose_picture(PictureKind::Stencil);
     harness.state_mut().inspector.select_draw(1, 1);
     press(&mut harness, Key::D);
     // The sides counted in the upper half, the cap in the lower.
@@ -79,7 +79,7 @@ fn before_a_draw_is_after_the_one_before_it() {
 #[test]
 fn a_draw_before_that_is_not_known_is_asked_for() {
     let mut harness = harness(z_fail(SIZE));
-    harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+    harness.state_mut().inspector.model.choose_picture(PictureKind::Stencil);
     change(&mut harness, |inspector| inspector.select_draw(1, 1));
     assert!(!asks::<DrawsOf>(&harness).contains(&DrawsOf { step: 1 }), "the last draw is the step");
     press(&mut harness, Key::B);
@@ -107,7 +107,7 @@ fn two_steps_are_compared_under_a_divider_that_keys_and_mouse_move() {
     focus_role(&mut harness, Role::Slider, "Compare divider");
     press(&mut harness, Key::ArrowRight);
     assert!((x(&harness) - canvas.center().x - canvas.width() * 0.02).abs() < 1.0, "{}", x(&harness));
-    assert_eq!(harness.state().inspector.step(), 1, "the divider keeps its keys");
+    assert_eq!(harness.state().inspector.model.selection.step, 1, "the divider keeps its keys");
     let from = harness.get_by_role_and_label(Role::Slider, "Compare divider").rect().center();
     let to = from + vec2(-200.0, 0.0);
     drag(&mut harness, from, to - from, PointerButton::Primary);
@@ -148,7 +148,7 @@ fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() 
     harness.run_steps(3);
     harness.get_by_label_contains("No texel differs");
     // The step of the frame that is shown has another name: the other's last step is shown.
-    change(&mut harness, |inspector| inspector.select_step(3));
+    change(&mut harness, |inspector| inspector.model.select_step(3));
     harness.get_by_label_contains("No texel differs");
     assert_eq!(asked(&harness).len(), 1);
 }

@@ -81,7 +81,7 @@ pub fn inspector_of(scene: &Scene, request: &CaptureRequest, capture: &Arc<Captu
     let mut inspector = Inspector::new(vec![entry]);
     inspector.set_scene(scene, RunRequest::of(scene, request.choice.clone(), request.size));
     inspector.set_capture(capture.clone());
-    inspector.pick(pick);
+    inspector.model.selection.pick = Some(pick);
     inspector
 }
 
@@ -123,14 +123,14 @@ fn pictures_of_draws_can_be_drawn() {
     let filled = RunFrame { capture: Arc::new(plain.capture.with_draws(&draws)), ..plain.clone() };
     let views: [(&str, &RunFrame, View); 4] = [
         ("held", &filled, |_| ()),
-        ("pass", &filled, |harness| harness.state_mut().inspector.select_step(1)),
+        ("pass", &filled, |harness| harness.state_mut().inspector.model.select_step(1)),
         ("fetching", &plain, |_| ()),
         ("folder", &plain, |harness| harness.state_mut().inspector.open_folder(None)),
     ];
     for (name, frame, view) in views {
         let at_a_draw = || {
             let mut inspector = inspector(frame, PICK);
-            inspector.set_picture_kind(PictureKind::Stencil);
+            inspector.model.choose_picture(PictureKind::Stencil);
             inspector.select_draw(1, 2);
             inspector
         };
@@ -155,7 +155,7 @@ const EXAMPLES: &[Example] = &[
         pick: [640, 600],
         views: &[
             ("colour", |_| ()),
-            ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+            ("all", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Map)),
             ("one", first_layer),
             ("meshes", |harness| {
                 click(harness, "Scene settings");
@@ -178,7 +178,7 @@ const EXAMPLES: &[Example] = &[
         pick: [640, 600],
         views: &[
             ("colour", |_| ()),
-            ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+            ("all", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Map)),
             ("one", first_layer),
             ("settings", |harness| click(harness, "Scene settings")),
         ],
@@ -190,7 +190,7 @@ const EXAMPLES: &[Example] = &[
         pick: PICK,
         views: &[
             ("count", |harness| click_button(harness, "Count")),
-            ("count-step", |harness| harness.state_mut().inspector.select_step(1)),
+            ("count-step", |harness| harness.state_mut().inspector.model.select_step(1)),
             ("settings", |harness| click(harness, "Scene settings")),
         ],
     },
@@ -199,7 +199,7 @@ const EXAMPLES: &[Example] = &[
 /// The first layer that is drawn, with a texel picked.
 fn first_layer(harness: &mut Harness<Seen>) {
     press(harness, Key::Home);
-    let capture = harness.state().inspector.capture().cloned().expect("a capture");
+    let capture = harness.state().inspector.model.frame.capture.as_ref().cloned().expect("a capture");
     let size = capture.lights[0].map.as_ref().expect("a map").faces[0].size();
     pick_by_mouse(harness, size.map(|side| side / 2), size);
 }
@@ -227,21 +227,21 @@ fn tell_report(harness: &mut Harness<Seen>, report: Report) {
 const VIEWS: [(&str, View); 13] = [
     ("colour", |_| ()),
     ("stencil", |harness| {
-        harness.state_mut().inspector.select_step(1);
-        harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+        harness.state_mut().inspector.model.select_step(1);
+        harness.state_mut().inspector.model.choose_picture(PictureKind::Stencil);
     }),
-    ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
-    ("mask", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Mask)),
-    ("map", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+    ("depth", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Depth)),
+    ("mask", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Mask)),
+    ("map", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Map)),
     ("tracing", |harness| {
-        harness.state_mut().inspector.set_picture_kind(PictureKind::Error);
+        harness.state_mut().inspector.model.choose_picture(PictureKind::Error);
         harness.run_steps(1);
         let progress = last_asked::<TruthOf>(harness).progress;
         progress.start(100);
         (0..43).for_each(|_| progress.advance());
     }),
     ("large", |harness| {
-        harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+        harness.state_mut().inspector.model.choose_picture(PictureKind::Stencil);
         harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(28.0), PICK.map(f64::from));
     }),
     ("settings", |harness| click(harness, "Scene settings")),
@@ -253,7 +253,7 @@ const VIEWS: [(&str, View); 13] = [
         report.rows.truncate(8);
         report.mark_pareto();
         tell_report(harness, report);
-        harness.state_mut().inspector.start(ReportOf::grid().expect("a grid"));
+        harness.state_mut().inspector.model.answers.start(ReportOf::grid().expect("a grid"));
         harness.run_steps(1);
         let progress = last_asked::<ReportOf>(harness).progress;
         progress.start(15);
@@ -264,24 +264,24 @@ const VIEWS: [(&str, View); 13] = [
     }),
     ("open", |harness| click(harness, "Open…")),
     ("error", |harness| {
-        harness.state_mut().inspector.push_error("bunny.obj: no such file: check the path".to_owned());
+        harness.state_mut().inspector.model.push_error("bunny.obj: no such file: check the path".to_owned());
     }),
 ];
 
 /// Of frames that were held against the truth.
 const JUDGED_VIEWS: [(&str, View); 4] = [
-    ("truth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Truth)),
-    ("wrong", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Error)),
+    ("truth", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Truth)),
+    ("wrong", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Error)),
     ("wrong-largest", go_to_the_largest),
     ("wrong-pixels", |harness| {
         go_to_the_largest(harness);
-        let at = harness.state().inspector.picked().unwrap_or(PICK);
+        let at = harness.state().inspector.model.selection.pick.unwrap_or(PICK);
         harness.state_mut().inspector.set_zoom(TexelZoom::Pixels(28.0), at.map(f64::from));
     }),
 ];
 
 fn go_to_the_largest(harness: &mut Harness<Seen>) {
-    change(harness, |inspector| inspector.set_picture_kind(PictureKind::Error));
+    change(harness, |inspector| inspector.model.choose_picture(PictureKind::Error));
     if harness.query_by_label("Go to the largest").is_some() {
         click(harness, "Go to the largest");
     }

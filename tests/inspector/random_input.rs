@@ -186,14 +186,14 @@ impl Monkey {
         let inspector = &mut seen.inspector;
         match what {
             0..3 => inspector.set_capture(capture),
-            3 => inspector.update_capture(capture),
+            3 => inspector.model.update_capture(capture),
             4 => inspector.take_in(HistoryOf { at: pixel }, Err(bad())),
             5 => inspector.take_in(AnatomyOf {}, Err(bad())),
             6 => {
                 inspector.take_in(TestsOf { step: pixel[0] as usize, draw: Some(pixel[1] as usize) }, Err(bad()));
             }
             7 => inspector.take_in(TruthOf {}, Err(bad())),
-            8 => inspector.push_error(format!("broken-{}.obj: no faces: choose another file", pixel[0])),
+            8 => inspector.model.push_error(format!("broken-{}.obj: no faces: choose another file", pixel[0])),
             9 => inspector.set_job([None, Some("rendering".to_owned())][pixel[0] as usize % 2].clone()),
             10 => {
                 inspector.set_scene(&scene(), run_request(Technique::ZFail));
@@ -204,15 +204,15 @@ impl Monkey {
                 inspector.set_capture(capture);
             }
             12 => {
-                inspector.start(ReportOf::grid().expect("a grid"));
-                inspector.start(DiagnosisOf {});
+                inspector.model.answers.start(ReportOf::grid().expect("a grid"));
+                inspector.model.answers.start(DiagnosisOf {});
             }
             13 => {
                 // Of any question that was ever asked, right or late.
                 let asked: Vec<u64> = seen.actions.iter().filter_map(ticket).collect();
                 let ticket = asked.get(self.below(asked.len().max(1))).copied().unwrap_or_default();
                 inspector.answer(ticket, Err(bad()), pixel[0].is_multiple_of(2));
-                inspector.make_way();
+                inspector.model.answers.make_way();
             }
             _ => harness.input_mut().dropped_files.push(Arc::new(Dropped(PathBuf::from("broken.obj")))),
         }
@@ -267,7 +267,7 @@ fn random_input_over_a_real_capture_does_not_panic() {
     for (seed, technique) in [(11, Technique::ZFail), (12, Technique::ShadowMap)] {
         let inspector = known(technique);
         let mut captures = by_hand();
-        captures.extend(inspector.capture().cloned());
+        captures.extend(inspector.model.frame.capture.as_ref().cloned());
         run("tori", seed, inspector, &captures);
     }
 }
@@ -281,7 +281,7 @@ fn random_input_over_a_recorded_frame_does_not_panic() {
         let at = [60, 140];
         let history = session.history(&ogre.plan, &ogre.capture, at).expect("a history");
         let scene = ogre.scene().expect("a scene");
-        inspector.pick(at);
+        inspector.model.selection.pick = Some(at);
         inspector.take_in(HistoryOf { at }, Ok(Arc::new(history)));
         inspector.take_in(AnatomyOf {}, Ok(Arc::new(session.anatomy(scene, None, &ogre.plan))));
         run("ogre", seed, inspector, &[Arc::clone(&ogre.capture)]);

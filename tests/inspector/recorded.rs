@@ -77,7 +77,7 @@ fn a_picked_pixel_has_its_history() {
     let mut harness = harness_in(inspector(&ogre), TALL);
     pick_by_mouse(&mut harness, DARK, ogre.capture.size);
     answer_all(&mut harness, &mut session, &ogre);
-    assert_eq!(harness.state().inspector.picked(), Some(DARK));
+    assert_eq!(harness.state().inspector.model.selection.pick, Some(DARK));
     harness.get_by_label_contains("Dark under light 1");
     harness.get_by_label_contains("so the light pass skips it");
     let names = harness.query_all_by_label_contains("side of").count() + harness.query_all_by_label("side").count();
@@ -174,7 +174,15 @@ fn truth_is_asked_for_and_the_wrong_pixels_are_counted() {
         assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Error));
         let shown = harness.get_all_by_label_contains(words).next();
         assert!(shown.is_some());
-        let error = harness.state().inspector.capture().and_then(|capture| capture.error()).expect("an error");
+        let error = harness
+            .state()
+            .inspector
+            .model
+            .frame
+            .capture
+            .as_ref()
+            .and_then(|capture| capture.error())
+            .expect("an error");
         assert_eq!(error.wrong() > 1000, lies, "{error:?}");
     }
 }
@@ -243,10 +251,11 @@ fn a_frame_with_volumes_that_end_too_early_shows_where_shadow_is_missing() {
     let mut session = common::session();
     let short = frame(&mut session, "ogre-short");
     let mut inspector = inspector(&short);
-    inspector.set_picture_kind(PictureKind::Error);
+    inspector.model.choose_picture(PictureKind::Error);
     let mut harness = harness_of(inspector);
     answer_all(&mut harness, &mut session, &short);
-    let error = harness.state().inspector.capture().and_then(|capture| capture.error()).expect("an error");
+    let error =
+        harness.state().inspector.model.frame.capture.as_ref().and_then(|capture| capture.error()).expect("an error");
     assert!(error.missing_shadow > 300 && error.missing_shadow == error.wrong(), "{error:?}");
     click_button(&mut harness, "Go to the largest");
     answer_all(&mut harness, &mut session, &short);

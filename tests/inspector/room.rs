@@ -31,7 +31,7 @@ fn what_a_pass_draws_into_stands_line_under_line() {
 #[test]
 fn a_reason_stands_once_under_all_that_was_left_out_for_it() {
     let inspector = over("tori", Technique::Auto);
-    let left = inspector.capture().expect("a capture").left_out.clone();
+    let left = inspector.model.frame.capture.as_ref().expect("a capture").left_out.clone();
     let of_first = left.iter().filter(|one| one.because == left[0].because).count();
     assert!(of_first > 1, "one reason for several rings");
     let mut harness = harness_in(inspector, [1600.0, 3000.0]);

@@ -69,7 +69,7 @@ fn a_picked_pixel_marks_its_texel_and_a_picked_texel_its_pixels() {
     harness.get_by_label("Texel 3, 3");
     let small = harness.get_by_label("Small picture").rect();
     mouse(&mut harness, small.center() - vec2(3.0, 3.0), PointerButton::Primary);
-    assert_eq!(harness.state().inspector.picked(), Some([19, 14]));
+    assert_eq!(harness.state().inspector.model.selection.pick, Some([19, 14]));
     harness.get_by_label("Texel 1, 1");
 }
 
@@ -229,7 +229,7 @@ fn decided(is_dark: bool) -> Harness<'static, Seen> {
     let near = if is_dark { 0.5 } else { -0.5 };
     map.light_from_world = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0 - near));
     let mut inspector = inspector(capture);
-    inspector.pick([20, 15]);
+    inspector.model.selection.pick = Some([20, 15]);
     harness_in(inspector, [1280.0, 1000.0])
 }
 

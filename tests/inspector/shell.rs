@@ -133,8 +133,8 @@ fn an_export_that_fails_says_so_in_its_dialog() {
 #[test]
 fn what_is_exported_is_what_is_shown() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.set_picture_kind(PictureKind::Stencil);
-    inspector.select_step(1);
+    inspector.model.choose_picture(PictureKind::Stencil);
+    inspector.model.select_step(1);
     let Some(ExportData::Picture(picture)) = inspector.export(ExportKind::Picture) else { panic!("a picture") };
     assert_eq!(picture.size(), SIZE);
     // Column 3 is in shadow, its count 1: the design's blue.
@@ -205,12 +205,12 @@ fn files_that_were_opened_before_are_listed_where_one_opens() {
 #[test]
 fn a_changed_file_is_offered_for_reload_once() {
     let mut harness = harness(z_fail(SIZE));
-    change(&mut harness, |inspector| inspector.offer_reload("a.obj".to_owned()));
+    change(&mut harness, |inspector| inspector.model.activity.changed_file = Some("a.obj".to_owned()));
     harness.get_by_label("a.obj changed on disk.");
     click_button(&mut harness, "Load it again");
     assert_eq!(harness.state().actions.last(), Some(&Action::Reload));
     assert!(harness.query_by_label("a.obj changed on disk.").is_none());
-    change(&mut harness, |inspector| inspector.offer_reload("a.obj".to_owned()));
+    change(&mut harness, |inspector| inspector.model.activity.changed_file = Some("a.obj".to_owned()));
     click_button(&mut harness, "Not now");
     assert!(harness.query_by_label("a.obj changed on disk.").is_none());
 }

@@ -49,7 +49,7 @@ fn fail(inspector: &mut Inspector) {
 }
 
 fn rows_of(inspector: &Inspector) -> Vec<StressRow> {
-    inspector.answers().last::<StressOf>().map_or_else(Vec::new, |(_, rows)| rows.rows.clone())
+    inspector.model.answers.last::<StressOf>().map_or_else(Vec::new, |(_, rows)| rows.rows.clone())
 }
 
 fn select(harness: &mut Harness<Seen>, row: &str) {
@@ -170,7 +170,7 @@ fn running_a_case_again_replaces_its_rows_and_no_others() {
 #[test]
 fn progress_moves_within_a_case() {
     let mut harness = showing(|_| ());
-    change(&mut harness, |inspector| inspector.start(StressOf { cases: vec!["random"] }));
+    change(&mut harness, |inspector| inspector.model.answers.start(StressOf { cases: vec!["random"] }));
     let progress = last_asked::<StressOf>(&harness).progress;
     let share = |harness: &mut Harness<Seen>, rows: usize| {
         progress.start(1000);

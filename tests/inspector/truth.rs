@@ -26,7 +26,7 @@ fn error_without_truth_asks_for_it_once_and_the_last_picture_stays() {
     harness.run_steps(2);
     harness.get_by_label("The truth is being traced … 43 %");
     harness.get_by_label("Shown until then: stencil after step 3.");
-    change(&mut harness, |inspector| inspector.update_capture(Arc::new(with_truth(z_fail(SIZE)))));
+    change(&mut harness, |inspector| inspector.model.update_capture(Arc::new(with_truth(z_fail(SIZE)))));
     assert_eq!((asked(&harness), kind(&harness)), (1, Some(PictureKind::Error)));
     assert!(harness.query_by_label_contains("being traced").is_none());
 }
@@ -137,8 +137,8 @@ fn mouse_and_keys_go_to_the_largest_patch() {
         } else {
             click_button(&mut harness, "Go to the largest");
         }
-        assert_eq!(harness.state().inspector.picked(), Some([18, 0]));
-        assert_eq!(harness.state().inspector.zoom(), TexelZoom::Pixels(12.0));
+        assert_eq!(harness.state().inspector.model.selection.pick, Some([18, 0]));
+        assert_eq!(harness.state().inspector.model.view.zoom, TexelZoom::Pixels(12.0));
     }
 }
 

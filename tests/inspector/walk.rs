@@ -184,9 +184,9 @@ fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
     mouse(&mut harness, at, PointerButton::Primary);
     press(&mut harness, Key::Tab);
     harness.get_by_label(BANNER);
-    let step = harness.state().inspector.step();
+    let step = harness.state().inspector.model.selection.step;
     press(&mut harness, Key::Home);
-    assert_eq!(harness.state().inspector.step(), step, "only the keys of walking act");
+    assert_eq!(harness.state().inspector.model.selection.step, step, "only the keys of walking act");
     press(&mut harness, Key::Tab);
     assert_eq!(harness.ctx.memory(egui::Memory::focused), None, "nor does Tab go on to a button");
     harness.get_by_label(BANNER);
