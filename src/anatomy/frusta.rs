@@ -1,4 +1,4 @@
-//! What the camera and the lights' maps see, and what lies between the near rectangle and a light.
+//! The frusta of the camera and of the lights' maps, and the volume between the near rectangle and a light.
 
 use super::{Frustum, NearClip, PlacedObject, ViewOf};
 use crate::geometry::{NearClipVolume, ViewVolume};
@@ -9,7 +9,7 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 /// The corners of a view: right top, left top, left bottom, right bottom.
 const CORNERS: [DVec2; 4] = [DVec2::ONE, DVec2::new(-1.0, 1.0), DVec2::NEG_ONE, DVec2::new(1.0, -1.0)];
 
-/// The camera's frustum, then those of the faces of maps that are drawn: of depths, of receivers' textures, of
+/// Returns the camera's frustum, then those of the faces of maps that are drawn: of depths, of receivers' textures, of
 /// projected silhouettes.
 pub fn all(scene: &Scene, plan: &FramePlan, objects: &[PlacedObject], aspect: f64) -> Vec<Frustum> {
     let mut frusta = vec![of_camera(&scene.camera, aspect, plan.depth.far)];
@@ -36,12 +36,12 @@ pub fn all(scene: &Scene, plan: &FramePlan, objects: &[PlacedObject], aspect: f6
     frusta
 }
 
-/// Of a map of depths: is it cleared to 0?
+/// Is a map of depths cleared to 0, so that its depth is reversed?
 fn is_reversed(map: &PlanMap) -> bool {
     map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0)
 }
 
-/// What surfaces ask a light's map for.
+/// Returns how surfaces read a light's map.
 fn reading(plan: &FramePlan, light: usize) -> Option<Visibility> {
     let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
     passes.flat_map(|pass| &pass.draws).find_map(|draw| match draw.program {
@@ -50,14 +50,14 @@ fn reading(plan: &FramePlan, light: usize) -> Option<Visibility> {
     })
 }
 
-/// The object that a face of a map is drawn from.
+/// Returns the object that a face of a map is drawn from.
 fn caster_of(plan: &FramePlan, view: ViewId, objects: &[PlacedObject]) -> Option<usize> {
     let pass = plan.passes.iter().find(|pass| pass.view == view)?;
     let name = pass.draws.first()?.caster.as_deref()?;
     objects.iter().position(|object| object.name == name)
 }
 
-/// From the rectangle on a receiver to its light; depth 0 is the receiver's plane.
+/// Returns the frustum from the rectangle on a receiver to its light; depth 0 is the receiver's plane.
 fn of_receiver(clip_from_world: DMat4, light: DVec4, of: ViewOf) -> Option<Frustum> {
     let world_from_clip = clip_from_world.inverse();
     let near = CORNERS.map(|at| {
@@ -67,11 +67,11 @@ fn of_receiver(clip_from_world: DMat4, light: DVec4, of: ViewOf) -> Option<Frust
     near.iter().all(|corner| corner.is_finite()).then_some(Frustum { of, near, far: [light; 4] })
 }
 
-/// Of a projected silhouette: the rectangle that it fills where the caster is nearest to the light, from there back
-/// to the light, and on without an end. `None` where the matrix sees no such rectangle.
+/// Returns the two frusta of a projected silhouette: from the rectangle that it fills where the caster is nearest to
+/// the light, one back to the light, and one onwards without an end. `None` where the matrix sees no such rectangle.
 fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: ViewOf) -> Option<[Frustum; 2]> {
     let [right, up, distance] = [0, 1, 3].map(|row| clip_from_world.row(row));
-    // All is at one depth there, so that the matrix has no inverse: how far away is chosen here.
+    // All is at one depth there, so that the matrix has no inverse: the distance is chosen here.
     let nearest = |row: DVec4| caster.iter().map(|point| row.dot(point.extend(1.0))).fold(f64::INFINITY, f64::min);
     let is_parallel = light.w == 0.0;
     let ahead = if is_parallel { (-light.truncate().normalize_or_zero()).extend(0.0) } else { distance };
@@ -98,12 +98,12 @@ pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
     }
 }
 
-/// `None` where the matrix has no inverse, or sees no frustum.
+/// Returns the frustum of a matrix; `None` where it has no inverse, or sees no frustum.
 fn of_matrix(clip_from_world: DMat4, is_reversed: bool, of: ViewOf) -> Option<Frustum> {
     let world_from_clip = clip_from_world.inverse();
     let corner = |at: DVec2, depth: f64| {
         let point = world_from_clip * DVec4::new(at.x, at.y, depth, 1.0);
-        // A depth without an end is a direction, but for rounding.
+        // A point at infinity is a direction, but for rounding.
         let is_far = point.w.abs() <= 1e-12 * point.truncate().length();
         if is_far { point.truncate().extend(0.0) } else { point / point.w }
     };

@@ -1,4 +1,4 @@
-//! Puts an anatomy together.
+//! Computes the anatomy of a frame from its scene and plan.
 
 use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
 use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
@@ -8,11 +8,11 @@ use crate::scene::{MeshGroup, Object, Scene};
 use crate::technique::{Choice, casting};
 use glam::{DVec3, DVec4, Vec3};
 
-/// Cosine of the angle between neighbours' normals from which on the edge between them is drawn: 25°.
+/// An edge is drawn where the normals of its neighbours differ by more than 25°, whose cosine this is.
 const CREASE: f64 = 0.906;
 
-/// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says; without one another program
-/// drew it, and `scene` is what its draws tell of that.
+/// Returns the anatomy of the frame of `plan`: `scene` at its time, rendered with `choice`; without a choice another
+/// program drew it, and `scene` is what is known of its scene from its draws.
 pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
     let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, cache)).collect();
     let aspect = f64::from(plan.size[0]) / f64::from(plan.size[1].max(1));
@@ -32,7 +32,7 @@ pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: 
         silhouettes: silhouettes(scene, choice, &objects, cache),
         frusta: match choice {
             Some(_) => frusta::all(scene, plan, &objects, aspect),
-            // How another program's maps lie in space is not known.
+            // Where another program's maps lie in space is not known.
             None => vec![frusta::of_camera(&scene.camera, aspect, plan.depth.far)],
         },
         is_view_assumed: choice.is_none(),
@@ -56,7 +56,7 @@ fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
     }
 }
 
-/// What its parts reflect on average, pictures included.
+/// Returns the average reflectance of an object's parts, textures included.
 fn color(object: &Object) -> [f32; 3] {
     let groups = object.mesh.groups();
     let count = groups.iter().map(|group| group.triangles.len()).sum::<usize>().max(1) as f32;
@@ -69,7 +69,7 @@ fn color(object: &Object) -> [f32; 3] {
     groups.iter().map(part).sum::<Vec3>().to_array()
 }
 
-/// Creases, borders, and where more than two triangles meet.
+/// Returns the edges worth drawing: creases, borders, and edges of more than two triangles.
 fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Edge> {
     let normal = |triangle: usize| {
         let [a, b, c] = triangles[triangle].map(|corner| positions[corner as usize]);
@@ -85,8 +85,8 @@ fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) 
     (0..edges.edges().len()).filter(is_worth).map(|index| edges.edges()[index]).collect()
 }
 
-/// The corners of a triangle of another program's pass as places of its anatomy; `None` where it is our own, or they
-/// are no numbers.
+/// Returns the corners of a triangle of another program's pass as points of its anatomy; `None` where the pass is our
+/// own, or they are not finite.
 pub fn recorded_places(plan: &FramePlan, pass: usize, corners: [[f32; 4]; 3]) -> Option<[DVec4; 3]> {
     let pass = plan.passes.get(pass).filter(|pass| pass.recorded.is_some())?;
     let space = PassSpace::new(plan, pass);
@@ -107,7 +107,7 @@ fn silhouettes(
             let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed[index].positions };
             let casters = match choice {
                 Some(choice) => casting(choice, cache, caster, position),
-                // Whose triangles another program takes is not known: no more than are needed.
+                // Which casting triangles another program uses is not known: no more than are needed.
                 None if cache.light_facing_suffices(caster, position).is_ok() => Casters::LightFacing,
                 None => Casters::All,
             };
@@ -157,8 +157,8 @@ mod tests {
         anatomy(&scene, Some(&choice), &plan, &mut cache)
     }
 
-    /// Each side of a triangle is run back by another one: by vertex where they are near, by position
-    /// where they are made anew at the far end.
+    /// Each side of a triangle is matched by a reversed one: by vertex index near the light, by position at the far
+    /// end, where vertices are new.
     fn is_closed(anatomy: &Anatomy, volume: usize) -> bool {
         let volume = &anatomy.volumes[volume];
         let mut edges = std::collections::BTreeMap::new();

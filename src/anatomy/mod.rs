@@ -1,13 +1,13 @@
-//! What a frame is made of in space: objects, shadow volumes, silhouettes, frusta. Data for views that
-//! look at a frame from outside.
+//! The geometry of a frame in space: objects, shadow volumes, silhouettes, frusta. Data for views that look at a frame
+//! from outside.
 //!
-//! Volumes are taken from the frame's plan, so that what is shown is what is drawn; silhouettes come
-//! from the same geometry, and exist whatever the technique. Everything is in world space; corners
-//! are homogeneous, and `w = 0` lies at infinity.
+//! Volumes are taken from the frame's plan, so that what is shown is what is drawn; silhouettes come from the same
+//! geometry, and exist whatever the technique. Everything is in world space; corners are homogeneous, and `w = 0` lies
+//! at infinity.
 //!
 //! ```text
-//! mod.rs      the data         volumes.rs   volumes out of a plan
-//! make.rs     puts it together  frusta.rs    what camera and maps see, and the near-clip volume
+//! mod.rs      the data                                  volumes.rs   volumes out of a plan
+//! make.rs     computes it from a scene and a plan       frusta.rs    frusta of camera and maps, and the near-clip volume
 //! ```
 
 mod frusta;
@@ -22,25 +22,25 @@ use crate::scene::{Camera, Mesh};
 use glam::{DVec3, DVec4};
 use std::sync::Arc;
 
-/// What a frame is made of in space.
+/// The geometry of a frame in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Anatomy {
     /// Name of the technique.
     pub technique: String,
     /// The camera that the frame is seen by.
     pub camera: Camera,
-    /// Its field of view is not known, and stands at 90 degrees: another program drew the frame. All is in its view
-    /// space then.
+    /// Its field of view is not known, and assumed to be 90 degrees, as another program drew the frame. Everything is
+    /// in its view space then.
     pub is_view_assumed: bool,
     /// Width over height of the picture.
     pub aspect: f64,
-    /// In the scene's order.
+    /// The objects, in the scene's order.
     pub objects: Vec<PlacedObject>,
-    /// In the scene's order.
+    /// The lights, in the scene's order.
     pub lights: Vec<PlacedLight>,
-    /// The shadow volumes that the frame draws: at most one a light and caster.
+    /// The shadow volumes that the frame draws: at most one for each light and caster.
     pub volumes: Vec<ShadowVolume>,
-    /// One a light and caster.
+    /// The silhouettes, one for each light and caster.
     pub silhouettes: Vec<Silhouette>,
     /// The camera's first, then those of the lights' maps. A receiver's texture is seen from its rectangle to the
     /// light; a projected silhouette has two: from its rectangle to the light, and from there on.
@@ -49,20 +49,20 @@ pub struct Anatomy {
     pub near_clips: Vec<Option<NearClip>>,
 }
 
-/// An object where it is.
+/// An object at its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedObject {
     /// Unique within its scene.
     pub name: String,
-    /// Throws shadows.
+    /// It casts shadows.
     pub casts: bool,
-    /// Is darkened by shadows.
+    /// It receives shadows.
     pub receives: bool,
-    /// Is drawn.
+    /// It is drawn.
     pub visible: bool,
     /// Linear RGB of its material.
     pub color: [f32; 3],
-    /// Its triangles name these positions.
+    /// The mesh, whose triangles refer to `positions`.
     pub mesh: Arc<Mesh>,
     /// The welded vertices, world space.
     pub positions: Vec<DVec3>,
@@ -70,10 +70,10 @@ pub struct PlacedObject {
     pub edges: Vec<Edge>,
 }
 
-/// A light where it is.
+/// A light at its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedLight {
-    /// Homogeneous: `w = 1` a point, `w = 0` the direction towards it.
+    /// World space, homogeneous: `w = 1` a point, `w = 0` the direction towards the light.
     pub position: DVec4,
     /// Linear RGB.
     pub color: [f32; 3],
@@ -86,7 +86,7 @@ pub struct PlacedLight {
 pub struct ShadowVolume {
     /// Index of the light.
     pub light: usize,
-    /// Index of the object that throws it.
+    /// Index of the object that casts it.
     pub caster: usize,
     /// Homogeneous corners, rounded as the GPU has them.
     pub vertices: Vec<DVec4>,
@@ -110,11 +110,11 @@ pub struct Silhouette {
     pub light: usize,
     /// Index of the object; edges name its positions.
     pub caster: usize,
-    /// With their multiplicities.
+    /// The edges with their multiplicities.
     pub edges: Vec<SilhouetteEdge>,
 }
 
-/// Whose view a frustum is.
+/// What a frustum is the view of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ViewOf {
     /// The camera's.
@@ -125,7 +125,7 @@ pub enum ViewOf {
         light: usize,
         /// Index of the face.
         face: usize,
-        /// Index of the object whose silhouette is projected; `None` where a map is not of one object.
+        /// Index of the object whose silhouette is projected; `None` where the map shows several objects.
         caster: Option<usize>,
     },
 }
@@ -133,15 +133,15 @@ pub enum ViewOf {
 /// A frustum by its eight corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frustum {
-    /// Whose.
+    /// The view that it belongs to.
     pub of: ViewOf,
-    /// Right top, left top, left bottom, right bottom.
+    /// World space: right top, left top, left bottom, right bottom.
     pub near: [DVec4; 4],
-    /// The same; directions where there is no far plane, or all the light where it ends there.
+    /// World space, in the same order; directions where there is no far plane, or all the light where it ends there.
     pub far: [DVec4; 4],
 }
 
-/// The space between the near rectangle and a light: what casts within it may hold the eye in its shadow.
+/// The space between the near rectangle and a light: what casts within it may put the eye in shadow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearClip {
     /// Corners of the near rectangle, in order round it.
@@ -151,7 +151,7 @@ pub struct NearClip {
 }
 
 impl Frustum {
-    /// Is its far end one place, the light?
+    /// Is its far end a single point, the light?
     pub fn ends_at_light(&self) -> bool {
         self.far.iter().all(|corner| *corner == self.far[0])
     }

@@ -1,4 +1,4 @@
-//! Shadow volumes out of a plan.
+//! Shadow volumes, taken from the draws of a plan.
 
 use super::{PlacedObject, ShadowVolume, VolumePart};
 use crate::plan::{Draw, DrawMesh, DrawPart, FramePlan, MeshId, Pass, ViewId};
@@ -7,10 +7,10 @@ use crate::scene::Scene;
 use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The camera's view.
+/// The view of the camera.
 const CAMERA: ViewId = ViewId(0);
 
-/// All volumes that the camera's passes draw, in the order of lights and casters.
+/// Returns all volumes that the camera's passes draw, in the order of lights and casters.
 pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> {
     let index: BTreeMap<&str, usize> = objects.iter().enumerate().map(|(i, object)| (&*object.name, i)).collect();
     let mut found: BTreeMap<(usize, usize), (MeshId, ShadowVolume)> = BTreeMap::new();
@@ -19,7 +19,7 @@ pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> 
         for (light, draw) in draws_of_volumes(pass) {
             let caster = draw.caster.as_deref().and_then(|name| index.get(name).copied());
             let (Some(caster), Some(mesh)) = (caster, plan.meshes.get(draw.mesh.0)) else { continue };
-            // Two passes draw one part twice.
+            // Two passes draw the same part.
             if !seen.insert((light, draw.mesh, draw.triangles.start, draw.triangles.end, draw.base_vertex)) {
                 continue;
             }
@@ -34,7 +34,7 @@ pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> 
     found.into_values().map(|(_, volume)| volume).collect()
 }
 
-/// The volumes of another program's frame, one for each draw, in the space of its assumed eye.
+/// Returns the volumes of another program's frame, one for each draw, in the space of its assumed eye.
 pub fn recorded(plan: &FramePlan, scene: &Scene) -> Vec<ShadowVolume> {
     let mut found = Vec::new();
     for (pass, draw, caster) in recorded::casters(plan, scene) {
@@ -48,7 +48,7 @@ pub fn recorded(plan: &FramePlan, scene: &Scene) -> Vec<ShadowVolume> {
             vertices: places.iter().map(|place| place.unwrap_or_default()).collect(),
             parts: vec![VolumePart { part: draw.part, triangles }],
         };
-        // Two passes draw one volume twice.
+        // Two passes draw the same volume.
         if !found.contains(&volume) {
             found.push(volume);
         }
@@ -73,10 +73,10 @@ fn world(mesh: &DrawMesh, origin: DVec3) -> Vec<DVec4> {
 fn add(volume: &mut ShadowVolume, draw: &Draw, mesh: &DrawMesh) {
     let triangles = corners(draw, mesh);
     let Some(extruded) = &mesh.extruded else { return add_part(volume, draw.part, triangles) };
-    // What its vertex shader has made of them.
+    // The positions that its vertex shader computed.
     let vertices = mesh.vertices.data();
     let of = |triangle: &[u32; 3]| match extruded.carried(*triangle) {
-        // All that a sun carries to infinity is one point.
+        // All points at infinity of a directional light's volume are one point.
         _ if has_equal_corners(vertices, *triangle) => None,
         [true, true, true] if draw.part == DrawPart::Caps => Some(DrawPart::DarkCap),
         [false, false, false] if draw.part == DrawPart::Caps => Some(DrawPart::LightCap),
@@ -105,7 +105,7 @@ fn add_part(volume: &mut ShadowVolume, part: DrawPart, triangles: impl Iterator<
     }
 }
 
-/// The triangles of a draw, counter-clockwise seen from outside its volume.
+/// Returns the triangles of a draw, counter-clockwise seen from outside its volume.
 fn corners(draw: &Draw, mesh: &DrawMesh) -> impl Iterator<Item = [u32; 3]> {
     let range = draw.triangles.start as usize..draw.triangles.end as usize;
     let triangles = mesh.indices.data().as_chunks::<3>().0.get(range).unwrap_or_default();

@@ -1,11 +1,10 @@
 //! Memory that is freed goes back to the system.
 //!
-//! A window that is open for hours captures thousands of frames, and each frees the pictures of the one
-//! before. GNU's allocator keeps such memory: once it has seen a large block freed it no longer maps
-//! blocks of that size (up to 32 MiB) on their own, and each thread that the driver starts has a heap of
-//! its own whose holes nothing fills. Half an hour of use left hundreds of MiB so. With a fixed
-//! threshold and few heaps, pictures are mapped, and unmapped when they are dropped; the kernel's
-//! zeroed pages cost far less than what fills them.
+//! A window that is open for hours captures thousands of frames, and each frees the pictures of the one before. GNU's
+//! allocator does not return such memory: once it has seen a large block freed it no longer maps blocks of that size
+//! (up to 32 MiB) on their own, and each thread that the driver starts has a heap of its own whose holes nothing fills.
+//! After half an hour of use this retained hundreds of MiB. With a fixed threshold and few heaps, pictures are mapped,
+//! and unmapped when they are dropped; the kernel's zeroed pages cost far less than computing what is written to them.
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 mod gnu {
@@ -16,7 +15,7 @@ mod gnu {
 
     #[expect(unsafe_code, reason = "glibc's own switches: any thread may set them at any time")]
     pub fn give_back_at_once() {
-        // What a libc does not know it refuses, and stays as it is.
+        // An option that a libc does not know it refuses, and nothing changes.
         unsafe {
             libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);
             libc::mallopt(libc::M_ARENA_MAX, HEAPS);
@@ -31,13 +30,13 @@ mod gnu {
     }
 }
 
-/// Before anything large is made: what is freed from now on goes back.
+/// Sets up the allocator so that freed memory goes back; call it before anything large is allocated.
 pub fn give_back_at_once() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     gnu::give_back_at_once();
 }
 
-/// Gives back what lies between small things that are in use: 1 to 20 ms, in which other threads may wait for memory.
+/// Returns free memory between small blocks that are in use: 1 to 20 ms, in which other threads may wait for memory.
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     gnu::give_back();

@@ -1,7 +1,7 @@
-//! What the window is about, without the window: the panels, the worker, and what goes between them.
+//! The logic of the window without the window: the panels, the worker, and the messages between them.
 //!
-//! The window, the benchmark of the panels and the pictures of the README all draw
-//! [`Controller::inspector`], hand its actions to [`Controller::act`] and what wakes them to [`Controller::wake`].
+//! The window, the benchmark of the panels and the pictures of the README all draw [`Controller::inspector`], pass its
+//! actions to [`Controller::act`] and its events to [`Controller::wake`].
 
 use super::export;
 use super::memory;
@@ -24,12 +24,12 @@ use std::path::Path;
 use std::pin::Pin;
 use std::sync::Arc;
 
-/// What the system's dialog shows: it has files or folders, not both.
+/// What the system's dialog shows: files or folders, never both.
 #[derive(Debug, Clone, Copy)]
 enum DialogFilter {
-    /// Scenes and models.
+    /// Files of scenes and models.
     File,
-    /// Captures.
+    /// Folders of captures.
     Folder,
 }
 
@@ -39,25 +39,25 @@ pub struct Controller {
     pub inspector: Inspector,
     worker: Worker,
     notify: Notify,
-    /// Of the scene that is open.
+    /// Number of the scene that is open.
     scene: u64,
-    /// Of the frame that is shown.
+    /// Number of the frame that is shown.
     frame: u64,
-    /// That frame; `None` for a folder that holds a capture alone.
+    /// That frame; `None` for a folder that contains only a capture.
     run: Option<RunFrame>,
     reader: ReaderThread,
-    /// Files of the open scene; `None` where nothing is remembered or watched.
+    /// Watches the files of the open scene; `None` where nothing is stored or watched.
     watch: Option<Watch>,
-    /// What is selected when the first capture comes.
+    /// Index of the step that is selected when the first capture comes.
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
     first_is_error: bool,
-    /// As stored last.
+    /// The settings as they were stored last.
     remembered: StoredSettings,
 }
 
 impl Drop for Controller {
-    /// Long work stops: the program ends.
+    /// Cancels long work: the program ends.
     fn drop(&mut self) {
         self.inspector.model.answers.make_way();
         self.inspector.model.cancel(QuestionKind::FilmOf);
@@ -65,8 +65,8 @@ impl Drop for Controller {
 }
 
 impl Controller {
-    /// Opens what is asked for. `notify` wakes whoever draws. What was remembered of the run before is recalled, and
-    /// this one's kept, where `remembers` says so.
+    /// Opens what is asked for. `notify` wakes the event loop that draws. Where `remembers` is true, the settings of
+    /// the previous run are loaded, and those of this run are stored.
     pub fn new(request: ViewRequest, notify: Notify, remembers: bool) -> Result<Controller, AppError> {
         let start = WorkerStart {
             source: request.source,
@@ -103,12 +103,12 @@ impl Controller {
         })
     }
 
-    /// Is anything being found out? How far that is changes without news.
+    /// Is a question being answered? Its progress changes without news.
     pub fn is_answering(&self) -> bool {
         self.inspector.model.answers.is_waiting()
     }
 
-    /// Takes in what woke the window, but for what is the window's own.
+    /// Handles an event that woke the window, except those that only the window can handle.
     pub fn wake(&mut self, news: WindowNews) {
         match news {
             WindowNews::Worker(news) => self.hear(news),
@@ -125,7 +125,7 @@ impl Controller {
         }
     }
 
-    /// Takes in what the worker tells.
+    /// Handles news of the worker.
     pub fn hear(&mut self, news: News) {
         match news {
             News::Busy(job) => self.inspector.set_job(Some(job)),
@@ -183,7 +183,7 @@ impl Controller {
         }
     }
 
-    /// Does what the panels wish.
+    /// Carries out an action of the panels.
     pub fn act(&mut self, action: Action) {
         let order = match action {
             Action::Open(name) => {
@@ -209,7 +209,7 @@ impl Controller {
                 Some(ExportData::Film(subject)) => return self.film(subject, path, replace),
                 Some(data) => {
                     let data = match (data, &self.run) {
-                        // With all that is known of it by now.
+                        // With all answers that are known by now.
                         (ExportData::Capture(capture), Some(run)) => {
                             export::ExportContent::Frame(Box::new(RunFrame { capture, ..run.clone() }))
                         }
@@ -254,7 +254,7 @@ impl Controller {
         }
     }
 
-    /// Answers what follows from the shown capture.
+    /// Answers a question from the shown capture.
     fn read(&mut self, asked: PendingQuestion) {
         let Some(capture) = self.inspector.model.frame.capture.as_ref().cloned() else { return };
         let reading = ReadRequest { asked, capture, plan: self.inspector.model.frame.plan.as_ref().cloned() };
@@ -262,7 +262,7 @@ impl Controller {
         self.say_if_failed(begun);
     }
 
-    /// Makes shadows as a row of the report did.
+    /// Renders with the technique and settings of a row of the report.
     fn open_report_row(&mut self, row: TechniqueRequest) {
         match Choice::parse(&row) {
             Ok(choice) => self.inspector.choose(choice).into_iter().for_each(|action| self.act(action)),
@@ -273,7 +273,7 @@ impl Controller {
     /// Asks for a file or folder in the system's dialog, beside the window.
     fn browse(&mut self, wanted: DialogFilter) {
         let dialog = rfd::AsyncFileDialog::new();
-        // Made here, as some systems give dialogs to the first thread only.
+        // Created here, as some systems allow dialogs on the main thread only.
         let dialog: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match wanted {
             DialogFilter::File => {
                 let dialog = dialog.set_title("Open a scene or a model");
@@ -299,7 +299,7 @@ impl Controller {
         let dialog = dialog.set_file_name(name.unwrap_or_default());
         let notify = Arc::clone(&self.notify);
         let wait = move || {
-            // A capture is a folder: its place is chosen like that of a file that is not there yet.
+            // A capture is a folder: its path is chosen like that of a new file.
             if let Some(file) = pollster::block_on(dialog.save_file()) {
                 notify(WindowNews::ChosenExport(file.path().display().to_string()));
             }
@@ -309,7 +309,7 @@ impl Controller {
         }
     }
 
-    /// An export ended.
+    /// Shows how an export ended.
     pub fn end_export(&mut self, exported: Exported) {
         match exported {
             Exported::Done(what) => self.inspector.end_export(Ok(what)),
@@ -318,7 +318,7 @@ impl Controller {
         }
     }
 
-    /// Remembers what was changed since; a failure is told, and the window goes on.
+    /// Stores settings that have changed; a failure is reported, and the window goes on.
     pub fn remember(&mut self) {
         let now = self.inspector.remembered();
         if self.watch.is_some() && now != self.remembered {

@@ -10,19 +10,19 @@ use crate::report::Report;
 use crate::session::RunFrame;
 use std::path::{Path, PathBuf};
 
-/// What is to be written.
+/// The content to be written.
 #[derive(Debug, Clone)]
 pub enum ExportContent {
-    /// A frame with what it was made from.
+    /// A frame with its plan, as a capture folder.
     Frame(Box<RunFrame>),
-    /// The same, for a browser.
+    /// A frame with its plan, as a page for a browser.
     Page(Box<RunFrame>),
-    /// What the panels know.
+    /// Data of the panels.
     Panels(ExportData),
 }
 
-/// Writes `data` to `path`, and tells the window how that ended. What is there is replaced only where `replace`
-/// says so. Scenes are the worker's to write.
+/// Writes `data` to `path`, and reports to the window how that ended. An existing file is replaced only where `replace`
+/// says so. Scenes are written by the worker.
 pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -> std::io::Result<()> {
     let run = move || {
         let news = write(&data, &path, replace);
@@ -31,7 +31,7 @@ pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -
     std::thread::Builder::new().name("export".to_owned()).spawn(run).map(drop)
 }
 
-/// May something be written there?
+/// Returns why nothing may be written there, if so.
 pub fn check(path: &Path, replace: bool) -> Option<Exported> {
     if path.is_dir() {
         return Some(Exported::Failed(format!("{} is a folder: give the file a name", path.display())));
@@ -98,7 +98,7 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
     }
 }
 
-/// The form of a report that the file's ending asks for.
+/// Returns a report in the format of the file's extension.
 fn report_bytes(report: &Report, file: &Path) -> Result<Vec<u8>, String> {
     let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
     let made = match ending.to_str() {

@@ -1,7 +1,7 @@
 //! The window without a window: the same panels and the same worker, for benchmarks and for pictures.
 //!
-//! Nothing is shown: a frame is what egui makes of the panels, and becomes a picture where one is asked
-//! for ([`Headless::picture`]). Time is given by hand, a sixtieth of a second a frame.
+//! Nothing is shown: a frame is egui's output for the panels, and becomes a picture where one is asked for
+//! ([`Headless::picture`]). Time is simulated, a sixtieth of a second for each frame.
 
 use super::controller::Controller;
 use super::news::WindowNews;
@@ -15,11 +15,11 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// Seconds a frame.
+/// Duration of a frame, seconds.
 const FRAME: f64 = 1.0 / 60.0;
 /// How long the worker may be silent while it works.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// The worker has no more news when it is silent for so long: it times a frame after a while.
+/// After so long without news the worker has no more: it times a frame after a while.
 const SILENCE: Duration = Duration::from_millis(700);
 
 /// Panels without a window.
@@ -36,19 +36,19 @@ pub struct Headless {
     shapes: Vec<egui::epaint::ClippedShape>,
 }
 
-/// What a frame of the panels took on the CPU.
+/// The time of a frame of the panels on the CPU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameCost {
-    /// The panels themselves.
+    /// The panels' own code.
     pub panels: Duration,
-    /// Their shapes as triangles.
+    /// The conversion of their shapes to triangles.
     pub triangles: Duration,
-    /// When egui wants the next frame; `None`: not before something happens.
+    /// When egui wants the next frame; `None`: not before an event.
     pub next: Option<Duration>,
 }
 
 impl FrameCost {
-    /// Both together.
+    /// Returns both together.
     pub fn total(&self) -> Duration {
         self.panels + self.triangles
     }
@@ -77,7 +77,7 @@ impl Headless {
         &mut self.controller.inspector
     }
 
-    /// A frame, in which these things happen.
+    /// Runs a frame with these events.
     pub fn frame(&mut self, events: Vec<Event>) -> FrameCost {
         while let Ok(news) = self.news.try_recv() {
             self.controller.wake(news);
@@ -113,7 +113,7 @@ impl Headless {
         cost
     }
 
-    /// Frames until the worker has nothing to do, and all is shown.
+    /// Runs frames until the worker has nothing to do, and all is shown.
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
@@ -127,19 +127,19 @@ impl Headless {
                 Err(_) => break,
             }
         }
-        // Sizes that egui finds out while it draws.
+        // Sizes that egui determines while it draws.
         for _ in 0..3 {
             self.frame(Vec::new());
         }
         Ok(())
     }
 
-    /// Does what the panels wish.
+    /// Carries out actions of the panels.
     pub fn act(&mut self, actions: Vec<crate::inspector::Action>) {
         actions.into_iter().for_each(|action| self.controller.act(action));
     }
 
-    /// Runs the open scene like this, and draws frames until its capture is shown: when it was.
+    /// Runs the open scene with a draft, and draws frames until its capture is shown; returns when it was.
     pub fn run_and_show(&mut self, draft: RunRequest) -> Result<Instant, AppError> {
         let actions = self.controller.inspector.rerun(draft);
         self.act(actions);
@@ -154,7 +154,7 @@ impl Headless {
         }
     }
 
-    /// Presses a key and lets it go.
+    /// Presses and releases a key.
     pub fn key(&mut self, modifiers: Modifiers, key: Key) -> FrameCost {
         let event = |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
         let cost = self.frame(vec![event(true)]);
@@ -162,12 +162,12 @@ impl Headless {
         cost
     }
 
-    /// Moves the pointer to a place of the window, in shares of its size.
+    /// Moves the pointer to a position in the window, as shares of its size.
     pub fn point(&mut self, [x, y]: [f32; 2]) -> FrameCost {
         self.frame(vec![Event::PointerMoved(pos2(x * self.size[0], y * self.size[1]))])
     }
 
-    /// What the window would show.
+    /// Returns what the window would show.
     pub fn picture(&mut self) -> Result<Picture, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,
@@ -182,7 +182,7 @@ impl Headless {
 
 impl Drop for Headless {
     fn drop(&mut self) {
-        // What was not drawn will never be; egui takes dropping it for a bug otherwise.
+        // Changes that were not drawn never will be; if they were dropped, egui would report a bug.
         self.textures.clear();
     }
 }

@@ -1,20 +1,20 @@
-//! What one frame takes of what mouse and keys did.
+//! Splits the input of mouse and keys into frames.
 //!
-//! egui asks once a frame what lies under the pointer, where the pointer is at its end. Where frames are slow, a press
-//! and the drag that follows come in one: what is grabbed would be what the pointer came to, and a handle that was
-//! pressed would stay behind, and a drag that ends in its first frame is none. So a frame ends before the pointer moves
-//! on from where a button went down or up, before the button of a movement goes up, and before a key that follows a
-//! movement: it means what the pointer is over. A window that many such frames wait for takes all at once, as without
-//! this: what it shows is then of long ago anyway.
+//! egui asks once a frame what lies under the pointer, at the pointer's position at its end. Where frames are slow, a
+//! press and the drag that follows come in one frame: the widget at the drag's end would be grabbed, the handle that
+//! was pressed would stay behind, and a drag that ends in its first frame would have no effect. So a frame ends before
+//! the pointer moves on from where a button went down or up, before the button of a movement goes up, and before a key
+//! that follows a movement, which means the widget under the pointer. Where more than a few such frames wait, all input
+//! is taken at once, as without this: what the window shows is then long out of date anyway.
 
 use egui::Event;
 
-/// Frames that may wait. Where more are asked for than are drawn, what is under the pointer matters less than that the
-/// window keeps up.
+/// How many frames may wait. Where frames are slower than that, it is more important that the window keeps up than what
+/// is under the pointer.
 const MOST_WAITING: usize = 8;
 
-/// Takes out of `events` those of the next frame; what is left is later. Where more than a few frames would be, that
-/// is all of them.
+/// Takes the events of the next frame out of `events`; the rest is for later frames. Takes all events where more than a
+/// few frames would wait.
 pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
     let Some(end) = end_of_frame(events) else { return std::mem::take(events) };
     let mut later = &events[end..];
@@ -28,7 +28,7 @@ pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
     std::mem::take(events)
 }
 
-/// The first event that a frame which begins with these must not see.
+/// Returns the index of the first event that a frame which begins with these must not see.
 fn end_of_frame(events: &[Event]) -> Option<usize> {
     let (mut has_button, mut has_moved) = (false, false);
     events.iter().position(|event| match event {
@@ -58,7 +58,8 @@ mod tests {
         Event::Key { key: Key::Tab, physical_key: None, pressed: true, repeat, modifiers: Modifiers::NONE }
     }
 
-    /// How far a handle at 20,20 on a larger ground was dragged, and how far the ground, by all these at once.
+    /// Returns how far a handle at 20,20 on a larger background was dragged, and how far the background, by all these
+    /// at once.
     fn dragged(mut events: Vec<Event>) -> [egui::Vec2; 2] {
         let ctx = Context::default();
         let mut by = [egui::Vec2::ZERO; 2];

@@ -1,28 +1,28 @@
-//! Where the window remembers theme, layout and recent files: `window.json` in the user's folder for settings.
+//! Where the window stores theme, layout and recent files: `window.json` in the user's folder for settings.
 //!
-//! A memory that can't be read is as none: the window opens as at first. One that can't be written
-//! is told once, and nothing else depends on it.
+//! A file that can't be read is treated as missing: the window opens with initial settings. A failure to write it is
+//! reported once, and nothing else depends on it.
 
 use crate::files::write_whole;
 use crate::inspector::StoredSettings;
 use std::path::PathBuf;
 
-/// The file; `None` where the system names no folder.
+/// Returns the file's path; `None` where the system names no folder.
 fn file() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "stencilscope")?;
     Some(folders.config_dir().join("window.json"))
 }
 
-/// What was remembered; as at first where nothing was, or it can't be read.
+/// Returns the stored settings, or the initial ones where there are none, or they can't be read.
 pub fn load() -> StoredSettings {
     let text = file().and_then(|file| std::fs::read_to_string(file).ok());
     text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
 }
 
-/// Remembers it.
+/// Stores the settings.
 ///
 /// # Errors
-/// The file can't be written: with the mend.
+/// The file can't be written: the reason, and how to fix it.
 pub fn store(remembered: &StoredSettings) -> Result<(), String> {
     let Some(file) = file() else { return Ok(()) };
     let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);

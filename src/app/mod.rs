@@ -27,16 +27,16 @@ use crate::capture::disk::WholeFrame;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::CaptureRequest;
 
-/// What the window shows first.
+/// What the window opens, and what it shows first.
 #[derive(Debug, Clone)]
 pub struct ViewRequest {
-    /// What to open.
+    /// The scene or capture to open.
     pub source: ViewSource,
     /// What opens it again: a built-in name or a path.
     pub name: OpenSpec,
-    /// How to render a scene; what is not known from it is taken from here.
+    /// How to render a scene, where the scene itself does not say.
     pub capture: CaptureRequest,
-    /// The moment of an animated scene, seconds.
+    /// The time in an animated scene, seconds.
     pub time: f64,
     /// Part of the name of the GPU to use; `None`: the fastest.
     pub adapter: Option<String>,
@@ -53,23 +53,23 @@ pub struct ViewRequest {
 pub enum ViewSource {
     /// A scene, as loaded: at time 0.
     Scene(Box<Scene>),
-    /// What a capture folder holds, to be looked at without a GPU run.
+    /// The content of a capture folder, to be looked at without a GPU run.
     Folder(Box<WholeFrame>),
 }
 
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
-    /// No display, or nothing that can draw on it.
+    /// There is no display, or no GPU that can draw on it.
     #[error("there can be no window ({0}): use `stencilscope capture` instead")]
     NoWindow(String),
-    /// Nothing can draw the panels.
+    /// There is no GPU that can draw the panels.
     #[error("no picture can be made of the panels ({0}): install a GPU driver, such as mesa-vulkan-drivers")]
     NoPicture(String),
-    /// The worker did not come to an end.
+    /// The worker did not finish in time.
     #[error("nothing was heard of the GPU for two minutes: try a smaller picture")]
     Silent,
-    /// The system gave no thread.
+    /// The system could not start a thread.
     #[error("the worker thread can't be started: {0}")]
     NoThread(std::io::Error),
 }
@@ -80,7 +80,7 @@ pub fn run(request: ViewRequest) -> Result<(), AppError> {
     window::run(request)
 }
 
-/// The system's words for why there is no window, without the place in a library's source.
+/// Returns the system's message about why there is no window, without the place in a library's source.
 fn no_window(error: &dyn std::fmt::Display) -> AppError {
     let text = error.to_string();
     let reason = text.rsplit(": ").next().filter(|_| text.starts_with("os error at "));

@@ -1,4 +1,4 @@
-//! What wakes the window: news of the worker, a chosen file, a wish to repaint.
+//! The events that wake the window: news of the worker, a chosen file, a request to repaint.
 
 use crate::ask::{Answer, RunRequest};
 use crate::capture::Capture;
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// What the worker has to tell.
+/// What the worker reports.
 #[derive(Debug)]
 pub enum News {
     /// It works on something, in a few words.
@@ -17,95 +17,95 @@ pub enum News {
     Idle,
     /// A scene was opened and will be run as the request says.
     Opened {
-        /// Tells runs of this scene from those of the one before.
+        /// Distinguishes runs of this scene from those of the previous one.
         scene_number: u64,
-        /// As loaded.
+        /// The scene, as loaded.
         scene: Box<Scene>,
-        /// What opens it again; `None`: nothing does by name.
+        /// The source that opens it again; `None` where it can't be opened by name.
         source: Option<String>,
-        /// The files that it is made of.
+        /// The files from which it was loaded.
         files: Vec<PathBuf>,
         /// Its first run.
         request: Box<RunRequest>,
     },
     /// A capture folder was opened.
     OpenedFolder {
-        /// What is in it.
+        /// Its content.
         capture: Arc<Capture>,
         /// Its path.
         source: String,
     },
     /// A frame was captured.
     Captured {
-        /// Tells it from those before.
+        /// The frame's number, which no earlier frame has.
         frame: u64,
-        /// What was run, and what was seen.
+        /// The plan that was run, and its capture.
         run: RunFrame,
     },
-    /// The answer to a question, or why there is none, with the mend; not told of what was cancelled.
+    /// The answer to a question, or why there is none and how to fix it; not sent for a cancelled question.
     Answered {
-        /// The question that is meant.
+        /// Ticket of the question.
         ticket: u64,
-        /// What was found.
+        /// The answer.
         result: Result<Answer, String>,
     },
     /// A part of the answer to a question, of which more comes.
     AnsweredPart {
-        /// The question that is meant.
+        /// Ticket of the question.
         ticket: u64,
-        /// What was found by now.
+        /// The parts that are known by now.
         answer: Answer,
     },
-    /// No more parts come.
+    /// An answer in parts is complete.
     AnswerEnded {
-        /// The question that is meant.
+        /// Ticket of the question.
         ticket: u64,
     },
     /// An export of the scene ended.
     Exported(Exported),
-    /// What a scene that was loaded again has no place for.
+    /// Changes that could not be applied to a scene that was loaded again.
     Dropped(String),
-    /// Something failed; the text has the mend.
+    /// Something failed; the text says how to fix it.
     Failed(String),
 }
 
 /// How an export ended.
 #[derive(Debug)]
 pub enum Exported {
-    /// In words.
+    /// It succeeded; says what was written.
     Done(String),
-    /// Something is there already.
+    /// Something exists at this path already.
     Taken(String),
-    /// Why not, with the mend.
+    /// Why it failed, and how to fix it.
     Failed(String),
 }
 
-/// Wakes whoever draws the panels; one that is gone needs no news.
+/// Wakes the event loop that draws the panels; does nothing after it has ended.
 pub type Notify = Arc<dyn Fn(WindowNews) + Send + Sync>;
 
-/// An event of the window's loop that is not the system's.
+/// An event of the window's loop that does not come from the system.
 #[derive(Debug)]
 pub enum WindowNews {
-    /// From the worker.
+    /// News of the worker.
     Worker(News),
     /// The system's dialog gave this path.
     Chosen(String),
-    /// The system's dialog gave this place for an export.
+    /// The system's dialog gave this path for an export.
     ChosenExport(String),
     /// An export ended.
     Exported(Exported),
-    /// The answer to a question that follows from the capture.
+    /// The answer to a question that is answered from the capture.
     Read {
-        /// The question that is meant.
+        /// Ticket of the question.
         ticket: u64,
-        /// What was found.
+        /// The answer.
         result: Result<Answer, String>,
     },
     /// A file of the open scene changed.
     FileChanged(String),
     /// egui wants to draw at this time.
     Repaint(Instant),
-    /// From assistive technology.
+    /// An event of assistive technology.
     Access(egui_winit::accesskit_winit::Event),
 }
 

@@ -1,68 +1,68 @@
-//! What the window asks of the worker, and what of it still counts when the worker gets to it.
+//! The orders of the window to the worker, and which of them are still valid when the worker gets to them.
 
 use crate::ask::{PendingQuestion, QuestionKind, RunRequest};
 use crate::stress::{Entrant, StressCase};
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
-/// What the window asks for.
+/// An order of the window to the worker.
 #[derive(Debug)]
 pub enum Order {
-    /// A built-in scene, or the path of a scene file, model or capture folder.
+    /// Open a built-in scene, or the path of a scene file, model or capture folder.
     Open(String),
-    /// The open scene from its file again, run as it is now.
+    /// Load the open scene from its file again, and run it as it is run now.
     Reload {
         /// How it is run.
         request: Box<RunRequest>,
     },
-    /// The scene of a stress case.
+    /// Open the scene of a stress case.
     OpenCase {
-        /// Which case.
+        /// The case.
         case: &'static StressCase,
-        /// The value of its number.
+        /// The value of the case's number.
         value: f64,
-        /// How its shadows are made; `None`: as before.
+        /// The technique and settings to use; `None`: those in use now.
         entrant: Option<Entrant>,
     },
-    /// The open scene again, changed.
+    /// Run the open scene with changes.
     Run {
-        /// The scene that is meant.
+        /// Number of the scene that is meant.
         scene: u64,
-        /// The change.
+        /// The changed request.
         request: Box<RunRequest>,
     },
-    /// The scene as it is run, into a file.
+    /// Write the scene, as it is run, into a file.
     SaveScene {
-        /// The scene that is meant.
+        /// Number of the scene that is meant.
         scene: u64,
         /// How it is run.
         request: Box<RunRequest>,
-        /// Where to.
+        /// Path of the file.
         path: String,
-        /// What is there may be replaced.
+        /// An existing file may be replaced.
         replace: bool,
     },
-    /// The answer to a question.
+    /// Answer a question.
     Answer {
-        /// The scene that is meant.
+        /// Number of the scene that is meant.
         scene: u64,
-        /// The frame that is meant.
+        /// Number of the frame that is meant.
         frame: u64,
         /// The question.
         asked: PendingQuestion,
     },
 }
 
-/// Sorts of orders, the most urgent first: of each only the newest counts.
+/// Kinds of orders, the most urgent first: the newest of each kind replaces the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum OrderKind {
-    /// A scene is saved before it is changed.
+    /// Saving a scene, before it is changed.
     Save,
-    /// What the next picture depends on.
+    /// A question on which the next picture depends.
     BeforePicture(QuestionKind),
-    /// What is seen first.
+    /// An order that leads to a new picture.
     Picture,
-    /// What is known of it later.
+    /// A question about a frame or a scene that is shown.
     Question(QuestionKind),
 }
 
@@ -76,8 +76,8 @@ impl Order {
         }
     }
 
-    /// Opening wins over the runs around it, as those before are of the old scene and those after were made before the
-    /// window knew the new one.
+    /// Is this order not replaced by a later one of its kind? Opening a scene is not replaced by a run: runs before it
+    /// are of the old scene, and runs after it were asked for before the window knew the new one.
     fn outlasts(&self, later: &Order) -> bool {
         !matches!(self, Order::Run { .. }) && matches!(later, Order::Run { .. })
     }
@@ -88,7 +88,7 @@ impl Order {
 pub struct OrderQueue(BTreeMap<OrderKind, Order>);
 
 impl OrderQueue {
-    /// One more.
+    /// Adds an order.
     pub fn add(&mut self, order: Order) {
         let sort = order.sort();
         if sort != OrderKind::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.outlasts(&order)) {
@@ -96,55 +96,55 @@ impl OrderQueue {
         }
     }
 
-    /// Puts back what was obeyed in part; a newer one of its sort counts instead.
+    /// Puts an order back that was carried out in part, unless there is a newer one of its kind.
     pub fn restore_waiting(&mut self, rest: Order) {
         self.0.entry(rest.sort()).or_insert(rest);
     }
 
-    /// The next to obey.
+    /// Takes the most urgent order.
     pub fn next(&mut self) -> Option<Order> {
         self.0.pop_first().map(|(_, order)| order)
     }
 
-    /// The next to obey, but for what waits for a quiet moment.
+    /// Takes the most urgent order that does not wait until no other order comes.
     pub fn next_now(&mut self) -> Option<Order> {
         let first = self.0.first_entry()?;
         (!matches!(first.key(), OrderKind::Question(kind) if kind.waits_for_quiet())).then(|| first.remove())
     }
 
-    /// The next that long work lets come between; none while a new picture is waited for.
+    /// Takes the next order that long work is interrupted for; `None` while a new picture is waited for.
     pub fn next_short(&mut self) -> Option<Order> {
-        // A scene that is to be saved waits for the end: it holds nothing up that is short.
+        // Saving a scene waits for the end of long work, and must not delay short orders.
         let first = *self.0.keys().find(|sort| **sort != OrderKind::Save)?;
         let is_short = matches!(first, OrderKind::Question(kind) if kind.is_short());
         is_short.then(|| self.0.remove(&first)).flatten()
     }
 
-    /// Does nothing wait?
+    /// Returns whether no order waits.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }
 
-/// Where orders come in, and those that wait.
+/// The channel of orders, and those that wait.
 #[derive(Debug)]
 pub struct Inbox<'a> {
-    /// From the window.
+    /// Receives the window's orders.
     pub orders: &'a Receiver<Order>,
-    /// Taken in, and not obeyed yet.
+    /// Orders that were received, and not carried out yet.
     pub queue: OrderQueue,
-    /// The window is gone.
+    /// The window is closed.
     pub is_closed: bool,
 }
 
 impl Inbox<'_> {
-    /// [`OrderQueue::next_now`], once all that came was taken in.
+    /// Receives all orders, then does the same as [`OrderQueue::next_now`].
     pub fn next_now(&mut self) -> Option<Order> {
         self.take_in();
         self.queue.next_now()
     }
 
-    /// [`OrderQueue::next_short`], once all that came was taken in.
+    /// Receives all orders, then does the same as [`OrderQueue::next_short`].
     pub fn next_short(&mut self) -> Option<Order> {
         self.take_in();
         self.queue.next_short()
@@ -194,7 +194,7 @@ mod tests {
         queue
     }
 
-    /// Tickets of the questions in the order in which they are answered; 0: another order.
+    /// Tickets of the questions in the order in which they are answered; 0 for other orders.
     fn tickets(mut queue: OrderQueue) -> Vec<u64> {
         let orders = std::iter::from_fn(|| queue.next());
         orders.map(|order| if let Order::Answer { asked, .. } = order { asked.ticket } else { 0 }).collect()

@@ -1,4 +1,4 @@
-//! Answers what follows from the capture on a thread of its own: pictures do not wait for it.
+//! Answers questions from the capture on a thread of its own: pictures do not wait for it.
 
 use super::news::{Notify, WindowNews};
 use crate::ask::PendingQuestion;
@@ -6,27 +6,27 @@ use crate::capture::Capture;
 use crate::plan::FramePlan;
 use std::sync::Arc;
 
-/// A question, and what it is answered from.
+/// A question, with the capture and plan from which it is answered.
 #[derive(Debug)]
 pub struct ReadRequest {
     /// The question.
     pub asked: PendingQuestion,
-    /// What was seen.
+    /// The frame's capture.
     pub capture: Arc<Capture>,
-    /// What was run.
+    /// The frame's plan; `None` for a capture folder.
     pub plan: Option<Arc<FramePlan>>,
 }
 
-/// A question that nothing answers: the system gives no thread.
+/// A question that can't be answered, as the system could not start a thread.
 #[derive(Debug)]
 pub struct NoReader {
-    /// Whose it is.
+    /// Ticket of the question.
     pub ticket: u64,
-    /// What the system says.
+    /// The system's error.
     pub why: std::io::Error,
 }
 
-/// One question at a time; of those that come meanwhile only the newest counts.
+/// Answers one question at a time; of those that come meanwhile only the newest is answered.
 #[derive(Debug, Default)]
 pub struct ReaderThread {
     is_running: bool,
@@ -34,7 +34,7 @@ pub struct ReaderThread {
 }
 
 impl ReaderThread {
-    /// Answers now, or after what is under way.
+    /// Answers a question now, or after the present one.
     pub fn read(&mut self, reading: ReadRequest, notify: &Notify) -> Result<(), NoReader> {
         if self.is_running {
             self.next = Some(reading);
@@ -51,7 +51,7 @@ impl ReaderThread {
         Ok(())
     }
 
-    /// What was under way is done.
+    /// Begins the waiting question, once the present one is answered.
     pub fn go_on(&mut self, notify: &Notify) -> Result<(), NoReader> {
         self.is_running = false;
         self.next.take().map_or(Ok(()), |next| self.read(next, notify))

@@ -1,4 +1,4 @@
-//! The system's window with what draws egui on it.
+//! The system's window, and the GPU surface on which egui is drawn.
 
 use super::input::of_next_frame;
 use super::news::WindowNews;
@@ -15,15 +15,14 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorGrabMode, Window};
 
-/// The window's first size in points, on a screen that has room for it.
+/// The window's initial size in points, on a screen that is large enough.
 const FIRST_SIZE: [f64; 2] = [1440.0, 900.0];
-/// What a window may take of a smaller screen: the system's own bars need the rest.
+/// The window's largest share of a smaller screen: the system's own bars need the rest.
 const OF_SCREEN: f64 = 0.95;
-/// Below this the panels have no room.
+/// The least size in points at which the panels fit.
 const LEAST_SIZE: [f64; 2] = [640.0, 400.0];
 
-/// Size of the screen that a new window is likely to come up on, points; `None` where the system does not
-/// say.
+/// Size of the screen on which a new window is likely to open, points; `None` where the system does not say.
 fn screen(event_loop: &ActiveEventLoop) -> Option<[f64; 2]> {
     let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next())?;
     Some(monitor.size().to_logical::<f64>(monitor.scale_factor()).into())
@@ -40,15 +39,15 @@ pub struct WindowSurface {
     window: Arc<Window>,
     painter: Painter,
     input: egui_winit::State,
-    /// What mouse and keys did, and no frame took yet.
+    /// Events of mouse and keys that no frame has handled yet.
     events: Vec<egui::Event>,
     /// Texture changes that were not drawn yet.
     textures: egui::TexturesDelta,
     title: String,
     hidden: bool,
-    /// Raw movement of the mouse counts.
+    /// The pointer is grabbed, and raw movement of the mouse is used.
     holds_pointer: bool,
-    /// Why the pointer can't be held, once it was tried.
+    /// Why the pointer could not be grabbed, once it was tried.
     grab_failed: Option<String>,
 }
 
@@ -65,7 +64,7 @@ impl WindowSurface {
             .with_title("stencilscope")
             .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop))))
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST_SIZE))
-            // Assistive technology has to be told before the window is seen.
+            // Assistive technology has to be set up before the window is visible.
             .with_visible(false);
         let window = Arc::new(event_loop.create_window(attributes).map_err(|error| no_window(&error))?);
         let mut painter = pollster::block_on(Painter::new(
@@ -99,7 +98,7 @@ impl WindowSurface {
         })
     }
 
-    /// Names the window.
+    /// Sets the window's title.
     pub fn set_title(&mut self, title: String) {
         if self.title != title {
             self.window.set_title(&title);
@@ -107,7 +106,7 @@ impl WindowSurface {
         }
     }
 
-    /// Why the pointer could not be held, told once.
+    /// Returns, once, why the pointer could not be grabbed.
     pub fn take_grab_failure(&mut self) -> Option<String> {
         self.grab_failed.take()
     }
@@ -117,7 +116,7 @@ impl WindowSurface {
         self.window.request_redraw();
     }
 
-    /// Hands an event to egui; asks for a redraw where it changes anything.
+    /// Passes an event to egui; asks for a redraw where it changes anything.
     pub fn on_event(&mut self, event: &WindowEvent) {
         match event {
             WindowEvent::Resized(size) => self.resize(*size),
@@ -129,7 +128,7 @@ impl WindowSurface {
         }
     }
 
-    /// Hands a request of assistive technology to egui.
+    /// Passes a request of assistive technology to egui.
     pub fn on_access(&mut self, event: egui_winit::accesskit_winit::WindowEvent) {
         use egui_winit::accesskit_winit::WindowEvent as Access;
         match event {
@@ -140,15 +139,15 @@ impl WindowSurface {
         self.window.request_redraw();
     }
 
-    /// Hands raw movement of the mouse to egui while the pointer is held; asks for a redraw where it counts.
+    /// Passes raw movement of the mouse to egui while the pointer is grabbed, and asks for a redraw then.
     pub fn on_mouse_motion(&mut self, delta: (f64, f64)) {
         if self.holds_pointer && self.input.on_mouse_motion(delta) {
             self.window.request_redraw();
         }
     }
 
-    /// The pointer is held in the window, or let go, hidden or shown. A system that can't lock it in place
-    /// keeps it within the window; one that can do neither leaves it free, and walking works up to its edge.
+    /// Grabs or releases the pointer, hides or shows it. On a system that can't lock it in place it is confined to the
+    /// window; on one that can do neither it is free, and walking works up to the window's edge.
     fn obey(&mut self, command: &egui::ViewportCommand) {
         match command {
             egui::ViewportCommand::CursorGrab(grab) => {
@@ -172,7 +171,7 @@ impl WindowSurface {
         }
     }
 
-    /// Runs `ui` and draws what it shows, unless nothing of the window can be seen.
+    /// Runs `ui` and draws its output, unless the window is fully hidden.
     pub fn draw(&mut self, event_loop: &ActiveEventLoop, ctx: &Context, ui: impl FnMut(&mut egui::Ui)) {
         let size = self.window.inner_size();
         if self.hidden || size.width == 0 || size.height == 0 {
@@ -205,7 +204,7 @@ impl WindowSurface {
 
 impl Drop for WindowSurface {
     fn drop(&mut self) {
-        // What was not drawn yet will never be; egui takes dropping it for a bug otherwise.
+        // Changes that were not drawn yet never will be; if they were dropped, egui would report a bug.
         self.textures.clear();
     }
 }
@@ -214,7 +213,7 @@ fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuCon
     let mut setup = WgpuSetupCreateNew::from_display_handle(event_loop.owned_display_handle());
     setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
         label: Some("stencilscope window"),
-        // Pictures may be as large as the GPU can hold.
+        // Pictures may be as large as the GPU allows.
         required_limits: wgpu::Limits {
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
             ..wgpu::Limits::default()

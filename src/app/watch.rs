@@ -1,27 +1,27 @@
-//! Looks whether the files of the open scene changed on disk.
+//! Watches whether the files of the open scene change on disk.
 //!
-//! It asks for their times every second: no system has to support watching, and a file that an
-//! editor replaces by another is seen too. Nothing is told, and nothing drawn, unless one changed.
+//! It reads their times every second: no system has to support watching, and a file that an editor replaces by another
+//! is noticed too. Nothing is reported, and nothing drawn, unless one changed.
 
 use super::news::{Notify, WindowNews};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
-/// How often it looks.
+/// How often the files are checked.
 const EVERY: Duration = Duration::from_secs(1);
 
-/// When a file was written last, and how large it is; `None` while it is not there.
+/// When a file was last written, and its size in bytes; `None` while it does not exist.
 type FileStamp = Option<(SystemTime, u64)>;
 
-/// The files that are looked at.
+/// Watches a list of files.
 #[derive(Debug, Default, Clone)]
 pub struct Watch {
     files: Arc<Mutex<Vec<(PathBuf, FileStamp)>>>,
 }
 
 impl Watch {
-    /// Starts to look.
+    /// Starts watching, with an empty list.
     pub fn start(notify: Notify) -> std::io::Result<Watch> {
         let watch = Watch::default();
         let files = Arc::clone(&watch.files);
@@ -29,7 +29,7 @@ impl Watch {
             loop {
                 std::thread::sleep(EVERY);
                 if Arc::strong_count(&files) == 1 {
-                    // The window is gone.
+                    // The window is closed.
                     return;
                 }
                 let changed = files.lock().ok().and_then(|mut files| first_changed(&mut files));
@@ -42,7 +42,7 @@ impl Watch {
         Ok(watch)
     }
 
-    /// Looks at these from now on.
+    /// Sets the files that are watched from now on.
     pub fn look_at(&self, files: Vec<PathBuf>) {
         if let Ok(mut watched) = self.files.lock() {
             *watched = files.into_iter().map(|file| (file.clone(), stamp(&file))).collect();
@@ -55,11 +55,11 @@ fn stamp(file: &Path) -> FileStamp {
     Some((facts.modified().ok()?, facts.len()))
 }
 
-/// The first file that changed and is there; a change is told once.
+/// Returns the first file that changed and exists; each change is reported once.
 fn first_changed(files: &mut [(PathBuf, FileStamp)]) -> Option<String> {
     files.iter_mut().find_map(|(file, before)| {
         let now = stamp(file);
-        // One that is away for a moment is being replaced.
+        // A file that is missing for a moment is being replaced.
         let has_changed = now.is_some() && now != *before;
         has_changed.then(|| {
             *before = now;

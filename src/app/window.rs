@@ -1,4 +1,4 @@
-//! The event loop: carries actions of the panels to the worker and its news to the panels.
+//! The event loop: passes actions of the panels to the worker and its news to the panels.
 
 use super::controller::Controller;
 use super::news::WindowNews;
@@ -11,10 +11,10 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
-/// A button that is held longer is no click, seconds. Times are those of frames, and where the CPU draws the
-/// window and traces a truth meanwhile, a frame may take longer than egui's 0.8 s.
+/// A button pressed for longer is not a click, seconds. Times are those of frames, and where the CPU draws the window
+/// and traces a truth meanwhile, a frame may take longer than egui's 0.8 s.
 const LONGEST_CLICK: f64 = 2.0;
-/// How often progress is looked at.
+/// How often progress is checked.
 const WATCH: Duration = Duration::from_millis(100);
 
 /// Shows the window until it is closed.
@@ -41,7 +41,7 @@ struct App {
 impl App {
     fn new(request: ViewRequest, proxy: EventLoopProxy<WindowNews>) -> Result<App, AppError> {
         let adapter = request.adapter.clone();
-        // A loop that has ended takes no news, and needs none.
+        // A loop that has ended receives no news, and needs none.
         let to_window = proxy.clone();
         let notify = Arc::new(move |news| drop(to_window.send_event(news)));
         let controller = Controller::new(request, notify, true)?;
@@ -149,12 +149,12 @@ impl ApplicationHandler<WindowNews> for App {
     }
 
     fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
-        // The window goes before the loop that it came from.
+        // The window has to be dropped before its event loop.
         self.surface = None;
     }
 }
 
-/// An egui context that wakes the loop when it wants to be drawn.
+/// Returns an egui context that wakes the loop when it wants to be drawn.
 fn context(proxy: &EventLoopProxy<WindowNews>) -> egui::Context {
     let ctx = egui::Context::default();
     ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);

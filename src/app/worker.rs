@@ -1,14 +1,15 @@
-//! The thread that owns the session: opens what is asked for, renders, answers, and tells the window.
+//! The thread that owns the session: opens scenes and folders, renders, answers, and reports to the window.
 //!
-//! Of all orders that wait, only the newest of a sort counts ([`OrderQueue`]); what was asked of a scene or a
-//! frame that is shown no more is dropped. Long work is asked to stop by the window, through its
-//! [`Progress`](crate::progress::Progress). A report gives way to what is asked of the shown frame, stress cases give way to
-//! everything, row by row. Once no order has come for a while, what waits for quiet is done (the frame is timed, so that
-//! neither the first picture nor a dragged light waits for the clock); then memory that nothing uses is given back.
+//! Of all waiting orders of one kind, only the newest is carried out ([`OrderQueue`]); orders about a scene or a frame
+//! that is no longer shown are dropped. The window asks long work to stop through its
+//! [`Progress`](crate::progress::Progress). A report is interrupted by questions about the shown frame, stress cases by
+//! everything, after each row. Once no order has come for a while, the questions that wait for that are answered (the
+//! frame is timed, so that neither the first picture nor a dragged light waits for the clock); then unused memory is
+//! returned to the system.
 //!
 //! ```text
-//! worker.rs   orders, opening and running     worker/turns.rs   what takes many turns: a report, stress cases
-//! worker/film.rs   a film, a picture a turn
+//! worker.rs   orders, opening and running     worker/turns.rs   work in many parts: a report, stress cases
+//! worker/film.rs   a film, one picture at a time
 //! ```
 
 mod film;
@@ -35,57 +36,57 @@ use std::time::{Duration, Instant};
 
 /// A frame that takes longer to capture is not timed: the next order would wait for it.
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
-/// How long nothing is asked for before the clock runs.
+/// How long no order comes before the frame is timed.
 const IDLE: Duration = Duration::from_millis(400);
 /// How long the program's end waits for the worker's.
 const LONGEST_END: Duration = Duration::from_secs(2);
 
-/// The way to the worker.
+/// The window's connection to the worker.
 #[derive(Debug)]
 pub struct Worker {
     /// `None` once it is to end.
     orders: Option<Sender<Order>>,
-    /// Nothing comes of it; it is closed where the thread has ended.
+    /// Nothing is sent; the channel is closed when the thread has ended.
     ended: Receiver<()>,
-    /// A film is being made, of which a part is on the disk.
+    /// A film is being written, of which a part is on the disk.
     is_filming: Arc<AtomicBool>,
 }
 
 impl Drop for Worker {
-    /// What is there in part is taken away before the program ends.
+    /// An incomplete film is deleted before the program ends.
     fn drop(&mut self) {
         self.orders = None;
         if self.is_filming.load(Ordering::Acquire) {
-            // It ends, or it has hung and is not waited for any longer.
+            // The thread ends, or it hangs and is no longer waited for.
             let _ = self.ended.recv_timeout(LONGEST_END);
         }
     }
 }
 
-/// What a worker starts with.
+/// What a worker is started with.
 #[derive(Debug)]
 pub struct WorkerStart {
-    /// What to open first.
+    /// The scene or capture to open first.
     pub source: ViewSource,
-    /// What opens it again.
+    /// How to open it again.
     pub name: OpenSpec,
     /// How to render it.
     pub capture: CaptureRequest,
-    /// The moment of an animated scene, seconds.
+    /// The time in an animated scene, seconds.
     pub time: f64,
     /// Part of the name of the GPU to use.
     pub adapter: Option<String>,
 }
 
 impl Worker {
-    /// Starts the thread; `notify` carries its news.
+    /// Starts the thread; `notify` receives its news.
     pub fn start(start: WorkerStart, notify: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let (alive, ended) = channel();
         let is_filming = Arc::new(AtomicBool::new(false));
         let films = Arc::clone(&is_filming);
         let run = move || {
-            // Goes last: by then all else has gone.
+            // Dropped last, after everything else.
             let _alive: Sender<()> = alive;
             let mut work = WorkerState::new(start.adapter, &start.capture, Box::new(notify), films);
             work.begin(start.source, start.name, start.time);
@@ -96,49 +97,49 @@ impl Worker {
         Ok(Worker { orders: Some(orders), ended, is_filming })
     }
 
-    /// Gives an order; false if the worker is gone.
+    /// Sends an order; returns false if the worker has ended.
     pub fn order(&self, order: Order) -> bool {
         self.orders.as_ref().is_some_and(|orders| orders.send(order).is_ok())
     }
 }
 
-/// Everything the thread works with.
+/// The state of the worker's thread.
 struct WorkerState {
     adapter: Option<String>,
     session: Option<Session>,
     open: Option<Box<Scene>>,
-    /// What opened it; `None` for a stress case.
+    /// How the open scene was opened; `None` for a stress case.
     spec: Option<OpenSpec>,
     /// How many scenes were opened.
     scenes: u64,
     /// How the next scene is rendered, unless it says otherwise.
     choice: Choice,
     size: [u32; 2],
-    /// What the open scene says otherwise, if it is a stress case.
+    /// What the open scene overrides, if it is a stress case.
     brought: StressOverrides,
     every: SnapshotInterval,
     /// How many frames were captured.
     frames: u64,
     /// The frame that the window shows; `None` for a folder's.
     last: Option<RunFrame>,
-    /// How long that took to capture.
+    /// How long it took to capture that frame.
     took: Duration,
-    /// A film that is being made.
+    /// The film that is being written.
     film: Option<film::FilmRun>,
-    /// Tells that there is one.
+    /// Says that there is one.
     is_filming: Arc<AtomicBool>,
     /// Stress cases that are being run.
     stress: Option<turns::StressRun>,
     notify: Box<dyn Fn(News) + Send>,
 }
 
-/// What a stress case brings along in place of what the user has chosen, which counts again when another
-/// scene is opened. What the user changes meanwhile is chosen.
+/// What a stress case sets in place of the user's choices, which are valid again when another scene is opened. What the
+/// user changes meanwhile becomes a choice.
 #[derive(Debug, Default)]
 struct StressOverrides {
-    /// How its shadows are made.
+    /// Technique and settings.
     choice: Option<Choice>,
-    /// Of the picture.
+    /// Width and height of the picture, pixels.
     size: Option<[u32; 2]>,
 }
 
@@ -170,7 +171,7 @@ impl WorkerState {
         }
     }
 
-    /// The first thing to show.
+    /// Shows the first scene or capture.
     fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
         match source {
             ViewSource::Folder(whole) => {
@@ -185,7 +186,7 @@ impl WorkerState {
         }
     }
 
-    /// Obeys orders until the window is gone, and what waits for quiet in between.
+    /// Carries out orders until the window is closed, and, when none comes for a while, the work that waits for that.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
         let mut inbox = Inbox { orders, queue: OrderQueue::default(), is_closed: false };
         let mut is_tidy = false;
@@ -230,13 +231,13 @@ impl WorkerState {
             Order::Run { scene, request } if scene == self.scenes => self.run(&request),
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Answer { scene, frame, asked } => return self.answer_in_turn([scene, frame], asked, inbox),
-            // Of a scene that is open no more.
+            // The order is for a scene that is no longer open.
             Order::Run { .. } => return,
         };
         self.finish(done);
     }
 
-    /// Answers a question that is still asked: at once, or turn by turn.
+    /// Answers a question that is still asked: at once, or in parts.
     fn answer_in_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
             match asked.ask.kind() {
@@ -264,7 +265,7 @@ impl WorkerState {
             (self.notify)(News::Busy(doing.clone()));
         }
         let result = self.found(of, asked).map_err(|error| error.to_string());
-        // Where it was cancelled, the window has asked for it.
+        // Where it was cancelled, the window knows: it has asked for it.
         if !asked.progress.is_cancelled() {
             (self.notify)(News::Answered { ticket: asked.ticket, result });
         }
@@ -273,7 +274,7 @@ impl WorkerState {
         }
     }
 
-    /// Is it about what is shown now?
+    /// Returns whether a question is about what is shown now.
     fn is_meant(&self, [scene, frame]: [u64; 2], asked: &PendingQuestion) -> bool {
         match asked.ask.kind().holds() {
             AnswerLifetime::Frame => self.last.is_none() || frame == self.frames,
@@ -282,7 +283,7 @@ impl WorkerState {
         }
     }
 
-    /// What a question comes to.
+    /// Computes the answer to a question.
     fn found(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<crate::ask::Answer, SessionError> {
         let kind = asked.ask.kind();
         if kind == QuestionKind::DiagnosisOf && (of[1] != self.frames || !self.is_meant(of, asked)) {
@@ -316,7 +317,7 @@ impl WorkerState {
         }
         let spec = OpenSpec::new(name);
         let scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
-        // What was set for one scene says nothing of the next: the technique stays, with its own settings.
+        // Settings for one scene are not valid for the next: the technique stays, with its default settings.
         self.choice = match &scene.technique {
             Some(wish) => Choice::parse(wish).map_err(|error| format!("{name}: {error}"))?,
             None => Choice::new(self.choice.technique()),
@@ -325,7 +326,7 @@ impl WorkerState {
         self.show_scene(Box::new(scene), 0.0, StressOverrides::default())
     }
 
-    /// What a capture folder holds: a frame that was run, or a capture alone.
+    /// Shows the content of a capture folder: a frame with its plan, or only a capture.
     fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
         self.scenes += 1;
         let name = folder.to_owned();
@@ -353,7 +354,7 @@ impl WorkerState {
         self.show(frame, Duration::ZERO);
     }
 
-    /// A frame of another program whose draws nobody has computed anew yet, as an import does.
+    /// Runs the draws of another program's frame again where that has not been done yet, as an import does.
     fn checked(&mut self, whole: WholeFrame) -> WholeFrame {
         let is_checked = whole.capture.steps.iter().flat_map(|step| &step.draws).any(|draw| draw.differs.is_some());
         let is_meant = whole.capture.origin.is_some() && !is_checked;
@@ -367,7 +368,7 @@ impl WorkerState {
         }
     }
 
-    /// Tells of a frame that was run.
+    /// Reports a frame that was run.
     fn show(&mut self, frame: RunFrame, took: Duration) {
         self.took = took;
         self.frames += 1;
@@ -375,8 +376,8 @@ impl WorkerState {
         self.last = Some(frame);
     }
 
-    /// The open scene from its file again, run as it was: what is set of it stays where the file still has a place for
-    /// it, and what has none is told.
+    /// Loads the open scene from its file again, and runs it as before: its changes stay where they can be applied to
+    /// what the file has now, and the others are reported.
     fn reload(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(spec) = self.spec.clone() else { return Ok(()) };
         (self.notify)(News::Busy(format!("opening {}", spec.name)));
@@ -395,7 +396,7 @@ impl WorkerState {
         self.open_as(Box::new(scene), &request)
     }
 
-    /// Writes the scene, changed as it is run, with its motions.
+    /// Writes the scene as it is run, with its motions.
     fn save_scene(&mut self, number: u64, request: &RunRequest, path: &str, replace: bool) {
         let file = Path::new(path);
         let of_this = self.open.as_ref().filter(|_| number == self.scenes);
@@ -416,7 +417,7 @@ impl WorkerState {
         (self.notify)(News::Exported(news));
     }
 
-    /// The session, opened on first use.
+    /// Returns the session, opened on first use.
     fn session(&mut self) -> Result<&mut Session, SessionError> {
         match &mut self.session {
             Some(session) => Ok(session),
@@ -435,7 +436,7 @@ impl WorkerState {
         self.open_as(scene, &request)
     }
 
-    /// The scene is open now, and run like this.
+    /// Makes a scene the open one, run as in the request.
     fn open_as(&mut self, scene: Box<Scene>, request: &RunRequest) -> Result<(), String> {
         self.scenes += 1;
         let source = self.spec.as_ref().map(|spec| spec.name.clone());
@@ -452,7 +453,7 @@ impl WorkerState {
         self.run(request)
     }
 
-    /// Opens a stress case's scene at a value, with its shadows made as `entrant` says.
+    /// Opens a stress case's scene at a value, with the technique of `entrant`.
     fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
         (self.notify)(News::Busy(format!("opening {}", case.name)));
         let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
@@ -466,7 +467,7 @@ impl WorkerState {
         self.show_scene(Box::new(scene), 0.0, StressOverrides { choice, size: case.size })
     }
 
-    /// Takes note of what a run asks for, but for what the open scene has brought along.
+    /// Stores the choices of a run request, except what the open scene overrides.
     fn take_over(&mut self, request: &RunRequest) {
         if self.brought.choice.as_ref() != Some(&request.choice) {
             self.brought.choice = None;
@@ -495,7 +496,7 @@ impl WorkerState {
         Ok(())
     }
 
-    /// Tells that the work is over, and of an error.
+    /// Reports that the work is over, and an error if there was one.
     fn finish(&self, done: Result<(), String>) {
         if let Err(reason) = done {
             (self.notify)(News::Failed(reason));
@@ -504,8 +505,8 @@ impl WorkerState {
     }
 }
 
-/// Where a case drives a setting: `chosen` with the setting at that value, or the case's first
-/// technique that has it; `None` where the case drives the scene.
+/// Where a case drives a setting: returns `chosen` with the setting at that value, or the case's first technique that
+/// has it; `None` where the case drives the scene.
 fn driven(case: &StressCase, value: f64, chosen: &Choice) -> Result<Option<Choice>, ChoiceError> {
     let CaseNumber::Setting(key, _) = case.drives else { return Ok(None) };
     if chosen.settings().contains_key(key) {

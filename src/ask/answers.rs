@@ -1,44 +1,44 @@
-//! What is known, what is being found out, and what has to be asked next.
+//! What is known, what is being computed, and what has to be asked next.
 
 use super::{Answer, AnswerLifetime, Ask, Question, QuestionKind};
 use crate::progress::Progress;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// A question on its way to who answers it.
+/// A question that is being answered.
 #[derive(Debug, Clone)]
 pub struct PendingQuestion {
-    /// Told with the answer: one to what is asked no more is dropped.
+    /// Sent back with the answer: an answer to a question that is no longer asked is dropped.
     pub ticket: u64,
     /// The question.
     pub ask: Ask,
-    /// How far the answer is; it is cancelled where nobody waits for it any longer.
+    /// The progress of the answer; it is cancelled where nothing waits for it any longer.
     pub progress: Progress,
 }
 
 impl PartialEq for PendingQuestion {
-    /// Equal where question and ticket are.
+    /// Two are equal where question and ticket are.
     fn eq(&self, other: &PendingQuestion) -> bool {
         self.ticket == other.ticket && self.ask == other.ask
     }
 }
 
-/// What is known of a question.
+/// What is known about a question.
 #[derive(Debug)]
 pub struct Reply<T> {
     /// Its answer.
     pub ready: Option<Arc<T>>,
-    /// While there is none: the answer to the last question of its kind, of another pixel or of the frame before.
+    /// While there is no answer: that to the last question of its kind, about another pixel or the previous frame.
     pub older: Option<Arc<T>>,
     /// It is being answered.
     pub running: Option<Progress>,
-    /// Seconds that it, or one of its kind that was asked before it and not answered, was waited for.
+    /// Seconds for which this question, or an earlier one of its kind that was not answered, has been waited for.
     pub waits_for: f64,
-    /// Of an answer that comes in parts: how many have come.
+    /// How many parts have come of an answer that comes in parts.
     pub parts: usize,
-    /// Why there is no answer, with the mend.
+    /// Why there is no answer, and how to fix it.
     pub failed: Option<String>,
-    /// It was stopped by who asked.
+    /// It was cancelled by the user.
     pub is_cancelled: bool,
 }
 
@@ -54,7 +54,8 @@ impl<T> Reply<T> {
         self.ready.as_ref().or(self.older.as_ref())
     }
 
-    /// Steps that are done, and how many there are, while it is being answered; 0 in all while that is not known.
+    /// How many steps are done, and how many there are, while it is being answered; the total is 0 while it is not
+    /// known.
     pub fn steps(&self) -> Option<(usize, usize)> {
         self.running.as_ref().map(Progress::steps)
     }
@@ -63,12 +64,12 @@ impl<T> Reply<T> {
 #[derive(Debug, Default)]
 struct AnswerSlot {
     asked: Option<PendingQuestion>,
-    /// Parts of its answer that have come.
+    /// How many parts of its answer have come.
     parts: usize,
-    /// When the wait for it began, in the clock of [`Answers::tick`].
+    /// When the wait for it began, in seconds of the clock of [`Answers::tick`].
     since: f64,
     known: Option<KnownAnswer>,
-    /// What was given up, and why; `None`: by who asked.
+    /// The question that was given up, and why; `None`: the user cancelled it.
     given_up: Option<(Ask, Option<String>)>,
 }
 
@@ -76,22 +77,22 @@ struct AnswerSlot {
 struct KnownAnswer {
     ask: Ask,
     answer: Answer,
-    /// It holds: nothing that it depends on was replaced.
+    /// It is valid: nothing that it depends on was replaced.
     is_current: bool,
 }
 
-/// Answers by kind of question: the last of each.
+/// Questions and answers by kind of question: the last of each.
 #[derive(Debug)]
 pub struct Answers {
     slots: Vec<AnswerSlot>,
-    /// What was wanted since it was last looked at.
+    /// The questions that panels asked since [`Answers::take_asked`].
     wanted: RefCell<Vec<Ask>>,
-    /// What was started by hand and not handed out yet.
+    /// The questions that the user started and that are not handed out yet.
     started: Vec<Ask>,
     tickets: u64,
     now: f64,
     has_frame: bool,
-    /// There is a scene to run; a folder's frame answers only what is read from it.
+    /// There is a scene to run; a folder's frame answers only questions that are answered from the capture.
     has_scene: bool,
     /// The frame can be run, though there is no scene: another program drew it.
     has_plan: bool,
@@ -113,7 +114,7 @@ impl Default for Answers {
 }
 
 impl Answers {
-    /// What is known of a question, which is asked if need be.
+    /// Returns what is known about a question, which is asked if necessary.
     pub fn want<Q: Question>(&self, question: Q) -> Reply<Q::Answer> {
         let ask = question.into();
         let reply = self.reply::<Q>(&ask);
@@ -123,7 +124,7 @@ impl Answers {
         reply
     }
 
-    /// What is known of a question, without asking it.
+    /// Returns what is known about a question, without asking it.
     pub fn of<Q: Question>(&self, question: Q) -> Reply<Q::Answer> {
         self.reply::<Q>(&question.into())
     }
@@ -147,18 +148,18 @@ impl Answers {
         }
     }
 
-    /// The last answer of a kind, whatever it is of, with its question.
+    /// Returns the last answer of a kind, also where its frame is no longer shown, with its question.
     pub fn last<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         let known = self.slot(Q::KIND).known.as_ref()?;
         Some((Q::of(&known.ask)?, Q::answer(&known.answer)?))
     }
 
-    /// The last answer of a kind, where it is of what is shown now.
+    /// Returns the last answer of a kind, where it belongs to what is shown now.
     pub fn current<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         self.last::<Q>().filter(|_| self.slot(Q::KIND).known.as_ref().is_some_and(|known| known.is_current))
     }
 
-    /// The question of a kind that is being answered, with how far that is; or why the last one was given up.
+    /// Returns the state of the question of a kind that is being answered; or why the last one was given up.
     pub fn under_way<Q: Question>(&self) -> Reply<Q::Answer> {
         let slot = self.slot(Q::KIND);
         let asked = slot.asked.as_ref().map(|asked| &asked.ask);
@@ -167,23 +168,23 @@ impl Answers {
         asked.or(given_up).or(known).map_or_else(Reply::default, |ask| self.reply::<Q>(ask))
     }
 
-    /// The question of a kind that is being answered.
+    /// Returns the question of a kind that is being answered.
     pub fn asked<Q: Question>(&self) -> Option<&Q> {
         Q::of(&self.slot(Q::KIND).asked.as_ref()?.ask)
     }
 
-    /// Asks, even where the answer is known, failed or was stopped before.
+    /// Asks a question, even where the answer is known, failed or was stopped before.
     pub fn start<Q: Question>(&mut self, question: Q) {
         self.slot_mut(Q::KIND).given_up = None;
         self.started.push(question.into());
     }
 
-    /// Asks again for what failed or was stopped, once it is wanted.
+    /// Allows a question that failed or was stopped to be asked again, once it is wanted.
     pub fn try_again(&mut self, kind: QuestionKind) {
         self.slot_mut(kind).given_up = None;
     }
 
-    /// Stops what is being found out; it is not asked for again by itself.
+    /// Stops a question of this kind; it is not asked again automatically.
     pub fn cancel(&mut self, kind: QuestionKind) {
         self.give_up(kind, None);
     }
@@ -196,24 +197,24 @@ impl Answers {
         }
     }
 
-    /// Stops it, to be asked for again by who wants it.
+    /// Stops a question of this kind; it is asked again when it is wanted.
     fn pause(&mut self, kind: QuestionKind) {
         if let Some(asked) = self.slot_mut(kind).asked.take() {
             asked.progress.cancel();
         }
     }
 
-    /// Forgets what is known of a kind.
+    /// Drops what is known of a kind.
     pub fn forget(&mut self, kind: QuestionKind) {
         self.slot_mut(kind).known = None;
     }
 
-    /// Tells the time, in seconds of any clock: how long answers are waited for is reckoned by it.
+    /// Sets the time, in seconds of any clock, by which it is measured how long answers are waited for.
     pub fn tick(&mut self, now: f64) {
         self.now = now;
     }
 
-    /// What has to be asked now, each once.
+    /// Returns the questions that have to be asked now, each once.
     pub fn take_asked(&mut self) -> Vec<PendingQuestion> {
         let wanted = std::mem::take(self.wanted.get_mut());
         let started = std::mem::take(&mut self.started);
@@ -254,7 +255,7 @@ impl Answers {
         let (ticket, now) = (self.tickets, self.now);
         let slot = self.slot_mut(kind);
         match slot.asked.take() {
-            // What is waited for changed, as a pick that is dragged: it is waited for all the same.
+            // The question changed, as when a pick is dragged: the wait goes on from when it began.
             Some(before) => before.progress.cancel(),
             None => slot.since = now,
         }
@@ -263,8 +264,8 @@ impl Answers {
         Some(slot.asked.insert(PendingQuestion { ticket, ask, progress: Progress::default() }).clone())
     }
 
-    /// Takes an answer in, or why there is none; the kind of its question, or `None` where that is asked no more.
-    /// `is_last`: nothing more comes.
+    /// Stores an answer, or why there is none; returns the kind of its question, or `None` where that is no longer
+    /// asked. `is_last`: no more parts come.
     pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) -> Option<QuestionKind> {
         let kind = QuestionKind::ALL
             .iter()
@@ -283,7 +284,7 @@ impl Answers {
         Some(kind)
     }
 
-    /// Takes in what is known of a question that nobody need ask, or why nothing is.
+    /// Stores the answer to a question that was not asked, or why there is none.
     pub fn take_in<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
         let ask = question.into();
         let slot = self.slot_mut(Q::KIND);
@@ -298,14 +299,14 @@ impl Answers {
         }
     }
 
-    /// The question of this ticket is done with: an answer that came in parts is whole.
+    /// Ends the question of this ticket: an answer that came in parts is complete.
     pub fn end(&mut self, ticket: u64) {
         for slot in &mut self.slots {
             slot.asked.take_if(|asked| asked.ticket == ticket);
         }
     }
 
-    /// Another frame is shown: answers that hold for a frame are older ones now, or go.
+    /// Adapts to another frame: answers that are valid for one frame become older ones, or are dropped.
     pub fn new_frame(&mut self) {
         self.has_frame = true;
         self.replace(AnswerLifetime::Frame, |kind, slot| match &mut slot.known {
@@ -314,32 +315,32 @@ impl Answers {
         });
     }
 
-    /// Another scene is open, or (`has_scene` false) a folder, which can't be run.
+    /// Adapts to another scene, or (`has_scene` false) a folder, which can't be run.
     pub fn new_scene(&mut self, has_scene: bool) {
         (self.has_scene, self.has_plan) = (has_scene, false);
         self.replace(AnswerLifetime::Frame, |_, slot| slot.known = None);
         self.replace(AnswerLifetime::Scene, |_, slot| slot.known = None);
     }
 
-    /// What was run for the frame is known: it answers what a run of it tells.
+    /// Notes that the plan of the frame is known, so that questions which need a run of it can be answered.
     pub fn know_plan(&mut self) {
         self.has_plan = true;
     }
 
-    /// Drops what is asked and what was given up of answers that hold so long. What was started by hand goes on, or
-    /// says why it does not: who works on it tells.
+    /// Drops the questions and failures of answers with this lifetime. What the user started goes on, or its worker
+    /// says why it does not.
     fn replace(&mut self, holds: AnswerLifetime, change: impl Fn(QuestionKind, &mut AnswerSlot)) {
         for kind in QuestionKind::ALL.iter().copied().filter(|kind| kind.holds() == holds) {
             if !kind.is_started_by_hand() {
                 self.pause(kind);
             }
-            // Why one of the frame before was given up says nothing of this one.
+            // The reason why a question about the previous frame was given up is not valid for this one.
             self.slot_mut(kind).given_up = None;
             change(kind, self.slot_mut(kind));
         }
     }
 
-    /// Another picture is asked for, and must not wait: long work of this one stops.
+    /// Stops long work on this frame, as another picture is asked for and must not wait.
     pub fn make_way(&mut self) {
         self.pause(QuestionKind::TruthOf);
         for kind in QuestionKind::ALL {
@@ -349,12 +350,12 @@ impl Answers {
         }
     }
 
-    /// Is anything being found out?
+    /// Returns whether a question is being answered.
     pub fn is_waiting(&self) -> bool {
         self.slots.iter().any(|slot| slot.asked.is_some())
     }
 
-    /// Is anything being found out that says how far it is?
+    /// Returns whether a question is being answered that reports progress.
     pub fn has_progress(&self) -> bool {
         let takes_in = [
             QuestionKind::TruthOf,

@@ -34,15 +34,15 @@ use std::sync::Arc;
 
 /// A question of one kind, with the type of its answer.
 pub trait Question: Clone + Into<Ask> {
-    /// What is learned.
+    /// The type of its answer.
     type Answer;
-    /// Which kind it is.
+    /// The question's kind.
     const KIND: QuestionKind;
-    /// The question, where `ask` is of this kind.
+    /// Returns the question, where `ask` is of this kind.
     fn of(ask: &Ask) -> Option<&Self>;
-    /// The answer, where it is one to this kind.
+    /// Returns the answer, where it is one to this kind.
     fn answer(answer: &Answer) -> Option<&Arc<Self::Answer>>;
-    /// As one of any kind.
+    /// Wraps the answer as one of any kind.
     fn into_answer(answer: Arc<Self::Answer>) -> Answer;
 }
 
@@ -90,12 +90,12 @@ macro_rules! questions {
         pub enum QuestionKind { $($(#[$doc])* $name),* }
 
         impl QuestionKind {
-            /// All of them, the most urgent first.
+            /// All kinds, the most urgent first.
             pub const ALL: &[QuestionKind] = &[$(QuestionKind::$name),*];
         }
 
         impl Ask {
-            /// Which kind it is.
+            /// The question's kind.
             pub fn kind(&self) -> QuestionKind {
                 match self { $(Ask::$name(_) => QuestionKind::$name),* }
             }
@@ -104,52 +104,52 @@ macro_rules! questions {
 }
 
 questions! {
-    /// What can't be walked through in the scene as it would be run.
+    /// The walls of the scene as it would be run, which can't be walked through.
     WallsOf { /// Objects that are switched off, by index.
         off: BTreeSet<usize>,
-        /// What is changed of the objects.
+        /// Changes of the objects.
         objects: ObjectChanges,
-        /// The moment, seconds; 0 where nothing moves.
+        /// The time, seconds; 0 where nothing moves.
         time: f64 } -> Walls;
     /// The states after the draws of a step.
     DrawsOf { /// Index of the step.
         step: usize } -> StepDraws;
-    /// What happened to a pixel.
+    /// The history of a pixel.
     HistoryOf { /// Column and row.
         at: [u32; 2] } -> PixelHistory;
-    /// What the frame is made of in space.
+    /// The geometry of the frame in world space.
     AnatomyOf { } -> Anatomy;
-    /// How the fragments of a step, or of one of its draws, fared in the tests.
+    /// The results of the tests on the fragments of a step, or of one of its draws.
     TestsOf { /// Index of the step.
         step: usize,
-        /// Index of the draw; `None`: all of the step.
+        /// Index of the draw; `None`: all draws of the step.
         draw: Option<usize> } -> TestOutcomes;
     /// Which texel of a light's shadow map each pixel reads.
     ReadersOf { /// Index of the light.
         light: usize } -> MapReaders;
-    /// The open scene run another way, beside the frame that is shown.
+    /// A capture of the open scene, run another way than the frame that is shown.
     CaptureOf { /// How it is run.
         request: Box<RunRequest> } -> Capture;
-    /// How each object's mesh hangs together.
+    /// The topology of each object's mesh.
     MeshesOf { /// Objects that are new, after those of the scene, with their meshes.
         added: Vec<(String, Arc<Mesh>)> } -> Vec<ObjectMesh>;
     /// The ground truth, and how the technique differs from it.
     TruthOf { } -> FrameTruth;
-    /// Where the frame is wrong, why, and what mends it.
+    /// Where the frame is wrong, why, and how to fix it.
     DiagnosisOf { } -> Diagnosis;
     /// Where another program's frame is wrong and why, with the proof.
     FaultsOf { } -> FrameDiagnosis;
     /// Every technique measured on the open scene.
     ReportOf { /// Techniques with their settings.
         choices: Vec<Choice>,
-        /// Timed frames of each.
+        /// How many frames of each are timed.
         runs: usize } -> MeasuredReport;
     /// A film of the frame, written into a file that may be replaced.
     FilmOf { /// What it shows.
         subject: FilmSubject,
         /// The file.
         path: String } -> Filmed;
-    /// What stress cases came to.
+    /// The results of stress cases.
     StressOf { /// Their names.
         cases: Vec<&'static str> } -> StressRows;
     /// How long the frame takes, with and without snapshots.
@@ -161,7 +161,7 @@ questions! {
 pub enum FilmSubject {
     /// A frame, pass by pass.
     Steps(Arc<Capture>),
-    /// A light that goes once round the open scene.
+    /// A light that moves once round the open scene.
     LightRound {
         /// How the scene is run.
         request: Box<RunRequest>,
@@ -175,21 +175,21 @@ pub enum FilmSubject {
 pub struct Filmed {
     /// How many pictures it has.
     pub pictures: u32,
-    /// How large the file is.
+    /// Size of the file, bytes.
     pub bytes: u64,
 }
 
 impl ReportOf {
-    /// Timed frames of each row of the default report.
+    /// How many frames of each row of the default report are timed.
     const RUNS: usize = 3;
 
-    /// Every technique over its default settings.
+    /// Returns a report of every technique over its default settings.
     pub fn grid() -> Result<ReportOf, ChoiceError> {
         Ok(ReportOf { choices: Choice::report_grid()?, runs: ReportOf::RUNS })
     }
 }
 
-/// For how long an answer holds.
+/// How long an answer is valid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnswerLifetime {
     /// While its frame is shown.
@@ -201,7 +201,7 @@ pub enum AnswerLifetime {
 }
 
 impl QuestionKind {
-    /// For how long an answer holds.
+    /// How long an answer is valid.
     pub fn holds(self) -> AnswerLifetime {
         match self {
             QuestionKind::WallsOf
@@ -214,13 +214,13 @@ impl QuestionKind {
         }
     }
 
-    /// Is the answer of the frame before shown until that of the next is known? Others go with their frame, and give
-    /// their memory back.
+    /// Is the answer about the previous frame shown until that about the next is known? Others are dropped with their
+    /// frame, and their memory is freed.
     pub fn outlives_frame(self) -> bool {
         matches!(self, QuestionKind::HistoryOf | QuestionKind::AnatomyOf)
     }
 
-    /// Is it asked by a press of a button only, as it takes long?
+    /// Is it only asked when a button is pressed, as it takes long?
     pub fn is_started_by_hand(self) -> bool {
         matches!(
             self,
@@ -232,7 +232,7 @@ impl QuestionKind {
         )
     }
 
-    /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.
+    /// Is it about the shown frame, and answered in about the time that a frame takes? Long work is interrupted for it.
     pub fn is_short(self) -> bool {
         matches!(
             self,
@@ -240,29 +240,29 @@ impl QuestionKind {
         )
     }
 
-    /// Does it follow from the capture and its plan, with nothing to run? Then a folder's frame answers it too, and
-    /// no picture waits for it.
+    /// Is it answered from the capture and its plan, without a run? Then a folder's frame answers it too, and no
+    /// picture waits for it.
     pub fn is_read_from_capture(self) -> bool {
         self == QuestionKind::ReadersOf
     }
 
-    /// Is it found out only when nothing else is asked for for a while?
+    /// Is it answered only when no other question has been asked for a while?
     pub fn waits_for_quiet(self) -> bool {
         self == QuestionKind::TimingOf
     }
 
-    /// Is what is asked for next of no use without it, so that all long work makes way?
+    /// Do the next questions depend on it, so that all long work is interrupted for it?
     pub fn is_urgent(self) -> bool {
         self == QuestionKind::WallsOf
     }
 
-    /// Is it so much asked for by who looks on that a truth under way is begun again after it?
+    /// Does the user wait for it so much that a truth that is being traced is interrupted, and begun again after it?
     pub fn interrupts_truth(self) -> bool {
         matches!(self, QuestionKind::DrawsOf | QuestionKind::CaptureOf)
     }
 
-    /// What is said of it when it is stopped because another picture is asked for; `None`: it goes on, or is asked
-    /// for again by who wants it.
+    /// Returns the message when it is stopped because another picture is asked for; `None` where it goes on, or is
+    /// asked again when it is wanted.
     pub fn stopped_by_picture(self) -> Option<&'static str> {
         match self {
             QuestionKind::DiagnosisOf => {
@@ -275,7 +275,7 @@ impl QuestionKind {
 }
 
 impl Ask {
-    /// What is being done for it, in a few words; `None` where it is so quick that nobody has to be told.
+    /// Describes the work on it in a few words; `None` where it is too quick to be shown.
     pub fn doing(&self) -> Option<String> {
         match self {
             Ask::DrawsOf(_) => Some("capturing the pass draw by draw".to_owned()),
@@ -290,10 +290,10 @@ impl Ask {
         }
     }
 
-    /// The answer, where it follows from the capture and its plan ([`QuestionKind::is_read_from_capture`]).
+    /// Returns the answer, where it follows from the capture and its plan ([`QuestionKind::is_read_from_capture`]).
     ///
     /// # Errors
-    /// There is none, in a few words.
+    /// There is none; the reason in a few words.
     pub fn read_from(&self, capture: &Capture, plan: Option<&Arc<FramePlan>>) -> Result<Answer, String> {
         match self {
             Ask::ReadersOf(ReadersOf { light }) => MapReaders::new(capture, plan, *light)
@@ -305,7 +305,7 @@ impl Ask {
 }
 
 impl Answer {
-    /// The answer with what was known before, where one comes in parts.
+    /// Returns the answer together with the parts before it, where it comes in parts.
     #[must_use]
     fn after(self, before: Option<&Answer>) -> Answer {
         match (self, before) {

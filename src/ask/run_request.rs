@@ -4,39 +4,39 @@ use crate::scene::{Camera, Light, Object, Pose, Scene};
 use crate::technique::Choice;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Objects that a scene may get in addition: each is planned, drawn and casts.
+/// How many objects may be added to a scene: each is planned, drawn and casts.
 const MOST_ADDED: usize = 200;
 
-/// How a scene is to be run; its objects are those of the scene, but for what is changed of them.
+/// How a scene is to be run; its objects are those of the scene, with changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunRequest {
-    /// How shadows are made.
+    /// The technique and its settings.
     pub choice: Choice,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
-    /// The eye.
+    /// The camera.
     pub camera: Camera,
-    /// All lights, where they are at the scene's start.
+    /// All lights, with their positions at the scene's start.
     pub lights: Vec<Light>,
-    /// The moment of an animated scene, seconds.
+    /// The time in an animated scene, seconds.
     pub time: f64,
     /// Objects that are switched off, by index: neither drawn nor casting.
     pub off: BTreeSet<usize>,
-    /// What is changed of them.
+    /// Changes of the objects.
     pub objects: ObjectChanges,
 }
 
-/// What is changed of a scene's objects.
+/// Changes of a scene's objects.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ObjectChanges {
-    /// Where objects of the scene are at its start, by index, in place of where they were loaded.
+    /// Poses of moved objects at the scene's start, by index; they replace the loaded ones.
     pub moved: BTreeMap<usize, Pose>,
-    /// Objects that are new. Their indexes come after those of the scene.
+    /// Added objects. Their indices come after those of the scene.
     pub added: Vec<Object>,
 }
 
 impl ObjectChanges {
-    /// The scene with these changes.
+    /// Returns the scene with these changes.
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let mut scene = loaded.clone();
         for (index, pose) in &self.moved {
@@ -48,7 +48,7 @@ impl ObjectChanges {
         scene
     }
 
-    /// Names what can't be run, in a few words with the mend.
+    /// Returns, as the error, what can't be run, in a few words and with how to fix it.
     fn check(&self) -> Result<(), String> {
         if self.added.len() > MOST_ADDED {
             return Err(format!("no more than {MOST_ADDED} objects can be added: delete some"));
@@ -59,7 +59,7 @@ impl ObjectChanges {
 }
 
 impl RunRequest {
-    /// A scene as it is, at time 0.
+    /// Returns the request that runs a scene unchanged, at time 0.
     pub fn of(scene: &Scene, choice: Choice, size: [u32; 2]) -> RunRequest {
         RunRequest {
             choice,
@@ -72,10 +72,10 @@ impl RunRequest {
         }
     }
 
-    /// Names what can't be run, in a few words with the mend.
+    /// Checks that the scene can be run so.
     ///
     /// # Errors
-    /// A camera or light that can't be used, a picture without pixels.
+    /// A camera or light that can't be used, a picture without pixels: in a few words, with how to fix it.
     pub fn check(&self) -> Result<(), String> {
         self.camera.check()?;
         for (index, light) in self.lights.iter().enumerate() {
@@ -91,31 +91,31 @@ impl RunRequest {
         Ok(())
     }
 
-    /// The scene with this camera, these lights, its objects changed, and without what is switched off; still at its
-    /// start.
+    /// Returns the scene with this camera, these lights, its objects changed, and without those that are switched off;
+    /// still at its start.
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let scene = without(&self.objects.applied_to(loaded), &self.off);
         Scene { camera: self.camera, lights: self.lights.clone(), ..scene }
     }
 }
 
-/// A run carried over to a scene that was loaded again.
+/// A run request carried over to a scene that was loaded again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CarriedOver {
-    /// How the scene is run now.
+    /// The new request.
     pub request: RunRequest,
-    /// What of the run before has no place in it, in a few words each.
+    /// The changes that could not be carried over, each in a few words.
     pub dropped: Vec<String>,
 }
 
 impl RunRequest {
-    /// This run of `before` for what the scene's file holds by now: what was changed of objects is changed of those
-    /// that have the same name, and of lights where the file did not add or delete some as well.
+    /// Returns this request of `before` for what the scene's file contains now: changes of objects apply to those with
+    /// the same name, and changes of lights are dropped where the file added or deleted lights as well.
     pub fn carried_over(&self, before: &Scene, after: &Scene) -> CarriedOver {
         let mut dropped = Vec::new();
         let names = |scene: &Scene| scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>();
         let (names_before, names_after) = (names(before), names(after));
-        // Objects of one name keep their order.
+        // Objects of one name are matched in order.
         let place = |index: usize| {
             let Some(name) = names_before.get(index) else {
                 return Ok(index - names_before.len() + names_after.len());
@@ -153,8 +153,8 @@ impl RunRequest {
     }
 }
 
-/// The lights of a run for the ones that were loaded again; `None` where both have other ones than before, and nobody
-/// knows which is which.
+/// Returns the lights of a request for a scene that was loaded again; `None` where both the user and the file changed
+/// which lights there are, so that they can't be matched.
 fn carried_lights(own: &[Light], before: &[Light], after: &[Light]) -> Option<Vec<Light>> {
     if own == before {
         return Some(after.to_vec());
@@ -167,7 +167,7 @@ fn carried_lights(own: &[Light], before: &[Light], after: &[Light]) -> Option<Ve
     is_as_many.then(|| own.iter().zip(before).zip(after).map(one).collect())
 }
 
-/// A scene without some of its objects, by index.
+/// Returns a scene without some of its objects, by index.
 pub fn without(scene: &Scene, off: &BTreeSet<usize>) -> Scene {
     let mut scene = scene.clone();
     let mut index = 0;

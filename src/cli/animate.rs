@@ -1,4 +1,4 @@
-//! `stencilscope animate`: a frame pass by pass, or a light that goes round the scene, as an animated PNG.
+//! `stencilscope animate`: a frame pass by pass, or a light that moves round the scene, as an animated PNG.
 
 use super::options::{FrameOptions, SceneOptions, Subject};
 use super::progress::with_bar;
@@ -13,10 +13,10 @@ use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Fewer places are no way round, and more make files that nobody opens.
+/// Fewer positions are no way round, and more make files too large to be opened.
 const FEWEST_PLACES: u32 = 2;
 const MOST_PLACES: u32 = 3600;
-/// What viewers show faster is shown at a speed of their own.
+/// The shortest time for a picture: viewers show faster animations at a speed of their own.
 const LEAST_MILLISECONDS: u16 = 20;
 const MOST_MILLISECONDS: u16 = 60_000;
 
@@ -70,7 +70,7 @@ fn milliseconds(text: &str) -> Result<u16, String> {
         .ok_or_else(|| format!("give a whole number of milliseconds from {LEAST_MILLISECONDS} to {MOST_MILLISECONDS}"))
 }
 
-/// Makes the animation and says what it is.
+/// Writes the animation and says what it is.
 pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     check_target(&arguments.output, arguments.overwrite)?;
     let refused = "an animation shows whole passes";
@@ -121,7 +121,7 @@ fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-/// A GPU that is opened on first use: a folder's frame needs none.
+/// A session that is opened on first use: a folder's frame needs no GPU.
 struct LazySession<'a> {
     adapter: Option<&'a str>,
     session: Option<Session>,
@@ -143,7 +143,7 @@ fn steps(subject: Subject, gpu: &mut LazySession) -> Result<Arc<crate::capture::
     }
 }
 
-/// What the frame is made from.
+/// Returns the scene from which the frame is rendered, and the request.
 fn made<'a>(name: &str, subject: &'a Subject) -> Result<(&'a Scene, &'a CaptureRequest), CliError> {
     match subject {
         Subject::Scene(scene) => Ok((&scene.scene, &scene.request)),

@@ -17,15 +17,15 @@ use std::time::{Duration, Instant};
 
 /// The benchmarks that exist.
 const BENCHMARKS: [&str; 6] = ["capture", "volumes", "truth", "history", "auto", "panels"];
-/// Frames of each kind that are timed.
+/// How many frames of each kind are timed.
 const RUNS: usize = 15;
-/// In a single frame, the fastest of several is no slower than this times the one that seemed so.
+/// Timed once, the fastest of several techniques takes at most so many times as long as the one that seemed fastest.
 const MAY_WIN: f64 = 2.0;
-/// Pixels whose history is timed.
+/// How many pixels' histories are timed.
 const PIXELS: usize = 200;
-/// What the benchmarks' own model is called.
+/// Name of the benchmarks' own model.
 const BUMPY: &str = "bumpy sphere";
-/// Lights for which volumes are timed; each takes less than a millisecond.
+/// How many lights' volumes are timed; each takes less than a millisecond.
 const LIGHTS: usize = 80;
 
 #[derive(Debug, Args)]
@@ -63,7 +63,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Snapshots against plain frames.
+/// Times frames with snapshots against plain ones.
 fn capture(arguments: &BenchArguments) -> Result<(), CliError> {
     let scenes = scenes(arguments, || Ok(vec![arguments.scene_options.open("tori")?, bumpy_model(62, 31)?]))?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
@@ -85,11 +85,11 @@ fn check_name(name: &str) -> Result<(), CliError> {
     Err(CliError::Usage(format!("no benchmark is called `{}`: {instead}", name.escape_debug())))
 }
 
-/// The ground truth: rays a second, sorting the scene apart from following them.
+/// Times the ground truth: rays a second, with building the hierarchies apart from tracing.
 fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     let size = arguments.frame.picture_size();
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
-        // What the options say is checked, though the truth depends on the size alone.
+        // The options are checked, though the truth depends on the size alone.
         arguments.frame.request(&scene)?;
         let TruthCost { sorting, following, rays } = truth_cost(&scene, size, RUNS)?;
         let [sort, follow] = [&sorting, &following].map(|times| median_ms(times).unwrap_or(f64::NAN));
@@ -109,7 +109,7 @@ fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The history of single pixels, against the frame that made them.
+/// Times the history of single pixels, against the frame to which they belong.
 fn history(arguments: &BenchArguments) -> Result<(), CliError> {
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
         let request = arguments.frame.request(&scene)?;
@@ -142,8 +142,8 @@ fn history(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The technique that leaves out what it can, against the fastest one that is right and against z-fail, from
-/// places all round.
+/// Times `auto`, which leaves out what it can, against the fastest technique that is right and against z-fail, from
+/// positions all round.
 fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let built_in = || builtin::ALL.iter().map(|of| Ok(of.scene()?)).collect();
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
@@ -153,7 +153,7 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     for scene in scenes(arguments, built_in)? {
         let (mut to_fastest, mut to_z_fail, mut wrong) = (Vec::new(), Vec::new(), 0);
         let mut rivals: BTreeMap<&str, usize> = BTreeMap::new();
-        // From some places, such as behind the walls, nothing lit or dark is seen.
+        // From some positions, such as behind the walls, nothing lit or dark is seen.
         let places =
             (0..10 * arguments.cameras).map(|seed| Scene { camera: scene.camera.anywhere(seed), ..scene.clone() });
         for seen in places {
@@ -164,7 +164,7 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
             if tried.iter().all(|one| one.error.compared == 0) {
                 continue;
             }
-            // All are tried once; those that can be the fastest are timed in turn.
+            // All are run once; those that can be the fastest are timed in turn.
             let choices = contenders(&tried);
             let measured = session.measure(&seen, &Measurement { choices, size, runs: RUNS }, &Progress::default())?;
             let of = |technique: Technique| measured.iter().find(|one| one.choice.technique() == technique);
@@ -197,7 +197,7 @@ fn frame_ms(of: &MeasuredTechnique) -> f64 {
     median_ms(&of.frames).unwrap_or(f64::NAN)
 }
 
-/// `auto`, z-fail, and those that are right and may be as fast as the fastest of these.
+/// Returns `auto`, z-fail, and those that are right and may be as fast as the fastest of these.
 fn contenders(tried: &[MeasuredTechnique]) -> Vec<Choice> {
     let right = || tried.iter().filter(|one| one.error.wrong() == 0);
     let fastest = right().map(frame_ms).fold(f64::INFINITY, f64::min);
@@ -206,13 +206,13 @@ fn contenders(tried: &[MeasuredTechnique]) -> Vec<Choice> {
     tried.iter().filter(|one| always(one) || may_win(one)).map(|one| one.choice.clone()).collect()
 }
 
-/// `; that was planar 3, z-fail 12`: who was the fastest, in how many places.
+/// Returns which techniques were the fastest, in how many positions: `; that was planar 3, z-fail 12`.
 fn named(rivals: &BTreeMap<&str, usize>) -> String {
     let each: Vec<String> = rivals.iter().map(|(name, times)| format!("{name} {times}")).collect();
     if each.is_empty() { String::new() } else { format!("; that was {}", each.join(", ")) }
 }
 
-/// Median and ends of some ratios.
+/// Returns the median and the ends of some ratios, as text.
 fn spread(mut ratios: Vec<f64>) -> String {
     ratios.sort_by(f64::total_cmp);
     match (ratios.first(), ratios.get(ratios.len() / 2), ratios.last()) {
@@ -229,7 +229,7 @@ fn scenes(
     if arguments.scene.is_empty() { own() } else { arguments.scene.iter().map(open).collect() }
 }
 
-/// The geometry of shadow volumes: what a mesh costs once, and what each new light costs.
+/// Times the geometry of shadow volumes: what a mesh costs once, and what each new light costs.
 fn volumes(arguments: &BenchArguments) -> Result<(), CliError> {
     if arguments.scene.is_empty() {
         let small = bumpy_mesh(264, 133)?;
@@ -277,7 +277,7 @@ fn volume_lines(title: &str, cost: &VolumeCost) -> String {
     )
 }
 
-/// A closed model of about twice `around` times `up` triangles on a floor, as uneven as a scanned one.
+/// Returns a closed model of about twice `around` times `up` triangles on a floor, as uneven as a scanned one.
 fn bumpy_model(around: u32, up: u32) -> Result<Scene, SceneError> {
     model_scene(BUMPY, bumpy_mesh(around, up)?, true, UpAxis::Y)
 }
@@ -294,7 +294,7 @@ fn bumpy_mesh(around: u32, up: u32) -> Result<Mesh, SceneError> {
     builder.build().map_err(fail)
 }
 
-/// Times, what snapshots add, and how long copying as many bytes takes in plain memory.
+/// Returns lines with the times, what snapshots add, and how long copying as many bytes takes in plain memory.
 fn capture_lines(title: &str, cost: &CaptureCost) -> String {
     let frame = median_ms(&cost.frames).unwrap_or(f64::NAN);
     if cost.captured.is_empty() {
@@ -317,7 +317,7 @@ fn capture_lines(title: &str, cost: &CaptureCost) -> String {
     )
 }
 
-/// The time of copying `count` bytes from one place in memory to another.
+/// Returns the times of copying `count` bytes from one place in memory to another.
 fn memory_copies(count: u64) -> Vec<Duration> {
     let count = usize::try_from(count).unwrap_or(usize::MAX);
     let source = vec![1u8; count];

@@ -3,19 +3,19 @@
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
 
-/// Frames of each tab that are timed.
+/// How many frames of each tab are timed.
 #[cfg(feature = "inspector")]
 const FRAMES: usize = 60;
-/// Lights that are tried.
+/// How many positions of the light are tried.
 #[cfg(feature = "inspector")]
 const LIGHTS: usize = 15;
-/// The window, points.
+/// The window's size, points.
 #[cfg(feature = "inspector")]
 const WINDOW: [f32; 2] = [1280.0, 800.0];
-/// What a frame of the panels may cost on two cores of a server, milliseconds.
+/// The limit for a frame of the panels on two cores of a server, milliseconds.
 #[cfg(feature = "inspector")]
 const LIMIT_PANELS_MS: f64 = 8.0;
-/// What a moved light may take until its capture is shown, milliseconds.
+/// The limit for the time from moving a light until its capture is shown, milliseconds.
 #[cfg(feature = "inspector")]
 const LIMIT_LIGHT_MS: f64 = 150.0;
 
@@ -68,7 +68,7 @@ mod measured {
         format!("{:.2} of the limit {limit} ms", value / limit)
     }
 
-    /// Each tab in front, the pointer moving over all of the window.
+    /// Times each tab in front, with the pointer moving over all of the window.
     pub fn tabs(panels: &mut Headless) -> String {
         let middle = width_of(panels) / 2;
         panels.inspector().model.selection.pick = Some([middle, 200]);
@@ -100,11 +100,11 @@ mod measured {
         text
     }
 
-    /// The Scene tab's view is dragged about: all of it is drawn anew each frame.
+    /// Times the Scene tab while its view is dragged: all of it is drawn in each frame.
     pub fn orbit(panels: &mut Headless) -> String {
         panels.inspector().model.requests.panels.push(PanelKind::Scene);
         let middle = [0.55, 0.4];
-        // The worker may have to look at the geometry first.
+        // The worker may have to analyse the geometry first.
         if let Err(error) = panels.settle() {
             return format!("  orbit: {error}\n");
         }
@@ -129,7 +129,7 @@ mod measured {
             let start = Instant::now();
             panels.picture().map(|_| ms(start.elapsed()))
         };
-        // The window twice, with the view turned and as it was: what is between them is the view.
+        // The window is drawn twice, with the view rotated and as it was: the difference is the time of the view.
         let drawn = (0..10).map(|frame| Ok(picture(drag(frame))? - picture(drag(frame))?));
         let drawn: Result<Vec<f64>, AppError> = drawn.collect();
         let drawn = drawn.map_or_else(|error| error.to_string(), |times| format!("{:.2}", median(times)));
@@ -150,10 +150,10 @@ mod measured {
         panels.inspector().model.frame.capture.as_ref().map_or(2, |capture| capture.size[0])
     }
 
-    /// Is another frame wished for while nothing happens?
+    /// Reports whether another frame is asked for while nothing happens.
     pub fn idle(panels: &mut Headless) -> String {
         panels.point([0.5, 0.02]);
-        // Hints and focus settle for a second.
+        // Hints and focus need a second to settle.
         for _ in 0..90 {
             panels.frame(Vec::new());
         }
@@ -161,7 +161,7 @@ mod measured {
         format!("  idle: {wishes} of {FRAMES} frames wish for another one while nothing changes\n")
     }
 
-    /// Steps forth and back: is the step shown in the frame that took the key?
+    /// Steps forward and back, and reports whether the step is shown in the frame that handled the key.
     pub fn stepping(panels: &mut Headless) -> String {
         let mut costs = Vec::new();
         let mut in_next = 0;
@@ -179,7 +179,7 @@ mod measured {
         )
     }
 
-    /// The light is moved: how long until its capture is shown?
+    /// Moves the light, and reports how long it takes until its capture is shown.
     pub fn light(panels: &mut Headless) -> Result<String, AppError> {
         let mut times = Vec::new();
         for index in 0..=LIGHTS {

@@ -30,7 +30,7 @@ pub struct CaptureArguments {
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
-    /// Also trace the ground truth, and tell the technique's errors
+    /// Also trace the ground truth, and show the technique's errors
     #[arg(long)]
     truth: bool,
     /// Also time the frame, with and without snapshots: it runs twelve times more
@@ -53,7 +53,7 @@ pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
     job.run()
 }
 
-/// Frames that are timed where that is asked for, each with and without snapshots, after one of each that is not.
+/// How many frames are timed where that is asked for, each with and without snapshots, after one of each that is not.
 const TIMING_RUNS: usize = 5;
 
 /// A capture whose input was checked.
@@ -65,20 +65,20 @@ pub struct CaptureJob<'a> {
     writing: CaptureOutput<'a>,
 }
 
-/// Where a capture goes, and what goes with it.
+/// Where a capture is written, and what is written with it.
 pub struct CaptureOutput<'a> {
     /// The folder to make.
     pub folder: &'a Path,
     /// It may replace a capture.
     pub overwrite: bool,
-    /// The ground truth goes with it.
+    /// The ground truth is traced too.
     pub truth: bool,
-    /// The page that is made too.
+    /// Path of the page that is written too.
     pub page: Option<&'a str>,
 }
 
 impl<'a> CaptureJob<'a> {
-    /// Everything that can be wrong without a GPU is found here, before one is opened.
+    /// Checks everything that can be wrong without a GPU, before one is opened.
     pub fn new(
         name: &str,
         scene_options: &SceneOptions,
@@ -119,7 +119,7 @@ impl<'a> CaptureJob<'a> {
     }
 }
 
-/// Counts that eight bits can't tell from none; nothing where there are none.
+/// Returns a line about counts that eight bits can't distinguish from zero; empty where there are none.
 fn wrapped_line(capture: &Capture) -> String {
     let pixels: u64 = capture.lights.iter().filter_map(crate::capture::CapturedLight::wrapped_pixels).sum();
     if pixels == 0 || !capture.lights.iter().any(|light| matches!(light.decided_by, DecidedBy::StencilCount { .. })) {

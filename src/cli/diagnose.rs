@@ -1,4 +1,4 @@
-//! `stencilscope diagnose`: where shadows are wrong, why, what mends it, and the proof.
+//! `stencilscope diagnose`: where shadows are wrong, why, how to fix it, and the proof.
 
 use super::fix::FixOutput;
 use super::options::{FrameOptions, SceneOptions, SceneSubject, Subject};
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The file by which a diagnosis' folder is known.
+/// The file by which a diagnosis' folder is recognised.
 const DOCUMENT: &str = "diagnosis.json";
 
 #[derive(Debug, Args)]
@@ -29,10 +29,10 @@ pub struct DiagnoseArguments {
     /// Machine-readable, to a file or to standard output in place of the text
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
-    /// A folder to make, with pictures of what is wrong and of the frame mended, the text and the JSON
+    /// A folder to make, with pictures of what is wrong and of the frame fixed, the text and the JSON
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// A scene file to write, mended
+    /// A scene file to write, fixed
     #[arg(long, value_name = "FILE.toml")]
     fix: Option<String>,
     /// Replace the folder of an earlier diagnosis, and the scene file
@@ -132,7 +132,7 @@ fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
     Err(CliError::Wrong { pixels: all, because })
 }
 
-/// A diagnosis may go where nothing is, or replace another.
+/// Checks that the folder does not exist, or is a diagnosis that may be replaced.
 fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
     let name = folder.display();
     let is_empty = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
@@ -149,7 +149,7 @@ fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
 
 type DiagnosisFiles = Vec<(&'static str, Vec<u8>)>;
 
-/// Pictures before and after, text and document.
+/// Returns the files: pictures before and after, text and document.
 fn files(
     session: &mut Session,
     scene: &Scene,
@@ -164,7 +164,7 @@ fn files(
     };
     let png = |picture: &Picture| picture.to_png().map_err(|error| broken(std::io::Error::other(error.to_string())));
     let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Fix::default())?))?)];
-    // A larger picture is another: nothing in it stands beside the first.
+    // A larger picture is another one: its pixels can't be compared with the first.
     if let Some(advice) = diagnosis.advice.as_ref().filter(|advice| advice.fix.larger.is_none()) {
         files.push(("mended.png", png(&wrong_pixels(&pictured(&advice.fix)?))?));
     }

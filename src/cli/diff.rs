@@ -107,7 +107,7 @@ fn folder(name: &str) -> Result<Capture, CliError> {
     Ok(disk::read(path)?)
 }
 
-/// The scene by two techniques, or by one with different settings.
+/// Captures the scene with two techniques, or with one and different settings.
 fn techniques(arguments: &DiffArguments) -> Result<[Capture; 2], CliError> {
     let name = &arguments.first;
     if disk::is_capture(Path::new(name)) {
@@ -153,7 +153,7 @@ fn request(
     frame.request(scene)
 }
 
-/// Which capture is A, and which B.
+/// Returns a line that says which capture is A, and which B.
 fn heading(arguments: &DiffArguments, captures: [&Capture; 2]) -> String {
     let folders = [Some(&arguments.first), arguments.second.as_ref()];
     let line = |(side, (folder, capture)): (&str, (Option<&String>, &Capture))| {
@@ -180,7 +180,7 @@ fn picture(difference: &Difference, [a, b]: [&Capture; 2], file: &str) -> Result
     ))
 }
 
-/// A file for pixels.
+/// Parses the path of a picture file.
 fn picture_file(text: &str) -> Result<String, String> {
     if is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .png".to_owned()) }
 }

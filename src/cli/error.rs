@@ -1,4 +1,4 @@
-//! What ends a command early: one line for standard error and an exit code.
+//! The errors that end a command early: one line for standard error and an exit code.
 
 use crate::capture::CaptureError;
 use crate::scene::SceneError;
@@ -8,22 +8,22 @@ use crate::technique::ChoiceError;
 /// Why a command did not do what was asked.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// A word of the command line is wrong: what and how to mend it.
+    /// A word of the command line is wrong: which, and how to fix it.
     #[error("{0}")]
     Usage(String),
     /// The scene can't be loaded.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// No such technique or setting.
+    /// There is no such technique or setting.
     #[error(transparent)]
     Choice(#[from] ChoiceError),
     /// The capture folder can't be written or read.
     #[error(transparent)]
     Capture(#[from] CaptureError),
-    /// The frame can't be made.
+    /// The frame can't be rendered.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// The frame of another program can't be had.
+    /// The frame of another program can't be read.
     #[error(transparent)]
     Import(#[from] crate::import::ImportError),
     /// The animation can't be made.
@@ -32,7 +32,7 @@ pub enum CliError {
     /// The page can't be made.
     #[error(transparent)]
     Page(#[from] crate::page::PageError),
-    /// The report can't take the form asked for.
+    /// The report can't be written in the format asked for.
     #[error(transparent)]
     Report(#[from] crate::report::ReportError),
     /// A result can't be written.
@@ -40,7 +40,7 @@ pub enum CliError {
     Output {
         /// The file.
         path: String,
-        /// The system's words.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The window failed.
@@ -55,13 +55,13 @@ pub enum CliError {
         "{pixels} of the histories do not make what the GPU stored, by the GPU's rounding or a bug of stencilscope: please report it"
     )]
     WrongHistory {
-        /// How many.
+        /// How many pixels.
         pixels: usize,
     },
-    /// Techniques did in a stress case what nobody expected.
+    /// Techniques gave unexpected results in a stress case.
     #[error("{count} of the results are unexpected: see the lines marked `!!`")]
     Unexpected {
-        /// How many cases times techniques.
+        /// How many pairs of case and technique.
         count: usize,
     },
     /// Two captures that can't be compared.
@@ -76,25 +76,25 @@ pub enum CliError {
     /// A diagnosis has found wrong pixels.
     #[error("{pixels} pixels are wrong{because}")]
     Wrong {
-        /// How many.
+        /// How many pixels.
         pixels: u64,
-        /// The first cause, in words that follow.
+        /// The first cause, in words.
         because: String,
     },
-    /// The mended scene can't be written.
+    /// The fixed scene can't be written.
     #[error(transparent)]
     Store(#[from] crate::scene::file::StoreError),
-    /// A mend can't be made.
+    /// A fix can't be made.
     #[error(transparent)]
-    Mend(#[from] crate::diagnosis::FixError),
-    /// Nobody reads standard output any more.
+    Fix(#[from] crate::diagnosis::FixError),
+    /// The reader of standard output has closed it.
     #[error("standard output was closed")]
     ClosedOutput,
 }
 
 impl CliError {
-    /// 1 where the answer is bad, 2 for bad input or usage, 3 where no GPU can be used or RenderDoc is not
-    /// installed, 0 where nobody reads the result.
+    /// Returns 1 where the result is bad, 2 for bad input or usage, 3 where no GPU can be used or RenderDoc is not
+    /// installed, 0 where the reader of the result has closed it.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
@@ -109,7 +109,7 @@ impl CliError {
         }
     }
 
-    /// The line for standard error; `None` where there is nothing to say.
+    /// Returns the line for standard error; `None` where there is nothing to say.
     pub fn line(&self) -> Option<String> {
         match self {
             CliError::ClosedOutput => None,

@@ -1,4 +1,4 @@
-//! `diagnose --fix`: the scene as a scene file, mended; then opened again and held against the truth.
+//! `diagnose --fix`: writes the scene with the fix as a scene file; then opens it again and compares it with the truth.
 
 use super::{CliError, output};
 use crate::diagnosis::{Diagnosis, Fix, TechniqueFit};
@@ -10,7 +10,7 @@ use crate::session::{CaptureRequest, Session};
 use crate::technique::Choice;
 use std::path::Path;
 
-/// Where a mended scene goes.
+/// Where a fixed scene is written.
 pub struct FixOutput<'a> {
     file: &'a str,
     /// The name by which the scene was opened.
@@ -36,7 +36,7 @@ impl<'a> FixOutput<'a> {
         }
     }
 
-    /// Writes `loaded`, mended, with its motions; opens it again and says how many pixels are wrong then.
+    /// Writes `loaded` with the fix, with its motions; opens it again and says how many pixels are wrong then.
     pub fn write(
         &self,
         session: &mut Session,
@@ -68,7 +68,7 @@ impl<'a> FixOutput<'a> {
     }
 }
 
-/// The scene with the mend made, and the technique that it asks for.
+/// Returns the scene with the fix made, and with the technique that it asks for.
 fn fixed(loaded: &Scene, mut choice: Choice, fix: &Fix) -> Result<Scene, CliError> {
     let mut scene = loaded.clone();
     fix.apply(&mut scene, &mut choice)?;

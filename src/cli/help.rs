@@ -1,7 +1,7 @@
 //! `stencilscope help [KEY]`: commands, techniques, settings, scene files, capture folders, JSON, causes.
 //!
-//! What the program holds as data is printed from there: names, values, defaults, and the lesson that stands beside each
-//! technique's and setting's definition. Whole pages are text under `assets/help/`, built into the program.
+//! What the program has as data is printed from there: names, values, defaults, and the lesson beside each technique's
+//! and setting's definition. Whole pages are text under `assets/help/`, built into the program.
 
 use super::{CliError, CommandLine, output};
 use crate::diagnosis::Cause;
@@ -26,11 +26,11 @@ const PAGES: [(&str, &str, &str); 4] = [
         include_str!("../../assets/help/stencil-test.md"),
     ),
 ];
-/// The page of causes is made from the table of causes.
+/// The page of causes is generated from the table of causes.
 const CAUSES: (&str, &str) = ("causes", "what `diagnose` may find, by name");
 /// Where the keys of scene files are explained.
 const SCENE_FILE: &str = PAGES[0].2;
-/// Columns of what is printed.
+/// Width of the output in columns.
 const WIDTH: usize = 100;
 
 #[derive(Debug, Args)]
@@ -40,7 +40,7 @@ pub struct HelpArguments {
     key: Option<String>,
 }
 
-/// Prints what is known of a key; without one, what there is.
+/// Prints the explanation of a key; without one, the list of keys.
 pub fn run(arguments: &HelpArguments) -> Result<(), CliError> {
     match arguments.key.as_deref() {
         None => output::print(&overview()),
@@ -52,7 +52,7 @@ fn page(key: &str) -> Option<String> {
     let whole = PAGES.iter().find(|(name, ..)| *name == key).map(|(.., text)| (*text).to_owned());
     let causes = || (key == CAUSES.0).then(causes);
     let technique = || Technique::from_name(key).map(technique);
-    // A setting and a key of scene files may have one name.
+    // A setting and a key of scene files may have the same name.
     let keys = || Some([setting(key), scene_key(key)].into_iter().flatten().collect::<Vec<_>>().join("\n"));
     let keys = || keys().filter(|text| !text.is_empty());
     whole.or_else(causes).or_else(technique).or_else(keys).or_else(|| command(key)).or_else(|| scene(key))
@@ -62,7 +62,7 @@ fn overview() -> String {
     CommandLine::command().render_help().to_string()
 }
 
-/// What stands below the commands: all that has a name.
+/// Returns the text below the commands: everything that has a name.
 pub fn everything() -> String {
     let pages = PAGES.iter().map(|(name, of, _)| (*name, *of)).chain([CAUSES]);
     let line = |(name, of): (&str, &str)| format!("  {name:14}  {of}\n");
@@ -76,7 +76,7 @@ pub fn everything() -> String {
     )
 }
 
-/// What stands below the options of a command that takes a scene: what they may name.
+/// Returns the text below the options of a command that takes a scene: the names that they may use.
 pub fn names() -> String {
     let techniques = Technique::ALL.map(Technique::name).join(" ");
     format!(
@@ -98,7 +98,7 @@ fn scenes() -> String {
     )
 }
 
-/// Keys by the techniques that have them: those of all first.
+/// Returns the keys by the techniques that have them; those that all have come first.
 fn settings_of_techniques() -> String {
     let mut rows: Vec<(Vec<&str>, Vec<&str>)> = Vec::new();
     for key in settings() {
@@ -121,7 +121,7 @@ fn indented(text: &str) -> String {
     wrapped(text, WIDTH - 2).lines().map(|line| format!("  {line}\n")).collect()
 }
 
-/// Words in lines of at most `width` columns; rows of a table stay as they are.
+/// Returns text in lines of at most `width` columns; rows of a table stay as they are.
 fn wrapped(text: &str, width: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for line in text.lines() {
@@ -141,7 +141,7 @@ fn wrapped(text: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// Every setting's key once, in the order of the techniques.
+/// Returns every setting's key once, in the order of the techniques.
 fn settings() -> Vec<&'static str> {
     let mut keys: Vec<&str> = Vec::new();
     for spec in Technique::ALL.iter().flat_map(|technique| technique.settings()) {
@@ -164,7 +164,7 @@ fn technique(technique: Technique) -> String {
     )
 }
 
-/// A lesson with its formula and its sources.
+/// Returns a lesson with its formula and its sources.
 fn lesson(lesson: &Lesson) -> String {
     let sources: String = match lesson.sources {
         [] => "- this program; no publication is known\n".to_owned(),
@@ -174,7 +174,7 @@ fn lesson(lesson: &Lesson) -> String {
     format!("{}\n\nFormula:\n\n{}\nSource:\n\n{sources}", wrapped(text, WIDTH), indented(formula))
 }
 
-/// One setting, as each of the techniques has it that know it.
+/// Returns the explanation of one setting, for each of the techniques that have it.
 fn setting(key: &str) -> Option<String> {
     let mut specs: Vec<(&SettingSpec, Vec<&str>)> = Vec::new();
     for technique in Technique::ALL {
@@ -225,7 +225,7 @@ fn scene(key: &str) -> Option<String> {
     builtin.or(shipped)
 }
 
-/// Tables of a scene file with their keys' explanations: what the page has under each heading.
+/// Returns the tables of a scene file with their keys' explanations: the text under each heading of the page.
 fn scene_tables() -> Vec<(&'static str, Vec<String>)> {
     let sections = SCENE_FILE.split("\n## ").skip(1);
     let table = |section: &'static str| {
@@ -243,13 +243,13 @@ fn scene_tables() -> Vec<(&'static str, Vec<String>)> {
     sections.map(table).collect()
 }
 
-/// The keys that a bullet explains: those before its colon.
+/// Returns the keys that a bullet explains: those before its colon.
 fn keys_of(bullet: &str) -> Vec<&str> {
     let head = bullet.split(": ").next().unwrap_or(bullet);
     head.split('`').skip(1).step_by(2).collect()
 }
 
-/// A key of scene files, in each of the tables that have it.
+/// Returns the explanation of a key of scene files, in each of the tables that have it.
 fn scene_key(key: &str) -> Option<String> {
     let tables = scene_tables();
     let of_table = |(heading, bullets): &(&str, Vec<String>)| {
@@ -266,7 +266,7 @@ fn scene_key(key: &str) -> Option<String> {
     })
 }
 
-/// All that has a page of its own.
+/// Returns all names that have a page of their own.
 fn named() -> impl Iterator<Item = &'static str> {
     let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
     let techniques = Technique::ALL.iter().map(|technique| technique.name());
@@ -291,7 +291,7 @@ mod tests {
     use super::*;
     use crate::technique::SettingValues;
 
-    /// What every lesson must have.
+    /// Asserts that a lesson has everything that it must have.
     fn assert_teaches(lesson: &Lesson, whose: &str) {
         assert!(lesson.text.len() > 40 && lesson.formula.len() > 15, "{whose} teaches nothing");
         for source in lesson.sources {

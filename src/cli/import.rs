@@ -26,7 +26,7 @@ pub struct ImportArguments {
     reader: ReaderOptions,
 }
 
-/// What becomes of the frame.
+/// Where the frame is written.
 #[derive(Debug, Args)]
 pub struct ImportTarget {
     /// The capture folder to write
@@ -58,7 +58,7 @@ pub struct ReaderOptions {
 }
 
 impl ReaderOptions {
-    /// As the import takes them; a list needs no pictures.
+    /// Returns the options of the import; a list needs no pictures.
     pub fn options(&self, target: &ImportTarget) -> RenderDocOptions {
         RenderDocOptions {
             python: self.python.clone(),
@@ -96,7 +96,7 @@ impl ImportTarget {
     }
 }
 
-/// What was written, and where the frame is not to be trusted.
+/// Returns what was written, and where the frame is not to be trusted.
 fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
     let [width, height] = capture.size;
     let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();

@@ -1,4 +1,4 @@
-//! `stencilscope report merge`: the parts of a run put together.
+//! `stencilscope report merge`: merges the parts of a run.
 
 use super::report_results::ReportResults;
 use super::{CliError, stress};
@@ -7,7 +7,7 @@ use crate::shards::MergeError;
 use crate::stress::StressResults;
 use clap::Args;
 
-/// How parts are made on several machines, after the help.
+/// Text after the help: how parts are run on several machines.
 pub const EXAMPLES: &str = "\
 Parts of a run side by side, here four; a part that was killed is run again alone:
 
@@ -20,7 +20,7 @@ Parts of a run side by side, here four; a part that was killed is run again alon
   then           stencilscope report merge part-*.json -o stress.md
 ";
 
-/// More than this is no file of results.
+/// A larger file is not one of results.
 const LARGEST_FILE: u64 = 256 << 20;
 
 #[derive(Debug, Args)]
@@ -51,7 +51,7 @@ pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
     }
 }
 
-/// In the forms that results of stress cases have.
+/// Prints and writes results of stress cases in their formats.
 fn deliver_stress(merged: &StressResults, command: &str, results: &ReportResults) -> Result<(), CliError> {
     let [json, csv, markdown, page] = results.targets();
     if csv.is_some() {
@@ -67,7 +67,7 @@ fn read(file: &str) -> Result<String, CliError> {
     String::from_utf8(bytes).map_err(|_| unread("it is no text: give the JSON of a part".to_owned()))
 }
 
-/// Has any of them what only stress cases have?
+/// Does any of the texts have what only results of stress cases have?
 fn is_stress(texts: &[(String, String)]) -> bool {
     let is =
         |text: &str| serde_json::from_str(text).is_ok_and(|value: serde_json::Value| value.get("summary").is_some());

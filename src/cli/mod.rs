@@ -71,7 +71,7 @@ enum CliCommand {
     /// Tell the history of a pixel, fragment by fragment
     #[command(after_help = help::names())]
     Pixel(Box<pixel::PixelArguments>),
-    /// Say where shadows are wrong, why, and what mends it, with the proof
+    /// Say where shadows are wrong, why, and how to fix it, with the proof
     #[command(after_help = help::names())]
     Diagnose(Box<diagnose::DiagnoseArguments>),
     /// Say where two captures, or two techniques of a scene, first differ
@@ -128,7 +128,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     }
 }
 
-/// The command line as a shell would take it again.
+/// Returns the command line in a form that a shell accepts.
 fn spoken(arguments: &[OsString]) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=+".contains(c);
     let quoted = |word: &OsString| {
@@ -140,7 +140,7 @@ fn spoken(arguments: &[OsString]) -> String {
     std::iter::once("stencilscope".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// Puts `view` before a first word that is no command.
+/// Inserts `view` before a first word that is no command.
 fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_known = |word: &OsString| {
         let text = word.to_string_lossy();
@@ -156,14 +156,14 @@ fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Is a first word no command, no scene and no file? An ending says that a file is meant.
+/// Is a first word no command, no scene and no file? An extension says that a file is meant.
 fn is_nothing(word: &str) -> bool {
     let is_scene = Builtin::named(word).is_some() || ShippedFrame::named(word).is_some();
     let is_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
     !(word.is_empty() || word.starts_with('-') || COMMANDS.contains(&word) || is_scene || is_file)
 }
 
-/// What to say of such a word: the nearest name, and what there is.
+/// Returns the message about such a word: the nearest name, and what there is.
 fn unknown(word: &str) -> String {
     let scenes = builtin::ALL.iter().map(|builtin| builtin.name).chain(SHIPPED.iter().map(|shipped| shipped.name));
     let known: Vec<&str> = COMMANDS.into_iter().chain(scenes).collect();

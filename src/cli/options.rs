@@ -1,4 +1,4 @@
-//! Options that commands share, and how their values are read.
+//! Options that several commands have, and how their values are parsed.
 
 use super::CliError;
 use crate::capture::disk;
@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The largest picture along a side.
+/// The largest width or height of a picture, pixels.
 const LARGEST: u32 = 16_384;
 /// Used where neither the command line nor the scene names a technique.
 const DEFAULT_TECHNIQUE: &str = "auto";
@@ -59,19 +59,19 @@ pub struct SceneOptions {
     time: SceneTime,
 }
 
-/// When a scene is seen.
+/// The time or times at which a scene is rendered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum SceneTime {
-    /// At a moment, seconds.
+    /// One time, seconds.
     At(f64),
-    /// From a moment to another, in so many frames.
+    /// From one time to another, seconds, in so many frames.
     Moving { from: f64, to: f64, frames: Option<usize> },
 }
 
-/// More frames than anybody waits for.
+/// The largest number of frames.
 const MOST_FRAMES: usize = 10_000;
 
-/// `SECONDS`, `A..B` or `A..B:N`.
+/// Parses `SECONDS`, `A..B` or `A..B:N`.
 fn when(text: &str) -> Result<SceneTime, String> {
     let Some((from, rest)) = text.split_once("..") else { return finite(text).map(SceneTime::At) };
     let (to, frames) = rest.split_once(':').map_or((rest, None), |(to, frames)| (to, Some(frames)));
@@ -107,13 +107,13 @@ pub struct FrameOptions {
 }
 
 impl SceneOptions {
-    /// What opens the scene again, without these options.
+    /// Returns how to open the scene again, without these options.
     pub fn spec(&self, name: &str) -> OpenSpec {
         let up = if self.z_up { UpAxis::Z } else { UpAxis::Y };
         OpenSpec { name: name.to_owned(), floor: !self.no_floor, up }
     }
 
-    /// Is the scene to be taken as it is?
+    /// Is the scene to be used unchanged?
     fn is_untouched(&self) -> bool {
         let SceneOptions { no_floor, z_up, eye, target, up, fov, near, far, light, sun, off, time } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
@@ -128,12 +128,12 @@ impl SceneOptions {
             && *time == SceneTime::At(0.0)
     }
 
-    /// Opens the scene and applies these options; the result stands still at `--time`.
+    /// Opens the scene and applies these options; the result is at `--time`, without motions.
     pub fn open(&self, name: &str) -> Result<Scene, CliError> {
         Ok(self.load(name)?.at(self.seconds()?))
     }
 
-    /// The moment at which scenes are seen.
+    /// Returns the time at which scenes are rendered, seconds.
     pub fn seconds(&self) -> Result<f64, CliError> {
         match self.time {
             SceneTime::At(seconds) => Ok(seconds),
@@ -143,7 +143,8 @@ impl SceneOptions {
         }
     }
 
-    /// The frames that were asked for, `usual` ones where their number was not; `None` of one moment.
+    /// Returns the frames that were asked for, `usual` ones where their number was not; `None` where only one time was
+    /// given.
     pub fn motion_frames(&self, moves: MovingPart, usual: usize) -> Option<MotionFrames> {
         match self.time {
             SceneTime::At(_) => None,
@@ -153,7 +154,7 @@ impl SceneOptions {
         }
     }
 
-    /// The same, still at time 0, with all motions.
+    /// Opens the scene and applies these options; the result is at time 0, with all motions.
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
         let mut scene = open(&self.spec(name))?;
         if self.z_up && !is_model(name) {
@@ -210,21 +211,21 @@ impl SceneOptions {
     }
 }
 
-/// What a command asks about.
+/// The frame that a command works on.
 pub enum Subject {
-    /// A scene that is to be drawn.
+    /// A scene that is to be rendered.
     Scene(Box<SceneSubject>),
     /// The frame of a capture folder.
     Folder(RunFrame),
 }
 
-/// A scene, and how it is drawn.
+/// A scene, and how it is rendered.
 pub struct SceneSubject {
-    /// Still at time 0, with all motions.
+    /// The scene at time 0, with all motions.
     pub loaded: Scene,
-    /// As it stands at the moment that is asked about.
+    /// The scene at the time that was asked for.
     pub scene: Scene,
-    /// How it is drawn, untimed.
+    /// How it is rendered, without timing.
     pub request: CaptureRequest,
 }
 
@@ -232,8 +233,8 @@ impl Subject {
     /// Opens a scene, or a folder.
     ///
     /// # Errors
-    /// A scene, option or folder that can't be used; a folder that holds pictures alone; options that would make another
-    /// frame of it.
+    /// A scene, option or folder that can't be used; a folder that contains only pictures; options that would change
+    /// its frame.
     pub fn new(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<Subject, CliError> {
         let folder = Path::new(name);
         let is_capture = disk::is_capture(folder);
@@ -256,7 +257,7 @@ impl Subject {
         whole.map(Subject::Folder).map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))
     }
 
-    /// Width and height of the picture.
+    /// Returns width and height of the picture, pixels.
     pub fn size(&self) -> [u32; 2] {
         match self {
             Subject::Scene(scene) => scene.request.size,
@@ -264,7 +265,7 @@ impl Subject {
         }
     }
 
-    /// The frame: run now, or as it was stored.
+    /// Returns the frame: rendered now, or as it was stored.
     pub fn frame(self, session: &mut Session) -> Result<RunFrame, CliError> {
         match self {
             Subject::Scene(scene) => Ok(session.render(scene.scene, scene.request)?),
@@ -272,7 +273,7 @@ impl Subject {
         }
     }
 
-    /// What the frame is made from.
+    /// Returns the scene from which the frame is rendered.
     pub fn scene(self) -> Result<SceneSubject, CliError> {
         match self {
             Subject::Scene(scene) => Ok(*scene),
@@ -285,7 +286,7 @@ impl Subject {
 }
 
 impl FrameOptions {
-    /// What to capture of `scene`, timed.
+    /// Returns what to capture of `scene`, with timing.
     pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
         Ok(CaptureRequest {
             every: self.every()?,
@@ -294,13 +295,13 @@ impl FrameOptions {
         })
     }
 
-    /// Width and height of the picture.
+    /// Returns width and height of the picture, pixels.
     pub fn picture_size(&self) -> [u32; 2] {
         self.size.unwrap_or(DEFAULT_SIZE)
     }
 
-    /// The technique of the command line, else the scene's, else the default. The scene's
-    /// settings hold for the scene's technique only.
+    /// Returns the technique of the command line, else the scene's, else the default. The scene's settings apply to the
+    /// scene's technique only.
     fn choice(&self, scene: &Scene) -> Result<Choice, CliError> {
         let of_scene = scene.technique.clone();
         let name = self.technique.clone().or_else(|| of_scene.as_ref().map(|request| request.name.clone()));
@@ -311,7 +312,7 @@ impl FrameOptions {
         Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
     }
 
-    /// For a command that takes no snapshot of draws, and says why.
+    /// Returns an error where draws are to be snapshot, for a command that does not do so; `why` explains it.
     pub fn refuse_draws(&self, why: &str) -> Result<(), CliError> {
         match self.every()? {
             SnapshotInterval::Pass => Ok(()),
@@ -321,7 +322,7 @@ impl FrameOptions {
         }
     }
 
-    /// For a command without a frame to bracket, and says why.
+    /// Returns an error where the frame is to be bracketed, for a command without a frame; `why` explains it.
     pub fn refuse_external_capture(&self, why: &str) -> Result<(), CliError> {
         if self.external_capture {
             return Err(CliError::Usage(format!("`--external-capture` is for captures; {why}: leave it out")));
@@ -338,13 +339,13 @@ impl FrameOptions {
     }
 }
 
-/// A technique by name.
+/// Returns a technique by name.
 pub fn technique_named(name: &str) -> Result<Technique, CliError> {
     let request = TechniqueRequest { name: name.to_owned(), settings: BTreeMap::new() };
     Ok(Choice::parse(&request)?.technique())
 }
 
-/// `X,Y,Z`, finite.
+/// Parses `X,Y,Z`, which must be finite.
 pub fn point(text: &str) -> Result<DVec3, String> {
     let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>()?;
     let [x, y, z] = numbers[..] else {
@@ -353,13 +354,13 @@ pub fn point(text: &str) -> Result<DVec3, String> {
     Ok(DVec3::new(x, y, z))
 }
 
-/// A finite number.
+/// Parses a finite number.
 pub fn finite(text: &str) -> Result<f64, String> {
     let number: Option<f64> = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "give finite numbers".to_owned())
 }
 
-/// `WxH`, each from 1 to 16 384.
+/// Parses `WxH`, each from 1 to 16 384.
 pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
     match sides {
@@ -370,7 +371,7 @@ pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// `X,Y` of a pixel.
+/// Parses `X,Y` of a pixel.
 pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(',').map(|(x, y)| [x.trim().parse(), y.trim().parse()]);
     match sides {
@@ -379,7 +380,7 @@ pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// `KEY=VALUE`.
+/// Parses `KEY=VALUE`.
 pub fn setting(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),

@@ -1,4 +1,4 @@
-//! Results on standard output or in a file. A reader that goes away is no failure.
+//! Results on standard output or in a file. A reader that closes standard output is no error.
 
 use super::CliError;
 use std::io::{ErrorKind, Write};
@@ -33,14 +33,14 @@ pub fn deliver(text: &str, file: Option<&str>) -> Result<(), CliError> {
     write(path, text.as_bytes())
 }
 
-/// Writes a file beside its place and renames it, so that it is there whole or not at all.
+/// Writes a file under another name beside its path and renames it, so that it is there as a whole or not at all.
 pub fn write(path: &str, bytes: &[u8]) -> Result<(), CliError> {
     let failed = |source| CliError::Output { path: path.to_owned(), source };
     crate::files::write_whole(std::path::Path::new(path), bytes).map_err(failed)
 }
 
-/// Says something that is no result.
+/// Writes to standard error something that is not a result.
 pub fn note(text: &str) {
-    // Standard error may be closed; then nobody wants to know.
+    // Standard error may be closed; then nothing reads the note.
     let _ = writeln!(std::io::stderr(), "stencilscope: {text}");
 }

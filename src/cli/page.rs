@@ -11,7 +11,7 @@ use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Below its options.
+/// Text below its options.
 pub const EXAMPLES: &str = "\
 A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html
 A frame that is there:  stencilscope page DIR -o frame.html
@@ -39,7 +39,7 @@ pub struct PageArguments {
     truth: bool,
 }
 
-/// Makes the page and says what it is.
+/// Writes the page and says what it is.
 pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
     check_target(output, *overwrite)?;
@@ -70,7 +70,7 @@ pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The frame; one that was captured needs no GPU unless its truth is asked for.
+/// Returns the frame; one from a folder needs no GPU unless its truth is asked for.
 fn made(subject: Subject, options: &FrameOptions, truth: bool) -> Result<RunFrame, CliError> {
     let mut session = match &subject {
         Subject::Folder(frame) if !truth || frame.capture.error().is_some() => None,

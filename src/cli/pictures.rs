@@ -59,7 +59,7 @@ mod shots {
     use egui::{Key, Modifiers};
     use std::path::Path;
 
-    /// The picture in it.
+    /// Size of the picture in the window, pixels.
     const SIZE: [u32; 2] = [640, 480];
     /// Name of the animated tour.
     const TOUR: &str = "tour";
@@ -67,17 +67,17 @@ mod shots {
     const STOP_MS: u16 = 3500;
     /// The animated tour's window, points.
     const TOUR_WINDOW: [f32; 2] = [1120.0, 700.0];
-    /// In `tori`: in two shadows, so that its history and ladder have something to tell.
+    /// In `tori`: a pixel in two shadows, so that its history and ladder show several events.
     const IN_TWO_SHADOWS: [u32; 2] = [322, 92];
-    /// In `table`: on the slab, in the torus's shadow.
+    /// In `table`: a pixel on the slab, in the torus's shadow.
     const UNDER_THE_TORUS: [u32; 2] = [398, 268];
     /// In `inside`: the eye is in a shadow, so z-pass misses another one here.
     const MISSING: [u32; 2] = [330, 300];
 
-    /// Cases of which some technique breaks in each; the first is the one whose rows are shown.
+    /// Stress cases, in each of which some technique breaks; the first is the one whose rows are shown.
     const STRESSED: [&str; 3] = ["near-far", "world-offset", "nested"];
 
-    /// What a picture shows.
+    /// The content of a picture.
     struct PictureSubject {
         name: &'static str,
         scene: &'static str,
@@ -88,13 +88,13 @@ mod shots {
         pick: Option<[u32; 2]>,
         panels: &'static [PanelKind],
         theme: ThemeChoice,
-        /// Buttons pressed once all is shown, by their keys.
+        /// Keys that are pressed once all is shown.
         keys: &'static [Key],
         /// An overlay of the picture.
         overlay: Option<Overlay>,
-        /// Compared with this technique under the divider.
+        /// The technique that is compared with, under the divider.
         compared: Option<Technique>,
-        /// What is asked for, and waited for.
+        /// Asks the questions whose answers are waited for.
         asks: Option<fn(&mut Inspector)>,
     }
 
@@ -190,7 +190,7 @@ mod shots {
         Ok(())
     }
 
-    /// No picture's name has the word: which names there are.
+    /// Returns the message where no picture's name has the word: which names there are.
     fn nothing_named(only: &str) -> String {
         let names: Vec<&str> = shots().iter().map(|shot| shot.name).chain([TOUR]).collect();
         format!("no picture's name has `{only}`: give `--only` a part of one of {}", names.join(", "))
@@ -263,7 +263,7 @@ mod shots {
         Ok(panels.picture()?)
     }
 
-    /// The tour of z-fail as an animated PNG, a stop a picture.
+    /// Returns the tour of z-fail as an animated PNG, one picture for each stop.
     fn tour(adapter: Option<&str>) -> Result<Vec<u8>, CliError> {
         let mut panels = opened("tori", Technique::ZFail, adapter, (TOUR_WINDOW, 1.0))?;
         let stops = Inspector::stops_of(Technique::ZFail);

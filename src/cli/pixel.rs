@@ -37,11 +37,10 @@ pub struct PixelArguments {
     json: Option<Option<String>>,
 }
 
-/// Renders the scene once, or takes the frame of a folder, and tells the history of each pixel.
+/// Renders the scene once, or takes the frame of a folder, and prints the history of each pixel.
 ///
 /// # Errors
-/// A scene, option or pixel that can't be used; no GPU; a file that can't be written;
-/// [`CliError::WrongHistory`].
+/// A scene, option or pixel that can't be used; no GPU; a file that can't be written; [`CliError::WrongHistory`].
 pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     arguments.frame.refuse_draws("a history always goes fragment by fragment")?;
     let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
@@ -92,7 +91,7 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-/// Where the vertices are that are asked for.
+/// Returns the coordinates of the vertices that are asked for.
 fn vertices(
     arguments: &PixelArguments,
     capture: &Capture,
@@ -110,7 +109,8 @@ fn vertices(
     }
 }
 
-/// A history, the texels that decided each light, how the surface answers it, and where the pixel's point is, if that was asked for.
+/// A history, the texels that decided each light, how the surface is shaded, and the coordinates of the pixel's point
+/// if they were asked for.
 #[derive(Debug, Serialize)]
 struct PixelOutput {
     #[serde(flatten)]

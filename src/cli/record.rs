@@ -30,7 +30,7 @@ pub struct RecordArguments {
     command: Vec<String>,
 }
 
-/// Runs a program until it has shown the frame, and delivers that.
+/// Runs a program until it has shown the frame, and writes that.
 pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     arguments.keep.as_ref().map_or(Ok(()), |file| output::check_target(&file.to_string_lossy()))?;

@@ -117,7 +117,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
 }
 
 impl ReportArguments {
-    /// The frames of a motion that are asked for; `None` of scenes that stand still.
+    /// Returns the frames of a motion that are asked for; `None` for scenes that stand still.
     fn motion_frames(&self) -> Option<MotionFrames> {
         self.scene_options.motion_frames(self.moves, usize::from(self.runs))
     }
@@ -128,7 +128,7 @@ fn moves(name: &str) -> Result<MovingPart, String> {
     MovingPart::from_name(name).ok_or_else(|| suggestion(name, &names))
 }
 
-/// What is measured of a scene: once, or at each value of a sweep.
+/// Returns what is measured of a scene: one block, or one for each value of a sweep.
 fn blocks(
     arguments: &ReportArguments,
     scene: &Scene,
@@ -144,7 +144,7 @@ fn blocks(
     Ok(blocks.into_iter().map(|block| (name.clone(), block)).collect())
 }
 
-/// What each row of a block is of: the same in all parts of a run.
+/// Returns the names of a block's rows, which are the same in all parts of a run.
 fn names_of((name, SweepBlock { what, swept, .. }): &(String, SweepBlock)) -> Vec<String> {
     let [width, height] = what.size;
     let swept = swept.as_ref().map_or_else(String::new, |swept| format!(" · {} {}", swept.name, swept.text));
@@ -156,8 +156,8 @@ fn names_of((name, SweepBlock { what, swept, .. }): &(String, SweepBlock)) -> Ve
     what.choices.iter().map(named).collect()
 }
 
-/// The default grid, or its rows of the techniques asked for, with settings changed. In a sweep each technique has a row,
-/// but over map sizes, where every form with a map has its own.
+/// Returns the default grid, or its rows for the techniques asked for, with settings changed. In a sweep each technique
+/// has one row, but over map sizes every variant with a map has its own.
 fn choices(arguments: &ReportArguments) -> Result<Vec<Choice>, CliError> {
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
     let mut grid = match &arguments.sweep {
@@ -182,7 +182,7 @@ fn choices(arguments: &ReportArguments) -> Result<Vec<Choice>, CliError> {
     Ok(choices)
 }
 
-/// Names of scenes, numbered where two are alike: rows of different scenes are never compared.
+/// Returns names of scenes, numbered where two are the same: rows of different scenes are never compared.
 fn distinct_names(scenes: &[Scene]) -> Vec<String> {
     let name = |(index, scene): (usize, &Scene)| {
         let earlier = scenes[..index].iter().filter(|other| other.name == scene.name).count();
@@ -191,7 +191,7 @@ fn distinct_names(scenes: &[Scene]) -> Vec<String> {
     scenes.iter().enumerate().map(name).collect()
 }
 
-/// No result may replace a scene: an option takes the word after it for its file.
+/// Checks that no result replaces a scene: an option uses the word after it as its file.
 fn check_no_scene(files: &[&str], scenes: &[String]) -> Result<(), CliError> {
     let is_scene = |file: &&&str| {
         is_scene_file(Path::new(file)) || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == **file)

@@ -1,4 +1,4 @@
-//! Where a report goes, and in which forms.
+//! Where a report is written, and in which formats.
 
 use super::results::{self, ResultFormat, ResultTarget};
 use super::{CliError, output};
@@ -6,7 +6,7 @@ use crate::report::{PageOrigin, Report};
 use clap::Args;
 use std::path::Path;
 
-/// Where a report goes, and in which forms.
+/// Where a report is written, and in which formats.
 #[derive(Debug, Args)]
 pub struct ReportResults {
     /// Machine-readable, to a file or to standard output in place of the table
@@ -27,12 +27,12 @@ pub struct ReportResults {
 }
 
 impl ReportResults {
-    /// The forms in their order, and the page.
+    /// Returns the targets of the formats in their order, and of the page.
     pub fn targets(&self) -> [ResultTarget; 4] {
         [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
     }
 
-    /// Checks, before long work, that all can be delivered.
+    /// Checks, before long work, that all can be written.
     pub fn check(&self) -> Result<(), CliError> {
         results::check(&self.targets().each_ref(), &self.plot)
     }
@@ -56,18 +56,18 @@ impl ReportResults {
     }
 }
 
-/// Does a file's ending ask for pixels?
+/// Does a file's extension ask for pixels?
 pub fn is_png(file: &str) -> bool {
     Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
 }
 
-/// A file whose ending says what to write.
+/// Parses the path of a plot, whose extension says what to write.
 pub fn plot_file(text: &str) -> Result<String, String> {
     let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
     if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
 }
 
-/// A page's file.
+/// Parses the path of a page.
 pub fn page_file(text: &str) -> Result<String, String> {
     let is_page = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md"));
     if is_page { Ok(text.to_owned()) } else { Err("give a file that ends in .md".to_owned()) }

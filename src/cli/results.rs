@@ -1,30 +1,30 @@
-//! Results of one run in several forms: each to a file, one of them to standard output in place of the table.
+//! Results of one run in several formats: each to a file, one of them to standard output in place of the table.
 
 use super::{CliError, output};
 use crate::files::from_beside;
 use std::path::Path;
 
-/// Where a form goes: `None` where it is not asked for, standard output where no file is named.
+/// Where a format is written: `None` where it is not asked for, standard output where no file is named.
 pub type ResultTarget = Option<Option<String>>;
 
-/// The target of a form that goes to files alone.
+/// Returns the target of a format that is written only to files.
 pub fn target(file: &Option<String>) -> ResultTarget {
     file.clone().map(Some)
 }
 
-/// The plot, which is written already, as the page names it.
+/// Returns the path of the plot, which is written already, relative to the page.
 pub fn plot_beside(page: &Option<String>, plot: &Option<String>) -> Option<String> {
     let (page, plot) = page.as_ref().zip(plot.as_ref())?;
     Some(from_beside(Path::new(page), Path::new(plot)))
 }
 
-/// The files that are named, those of forms first.
+/// Returns the files that are named, those of formats first.
 pub fn files<'a>(forms: &[&'a ResultTarget], plot: &'a Option<String>) -> Vec<&'a str> {
     let of_forms = forms.iter().filter_map(|target| target.as_ref()?.as_deref());
     of_forms.chain(plot.as_deref()).collect()
 }
 
-/// Checks, before long work, that all results can be delivered.
+/// Checks, before long work, that all results can be written.
 pub fn check(forms: &[&ResultTarget], plot: &Option<String>) -> Result<(), CliError> {
     let files = files(forms, plot);
     files.iter().try_for_each(|file| output::check_target(file))?;
@@ -41,16 +41,16 @@ pub fn check(forms: &[&ResultTarget], plot: &Option<String>) -> Result<(), CliEr
     Ok(())
 }
 
-/// A form that may be asked for, and its text.
+/// The target of a format, and the function that returns its text.
 pub type ResultFormat<'a> = (&'a ResultTarget, &'a dyn Fn() -> Result<String, CliError>);
 
-/// Makes and writes the forms that are asked for; the table where none is.
+/// Writes the formats that are asked for; the table where none is.
 pub fn deliver(forms: &[ResultFormat], table: impl FnOnce() -> String) -> Result<(), CliError> {
     if forms.iter().all(|(target, _)| target.is_none()) {
         return output::print(&table());
     }
     let mut asked: Vec<_> = forms.iter().filter_map(|(target, text)| Some((target.as_ref()?, text))).collect();
-    // Whoever reads standard output may leave: no file is missing for that.
+    // Files come first: the reader of standard output may close it, and no file is missing then.
     asked.sort_by_key(|(file, _)| file.is_none());
     asked.into_iter().try_for_each(|(file, text)| output::deliver(&text()?, file.as_deref()))
 }

@@ -11,7 +11,7 @@ pub struct ScenesArguments {
     json: Option<Option<String>>,
 }
 
-/// A line each, name first; or JSON.
+/// Prints one line for each scene, name first; or JSON.
 pub fn run(arguments: &ScenesArguments) -> Result<(), CliError> {
     match &arguments.json {
         None => output::print(&lines()),

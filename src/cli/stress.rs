@@ -84,8 +84,8 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     deliver(&stress, command, forms, (&arguments.output, &arguments.plot))
 }
 
-/// Every technique that is asked for runs in a chosen case, and every case that is named runs one:
-/// what compares nothing is no success.
+/// Checks that every technique that is asked for runs in a chosen case, and that every case that is named runs one: a
+/// run that compares nothing is no success.
 fn check_that_all_run(chosen: &[&StressCase], is_named: bool, only: &[Technique]) -> Result<(), CliError> {
     let runs = |case: &StressCase, technique| case.entrants().iter().any(|entrant| entrant.technique == technique);
     if let Some(technique) = only.iter().find(|technique| !chosen.iter().any(|case| runs(case, **technique))) {
@@ -169,7 +169,7 @@ mod tests {
         let text = reason(&["sliver"], &[Technique::RayTraced]);
         assert!(text.contains("`ray-traced` runs in no stress case, as it is the truth"), "{text}");
         assert!(reason(&[], &[Technique::None]).contains("`none` runs in no stress case"));
-        // Others that run do not make up for it.
+        // That other techniques run does not make up for it.
         assert!(reason(&["random"], &[Technique::ZFail, Technique::ZPass]).contains("z-pass"));
         assert!(reason(&["nested", "random"], &[Technique::ZPass]).contains("`random`"));
     }

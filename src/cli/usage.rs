@@ -1,9 +1,9 @@
-//! What clap has to say, in one line.
+//! clap's messages, in one line.
 
 use super::{CliError, output};
 use clap::error::ErrorKind;
 
-/// Help and version are results; everything else is an error line that names the mend.
+/// Prints help and version, which are results; returns everything else as an error line that says how to fix it.
 pub fn answer(error: &clap::Error) -> Result<(), CliError> {
     let text = error.render().to_string();
     match error.kind() {
@@ -12,7 +12,7 @@ pub fn answer(error: &clap::Error) -> Result<(), CliError> {
     }
 }
 
-/// The message and its tips, without the usage text below them.
+/// Returns the message and its tips, without the usage text below them.
 fn one_line(text: &str) -> String {
     let message = text.split("\nUsage:").next().unwrap_or(text);
     let message = message.split("\nFor more information").next().unwrap_or(message);

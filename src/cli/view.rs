@@ -5,7 +5,7 @@ use super::{CliError, capture, output};
 use clap::Args;
 use std::path::Path;
 
-/// Where a capture goes that takes the place of a window.
+/// The folder for a capture that is made in place of a window.
 const FALLBACK_FOLDER: &str = "stencilscope-out";
 
 #[derive(Debug, Args)]
@@ -39,7 +39,7 @@ pub fn run(arguments: &ViewArguments) -> Result<(), CliError> {
 fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliError> {
     let folder = Path::new(FALLBACK_FOLDER);
     if Path::new(&arguments.scene).is_dir() {
-        // Whatever is wrong with the folder is the better answer.
+        // An error of the folder itself is the better answer.
         crate::capture::disk::read(Path::new(&arguments.scene))?;
         let fix = "read its manifest.json, .npy and .png files, or open it where there is a display";
         return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {fix}")));
@@ -61,7 +61,7 @@ fn no_window_because() -> Option<&'static str> {
     (!has_display).then_some("there is no display")
 }
 
-/// The window, or a capture where the system gives none after all.
+/// Opens the window, or captures where the system turns out to have none.
 #[cfg(feature = "inspector")]
 pub mod window {
     use super::{CliError, FrameOptions, SceneOptions, ViewArguments, capture_instead};
@@ -94,7 +94,7 @@ pub mod window {
             Some(shipped) => shipped.open()?,
             None => disk::read_whole(folder)?,
         };
-        // How a scene would be rendered that is opened from the window later.
+        // How a scene is rendered that is opened from the window later.
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), whole.capture.size);
         Ok(ViewRequest {
             source: ViewSource::Folder(Box::new(whole)),
@@ -108,7 +108,7 @@ pub mod window {
         })
     }
 
-    /// What opens a scene in a window, or in panels without one.
+    /// Returns the request that opens a scene in a window, or in panels without one.
     pub fn scene_request(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<ViewRequest, CliError> {
         let loaded = scene.load(name)?;
         let capture = frame.request(&loaded)?;
@@ -125,7 +125,7 @@ pub mod window {
     }
 }
 
-/// Without the inspector [`no_window_because`] keeps the call away.
+/// Built without the inspector, this is never called: see [`no_window_because`].
 #[cfg(not(feature = "inspector"))]
 mod window {
     use super::{CliError, ViewArguments};

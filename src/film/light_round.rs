@@ -1,4 +1,4 @@
-//! A light that goes once round a scene: about the vertical axis through the middle of what casts shadows.
+//! A light that moves once round a scene: about the vertical axis through the middle of the casters.
 
 use super::FilmError;
 use crate::numbers;
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// A light nearer to the axis than this share of its distance does not move visibly.
 const ON_AXIS: f64 = 1e-6;
 
-/// Places of a light on its way round.
+/// The positions of a light on its way round.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightRound {
     scene: Scene,
@@ -19,12 +19,13 @@ pub struct LightRound {
 }
 
 impl LightRound {
-    /// Of a light of a scene that stands still, in `places` steps of the same angle; the first is where the light is.
+    /// Moves a light of a scene that stands still round in `places` steps of the same angle; the first is where the
+    /// light is.
     pub fn new(scene: Scene, light: usize, places: u32) -> Result<LightRound, FilmError> {
         let lights = scene.lights.len();
         let Some(rotated) = scene.lights.get(light) else { return Err(FilmError::NoLight { light, lights }) };
         let middle = middle(&scene.objects);
-        // Of a directional light only the direction counts.
+        // For a directional light only the direction counts.
         let way = rotated.position.truncate() - if rotated.is_directional() { DVec3::ZERO } else { middle };
         if way.with_y(0.0).length() <= ON_AXIS * way.length() {
             return Err(FilmError::OnAxis { light: numbers::light(light) });
@@ -32,12 +33,12 @@ impl LightRound {
         Ok(LightRound { scene, light, middle, places })
     }
 
-    /// How many places there are.
+    /// Returns how many positions there are.
     pub fn places(&self) -> u32 {
         self.places
     }
 
-    /// The scene with the light at a place, counted from 0.
+    /// Returns the scene with the light at a position, counted from 0.
     pub fn scene(&self, place: u32) -> Scene {
         let mut scene = self.scene.clone();
         let Some(light) = scene.lights.get_mut(self.light).filter(|_| place > 0) else { return scene };
@@ -49,7 +50,7 @@ impl LightRound {
     }
 }
 
-/// The middle of the box around what casts shadows and is no flat ground; around everything where nothing else is.
+/// Returns the middle of the box around the casters that are not flat ground; around everything where there are none.
 fn middle(objects: &[Object]) -> DVec3 {
     let boxes: Vec<(&Object, DVec3, DVec3)> = objects
         .iter()

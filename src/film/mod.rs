@@ -1,11 +1,11 @@
-//! Films of a frame: its passes one after the other, or a light that goes once round the scene. An animated PNG each,
-//! whose pictures are written as they are made.
+//! Films of a frame: its passes one after the other, or a light that moves once round the scene. Each is an animated
+//! PNG, whose pictures are written as they are made.
 //!
 //! ```text
-//! steps.rs        a pass: what it writes, over its name      light_round.rs   places of a light on its way round
+//! steps.rs        a pass: what it writes, over its name      light_round.rs   positions of a light on its way round
 //! ```
 //!
-//! Animated PNG and not GIF: it keeps colours and counts as they are, where GIF has 256 colours, and the PNG encoder
+//! Animated PNG and not GIF: it stores colours and counts as they are, where GIF has 256 colours, and the PNG encoder
 //! that pictures are written with writes it. A program that knows PNG alone shows the first picture.
 
 mod light_round;
@@ -28,11 +28,11 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How long a pass is shown unless said otherwise, milliseconds.
+/// How long a pass is shown by default, milliseconds.
 pub const STEP_MILLISECONDS: u16 = 1500;
-/// How long a place of the light is shown unless said otherwise, milliseconds.
+/// How long a position of the light is shown by default, milliseconds.
 pub const PLACE_MILLISECONDS: u16 = 100;
-/// Places of the light unless said otherwise.
+/// How many positions of the light there are by default.
 pub const PLACES: u32 = 24;
 
 /// Why there is no film.
@@ -46,19 +46,19 @@ pub enum FilmError {
         /// How many there are.
         lights: usize,
     },
-    /// A light that would go round itself.
+    /// The light is on the axis, so it would not move.
     #[error("{light} is above the middle of the scene, so going round it changes nothing: move it to a side")]
     OnAxis {
-        /// Its name.
+        /// The light's name.
         light: String,
     },
-    /// A frame without passes.
+    /// The frame has no passes.
     #[error("the frame has no passes, so there is nothing to show: capture it again")]
     NoSteps,
-    /// Words can't be drawn.
+    /// The text can't be drawn.
     #[error("a caption can't be drawn: {0}")]
     Caption(#[from] SvgError),
-    /// A picture of it can't be rendered.
+    /// A picture of the film can't be rendered.
     #[error(transparent)]
     Session(#[from] SessionError),
     /// The file can't be written.
@@ -66,7 +66,7 @@ pub enum FilmError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         source: AnimationError,
     },
 }
@@ -82,21 +82,21 @@ fn choice_of(lights: usize) -> String {
 /// What a film shows.
 #[derive(Debug, Clone)]
 pub enum FilmContent {
-    /// A frame, pass by pass; masks are beside it and left out.
+    /// A frame, pass by pass; masks are not part of it and left out.
     Steps(Arc<Capture>),
-    /// A light that goes round.
+    /// A light that moves round.
     LightRound {
-        /// Where it goes.
+        /// The light's positions.
         round: Box<LightRound>,
-        /// How each place is rendered.
+        /// How the scene is rendered at each.
         request: Box<CaptureRequest>,
-        /// How colours are kept.
+        /// How colours are stored.
         colors: ColorDepth,
     },
 }
 
 impl FilmContent {
-    /// How many pictures that takes.
+    /// Returns how many pictures the film has.
     pub fn pictures(&self) -> u32 {
         match self {
             FilmContent::Steps(capture) => step_numbers::count(capture) as u32,
@@ -104,7 +104,7 @@ impl FilmContent {
         }
     }
 
-    /// Width and height of each.
+    /// Returns width and height of each picture, pixels.
     pub fn size(&self) -> [u32; 2] {
         match self {
             FilmContent::Steps(capture) => steps::size(capture),
@@ -112,7 +112,7 @@ impl FilmContent {
         }
     }
 
-    /// How long each is shown unless said otherwise.
+    /// Returns how long each picture is shown by default, milliseconds.
     pub fn milliseconds(&self) -> u16 {
         match self {
             FilmContent::Steps(_) => STEP_MILLISECONDS,
@@ -122,7 +122,7 @@ impl FilmContent {
 
     fn colors(&self) -> ColorDepth {
         match self {
-            // A value has to be read off its colour.
+            // Values must be readable off the colours.
             FilmContent::Steps(_) => ColorDepth::Exact,
             FilmContent::LightRound { colors, .. } => *colors,
         }
@@ -147,19 +147,19 @@ impl FilmContent {
 /// Renders a scene.
 pub type FilmRenderer<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
 
-/// A film that is being made. One that is dropped before its end leaves nothing.
+/// A film that is being written. One that is dropped before its end leaves no file.
 #[derive(Debug)]
 pub struct Film {
     shows: FilmContent,
     next: u32,
-    // Closed before the file is taken away.
+    // Dropped, and so closed, before the file is deleted.
     animation: AnimatedPng<BufWriter<File>>,
     file: WholeFile,
     path: PathBuf,
 }
 
 impl Film {
-    /// Begins one, in place of what is at `path`.
+    /// Begins a film, which replaces the file at `path` once it is finished.
     pub fn begin(shows: FilmContent, path: &Path, milliseconds: u16) -> Result<Film, FilmError> {
         let format =
             AnimationFormat { size: shows.size(), pictures: shows.pictures(), milliseconds, colors: shows.colors() };
@@ -173,12 +173,12 @@ impl Film {
         Ok(Film { shows, next: 0, animation, file, path: path.to_owned() })
     }
 
-    /// How many pictures it will have.
+    /// Returns how many pictures the film will have.
     pub fn pictures(&self) -> u32 {
         self.shows.pictures()
     }
 
-    /// Makes the next picture; false where there is none left.
+    /// Writes the next picture; returns false where there is none left.
     pub fn shoot(&mut self, render: &mut FilmRenderer) -> Result<bool, FilmError> {
         if self.next == self.pictures() {
             return Ok(false);
@@ -189,7 +189,7 @@ impl Film {
         Ok(true)
     }
 
-    /// Puts the film in its place, and tells how many bytes it has.
+    /// Moves the finished film to its path, and returns its size in bytes.
     pub fn finish(self) -> Result<u64, FilmError> {
         let Film { animation, file, path, .. } = self;
         let failed = |source| FilmError::Write { path: path.clone(), source };

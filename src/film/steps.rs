@@ -1,4 +1,4 @@
-//! A pass of a film: what it writes, as its thumbnail has it, over a bar with its number and name.
+//! A picture of a pass in a film: what the pass writes, as in its thumbnail, over a bar with its number and name.
 
 use crate::capture::Capture;
 use crate::numbers;
@@ -8,20 +8,20 @@ use crate::picture::svg::{self, SvgError};
 use crate::reading::steps;
 use crate::reading::written::WrittenAspects;
 
-/// Pixels of width for one of the bar's height, and how high it is at least and at most.
+/// The bar's height is the picture's width divided by this; the least and the largest height, pixels.
 const WIDTH_A_HEIGHT: u32 = 24;
 const HEIGHTS: [u32; 2] = [20, 56];
-/// Size of the letters, and room beside them, in heights of the bar.
+/// Size of the letters, and space beside them, as shares of the bar's height.
 const LETTERS: f32 = 0.54;
 const BESIDE: f32 = 0.4;
-/// Where letters stand, in heights of the bar from its top.
+/// Baseline of the letters, as a share of the bar's height from its top.
 const BASELINE: f32 = 0.68;
 const TEXT: Rgb = [0xd9, 0xdc, 0xe3];
 const DIM: Rgb = [0x8b, 0x92, 0xa1];
-/// Shown of a pass that writes nothing.
+/// The text for a pass that writes nothing.
 const NOTHING: &str = "writes nothing";
 
-/// Width and height of every picture of a frame's passes: the bar is below.
+/// Returns width and height of every picture of a frame's passes, with the bar at the bottom.
 pub fn size(capture: &Capture) -> [u32; 2] {
     let [width, height] = capture.size;
     [width, height + bar_height(width)]
@@ -31,7 +31,7 @@ fn bar_height(width: u32) -> u32 {
     (width / WIDTH_A_HEIGHT).clamp(HEIGHTS[0], HEIGHTS[1])
 }
 
-/// What a pass writes, a pixel a texel; maps as large as fits in.
+/// Returns the picture of a pass, one pixel for each texel; maps as large as they fit.
 pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError> {
     let mut all = Picture::filled(size(capture), colors::BACKGROUND);
     let written = WrittenAspects::by_step(capture, index);
@@ -47,21 +47,21 @@ pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError
     Ok(all)
 }
 
-/// Words at the left, as many as there is room for, and dim ones at the right, which go where there is no room.
+/// Draws words at the left, as many as fit, and dim ones at the right, which are left out where they do not fit.
 fn bar(width: u32, left: &str, right: &str) -> Result<Picture, SvgError> {
     let height = bar_height(width);
     let beside = height as f32 * BESIDE;
     let inner = width as f32 - 2.0 * beside;
     let drawn_width = |words: &str| svg::width(&document(width, height, &text(words, 0.0, height, TEXT)));
     let right_width = drawn_width(right)?;
-    // What a pass is called is more than what it writes.
+    // A pass's name is more important than what it writes.
     let right = if right_width + beside > inner / 2.0 { "" } else { right };
     let left_width = if right.is_empty() { inner } else { inner - right_width - beside };
     let letters: Vec<char> = left.chars().collect();
     let (mut shown, mut words) = (letters.len(), left.to_owned());
     let mut drawn = drawn_width(&words)?;
     while drawn > left_width && shown > 0 {
-        // As many as the width has space for; at least one goes.
+        // As many as the width has space for; at least one is removed.
         shown = ((shown as f32 * left_width / drawn) as usize).min(shown - 1);
         words = letters[..shown].iter().collect::<String>() + "…";
         drawn = drawn_width(&words)?;
@@ -93,7 +93,7 @@ fn text(words: &str, left: f32, height: u32, color: Rgb) -> String {
 mod tests {
     use super::*;
 
-    /// Columns that have ink, from the first to the last; `None` without any.
+    /// Returns the first and the last column that is not blank; `None` without any.
     fn inked(bar: &Picture) -> Option<[u32; 2]> {
         let [width, height] = bar.size();
         let has_ink = |x: &u32| (0..height).any(|y| bar.at([*x, y]) != Some(colors::BACKGROUND));

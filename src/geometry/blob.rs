@@ -5,7 +5,7 @@ use std::fmt::{self, Debug, Formatter};
 use std::hash::{BuildHasher, Hasher};
 use std::sync::{Arc, LazyLock};
 
-/// Shared data with its hash: the executor uploads equal data once and keeps it while it is used.
+/// Shared data with its hash: the executor uploads equal data once and caches it while it is used.
 #[derive(Debug, Clone)]
 pub struct Blob<T> {
     data: BlobData<T>,
@@ -60,12 +60,12 @@ impl<T: bytemuck::Pod> Blob<T> {
         self.len == 0
     }
 
-    /// The same as bytes.
+    /// Returns the values as bytes.
     pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self.data())
     }
 
-    /// Of the bytes. Stable within a process only.
+    /// Returns a hash of the bytes. It is stable within a process only.
     pub fn hash(&self) -> u64 {
         self.hash
     }

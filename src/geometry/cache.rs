@@ -13,17 +13,17 @@ use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Triangles kept at once (about 60 bytes each, and as much again for each pose); a scene of more starts over with
-/// each mesh.
+/// Most triangles that are cached at once (about 60 bytes each, and as much again for each pose); a scene of more
+/// starts over with each mesh.
 const MOST_TRIANGLES_CACHED: usize = 2_000_000;
 
 /// Places of meshes that something short is known about.
 const MOST_PLACES_CACHED: usize = 16_384;
 
-/// Triangles of surfaces kept at once, of some 80 bytes each; beyond, they are made anew for each plan.
+/// Most triangles of surfaces that are cached at once, some 80 bytes each; beyond, they are made anew for each plan.
 const MOST_SURFACES_CACHED: usize = 500_000;
 
-/// Flattened triangles kept at once, of 96 bytes each; beyond, they are made anew for each plan.
+/// Most flattened triangles that are cached at once, 96 bytes each; beyond, they are made anew for each plan.
 const MOST_FLATTENED_CACHED: usize = 500_000;
 
 /// What was found out about the meshes planned so far. Planning with a full or an empty cache
@@ -61,14 +61,14 @@ pub struct DrawnSurface {
     pub vertices: Blob<[f32; 4]>,
     /// The mesh's triangles.
     pub indices: Blob<u32>,
-    /// Of each corner.
+    /// The normal of each corner.
     pub normals: Blob<[f32; 4]>,
 }
 
 /// How a volume's silhouette is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SilhouetteBy {
-    /// By the mesh's edge list, built once.
+    /// From the mesh's edge list, built once.
     Adjacency,
     /// By searching a list for every edge's reverse, anew for each light.
     Search,
@@ -88,15 +88,16 @@ pub struct Caster<'a> {
 /// A volume that is asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct VolumeRequest<'a> {
-    /// Whose.
+    /// The caster.
     pub caster: Caster<'a>,
-    /// It is drawn too, so its sides may hug what is seen.
+    /// The caster is drawn too, so its sides may graze visible surfaces.
     pub is_drawn: bool,
     /// Homogeneous position.
     pub light: DVec4,
     /// Which of its triangles cast.
     pub casters: Casters,
-    /// Of each triangle: it need not cast, since what it darkens is dark without it. Empty: none.
+    /// For each triangle, whether it does not have to cast, since what it darkens is dark without it; empty where none
+    /// is.
     pub hidden: &'a [bool],
     /// How the silhouette is found.
     pub by: SilhouetteBy,
@@ -144,8 +145,7 @@ impl GeometryCache {
         planes
     }
 
-    /// Writes the indices of a volume into `out`: facings, silhouette and [`write_indices`] in
-    /// buffers that are kept.
+    /// Writes the indices of a volume into `out`: facings, silhouette and [`write_indices`], in cached buffers.
     pub fn volume_indices(&mut self, of: &VolumeRequest, out: &mut Vec<u32>) -> VolumeParts {
         let VolumeRequest { caster, light, .. } = *of;
         let triangles = caster.mesh.triangles();
@@ -180,8 +180,8 @@ impl GeometryCache {
         self.extruded.get_or_make(key, || ExtrudedVolume::new(world, mesh.triangles(), &edges, origin, form))
     }
 
-    /// What of a mesh is drawn alike under any light, relative to `origin` and with this shading of each group: made again
-    /// only if one of these changes, or where too much is kept.
+    /// Returns what of a mesh is drawn alike under any light, relative to `origin` and with this shading of each group.
+    /// It is made again only if one of these changes, or where too much is cached.
     pub fn surface(
         &mut self,
         of: Caster,
@@ -203,7 +203,7 @@ impl GeometryCache {
         self.topologies.entry(mesh.content_hash()).or_insert_with(build).clone()
     }
 
-    /// The same, of its edges alone.
+    /// Returns how the triangles of a mesh are connected by their edges.
     pub fn connectivity(&mut self, mesh: &Mesh) -> Arc<Connectivity> {
         let edges = self.edges(mesh);
         let build = || Arc::new(Connectivity::new(mesh, &edges));
@@ -260,7 +260,7 @@ impl GeometryCache {
     }
 }
 
-/// Adds what was found out about a mesh at a place, which takes long to find out and little room.
+/// Adds a result about a mesh at a pose that takes long to compute and little memory.
 fn insert_among<T>(known: &mut HashMap<(u64, PoseBits), T>, key: (u64, PoseBits), found: T) {
     if known.len() >= MOST_PLACES_CACHED {
         known.clear();
@@ -299,7 +299,7 @@ mod tests {
         assert_eq!([ask(&what, true), ask(&what, false), ask(&what, true)], [1, 1, 1]);
         let moved = FlattenedCaster { light: DVec4::new(0.0, 4.0, 1e-12, 1.0), ..what };
         assert_eq!([ask(&moved, true), ask(&FlattenedCaster { own: Some(0), ..what }, false)], [2, 3]);
-        // Not asked for by one plan, it is forgotten by the next.
+        // A result that one plan does not ask for is dropped by the next.
         assert_eq!([ask(&moved, true), ask(&what, true)], [3, 4]);
     }
 }

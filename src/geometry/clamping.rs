@@ -1,12 +1,12 @@
-//! Where a volume may end: beyond all that its shadow is looked at (Lloyd, Wendt, Govindaraju and Manocha 2004, "CC
-//! Shadow Volumes", clamp volumes so).
+//! Where a volume may end: beyond everything that its shadow can be seen on (Lloyd, Wendt, Govindaraju and Manocha
+//! 2004, "CC Shadow Volumes", clamp volumes so).
 //!
-//! A count in front of surfaces runs along straight lines from the eye to them. A box around both holds all of these
-//! lines, so of what lies beyond one of its sides nothing is counted; and once a light's rays have carried all of a
-//! caster beyond that side, they never come back. So they are carried onto a plane a little outside of it.
+//! A count in front of surfaces runs along straight lines from the eye to them. A box around both contains all of these
+//! lines, so nothing beyond one of its sides is counted; and once a light's rays have carried all of a caster beyond
+//! that side, they never come back. So they are carried onto a plane a little outside of it.
 //!
 //! Casters that touch end on one plane, or not at all: where they share an edge, their volumes share a side's edge, and
-//! two that end in different places round apart.
+//! two that end in different places round differently.
 
 use super::connectivity::DisjointSets;
 use super::relative;
@@ -34,8 +34,9 @@ pub struct ClampedEnd {
 }
 
 impl ClampedEnd {
-    /// The nearest end of the volumes of `casters` under a `light`, homogeneous, that is outside of `looked_at`, which
-    /// holds all surfaces that their shadows may fall on, and the eye; world space. `None` where rays leave by no side.
+    /// Returns the nearest end of the volumes of `casters` under a homogeneous `light` that is outside of `looked_at`,
+    /// a box around the eye and all surfaces that their shadows may fall on; world space. `None` where rays leave the
+    /// box by no common side.
     pub fn beyond(looked_at: AxisBox, casters: &[AxisBox], light: DVec4) -> Option<ClampedEnd> {
         let size = casters.iter().fold(looked_at, |all, caster| all.joined(*caster)).diagonal();
         let corners: Vec<DVec3> = casters.iter().flat_map(AxisBox::corners).collect();
@@ -234,7 +235,7 @@ mod tests {
         // Beside each other with no vertex in common, and one in the other.
         assert_eq!(groups(&[[0.0, 0.0], [1.0, 0.5]], DVec3::ZERO), [[0], [1]]);
         assert_eq!(groups(&[[0.0, 0.0], [0.5, 0.5]], DVec3::ZERO), [[0], [1]]);
-        // What single precision can't tell apart is drawn at one place.
+        // What single precision can't distinguish is drawn at one place.
         let near = [[0.0, 0.0], [1.0 + 1e-9, 0.0]];
         assert_eq!(groups(&near, DVec3::splat(90.0)), [[0, 1]]);
         assert_eq!(groups(&near, DVec3::new(1.0, 0.0, 0.0)), [[0], [1]]);

@@ -1,13 +1,13 @@
-//! How the triangles of a mesh hang together by their edges: what is open, torn or turned, and which parts there are.
+//! How the triangles of a mesh are connected by their edges: what is open, torn or flipped, and which parts there are.
 //!
-//! All that is asked before a light's shadow is made: whether simpler ways would do. What a person wants to know of a
-//! model besides is [`Topology`](super::Topology).
+//! This is all that is asked before a light's shadow is made: whether simpler ways would do. What a person wants to
+//! know of a model besides is [`Topology`](super::Topology).
 
 use super::EdgeList;
 use crate::scene::Mesh;
 use glam::DVec3;
 
-/// Places kept of each kind.
+/// Most places that are listed of each kind.
 pub(super) const MOST_PLACES: usize = 64;
 
 /// How often something was found, and where.
@@ -39,12 +39,12 @@ pub struct Connectivity {
     pub non_manifold_edges: FoundPlaces,
     /// Edges of two triangles that both run the same way along it.
     pub inconsistent_edges: FoundPlaces,
-    /// Of each triangle, numbered in the order of their first triangles.
+    /// For each triangle, the number of its part, in the order of their first triangles.
     component_of: Vec<u32>,
 }
 
 impl Connectivity {
-    /// Of a mesh and its edges.
+    /// Examines a mesh and its edges.
     pub fn new(mesh: &Mesh, edges: &EdgeList) -> Connectivity {
         let positions = mesh.positions();
         let mut connectivity = Connectivity::default();
@@ -112,7 +112,7 @@ impl DisjointSets {
         self.parent[one.max(other)] = one.min(other) as u32;
     }
 
-    /// By member the number of its set, and how many sets there are.
+    /// Returns the number of each member's set, and how many sets there are.
     pub(super) fn numbered(mut self) -> (Vec<u32>, usize) {
         let mut numbers = Vec::with_capacity(self.parent.len());
         let mut count = 0;

@@ -1,14 +1,13 @@
 //! The edges of a mesh, each with the triangles that use it.
 //!
-//! Half-edges are counted into one bucket a lower vertex, then each small bucket is sorted by its
-//! upper vertex: linear in the number of triangles, and the same list whatever the order in which
-//! triangles name their edges. Any number of triangles may share an edge. Built once a mesh; a
-//! new light only sums signs over it.
+//! Half-edges are counted into one bucket for each lower vertex, then each small bucket is sorted by its upper vertex:
+//! linear in the number of triangles, and the same list whatever the order in which triangles name their edges. Any
+//! number of triangles may share an edge. Built once for a mesh; a new light only sums signs over it.
 //!
-//! Nearly every edge has one triangle or two: those sit beside the edge, so that a new light reads
-//! 8 bytes an edge. The rest ("fans") are kept apart. A new light looks closely only where
-//! triangles face different ways: of every 32 edges it is known which runs of triangles they touch,
-//! and where all of those face alike and each edge is run once either way, nothing is unbalanced.
+//! Nearly every edge has one triangle or two: those are stored beside the edge, so that a new light reads 8 bytes an
+//! edge. Edges of more triangles are stored apart. A new light looks closely only where triangles face different ways:
+//! for every 32 edges it is known which runs of triangles they touch, and where all of those face alike and each edge
+//! is run once either way, nothing is unbalanced.
 
 use super::facing::{Facings, MIXED, RUN};
 use std::ops::Range;
@@ -28,7 +27,7 @@ pub struct EdgeList {
     edges: Vec<Edge>,
     /// The incidents of each edge; of a fan, two that stand for no triangle.
     pairs: Vec<[Incident; 2]>,
-    /// In order of their edges.
+    /// Edges of more than two triangles, in order.
     fans: Vec<NonManifoldEdge>,
     fan_incidents: Vec<Incident>,
     none: Incident,
@@ -110,7 +109,7 @@ impl EdgeList {
         [self.none; 2]
     }
 
-    /// In order of (low, high).
+    /// Returns the edges in order of (low, high).
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }

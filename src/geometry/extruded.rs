@@ -1,10 +1,10 @@
 //! Vertices that a vertex shader carries away from a light.
 //!
-//! Each belongs to one triangle and knows its plane: where that faces the light the vertex stays, else it goes to the
-//! far end (Brennan 2002, "Shadow Volume Extrusion using a Vertex Shader"). So the light may move and no vertex is
-//! written anew. What the shader makes of them, [`Extruded::vertices`] makes on the CPU with the same steps in single
-//! precision, for those who ask what was drawn. (A GPU that multiplies and adds in one step may tell a plane the other way
-//! that the light is in to the last bits; llvmpipe does not.)
+//! Each belongs to one triangle and knows its plane: where that faces the light the vertex stays, otherwise it goes to
+//! the far end (Brennan 2002, "Shadow Volume Extrusion using a Vertex Shader"). So the light may move and no vertex is
+//! written anew. [`Extruded::vertices`] computes on the CPU what the shader makes of them, with the same steps in
+//! single precision, for those who ask what was drawn. (A GPU that multiplies and adds in one step may decide
+//! differently about a plane that contains the light to the last bits; llvmpipe does not.)
 
 use super::{Blob, Casters, EdgeList, relative};
 use bytemuck::{Pod, Zeroable};
@@ -18,8 +18,8 @@ use std::ops::Range;
 pub struct ExtrudedCorner {
     /// Homogeneous with `w = 1`, relative to the origin of the pass's view.
     pub near: [f32; 4],
-    /// Of its triangle, in the same space: the unit normal and what is added to the product with it. Zeros carry it
-    /// whatever the light.
+    /// The plane of its triangle, in the same space: the unit normal and what is added to the product with it. Zeros
+    /// carry the vertex whatever the light.
     pub plane: [f32; 4],
 }
 
@@ -83,13 +83,13 @@ impl Extruded {
     }
 }
 
-/// Of which triangles the volume is made that the shader carries.
+/// Of which triangles the volume consists that the shader carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ExtrudedForm {
     /// Each triangle once, and a quad between the two of each edge: of a mesh that is closed and consistently wound,
     /// of which the triangles that face the light cast.
     Closed,
-    /// Each triangle twice, its back turned on its front, and a quad between the two at each of its edges: of any mesh.
+    /// Each triangle twice, back to back, and a quad between the two at each of its edges: for any mesh.
     Prisms(Casters),
 }
 
@@ -104,12 +104,12 @@ pub struct ExtrudedVolume {
     pub sides: Range<usize>,
     /// The mesh's triangles in its own order: front faces outwards.
     pub caps: Range<usize>,
-    /// The same once more, back faces outwards; none of a closed mesh.
+    /// The caps once more with back faces outwards; empty for a closed mesh.
     pub flipped_caps: Range<usize>,
 }
 
 impl ExtrudedVolume {
-    /// Of a mesh's `triangles` over `world`, with their `edges`; corners are relative to `origin`.
+    /// Makes the volume of a mesh's `triangles` over `world`, with their `edges`; corners are relative to `origin`.
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],
@@ -167,7 +167,7 @@ fn quad([p, q]: [u32; 2], [p_far, q_far]: [u32; 2], out: &mut Vec<u32>) {
     out.extend([q, p, p_far, q, p_far, q_far]);
 }
 
-/// At each edge between the corners of its two triangles.
+/// Adds, at each edge, a quad between the corners of its two triangles.
 fn between_neighbours(triangles: &[[u32; 3]], edges: &EdgeList, out: &mut Vec<u32>) {
     for (index, edge) in edges.edges().iter().enumerate() {
         let corner = |triangle: usize, vertex: u32| {
@@ -185,7 +185,7 @@ fn between_neighbours(triangles: &[[u32; 3]], edges: &EdgeList, out: &mut Vec<u3
     }
 }
 
-/// At each edge of a triangle between its two copies.
+/// Adds, at each edge of a triangle, a quad between its two copies.
 fn around_prism(triangle: usize, out: &mut Vec<u32>) {
     let first = triangle as u32 * 6;
     for (p, q) in [(0, 1), (1, 2), (2, 0)] {
@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(at(0.0).corners.hash(), at(1.0).corners.hash());
     }
 
-    /// Carried triangles counter-clockwise seen from outside: sides, caps, and turned caps turned round.
+    /// Returns the carried triangles counter-clockwise seen from outside: sides, caps, and flipped caps reversed.
     fn carried(volume: &ExtrudedVolume, carry: Carry) -> Vec<[[u32; 4]; 3]> {
         let extruded = Extruded { corners: volume.corners.clone(), carry };
         let vertices = extruded.vertices();
@@ -268,7 +268,7 @@ mod tests {
         }
     }
 
-    /// Away from where single precision can't tell, what stays is what faces the light, or of backs what faces away.
+    /// Away from where single precision can't decide, what stays is what faces the light, or of backs what faces away.
     #[test]
     fn what_stays_is_what_casts() {
         let ball = shapes::sphere(1.0, 12, 8).expect("a ball");

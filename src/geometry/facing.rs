@@ -1,11 +1,11 @@
 //! Which way every triangle faces a light: quick where it is clear, exact where it is not.
 //!
-//! Each triangle's plane is kept once a caster, in `f32`, scaled so that one bound on rounding holds
-//! for all of them. For a new light a plane is evaluated in four multiplications; outside the bound
-//! the sign is certain, inside it (for a 70 000-triangle mesh: hardly one triangle) the exact test
-//! decides. Of every 16 triangles the extremes of their planes are kept too: neighbours mostly face
-//! the same way, and then the extremes tell it for all of them at once. So the result equals the
-//! exact sign on every triangle, for the reading of 2 bytes a triangle, or 18 near the silhouette.
+//! Each triangle's plane is stored once for a caster, in `f32`, scaled so that one bound on rounding holds for all of
+//! them. For a new light a plane is evaluated in four multiplications; outside the bound the sign is certain, inside it
+//! (for a 70 000-triangle mesh: hardly one triangle) the exact test decides. For every 16 triangles the extremes of
+//! their planes are stored too: neighbours mostly face the same way, and then the extremes decide for all of them at
+//! once. So the result equals the exact sign on every triangle, for the reading of 2 bytes a triangle, or 18 near the
+//! silhouette.
 //!
 //! ```text
 //! plane      n = N / s, d = N·(o − a) / (s·r)       N the normal of triangle a b c, s its largest
@@ -20,12 +20,12 @@ use rayon::prelude::*;
 /// Which triangles cast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Casters {
-    /// Every triangle, turned towards the light: right for any triangle soup.
+    /// Every triangle, oriented towards the light: right for any triangle soup.
     All,
     /// Those that face the light, as textbooks have it: right only for a closed mesh with its
     /// outside out and the light outside it.
     LightFacing,
-    /// Those that face away from the light, turned: right under the same conditions.
+    /// Those that face away from the light, flipped: right under the same conditions.
     LightBackFacing,
 }
 
@@ -33,7 +33,7 @@ pub enum Casters {
 const LANES: usize = 64;
 /// Runs of such a block.
 const RUNS: usize = LANES / RUN;
-/// Triangles whose common facing is noted, so that what hangs on them can be passed over.
+/// Number of triangles whose common facing is stored, so that what depends on them can be passed over.
 pub(super) const RUN: usize = 16;
 /// A run of triangles that do not all face the same way.
 pub(super) const MIXED: i8 = 2;
@@ -79,7 +79,7 @@ pub struct Facings {
 }
 
 impl Facings {
-    /// From signs known otherwise, such as the exact ones.
+    /// Returns facings from signs that are known already, such as the exact ones.
     pub fn from_signs(signs: impl IntoIterator<Item = Sign>) -> Facings {
         let mut facings = Facings::default();
         facings.signs.extend(signs.into_iter().map(|sign| sign.value() as i8));
@@ -100,7 +100,7 @@ impl Facings {
         &self.signs[..self.signs.len().saturating_sub(1)]
     }
 
-    /// The same with a last 0 that stands for a missing triangle.
+    /// Returns the signs with a last 0 that stands for a missing triangle.
     pub(super) fn signs_and_none(&self) -> &[i8] {
         &self.signs
     }
@@ -133,7 +133,7 @@ impl Facings {
         }
     }
 
-    /// So do those that `left_out` says, one a triangle; none, if it is empty.
+    /// Sets the facing of the triangles that `left_out` says, one value a triangle, to 0; of none, if it is empty.
     pub fn leave_out(&mut self, left_out: &[bool]) {
         if left_out.is_empty() {
             return;
@@ -156,7 +156,7 @@ fn sign_of_run(signs: &[i8]) -> i8 {
 }
 
 impl CasterPlanes {
-    /// Of `triangles` over `world` positions.
+    /// Computes the planes of `triangles` over `world` positions.
     pub fn new(world: &[DVec3], triangles: &[[u32; 3]]) -> CasterPlanes {
         let Some(first) = world.first() else { return CasterPlanes::default() };
         let (low, high) = world.iter().fold((*first, *first), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -179,8 +179,8 @@ impl CasterPlanes {
         CasterPlanes { blocks, extremes, middle, reach }
     }
 
-    /// The exact facing of every triangle, into buffers that are kept. `world` and `triangles` are
-    /// those that the planes were made of.
+    /// Computes the exact facing of every triangle, into buffers that are reused. `world` and `triangles` are those
+    /// that the planes were made of.
     pub fn facings(&self, world: &[DVec3], triangles: &[[u32; 3]], light: DVec4, out: &mut Facings) {
         let view = PlaneLight::new(self, light);
         if out.signs.len() != triangles.len() + 1 {
@@ -255,7 +255,7 @@ impl PlaneLight {
         PlaneLight { light: relative.to_array().map(|part| part as f32), w: f32::from(u8::from(light.w != 0.0)), bound }
     }
 
-    /// The sign of each run, or [`MIXED`] where its planes' extremes do not tell.
+    /// Returns the sign of each run, or [`MIXED`] where its planes' extremes do not decide.
     fn runs(&self, extremes: &PlaneExtremes) -> [i8; RUNS] {
         let mut signs = [MIXED; RUNS];
         let light = [self.light[0], self.light[1], self.light[2], self.w];
@@ -299,7 +299,7 @@ impl PlaneLight {
 }
 
 impl PlaneExtremes {
-    /// Of the first `count` planes of a block.
+    /// Returns the extremes of the first `count` planes of a block.
     fn of(block: &PlaneBlock, count: usize) -> PlaneExtremes {
         let mut extremes = PlaneExtremes { low: [[f32::NAN; RUNS]; 4], high: [[f32::NAN; RUNS]; 4] };
         let [x, y, z] = &block.normal;

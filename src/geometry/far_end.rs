@@ -1,13 +1,12 @@
 //! What closes a volume at infinity.
 //!
 //! Carried there, the casting triangles become cones of directions from the light. Near the light they open to
-//! half-spaces, and single precision turns such a one inside out. But all that counts is how often a
-//! surface at infinity winds around each direction, and two surfaces with one border differ by whole
-//! spheres alone. So the border, the far edges of the sides, is joined to one direction that the light
-//! looks along: a fan, whose triangles are few and well-shaped. Then as many spheres are added, as octahedra,
-//! as it lacks: none where a side of the caster's bounding box has the light outside and the fan's
-//! direction goes in through it, for then neither surface holds the direction back. Elsewhere both
-//! are counted along one direction, by exact signs.
+//! half-spaces, and single precision turns such a cone inside out. But all that counts is how often a surface at
+//! infinity winds around each direction, and two surfaces with one border differ by whole spheres alone. So the border,
+//! the far edges of the sides, is joined to one direction that the light looks along: a fan, whose triangles are few
+//! and well-shaped. Then as many spheres are added, as octahedra, as it lacks: none where a side of the caster's
+//! bounding box has the light outside and the fan's direction goes in through it, for then neither surface contains the
+//! opposite direction. Elsewhere both are counted along one direction, by exact signs.
 
 use super::{Facings, SilhouetteEdge};
 use crate::math::{AxisBox, Sign, side_of_triangle};
@@ -15,7 +14,7 @@ use glam::{DVec3, DVec4};
 
 /// A fan's direction goes in through a side of the bounding box at this sine at least.
 const STEEP: f64 = 0.25;
-/// Directions to count along, none of them special; the next is taken where a cone's border holds one.
+/// Directions to count along, none of them special; the next is taken where one lies on a cone's border.
 const PROBES: [DVec3; 4] = [
     DVec3::new(0.2719, -0.8461, 0.4583),
     DVec3::new(-0.7713, 0.3329, 0.5424),
@@ -38,8 +37,8 @@ pub struct CapFan {
 }
 
 impl CapFan {
-    /// Of a caster and a point light, with the silhouette of its casting triangles; `None` where no direction
-    /// to count along was found.
+    /// Makes the fan of a caster and a point light, with the silhouette of its casting triangles; `None` where no
+    /// direction to count along was found.
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],
@@ -86,7 +85,7 @@ impl CapFan {
         std::iter::once(self.apex).chain(axes.iter().copied()).map(|direction| direction.extend(0.0))
     }
 
-    /// The triangles of its spheres, whose first corner has index `first`.
+    /// Returns the triangles of its spheres, whose first corner has index `first`.
     pub fn sphere_indices(&self, first: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
         let is_flipped = self.spheres < 0;
         let side = move |[a, b, c]: [u32; 3]| {
@@ -107,8 +106,8 @@ fn into_box(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
     (outside > 0.0).then_some(if is_steep { to_middle } else { -outward })
 }
 
-/// 1 where the cone of a triangle from the light holds a direction, −1 where it is turned, else 0; `None` where
-/// the direction is on its border.
+/// Returns 1 where the cone of a triangle from the light contains a direction, −1 where it is flipped, otherwise 0;
+/// `None` where the direction is on its border.
 fn held(light: DVec3, [a, b, c]: [DVec3; 3], direction: DVec3) -> Option<i32> {
     let turn = side_of_triangle([light, a, b], c.extend(1.0));
     let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| side_of_triangle([light, p, q], direction.extend(0.0)));

@@ -1,8 +1,8 @@
-//! Which sides hug the surface that throws them.
+//! Which sides graze the surface that casts them.
 //!
-//! Where the light grazes a triangle, the sides of its edges run so close behind it that single
-//! precision can no longer tell which of them is in front. Such sides are drawn a little behind their
-//! place; others are not, since that moves the edges of shadows on whatever else the light grazes.
+//! Where the light grazes a triangle, the sides of its edges run so close behind it that single precision can no longer
+//! decide which of them is in front. Such sides are drawn a little behind their place; others are not, since that moves
+//! the edges of shadows on whatever else the light grazes.
 
 use super::{Caster, Edge, EdgeList, SilhouetteEdge};
 use glam::DVec4;
@@ -14,7 +14,8 @@ const GRAZING: f64 = 0.002;
 /// The sine below which rounding to single precision may turn a triangle to the light's other side.
 const EDGE_ON: f64 = 1e-6;
 
-/// Puts the edges whose sides hug a triangle of `caster` last, the order kept otherwise; how many they are.
+/// Moves the edges whose sides graze a triangle of `caster` to the end, with the order unchanged otherwise; returns how
+/// many they are.
 pub fn move_grazing_last(
     silhouette: &mut [SilhouetteEdge],
     caster: Caster,
@@ -39,7 +40,7 @@ pub fn move_grazing_last(
     silhouette.len() - silhouette.partition_point(|edge| !grazes(edge.edge))
 }
 
-/// Does the light lie so nearly in the plane of some triangle that single precision can't tell its side?
+/// Returns whether the light lies so nearly in the plane of some triangle that single precision can't decide its side.
 pub fn has_edge_on(caster: Caster, light: DVec4) -> bool {
     caster.mesh.triangles().iter().any(|corners| is_grazed(caster, *corners, light, EDGE_ON))
 }

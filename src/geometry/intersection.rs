@@ -1,9 +1,9 @@
-//! Does a mesh meet itself? Decided by exact signs.
+//! Whether a mesh intersects itself, decided by exact signs.
 //!
-//! A hierarchy of boxes, held against itself, gives the pairs of triangles that may touch. Triangles that share an edge or
-//! a corner touch there, and may nowhere else; others may not at all. Every answer is a sign of
-//! an orientation determinant, in space or, for triangles in one plane, along the axis that shows
-//! them best. Whatever is left open counts as a meeting: the answer "no" is a proof.
+//! A hierarchy of boxes, traversed against itself, gives the pairs of triangles that may touch. Triangles that share an
+//! edge or a corner touch there, and may nowhere else; others may not at all. Every answer is a sign of an orientation
+//! determinant, in space or, for triangles in one plane, along the axis that shows them best. Whatever is left open
+//! counts as an intersection: the answer "no" is a proof.
 
 use crate::math::{Sign, side_of_line, side_of_triangle};
 use glam::{DVec2, DVec3, Vec3A};
@@ -15,7 +15,7 @@ use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::time::Duration;
 
-/// Two triangles that meet elsewhere than in what they share, or are not proven not to.
+/// Returns two triangles that intersect elsewhere than in what they share, or are not proven not to.
 pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
     if triangles.is_empty() {
         return None;
@@ -28,25 +28,25 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
     if search.finds_any() { search.first() } else { None }
 }
 
-/// Looks for triangles that meet among those whose boxes overlap.
+/// Looks for triangles that intersect among those whose boxes overlap.
 struct IntersectionSearch<'a> {
     world: &'a [DVec3],
     triangles: &'a [[u32; 3]],
-    /// Of each triangle, as is the next.
+    /// The box of each triangle.
     boxes: &'a [Aabb],
     has_area: &'a [bool],
     hierarchy: &'a Bvh2,
 }
 
-/// Two nodes of the hierarchy: which triangles below the one meet which below the other?
+/// Two nodes of the hierarchy: which triangles below the one intersect which below the other?
 type NodePair = [u32; 2];
 
 impl IntersectionSearch<'_> {
     /// Pairs that are shared among threads, about.
     const SHARED: usize = 1024;
 
-    /// The hierarchy is held against itself: no way down is gone twice, as it is where each triangle asks for those
-    /// around it.
+    /// Traverses the hierarchy against itself: no pair is visited twice, as it would be if each triangle asked for
+    /// those around it.
     fn finds_any(&self) -> bool {
         let mut pairs: Vec<NodePair> = vec![[0, 0]];
         while !pairs.is_empty() && pairs.len() < Self::SHARED {
@@ -67,7 +67,7 @@ impl IntersectionSearch<'_> {
         })
     }
 
-    /// Do triangles of two leaves meet? Of other nodes, the pairs below are added whose boxes overlap.
+    /// Returns whether triangles of two leaves intersect. For other nodes, it adds the pairs below whose boxes overlap.
     fn look(&self, [one, other]: NodePair, below: &mut Vec<NodePair>) -> bool {
         let node = |index: u32| &self.hierarchy.nodes[index as usize];
         let overlap = |pair: &NodePair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
@@ -97,7 +97,7 @@ impl IntersectionSearch<'_> {
         &self.hierarchy.primitive_indices[first..first + node.prim_count as usize]
     }
 
-    /// Does a triangle of one leaf meet one of another, or of the same?
+    /// Returns whether a triangle of one leaf intersects one of another, or of the same.
     fn meet_in(&self, leaf: &[u32], other: &[u32]) -> bool {
         let same = std::ptr::eq(leaf, other);
         leaf.iter().enumerate().any(|(at, one)| {
@@ -111,7 +111,7 @@ impl IntersectionSearch<'_> {
             && meet(self.world, [one, other].map(|triangle| (self.triangles[triangle], self.has_area[triangle])))
     }
 
-    /// Of all that meet, the first in the mesh's order with some later one: the same in every run.
+    /// Returns the first triangle in the mesh's order that intersects some later one: the same in every run.
     fn first(&self) -> Option<[usize; 2]> {
         let with = |one: usize| {
             let mut met = None;
@@ -126,13 +126,14 @@ impl IntersectionSearch<'_> {
     }
 }
 
-/// In `f32`, rounded outwards.
+/// Returns the box of a triangle in `f32`, rounded outwards.
 fn outer_box([a, b, c]: [DVec3; 3]) -> Aabb {
     let round = |p: DVec3, towards: fn(f32) -> f32| Vec3A::from_array(p.to_array().map(|x| towards(x as f32)));
     Aabb { min: round(a.min(b).min(c), f32::next_down), max: round(a.max(b).max(c), f32::next_up) }
 }
 
-/// Do two triangles, each of which may have an area, meet in more than the corners and edges that they share?
+/// Returns whether two triangles, each of which may have an area, intersect in more than the corners and edges that
+/// they share.
 fn meet(world: &[DVec3], [(one, one_has_area), (other, other_has_area)]: [([u32; 3], bool); 2]) -> bool {
     let have_area = one_has_area && other_has_area;
     let at = |corners: [u32; 3]| corners.map(|vertex| world[vertex as usize]);
@@ -208,8 +209,8 @@ fn flat(point: DVec3, axis: usize) -> DVec2 {
     DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
 }
 
-/// Triangles (from, to, tip) and (from, to, other tip): they meet beyond the edge only folded onto
-/// each other.
+/// Returns whether triangles (from, to, tip) and (from, to, other tip) intersect beyond the edge: only where they are
+/// folded onto each other.
 fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
     if side([from, to, tip], other_tip) != Sign::Zero {
         return false;
@@ -294,7 +295,7 @@ fn flat_along(triangle: [DVec3; 3], axis: usize) -> FlatTriangle {
     FlatTriangle { axis, corners, turn: side_of_line([corners[0], corners[1]], corners[2]) }
 }
 
-/// Does a segment meet a closed triangle? `sides` are those of its ends.
+/// Returns whether a segment intersects a closed triangle. `sides` are those of its ends.
 fn segment_meets(triangle: [DVec3; 3], flat: &FlatTriangle, [from, to]: [DVec3; 2], sides: [Sign; 2]) -> bool {
     if sides[0] == sides[1] {
         // In the plane: apart if an edge of the triangle keeps both ends out, or the segment's line

@@ -1,12 +1,12 @@
-//! How many casting triangles a light's ray can meet at most: eight bits hold 255.
+//! How many casting triangles a light's ray can hit at most: eight bits count to 255.
 //!
-//! All directions from a light are divided into cells until none is met by more than the limit, or one
-//! that is small still is. A cell is the cone between four planes through the light. A triangle that one
-//! of them has outside is not in it, nor is one that has the whole cell beyond the plane through the light
-//! and one of its edges; all others are taken to be in it. So the answer errs to the safe side.
+//! All directions from a light are divided into cells until no ray in one hits more than the limit, or a small one
+//! still may. A cell is the cone between four planes through the light. A triangle that one of them has outside is not
+//! in it, nor is one that has the whole cell beyond the plane through the light and one of its edges; all others are
+//! taken to be in it. So the answer errs to the safe side.
 //!
-//! What all triangles cover is first counted in many small cells (boxes), with one look at each triangle: that settles most
-//! meshes, and only full boxes are divided.
+//! What all triangles cover is first counted in many small cells (boxes), with one look at each triangle: that settles
+//! most meshes, and only full boxes are divided.
 
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
@@ -14,7 +14,8 @@ use glam::{DVec3, DVec4};
 /// How often a cell is halved each way.
 const MOST_HALVINGS: u32 = 12;
 
-/// Can a ray of the light meet more than `limit` of these triangles, world space? Yes, where a corner is no number.
+/// Returns whether a ray of the light can hit more than `limit` of these triangles, world space. True where a corner is
+/// no number.
 pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> bool {
     if triangles.len() <= limit {
         return false;
@@ -146,8 +147,8 @@ struct OverLimit<'a> {
     inner: Vec<[DVec3; 3]>,
 }
 
-/// Can a ray meet more than `limit`? In each of many boxes, the triangles that may reach into it are counted, with one look
-/// at each triangle; only full boxes are divided further. `None` where they are many.
+/// Returns whether a ray can hit more than `limit` triangles. In each of many boxes, the triangles that may reach into
+/// it are counted, with one look at each triangle; only full boxes are divided further. `None` where they are many.
 fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[CoverageGrid], limit: usize) -> Option<bool> {
     let mut full: Vec<OverLimit> = Vec::new();
     let mut in_full = 0;
@@ -239,7 +240,7 @@ impl DirectionCell {
             });
         quarters.iter().any(|quarter| {
             let mut inner: Vec<_> = triangles.iter().filter(|corners| quarter.may_hold(corners)).copied().collect();
-            // Looking at edges takes longest, and is needed only where cells as such don't tell.
+            // Looking at edges takes longest, and is needed only where cells as such don't decide.
             if inner.len() > limit {
                 inner.retain(|corners| !quarter.is_beyond_an_edge(corners));
             }
@@ -247,7 +248,8 @@ impl DirectionCell {
         })
     }
 
-    /// May what has these corners reach into the cell, as far as the four planes around it tell?
+    /// Returns whether something with these corners may reach into the cell, as far as the four planes around it
+    /// decide.
     fn may_hold<const N: usize>(&self, corners: &[DVec3; N]) -> bool {
         let some = |inside: &dyn Fn(&DVec3) -> bool| corners.iter().any(inside);
         some(&|p| p.z >= 0.0)
@@ -280,7 +282,7 @@ mod tests {
     use super::*;
     use crate::scene::shapes;
 
-    /// As `may_exceed`, where boxes settle it.
+    /// Returns the answer of `may_exceed` where boxes settle it.
     fn in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
         let triangles = seen_from(triangles.to_vec(), light.extend(1.0));
         let all = AxisBox::around(triangles.iter().flatten().copied()).corners();

@@ -14,7 +14,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 const WIDEST_HALF_ANGLE: f64 = 60.0;
 /// How much of its picture a silhouette fills.
 const SILHOUETTE_FILL: f64 = 0.98;
-/// Room around the casters, in texels, so that no edge falls on the border.
+/// Margin around the casters, in texels, so that no edge falls on the border.
 const BORDER_TEXELS: f64 = 2.0;
 
 /// A shadow map's frame.
@@ -48,12 +48,12 @@ pub struct MapStorage {
     pub size: u32,
     /// How distance from the light becomes depth.
     pub depth: DepthMapping,
-    /// For the mapping that has one.
+    /// The epsilon of the mapping that has one.
     pub epsilon: f64,
 }
 
 impl MapStorage {
-    /// For casters between two distances along the map's axis.
+    /// Returns the mapping for casters between two distances along the map's axis.
     fn curve(&self, nearest: f64, farthest: f64) -> DepthCurve {
         self.depth.curve(nearest, farthest.max(nearest * 2.0) * 1.01, self.epsilon)
     }
@@ -131,9 +131,9 @@ fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed
 /// How much of the light's view a silhouette's picture has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SilhouetteView {
-    /// The caster's silhouette, with a ring of room around it or without.
+    /// The caster's silhouette, with or without a clear border around it.
     Fitted {
-        /// With a ring, so that the picture's edge stays clear.
+        /// A border keeps the picture's edge clear.
         has_border: bool,
     },
     /// This much to each side of the direction of the caster's middle: of a lamp's view the tangent of half the angle, of a

@@ -72,7 +72,7 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
     }
 }
 
-/// By how many metres all of some points lie beyond the range of a light; `None` where one may be within it.
+/// Returns by how many metres all of some points lie beyond the range of a light; `None` where one may be within it.
 /// The GPU rounds places relative to `eye`.
 pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> Option<f64> {
     let AxisBox { low, high } = AxisBox::around(points.iter().copied());
@@ -82,7 +82,7 @@ pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> O
     (!points.is_empty() && distance > 0.0).then_some(distance)
 }
 
-/// The box that holds all that a light of that range reaches, places rounded relative to `eye`.
+/// Returns the box that contains all that a light of that range reaches, with places rounded relative to `eye`.
 pub fn reached(light: DVec3, range: f64, eye: DVec3) -> AxisBox {
     let reach = range * (1.0 + MARGIN) + (range + light.distance(eye)) * ROUNDING;
     AxisBox::around([light - reach, light + reach])

@@ -1,7 +1,7 @@
-//! Geometry of shadows on the CPU: who casts, along which edges, onto which planes.
+//! Geometry of shadows on the CPU: what casts, along which edges, onto which planes.
 //!
-//! Everything is computed in world space in `f64`; [`relative`] alone rounds to the GPU's `f32`,
-//! after subtracting the eye, and [`Extruded`] is what a vertex shader computes in it.
+//! Everything is computed in world space in `f64`; [`relative`] alone rounds to the GPU's `f32`, after subtracting the
+//! eye, and [`Extruded`] is what a vertex shader computes in it.
 
 mod blob;
 mod cache;

@@ -19,7 +19,7 @@ const COPLANAR: f64 = 1e-9;
 /// A flat piece of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receiver {
-    /// In world space; turned whichever way the triangles run.
+    /// Its plane in world space, oriented either way.
     pub plane: Plane,
     /// Indices into the mesh's triangles, ascending.
     pub triangles: Vec<u32>,
@@ -142,7 +142,7 @@ impl FlattenedCaster {
     /// Equal for equal numbers, bit for bit.
     pub fn key(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
-        // Every number that these hold is printed in full.
+        // Debug text prints every number in full.
         format!("{self:?}").hash(&mut hasher);
         hasher.finish()
     }
@@ -161,7 +161,7 @@ pub struct Flattener {
 }
 
 impl Flattener {
-    /// Onto `plane`, turned towards the light; `None` where the light lies in the plane.
+    /// Makes a flattener onto `plane`, oriented towards the light; `None` where the light lies in the plane.
     pub fn new(plane: Plane, light: DVec4, clip: FlattenClip) -> Option<Flattener> {
         let plane = if plane.at(light) < 0.0 { plane.flipped() } else { plane };
         let light_height = plane.at(light);
@@ -207,8 +207,8 @@ impl Flattener {
         point.extend(1.0) - self.light * (height / self.light_height)
     }
 
-    /// The same, divided: a point beyond the light is carried back through it. A point level with the
-    /// light stays at infinity.
+    /// Returns the flattened point, divided by w: a point beyond the light is carried back through it. A point level
+    /// with the light stays at infinity.
     fn projected(&self, point: DVec3, height: f64) -> DVec4 {
         let shadow = self.shadow(point, height);
         if shadow.w == 0.0 { shadow } else { shadow / shadow.w }
@@ -220,8 +220,8 @@ impl Flattener {
     }
 }
 
-/// Sutherland–Hodgman: keeps the part of a polygon where `inside(height) ≥ 0`. Corners that it
-/// makes have the height `limit` exactly, whatever their position rounds to.
+/// Clips a polygon (Sutherland and Hodgman 1974) to the part where `inside(height) ≥ 0`. New corners have the height
+/// `limit` exactly, whatever their position rounds to.
 fn clip(polygon: &[(DVec3, f64)], limit: f64, inside: impl Fn(f64) -> f64) -> Vec<(DVec3, f64)> {
     let mut clipped = Vec::with_capacity(polygon.len() + 1);
     for (index, &(point, height)) in polygon.iter().enumerate() {

@@ -29,13 +29,13 @@ pub struct ViewVolume {
     near: f64,
 }
 
-/// The space between the near rectangle and a light: a caster outside of it neither holds a point of
-/// the rectangle in its shadow nor is cut by it.
+/// The space between the near rectangle and a light: a caster outside of it neither has a point of the rectangle in its
+/// shadow nor is cut by it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NearClipVolume {
     /// Its planes, positive inside.
     Planes(Vec<Plane>),
-    /// The light lies in the near plane: all that this slab meets may be between.
+    /// The light lies in the near plane: all that this slab intersects may be between.
     Slab(Plane),
 }
 
@@ -101,7 +101,7 @@ impl ViewVolume {
         outside(&[self.planes[0].flipped()], points).is_some()
     }
 
-    /// The same of points at infinity: the near plane is no matter there.
+    /// Returns the plane that has all of these points at infinity outside: the near plane does not matter there.
     pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<OutsidePlane> {
         let points: Vec<DVec4> = directions.iter().map(|direction| direction.extend(0.0)).collect();
         let sides = outside(&self.planes[1..], &points);
@@ -212,7 +212,7 @@ mod tests {
         assert!(view.outside_at_infinity(&[DVec3::NEG_Z]).is_none());
     }
 
-    /// The pyramid over the near rectangle with its top at a lamp 4 before it.
+    /// The frustum over the near rectangle with its top at a lamp 4 before it.
     #[test]
     fn only_what_is_between_light_and_near_rectangle_can_hold_the_eye_in_its_shadow() {
         let lamp = DVec4::new(0.0, 0.0, -5.0, 1.0);
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// A light in the near plane sees the rectangle as a line: all that the plane meets counts.
+    /// A light in the near plane sees the rectangle as a line: all that the plane intersects counts.
     #[test]
     fn a_light_in_the_near_plane_asks_about_the_plane_alone() {
         let volume = view().near_clip(DVec4::new(4.0, 0.0, -1.0, 1.0));

@@ -1,10 +1,9 @@
-//! The box into which a light's pyramid over a parallelogram is mapped, for shadows drawn into a
-//! texture of the receiver (Heckbert and Herf 1997, "Simulating Soft Shadows with Graphics
-//! Hardware").
+//! The box into which a light's frustum over a parallelogram is mapped, for shadows drawn into a texture of the
+//! receiver (Heckbert and Herf 1997, "Simulating Soft Shadows with Graphics Hardware").
 //!
-//! x and y run from 0 to 1 along the parallelogram's edges, whatever the distance to the light; z
-//! is 1 on the receiver, more between receiver and light, less behind it. Keeping z ≥ 1 leaves
-//! neither what is beyond the light nor what is behind the receiver.
+//! x and y run from 0 to 1 along the parallelogram's edges, whatever the distance to the light; z is 1 on the receiver,
+//! more between receiver and light, less behind it. Clipping at z ≥ 1 leaves neither what is beyond the light nor what
+//! is behind the receiver.
 
 use super::planar::Receiver;
 use glam::{DMat4, DVec3, DVec4};
@@ -74,8 +73,8 @@ impl ReceiverParallelogram {
         is_usable.then(|| DMat4::from_cols(x, y, z, w).transpose())
     }
 
-    /// Clip space, which keeps what lies between receiver and light, from world space. Its picture has
-    /// x of the box along columns and y along rows, downwards.
+    /// Returns clip space from world space; clipping leaves what lies between receiver and light. The picture has x of
+    /// the box along columns and y along rows, downwards.
     pub fn clip_from_world(&self, light: DVec4) -> Option<DMat4> {
         let clip_from_box = DMat4::from_cols(
             DVec4::new(2.0, 0.0, 0.0, 0.0),

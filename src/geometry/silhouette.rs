@@ -11,8 +11,8 @@ const SHARE: usize = 4 * 1024;
 /// Beyond so many triangles, searching all edges for each one's reverse takes seconds.
 pub const MOST_TO_SEARCH: usize = 20_000;
 
-/// An edge that bounds a shadow: the turned triangles around it run from low to high
-/// `multiplicity` times more often than back.
+/// An edge that bounds a shadow: the oriented triangles around it run from low to high `multiplicity` times more often
+/// than back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SilhouetteEdge {
     /// Which edge.

@@ -18,8 +18,7 @@ const MOST_WORK: usize = 200_000_000;
 /// How often the looks from either side are moved closer to the triangle.
 const TRIES: i32 = 4;
 
-/// Why a mesh is not proven to bound solids with their outside out. The mend is `casters = all`,
-/// which needs no proof.
+/// Why a mesh is not proven to bound solids with their outside out. The fix is `casters = all`, which needs no proof.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotSolid {
     /// Edges of one triangle or more than two.
@@ -36,7 +35,7 @@ pub enum NotSolid {
         /// How many.
         edges: usize,
     },
-    /// Triangles meet, or are not proven not to.
+    /// Triangles intersect, or are not proven not to.
     #[error("it meets itself, as at triangles {0} and {1}")]
     MeetsItself(usize, usize),
     /// The winding number is negative somewhere.
@@ -58,7 +57,7 @@ pub enum NotSolid {
     TooMany {
         /// How many.
         components: usize,
-        /// Of the mesh.
+        /// Number of the mesh's triangles.
         triangles: usize,
     },
 }
@@ -151,7 +150,7 @@ mod tests {
         check(&world, mesh.triangles(), &Connectivity::new(mesh, &edges))
     }
 
-    /// Spheres of the given radii around one point, those with a negative radius turned inside out.
+    /// Spheres of the given radii around one point, those with a negative radius inside out.
     fn shells(radii: &[f64]) -> Mesh {
         let mut builder = crate::scene::MeshBuilder::default();
         for radius in radii {

@@ -1,7 +1,7 @@
-//! How a mesh hangs together: what is open, torn, doubled, turned or without area, and where.
+//! How a mesh is connected: what is open, torn, doubled, flipped or without area, and where.
 //!
-//! Nothing here is mended; z-fail with all casters needs no mending. It is what a person wants to
-//! know of a model, and what decides whether simpler ways would do.
+//! Nothing here is repaired; z-fail with all casters needs no repair. It is what a person wants to know of a model, and
+//! what decides whether simpler ways would do.
 
 use super::connectivity::{Connectivity, FoundPlaces, MOST_PLACES};
 use crate::math::{Sign, side_of_line};
@@ -21,7 +21,7 @@ const NEAR: f64 = 1e-6;
 pub struct Topology {
     /// Triangles that the mesh has.
     pub triangles: usize,
-    /// By its edges.
+    /// How its triangles are connected by their edges.
     pub connectivity: Arc<Connectivity>,
     /// Pairs of vertices that are not bit-identical, yet nearer than a millionth of the size: welding
     /// joins equal positions only. (Positions that a file splits by normal or texture coordinate are
@@ -34,7 +34,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Of a mesh, whose connectivity is known.
+    /// Examines a mesh whose connectivity is known.
     pub fn new(mesh: &Mesh, connectivity: Arc<Connectivity>) -> Topology {
         let (positions, triangles) = (mesh.positions(), mesh.triangles());
         let mut topology = Topology {
@@ -129,7 +129,7 @@ fn split_vertices(mesh: &Mesh) -> FoundPlaces {
             for y in first[1]..=last[1] {
                 for z in first[2]..=last[2] {
                     let others = cells.get(&[x, y, z]).into_iter().flatten();
-                    // A cell full of vertices is told of, not counted in full.
+                    // A cell full of vertices is reported, not counted in full.
                     for other in others.take(MOST_PLACES) {
                         if mesh.positions()[*other as usize].distance(position) <= near {
                             found.add(position);

@@ -1,10 +1,10 @@
 //! Which casters lie wholly in the umbra of another.
 //!
-//! What a convex body darkens, `{L + s(o − L), s ≥ 1}` over its points `o`, is convex too, and whatever
-//! lies in it darkens nothing that is not in it. So a caster whose bounding box's corners are all
-//! in the umbra of a convex one needs no volume of its own. They must lie deep in it, so that what the one
-//! darkens is less than what the other does: two casters can't hold each other, and each chain of them ends
-//! at one that is drawn. The same holds of the parts of one mesh, such as a box in a box.
+//! What a convex body darkens, `{L + s(o − L), s ≥ 1}` over its points `o`, is convex too, and whatever lies in it
+//! darkens nothing that is not in it. So a caster whose bounding box's corners are all in the umbra of a convex one
+//! needs no volume of its own. They must lie deep in it, so that what the one darkens is less than what the other does:
+//! two casters can't each be in the umbra of the other, and each chain of them ends at one that is drawn. The same is
+//! true of the parts of one mesh, such as a box in a box.
 
 use super::{Connectivity, EdgeList};
 use crate::math::{AxisBox, Plane};
@@ -22,7 +22,7 @@ pub enum ConvexBody {
     Sheet(Plane, Vec<Plane>),
 }
 
-/// A convex body with its size, as something that may hold others in its umbra.
+/// A convex body with its size, in whose umbra others may lie.
 #[derive(Debug, Clone)]
 pub struct ConvexOccluder {
     body: ConvexBody,
@@ -60,7 +60,7 @@ impl ConvexOccluder {
         } else {
             let middle = used().sum::<DVec3>() / (3 * triangles.len()) as f64;
             let is_flipped = |plane: &Plane| plane.at(middle.extend(1.0)) > 0.0;
-            // Turned outwards, its triangles run along each edge once either way: the surface is whole.
+            // Oriented outwards, its triangles run along each edge once either way: the surface is whole.
             let run = |(triangle, way): (usize, i32)| if is_flipped(&planes[triangle]) { -way } else { way };
             let is_closed = (0..edges.edges().len())
                 .all(|index| incident(index) == 2 && edges.incident(index).map(run).sum::<i32>() == 0);
@@ -120,10 +120,11 @@ impl ConvexOccluder {
 
 /// Meshes of more triangles are not asked for parts in the umbra of others: each plan would look at all of them.
 const MOST_TRIANGLES_OF_PARTS: usize = 65_536;
-/// How many parts may hold others: the largest.
+/// How many parts, the largest, may contain others in their umbra.
 const MOST_HOLDERS: usize = 8;
 
-/// Of each triangle of a mesh: its part lies wholly in the umbra of another part. Empty where none does.
+/// Returns, for each triangle of a mesh, whether its part lies wholly in the umbra of another part; empty where none
+/// does.
 pub fn in_umbra_of_parts(
     world: &[DVec3],
     triangles: &[[u32; 3]],
@@ -273,7 +274,7 @@ mod tests {
         assert!(of(&tetrahedron, &doubled).is_none(), "two sides, each twice");
     }
 
-    /// Neither of two boards at one place, nor of two that cross, holds the other.
+    /// Of two boards at one place, or two that cross, neither is in the umbra of the other.
     #[test]
     fn two_casters_never_hold_each_other() {
         let mesh = shapes::quad([2.0; 2]).expect("a quad");

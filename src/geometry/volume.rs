@@ -1,20 +1,20 @@
 //! Shadow volumes of any triangle soup: sides and two caps that close exactly.
 //!
-//! Vertices are the caster's own, followed by the same carried away from the light ([`Extruder`]):
-//! to infinity, where a directional light needs only one point, or by a finite factor. Indices:
+//! Vertices are the caster's own, followed by the same carried away from the light ([`Extruder`]): to infinity, where a
+//! directional light needs only one point, or by a finite factor. Indices:
 //!
 //! - *sides*: |m| quads an edge of multiplicity m, directed by its sign and split along a
 //!   diagonal that depends only on vertex indices. Where all far vertices are one point, triangles.
 //! - *light cap*: the casting triangles in the surface's own vertex order, so that their depths
-//!   are bit-equal to the surface's; those that face the light first (unturned), then those that
-//!   had to be turned, which are drawn with front and back operations swapped.
+//!   are bit-equal to the surface's; those that face the light first, then those that are
+//!   flipped, which are drawn with front and back operations swapped.
 //! - *dark cap*: closes the far end ([`FarEnd`]): where all far vertices are one point, with nothing;
-//!   at infinity with a [`CapFan`]; else with the same triangles carried away. Those have no indices of their own: they are the light cap's with the number of
-//!   near vertices added to each, and they must face away from the light, so it is the other of
-//!   the two runs that counts as turned.
+//!   at infinity with a [`CapFan`]; otherwise with the same triangles carried away. Those have no
+//!   indices of their own: they are the light cap's with the number of near vertices added to each,
+//!   and they must face away from the light, so it is the other of the two ranges that counts as flipped.
 //!
-//! Where each run begins follows from the counts of facings alone, so indices are written once, into
-//! a buffer that may be kept, by several threads where there are many.
+//! Where each range begins follows from the counts of facings alone, so indices are written once, into a buffer that
+//! may be reused, by several threads where there are many.
 
 use super::facing::{MIXED, RUN};
 use super::far_end::CapFan;
@@ -59,12 +59,12 @@ pub enum FarEnd {
 pub struct Extruder {
     light: DVec4,
     extrusion: Extrusion,
-    /// Of the bounding box's diagonal.
+    /// Length of the bounding box's diagonal.
     size: f64,
 }
 
 impl Extruder {
-    /// For a caster with these `world` positions.
+    /// Makes the extruder of a caster with these `world` positions.
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
         let size = match (extrusion, light.w == 0.0) {
             (Extrusion::Finite(_) | Extrusion::FromOrigin(_), true) => {
@@ -102,7 +102,7 @@ impl Extruder {
         }
     }
 
-    /// The same in single precision for what is relative to `origin`, as a vertex shader carries it.
+    /// Returns how a vertex shader carries vertices relative to `origin`, in single precision.
     ///
     /// # Panics
     /// If it carries onto a plane, [`Extrusion::Clamped`].
@@ -127,11 +127,11 @@ impl Extruder {
 pub struct VolumeParts {
     /// Quads from the silhouette to the far vertices.
     pub sides: Range<usize>,
-    /// Those of the silhouette's last edges, which hug a triangle of their own.
+    /// Sides of the silhouette's last edges, which graze a triangle of their own.
     pub grazing_sides: Range<usize>,
     /// Casting triangles that face the light as they are.
     pub light_cap: Range<usize>,
-    /// Casting triangles that face away and count as turned, in their own vertex order.
+    /// Casting triangles that face away and count as flipped, in their own vertex order.
     pub light_cap_flipped: Range<usize>,
     /// What closes the far end.
     pub dark_cap: DarkCap,
@@ -174,9 +174,9 @@ impl VolumeParts {
     }
 }
 
-/// Writes the indices of the volume of a caster of `vertex_count` vertices: three a triangle, into
-/// the vertices of [`Extruder::vertices`], front faces outwards but for turned light-cap
-/// triangles. The last `grazing` edges' sides are a run of their own. Whatever `out` held is overwritten.
+/// Writes the indices of the volume of a caster of `vertex_count` vertices: three a triangle, into the vertices of
+/// [`Extruder::vertices`], front faces outwards except for flipped light-cap triangles. The last `grazing` edges' sides
+/// are a range of their own. What `out` contained is overwritten.
 pub fn write_indices(
     triangles: &[[u32; 3]],
     vertex_count: usize,
@@ -250,14 +250,14 @@ impl FarVertices {
     }
 }
 
-/// Room for the cap's triangles: of those that face the light, and of those that are turned.
+/// Space for the cap's triangles: of those that face the light, and of those that are flipped.
 struct CapIndices<'a> {
     towards: &'a mut [[u32; 3]],
     away: &'a mut [[u32; 3]],
 }
 
 impl<'a> CapIndices<'a> {
-    /// The room that the next triangles take, with these signs; the rest stays.
+    /// Returns the space that the next triangles take, with these signs; the rest stays.
     fn split_off(&mut self, signs: &[i8]) -> CapIndices<'a> {
         let towards = signs.iter().filter(|sign| **sign > 0).count();
         let away = signs.iter().filter(|sign| **sign < 0).count();
@@ -304,8 +304,8 @@ fn front<'a>(space: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]]
 fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
     let mut space = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {
-        // The turned triangle runs from `low` to `high` where the multiplicity is positive; the
-        // side beside it must run back along the edge for the volume to close.
+        // The oriented triangle runs from `low` to `high` where the multiplicity is positive; the side beside it must
+        // run back along the edge for the volume to close.
         let (p, q) = (edge.low, edge.high);
         let (p_away, q_away) = (far.of(p), far.of(q));
         let (first, second) = match (multiplicity > 0, far.is_one_point) {
@@ -364,7 +364,7 @@ mod tests {
             let grazing = edges.len() / 3;
             let parts = write_indices(corners, world.len(), &facings, (&edges, grazing), far_end, &mut indices);
             let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
-            // As they face outwards: the light cap's turned run, and the carried dark cap's other one.
+            // As they face outwards: the light cap's flipped range, and the carried dark cap's other one.
             if let DarkCap::Carried(base) = parts.dark_cap {
                 let carried = |[a, b, c]: [u32; 3]| [a + base, b + base, c + base];
                 let flipped = |[a, b, c]: [u32; 3]| [a, c, b];
@@ -378,8 +378,7 @@ mod tests {
         }
     }
 
-    /// Every edge of a closed surface is run equally often either way. Turned light-cap triangles
-    /// count as turned.
+    /// Every edge of a closed surface is run equally often either way. Flipped light-cap triangles count as flipped.
     fn assert_closed(volume: &Volume) {
         let mut balance = BTreeMap::new();
         for (index, &[a, b, c]) in volume.triangles.iter().enumerate() {
@@ -481,7 +480,7 @@ mod tests {
         assert_eq!((written.len(), parts.dark_cap), (expected.len(), DarkCap::Carried(count + 2)));
     }
 
-    /// How often triangles of directions hold `ray`, with sign.
+    /// Returns how often triangles of directions contain `ray`, with sign.
     fn windings(volume: &Volume, triangles: impl Iterator<Item = [u32; 3]>, ray: DVec3) -> i32 {
         let of = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| volume.vertices[corner as usize].truncate());
@@ -519,7 +518,7 @@ mod tests {
                         let sum = windings(&fan, far, ray);
                         if is_flipped { -sum } else { sum }
                     };
-                    // Turned as in `assert_closed`: away from the light.
+                    // Flipped as in `assert_closed`: away from the light.
                     let by_caps = carried(&fan.parts.light_cap, true) + carried(&fan.parts.light_cap_flipped, false);
                     assert_eq!(by_fan, by_caps, "{seed} {light} {ray}");
                 }

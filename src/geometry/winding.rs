@@ -1,11 +1,10 @@
 //! How often a mesh winds around a point, by exact signs.
 //!
-//! The signed crossings of a ray with the triangles sum to the winding number: a triangle crossed
-//! from behind (the ray leaves the inside) adds 1. Rays run along an axis, so that "is it crossed?"
-//! is a question in two dimensions. Where a ray meets an edge or a corner, it is taken to lie a
-//! little farther along the second axis, and less along the third (simulation of simplicity,
-//! Edelsbrunner and Mücke 1990): then every ray passes every edge on one side, the same for both
-//! its triangles, and no case is undecided but a point on the surface itself.
+//! The signed crossings of a ray with the triangles sum to the winding number: a triangle crossed from behind (the ray
+//! leaves the inside) adds 1. Rays run along an axis, so that "is it crossed?" is a question in two dimensions. Where a
+//! ray hits an edge or a corner, it is taken to lie a little farther along the second axis, and less along the third
+//! (simulation of simplicity, Edelsbrunner and Mücke 1990): then every ray passes every edge on one side, the same for
+//! both its triangles, and no case is undecided but a point on the surface itself.
 
 use crate::math::{Sign, side_of_line, side_of_triangle};
 use glam::{DVec2, DVec3};
@@ -13,7 +12,7 @@ use glam::{DVec2, DVec3};
 /// A triangle whose inside a ray's line passes through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crossing {
-    /// Its index.
+    /// Index of the triangle.
     pub triangle: usize,
     /// 1 where its front looks along the axis, −1 where its back does.
     pub direction: i32,

@@ -1,4 +1,4 @@
-//! What a frame is judged by, of a run that has kept no more: the labels of its lights, and the finished picture.
+//! What a frame is judged by, where no more of its run is stored: the labels of its lights, and the finished picture.
 
 use super::GpuError;
 use super::collect::{SnapshotMemory, SnapshotStorage, after};
@@ -17,7 +17,7 @@ pub struct LabelsAndPicture {
     pub picture: Arc<Image>,
 }
 
-/// The light whose labels the pass writes.
+/// Returns the light whose labels a pass writes.
 pub(super) fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
     match plan.attachment(pass.color.as_ref()?.attachment).role {
         AttachmentRole::Labels(light) => Some(light),

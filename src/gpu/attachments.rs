@@ -1,8 +1,8 @@
-//! Textures of attachments, handed on from plan to plan.
+//! A pool of attachments' textures, handed out again from plan to plan.
 //!
-//! A frame that is set up anew, as a light moves, draws into textures like those of the frame before. New ones cost a page
-//! fault for every page that is drawn to; those of a plan that is gone are there already. What they hold is no matter: only
-//! those are handed on that the first pass which draws to them clears.
+//! A frame that is set up anew, as a light moves, draws into textures like those of the frame before. New ones cost a
+//! page fault for every page that is drawn to; those of an earlier plan exist already. What they contain does not
+//! matter: only those are handed out again that the first pass which draws to them clears.
 
 use crate::plan::{AttachmentId, FramePlan, Pass};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ type AttachmentKey = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFo
 /// Larger ones go with their plan.
 const MOST_BYTES_POOLED: u64 = 1 << 26;
 
-/// Those of the newest plan.
+/// The textures of the newest plan's attachments.
 #[derive(Debug, Default)]
 pub(super) struct AttachmentPool {
     pooled: Vec<(AttachmentKey, Arc<Texture>)>,
@@ -53,7 +53,8 @@ impl AttachmentPool {
     }
 }
 
-/// Is it small, and does nothing of the plan read what it held before? Not known of a frame that another program drew.
+/// Returns whether a texture is small, and nothing of the plan reads what it contained before. That is not known of a
+/// frame that another program drew.
 fn may_hand_on(plan: &FramePlan, id: AttachmentId) -> bool {
     let clears = |pass: &Pass| {
         let has_stencil = plan.attachment(id).format.has_stencil_aspect();

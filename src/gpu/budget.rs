@@ -2,7 +2,7 @@
 
 use super::GpuError;
 
-/// What a frame holds, of what it may.
+/// The bytes that a frame takes, of those that it may take.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MemoryBudget {
     most: u64,
@@ -10,12 +10,12 @@ pub(super) struct MemoryBudget {
 }
 
 impl MemoryBudget {
-    /// Nothing is held yet, of `most` bytes.
+    /// Returns a budget of `most` bytes, none of which are taken.
     pub fn of(most: u64) -> MemoryBudget {
         MemoryBudget { most, used: 0 }
     }
 
-    /// Holds so many bytes more.
+    /// Takes this many bytes more, or fails where the budget is spent.
     pub fn take(&mut self, bytes: u64) -> Result<(), GpuError> {
         self.used = self.used.saturating_add(bytes);
         if self.used <= self.most {

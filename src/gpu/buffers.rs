@@ -22,7 +22,8 @@ impl Buffers {
         self.cached.next_plan();
     }
 
-    /// The buffer that holds `blob`, readable as vertices, indices and, as far as [`check_bound`] lets it, as storage.
+    /// Returns the buffer with `blob`'s content, readable as vertices, indices and, as far as [`check_bound`] allows
+    /// it, as storage.
     pub fn get<T: bytemuck::Pod>(&mut self, device: &Device, blob: &Blob<T>) -> Result<Buffer, GpuError> {
         let contents = blob.bytes();
         check(contents.len() as u64, device.limits().max_buffer_size)?;

@@ -34,7 +34,7 @@ pub(super) struct Collector {
     storage: SnapshotStorage,
 }
 
-/// How pictures are held, and in what room.
+/// Where snapshots are stored, and the budget for them.
 pub(super) struct SnapshotStorage {
     pub memory: SnapshotMemory,
     pub budget: MemoryBudget,
@@ -43,7 +43,7 @@ pub(super) struct SnapshotStorage {
 /// Where captured pictures lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SnapshotMemory {
-    /// In their mapped copies: nothing is copied once more.
+    /// Pictures stay in the mapped copies: nothing is copied once more.
     Mapped,
     /// Rows that are as in the picture before, there: many pictures that differ little take little.
     Shared,
@@ -66,7 +66,7 @@ impl Collector {
         }
     }
 
-    /// Goes on by one pass, whose copies are mapped.
+    /// Collects one more pass, whose copies are mapped.
     pub fn take_in(&mut self, prepared: &Prepared, index: usize) -> Result<(), GpuError> {
         let plan = prepared.plan;
         let pass = &plan.passes[index];

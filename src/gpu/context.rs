@@ -4,22 +4,22 @@ use super::{GpuError, features};
 use crate::capture::AdapterInfo;
 use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 
-/// Backends whose depth-stencil aspects can be copied to buffers.
+/// Backends on which depth and stencil aspects can be copied to buffers.
 const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
 /// The stencil buffer's format, with a depth that can be copied.
 const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
 /// What captures and reports measure, where the adapter can.
 const MEASURED: Features = Features::TIMESTAMP_QUERY;
 
-/// Memory in pieces of 4 to 8 MiB: pictures come and go, and one small thing would hold a large piece for as long
-/// as it lives. What is larger gets a piece of its own, and gives it back.
+/// Memory is allocated in pieces of 4 to 8 MiB: pictures come and go, and one small allocation would keep a large piece
+/// for as long as it lives. What is larger gets a piece of its own, and gives it back.
 pub const MEMORY_HINTS: wgpu::MemoryHints =
     wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: 4 << 20..8 << 20 };
 
 /// An adapter with a device on it.
 #[derive(Debug)]
 pub struct GpuContext {
-    /// Who runs the plans.
+    /// The adapter that runs the plans.
     pub info: AdapterInfo,
     adapter: Adapter,
     pub(super) device: Device,

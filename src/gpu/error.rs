@@ -12,27 +12,27 @@ pub enum GpuError {
     /// The adapter would not give a device.
     #[error("{adapter} gave no device: {reason}")]
     NoDevice {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
         /// The driver's words.
         reason: String,
     },
-    /// The picture or a map is more than the adapter can hold.
+    /// The picture or a map is larger than the adapter allows.
     #[error(
         "{what} is too large: {needed} asked for, {most} fit; choose a smaller size (--size, or the setting `size` of the technique)"
     )]
     TooLarge {
         /// The attachment or buffer.
         what: String,
-        /// With its unit.
+        /// The amount with its unit.
         needed: String,
-        /// With its unit.
+        /// The amount with its unit.
         most: String,
     },
     /// The plan needs what the adapter does not have.
     #[error("this adapter has no {name}: {instead}")]
     MissingFeature {
-        /// In plain words.
+        /// The feature in plain words.
         name: &'static str,
         /// What to do without it.
         instead: &'static str,

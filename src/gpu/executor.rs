@@ -20,10 +20,10 @@ use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
 /// Bytes of copies after which a captured frame is looked at before it goes on: enough for the passes of most.
 const PART_BYTES: u64 = 1 << 26;
 
-/// Attachments, pictures and the copies that are held may together take so much memory.
+/// The most memory, bytes, that attachments, pictures and snapshots may take together.
 const MOST_BYTES: u64 = 8 << 30;
 
-/// Runs plans; keeps pipelines and buffers between them.
+/// Runs plans, and caches pipelines and buffers between them.
 #[derive(Debug)]
 pub struct Executor {
     pub(super) context: Arc<GpuContext>,
@@ -33,23 +33,23 @@ pub struct Executor {
     most_bytes: u64,
 }
 
-/// Which passes run, and what is kept.
+/// Which passes run, and what is stored of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RunMode {
-    /// Timed passes, nothing kept.
+    /// Timed passes run, and nothing is stored.
     Frame,
     /// Timed passes, a snapshot after each.
     Snapshots,
-    /// All passes, but only the labels of lights are kept.
+    /// All passes run, and only the labels of lights are stored.
     Labels,
-    /// All passes, but only the labels of lights and the finished picture are kept.
+    /// All passes run, and only the labels of lights and the finished picture are stored.
     Answer,
     /// All passes, a snapshot after each.
     Everything,
 }
 
 impl Executor {
-    /// On a context of its own.
+    /// Makes an executor on a context of its own.
     pub fn new(context: GpuContext) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
@@ -60,7 +60,7 @@ impl Executor {
         }
     }
 
-    /// Lets attachments, pictures and the copies that are held take no more than so many bytes.
+    /// Limits the memory that attachments, pictures and snapshots may take to this many bytes.
     pub fn hold_at_most(&mut self, bytes: u64) {
         self.most_bytes = bytes;
     }
@@ -95,8 +95,8 @@ impl Executor {
         prepared
     }
 
-    /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan
-    /// before stay.
+    /// Prepares a plan that is run once and gives way to others: its maps are dropped with it, and those of the plan
+    /// before stay cached.
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan)?;
@@ -106,8 +106,8 @@ impl Executor {
         prepared
     }
 
-    /// The same for a plan between frames that are timed: nothing that it uploads is there for the next one, and what is
-    /// there stays.
+    /// Prepares a plan between frames that are timed: nothing that it uploads is cached for the next one, and what is
+    /// cached stays.
     pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let budget = MemoryBudget::of(self.most_bytes);
@@ -123,8 +123,8 @@ impl Executor {
         }
     }
 
-    /// Opens another device where this one can't do what the plan needs. What has been prepared keeps
-    /// its own.
+    /// Opens another device where this one can't do what the plan needs. What has been prepared stays on its own
+    /// device.
     pub(super) fn provide(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         let needed = features::needed(plan);
         if !self.context.device.features().contains(needed) {
@@ -152,8 +152,8 @@ impl Executor {
         Ok(took)
     }
 
-    /// Runs the timed passes and adds up how long the GPU took for them, in milliseconds; `None`
-    /// where it can't tell.
+    /// Runs the timed passes and adds up how long the GPU took for them, in milliseconds; `None` on adapters without
+    /// timestamps.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
         let notes = context.guarded(|| Ok(FrameQueries::of_times(prepared, RunMode::Frame)))?;
@@ -165,12 +165,11 @@ impl Executor {
         Ok(passes.map(|(_, ms)| ms).sum())
     }
 
-    /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests;
-    /// `None` for draws that do something where they fail them, for those of maps that are kept, and where
-    /// there are too many to ask.
+    /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests; `None` for
+    /// draws that have an effect where they fail them, for those of cached maps, and where there are too many queries.
     pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
-        // A map that stays is drawn once: a pass that does not run shows no sample of what it holds.
+        // A cached map is drawn once: a pass that does not run counts no samples.
         let asks = |pass: &Pass| !prepared.may_cache(pass);
         let samples = context.guarded(|| Ok(DrawSamples::new(&context.device, prepared.plan, asks)))?;
         let notes = FrameQueries { samples, ..FrameQueries::default() };
@@ -181,8 +180,8 @@ impl Executor {
         }
     }
 
-    /// Runs all passes and keeps every attachment after each, in `memory`. With `bracket`, an attached
-    /// graphics debugger records the frame.
+    /// Runs all passes and stores every attachment after each, in `memory`. With `bracket`, an attached graphics
+    /// debugger records the frame.
     pub fn capture(
         &self,
         mut prepared: Prepared,
@@ -200,14 +199,14 @@ impl Executor {
         Ok(collector.finish(plan, times))
     }
 
-    /// Runs all passes and keeps the labels of each light: what is lit, and what is in shadow. Nothing
-    /// else is copied, so that the largest maps cost no memory twice.
+    /// Runs all passes and returns the labels of each light: what is lit, and what is in shadow. Nothing else is
+    /// copied, so that the largest maps cost no memory twice.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, RunMode::Labels, &FrameQueries::default())?;
         answer::labels(&prepared)
     }
 
-    /// The same, and the finished picture.
+    /// Runs all passes and returns the labels of each light, and the finished picture.
     pub fn answer(&self, prepared: Prepared) -> Result<LabelsAndPicture, GpuError> {
         run(&prepared, RunMode::Answer, &FrameQueries::default())?;
         Ok(LabelsAndPicture { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
@@ -269,15 +268,15 @@ fn all_passes(prepared: &Prepared) -> Range<usize> {
     0..prepared.plan.passes.len()
 }
 
-/// Submits and waits. What is kept is kept only of frames that nothing went wrong in.
+/// Submits the frame and waits for it. Maps are cached only of frames in which nothing went wrong.
 fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
     prepared.context.guarded(|| submit(prepared, mode, notes, all_passes(prepared)))?;
     prepared.set_drawn();
     Ok(())
 }
 
-/// The same, of all that a capture keeps, in parts: of a frame whose copies are many, those that show what was there
-/// before are let go before the next are made.
+/// Runs all passes of a capture in parts: in a frame whose copies are many, those that show what was there before are
+/// dropped before the next are made.
 fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotMemory) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();

@@ -9,7 +9,7 @@ use wgpu::Features;
 struct OptionalFeature {
     feature: Features,
     is_needed: fn(&FramePlan) -> bool,
-    /// In plain words.
+    /// The feature in plain words.
     name: &'static str,
     /// What to do without it.
     instead: &'static str,
@@ -36,7 +36,7 @@ pub(super) fn needed(plan: &FramePlan) -> Features {
     needed.fold(Features::empty(), |all, one| all | one.feature)
 }
 
-/// Those among `open`, in plain words.
+/// Returns the names of the features among `open`, in plain words.
 pub(super) fn names(open: Features) -> Vec<&'static str> {
     ON_DEMAND.iter().filter(|one| open.contains(one.feature)).map(|one| one.name).collect()
 }

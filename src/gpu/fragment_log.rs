@@ -1,16 +1,14 @@
-//! Every fragment that reaches one pixel, those included that a test throws away.
+//! Every fragment that reaches one pixel, including those that a test discards.
 //!
-//! Depth and stencil buffers keep sums, and no API tells which triangles made them. So the
-//! triangles that geometry finds over the pixel ([`FramePlan::covering`]) are drawn once more, each
-//! draw's state kept as far as it says where fragments are and how deep (view, culling, clipping,
-//! bias), behind a scissor of one pixel and with tests that let everything pass. A fragment shader
-//! appends triangle, side and depth to a buffer; what the tests would have done is the stencil
-//! machine's business.
+//! Depth and stencil buffers store sums, and no API says which triangles made them. So the triangles that geometry
+//! finds over the pixel ([`FramePlan::covering`]) are drawn once more, with each draw's state as far as it says where
+//! fragments are and how deep (view, culling, clipping, bias), behind a scissor of one pixel and with tests that let
+//! everything pass. A fragment shader appends triangle, side and depth to a buffer; what the tests would have done is
+//! left to the stencil machine.
 //!
-//! The vertex shader is the frame's, so depths have the same bits. The buffer has room for a
-//! fragment a triangle at first, the shader counts on when it is full, and a replay with more room follows:
-//! nothing is lost in silence. No buffer of the picture's size is cleared or read, so its cost is that of the
-//! triangles over one pixel.
+//! The vertex shader is the frame's, so depths have the same bits. The buffer has a capacity of one fragment for each
+//! triangle at first, the shader counts on when it is full, and a replay with more capacity follows: nothing is lost
+//! silently. No buffer of the picture's size is cleared or read, so the cost is that of the triangles over one pixel.
 
 use super::prepared::layer_view;
 use super::readback::mapped_bytes;
@@ -36,13 +34,13 @@ struct LogKey {
     depth_format: TextureFormat,
 }
 
-/// What is kept between logs.
+/// What is cached between logs.
 #[derive(Debug, Default)]
 pub(super) struct LogCache {
     module: Option<wgpu::ShaderModule>,
     layout: Option<BindGroupLayout>,
     pipelines: HashMap<LogKey, RenderPipeline>,
-    /// Nothing is kept in it: depth bias needs a depth buffer to be meant for.
+    /// A depth buffer whose content is not used: depth bias only has an effect where there is one.
     target: Option<Texture>,
 }
 
@@ -319,7 +317,7 @@ impl LogCache {
     }
 }
 
-/// A larger target is made anew for each log; a picture of 8K is kept.
+/// A larger target is made anew for each log; one of a picture of 8K is cached.
 const MOST_CACHED_TEXELS: u64 = 1 << 25;
-/// Pipelines kept at once.
+/// Most pipelines that are cached at once.
 const MOST_PIPELINES: usize = 64;

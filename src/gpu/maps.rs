@@ -1,4 +1,4 @@
-//! Maps and textures of lights that are kept from frame to frame while nothing that makes them changes.
+//! Maps and textures of lights that are cached from frame to frame while nothing that makes them changes.
 
 use crate::last_used::LastUsed;
 use crate::plan::{AttachmentId, FramePlan};
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::Texture;
 
-/// By [`FramePlan::cache_key`]; they stay as long as the newest plan that keeps maps uses them.
+/// Maps by [`FramePlan::cache_key`]; they are cached as long as the newest plan that caches maps uses them.
 #[derive(Debug, Default)]
 pub(super) struct MapCache {
     cached: LastUsed<u64, Arc<CachedMap>>,
@@ -20,7 +20,7 @@ pub(super) struct CachedMap {
 }
 
 impl CachedMap {
-    /// Its passes need not run.
+    /// Returns whether its passes have run, and need not run again.
     pub fn is_drawn(&self) -> bool {
         self.is_drawn.load(Ordering::Relaxed)
     }
@@ -37,8 +37,8 @@ impl MapCache {
         self.cached.next_plan();
     }
 
-    /// The kept texture of an attachment, made by `create` if it is new; `None` where it is drawn in every
-    /// frame.
+    /// Returns the cached texture of an attachment, made by `create` if it is new; `None` where the attachment is drawn
+    /// in every frame.
     pub fn get(
         &mut self,
         plan: &FramePlan,

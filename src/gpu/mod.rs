@@ -1,19 +1,19 @@
 //! Runs plans on a GPU. Knows plans and captures, and no technique.
 //!
 //! ```text
-//! Context      adapter and device
-//! Pipelines    shaders and pipelines, interned by description
-//! Buffers      vertices and indices, by the hash of their content
-//! Pictures     pictures on surfaces with their levels, by the hash of their content
-//! Attachments  textures that plans draw into, handed on
-//! Maps         what lights see, kept while nothing that makes it changes
+//! context      adapter and device
+//! pipelines    shaders and pipelines, interned by description
+//! buffers      vertices and indices, by the hash of their content
+//! pictures     textures of surfaces with their mip levels, by the hash of their content
+//! attachments  a pool of the textures that plans draw into
+//! maps         shadow maps, cached while nothing that makes them changes
 //! features     what few plans need, asked for when one does
-//! Executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
-//! fragment_log every fragment of one pixel, tests or no tests
+//! executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
+//! fragment_log every fragment of one pixel, with or without its tests
 //! queries      times of passes, samples of draws
-//! start        what depth and stencil hold as a pass begins
+//! start        what depth and stencil store as a pass begins
 //! readback     snapshots: copies recorded between passes, mapped
-//! room         how much memory a frame may hold
+//! budget       how much memory a frame may take
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
 

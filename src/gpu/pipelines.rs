@@ -1,7 +1,7 @@
 //! Pipelines and bind-group layouts, made once for each description.
 //!
-//! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data or which fragments are kept, 3 the light and, for
-//! programs that read them, its map or labels. A program has only the groups it uses.
+//! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data or which fragments are retained, 3 the light
+//! and, for programs that read them, its map or labels. A program has only the groups it uses.
 
 use super::shaders::{ShaderInputs, ShaderKey, source_of};
 use super::specialization::Specialization;
@@ -19,7 +19,7 @@ use wgpu::{
 pub(super) struct PipelineKey {
     pub shader: ShaderKey,
     pub specialization: Specialization,
-    /// Its reference is set by the pass, and 0 here.
+    /// The state; its stencil reference is set by the pass, and 0 here.
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
     pub depth_format: Option<TextureFormat>,
@@ -48,14 +48,15 @@ pub(super) struct Pipelines {
     pub layouts: BindGroupLayouts,
     /// Linear, clamped to the edge.
     pub smooth_sampler: wgpu::Sampler,
-    /// Of pictures on surfaces, between texels and levels: repeated, and clamped to the edge.
+    /// Samplers of surfaces' textures, which mix texels and mip levels: one repeats, one clamps to the edge.
     pub picture_samplers: [wgpu::Sampler; 2],
     modules: HashMap<ShaderKey, ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
     starts: HashMap<TextureFormat, RenderPipeline>,
 }
 
-/// Pipelines kept at once: a driver may keep a hundred kilobytes of code for each. A plan of more makes some anew.
+/// Most pipelines that are cached at once: a driver may store a hundred kilobytes of code for each. A plan of more
+/// makes some anew.
 const MOST_CACHED: usize = 512;
 
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
@@ -199,7 +200,7 @@ impl BindGroupLayouts {
     fn new(device: &Device) -> BindGroupLayouts {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let uniform = |binding| entry(binding, both, BufferBindingType::Uniform, true);
-        // Of programs that branch on them: see `uniforms.rs`.
+        // For programs that branch on the light's values: see `uniforms.rs`.
         let branched_on = |binding| entry(binding, both, BufferBindingType::Storage { read_only: true }, true);
         let storage =
             |binding| entry(binding, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }, false);

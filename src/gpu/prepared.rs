@@ -53,14 +53,14 @@ pub struct Prepared<'a> {
     pub(super) context: Arc<GpuContext>,
     pub(super) passes: Vec<PreparedPass>,
     textures: Vec<Arc<Texture>>,
-    /// By pass: where its copies go.
+    /// For each pass, the buffers that its snapshot is copied to.
     staged: Vec<OnceCell<StagedPass>>,
     pub(super) views: UniformArray,
     pub(super) view_group: BindGroup,
     pub(super) draws: UniformArray,
     pub(super) draw_group: BindGroup,
     pub(super) lights: UniformArray,
-    /// By attachment: the texture that stays from frame to frame.
+    /// For each attachment, the map that is cached from frame to frame, if it is one.
     pub(super) kept: Vec<Option<Arc<CachedMap>>>,
     /// What attachments and pictures leave for copies.
     pub(super) budget: MemoryBudget,
@@ -81,13 +81,13 @@ pub(super) struct PreparedPass {
 #[derive(Debug)]
 pub(super) struct PreparedDraw {
     pub shader: ShaderKey,
-    /// With the stencil reference of each: one, or two where front and back faces have masks of their own.
+    /// Pipelines with the stencil reference of each: one, or two where front and back faces have masks of their own.
     pub pipelines: Vec<(RenderPipeline, u8)>,
     /// Index among all draws of the plan.
     pub index: usize,
     pub vertices: Buffer,
     pub indices: Buffer,
-    /// Groups 2 and 3, for programs that pull their vertices or keep some fragments, and for those that light.
+    /// Groups 2 and 3, for programs that pull their vertices or retain some fragments, and for those that light.
     pub shading: Option<(BindGroup, Option<BindGroup>)>,
 }
 
@@ -177,7 +177,7 @@ impl<'a> Prepared<'a> {
         Ok(cell.get_or_init(|| staged))
     }
 
-    /// Lets go of the copies of a pass; pictures made of them hold theirs.
+    /// Drops the copies of a pass; pictures made of them keep theirs alive.
     pub(super) fn forget_staged(&mut self, index: usize) {
         self.staged[index].take();
     }
@@ -191,7 +191,7 @@ impl<'a> Prepared<'a> {
         self.plan.passes.iter().filter(|pass| pass.timed).map(|pass| bytes(copied(self.plan, pass))).sum()
     }
 
-    /// Can the snapshots of all timed passes be held at once?
+    /// Returns whether there is memory for the snapshots of all timed passes at once.
     pub fn holds_all_snapshots(&self) -> bool {
         let mut budget = self.budget;
         budget.take(self.snapshot_bytes()).is_ok()
@@ -206,12 +206,12 @@ struct PassPreparer<'a> {
     buffers: &'a mut Buffers,
     pictures: &'a mut Pictures,
     lights: &'a UniformArray,
-    /// By attachment.
+    /// The texture of each attachment.
     textures: &'a [Arc<Texture>],
 }
 
 impl PassPreparer<'_> {
-    /// A pass whose first draw has this number among all of the plan.
+    /// Prepares a pass whose first draw has this number among all of the plan.
     fn pass(&mut self, pass: &Pass, first_draw: usize) -> Result<PreparedPass, GpuError> {
         let plan = self.plan;
         let target = pass.depth_stencil.as_ref();
@@ -324,7 +324,7 @@ impl PassPreparer<'_> {
     }
 }
 
-/// Takes room for attachments and pictures.
+/// Takes the bytes of attachments and pictures from the budget.
 fn check_size(device: &Device, plan: &FramePlan, budget: &mut MemoryBudget) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;

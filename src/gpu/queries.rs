@@ -14,7 +14,7 @@ struct QueryReadback {
 }
 
 impl QueryReadback {
-    /// `None` of none, and of more than a query set holds (4096).
+    /// Makes a set of queries; `None` for no queries, and for more than a query set has (4096).
     fn new(device: &Device, ty: QueryType, count: u32) -> Option<QueryReadback> {
         if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
             return None;
@@ -69,7 +69,7 @@ impl FrameQueries {
     }
 }
 
-/// When each pass began and ended, on adapters that can tell.
+/// The times at which each pass began and ended, on adapters with timestamps.
 pub(super) struct PassTimestamps {
     /// Which pair of queries is a pass's.
     slots: Vec<Option<u32>>,
@@ -77,7 +77,7 @@ pub(super) struct PassTimestamps {
 }
 
 impl PassTimestamps {
-    /// For the passes that run. A frame of too many goes untimed.
+    /// Makes the queries of the passes that run. A frame with too many is not timed.
     pub fn new(context: &GpuContext, plan: &FramePlan, runs: impl Fn(&Pass) -> bool) -> Option<PassTimestamps> {
         context.timestamp_period?;
         let mut next_slot = 0..;
@@ -96,7 +96,7 @@ impl PassTimestamps {
         })
     }
 
-    /// By pass.
+    /// Returns the milliseconds of each pass.
     pub fn read(&self, context: &GpuContext) -> Result<Vec<Option<f64>>, GpuError> {
         let times = readback::milliseconds(context, &self.queries.read()?);
         Ok(self.slots.iter().map(|slot| slot.and_then(|slot| times.get(slot as usize).copied()).flatten()).collect())
@@ -105,14 +105,14 @@ impl PassTimestamps {
 
 /// How many samples of each draw passed its tests, where nothing else of it can matter.
 pub(super) struct DrawSamples {
-    /// By pass and draw.
+    /// The query of each draw of each pass.
     slots: Vec<Vec<Option<u32>>>,
     queries: QueryReadback,
 }
 
 impl DrawSamples {
-    /// Of the timed passes among those that `asks` takes; `None` where there is nothing to ask. What is beyond
-    /// a query set's room is not asked about.
+    /// Makes queries for the draws of those timed passes that `asks` accepts; `None` where there is nothing to ask.
+    /// Draws beyond the size of a query set are not counted.
     pub fn new(device: &Device, plan: &FramePlan, asks: impl Fn(&Pass) -> bool) -> Option<DrawSamples> {
         let mut next_slot = 0..wgpu::QUERY_SET_MAX_QUERIES;
         let of_pass = |pass: &Pass| -> Vec<Option<u32>> {
@@ -138,7 +138,7 @@ impl DrawSamples {
         self.slots[pass][draw]
     }
 
-    /// By pass and draw; `None` where it was not asked.
+    /// Returns the samples of each draw of each pass; `None` where they were not counted.
     pub fn read(&self) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let counts = self.queries.read()?;
         let of_draw = |slot: &Option<u32>| slot.and_then(|slot| counts.get(slot as usize).copied());

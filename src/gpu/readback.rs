@@ -143,7 +143,7 @@ impl StagingCopy {
     }
 }
 
-/// What a copy of a texture's aspect holds.
+/// Returns the format of a copy of a texture's aspect.
 fn format_of(texture: &Texture, aspect: TextureAspect) -> PixelFormat {
     match (texture.format(), aspect) {
         (wgpu::TextureFormat::Rgba8UnormSrgb, _) => PixelFormat::Rgba8Srgb,
@@ -154,7 +154,7 @@ fn format_of(texture: &Texture, aspect: TextureAspect) -> PixelFormat {
     }
 }
 
-/// From a row of a copy to the next, bytes.
+/// Returns the bytes from one row of a copy to the next.
 fn row_stride(texture: &Texture, format: PixelFormat) -> usize {
     (texture.width() as usize * format.texel_bytes()).next_multiple_of(ROW_ALIGNMENT)
 }

@@ -19,12 +19,12 @@ pub(super) enum ShaderInputs {
     Textured,
     /// The planes of vertices that are [`Extruded`](crate::plan::Extruded).
     Extruded,
-    /// The fragments that another program's shader has kept.
+    /// The fragments that another program's shader did not discard.
     Retained,
 }
 
 impl ShaderKey {
-    /// Of a draw.
+    /// Returns the key of the shader that a draw needs.
     pub fn of(draw: &Draw, mesh: &DrawMesh) -> ShaderKey {
         let form = match (&mesh.extruded, &mesh.retained, draw.constants.texture) {
             (Some(_), ..) => ShaderInputs::Extruded,
@@ -117,7 +117,8 @@ fn plain(program: Program) -> ProgramSource {
     joined(&files, vertex, fragment)
 }
 
-/// The same with vertices that the shader carries away from a light, for programs that are only positions and a value.
+/// Returns the source of a program whose vertices the shader carries away from a light, for programs that are only
+/// positions and a value.
 fn extruding(program: Program) -> ProgramSource {
     let plain = plain(program);
     // A program that reads no value of its draw has no constants yet.

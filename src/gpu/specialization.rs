@@ -1,6 +1,7 @@
-//! What a draw's shader need not do: its pipeline is made without (specialization constants, `override` in WGSL).
+//! What a draw's shader does not have to do: its pipeline is made without (specialization constants, `override` in
+//! WGSL).
 //!
-//! A software driver runs both sides of a condition for every pixel, and a `discard` that may come keeps it from testing
+//! A software driver runs both sides of a condition for every pixel, and a possible `discard` prevents it from testing
 //! depth and stencil before it shades. So what a material, a light or a depth mapping never asks for is not in the
 //! pipeline.
 
@@ -25,7 +26,7 @@ pub(super) struct Specialization {
 }
 
 impl Specialization {
-    /// Of a draw under the light of its pass.
+    /// Returns the specialization of a draw under the light of its pass.
     pub fn of(draw: &Draw, light: Option<&PlanLight>, wraps_diffuse: bool) -> Specialization {
         let material = &draw.constants.material;
         let has_checks = material.checks != 0.0;

@@ -1,5 +1,5 @@
-//! What a pass's depth and stencil hold as it begins, put there from the CPU: depths by a draw, as nothing copies them
-//! into a buffer of floats, the stencil by a copy.
+//! What a pass's depth and stencil store as it begins, written from the CPU: depths by a draw, as nothing copies them
+//! into a depth buffer of floats, the stencil by a copy.
 
 use super::shaders;
 use crate::plan::{Blob, StartContent};
@@ -14,7 +14,7 @@ pub(super) struct StartTarget<'a> {
     pub texture: &'a wgpu::Texture,
     pub layer: u32,
     pub view: &'a wgpu::TextureView,
-    /// Of [`pipeline`], where there is depth to be put.
+    /// The pipeline of [`pipeline`], where there is depth to be written.
     pub pipeline: Option<&'a RenderPipeline>,
 }
 

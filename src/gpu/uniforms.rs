@@ -1,10 +1,10 @@
 //! The plan's small values as the shaders' structs, packed into one buffer each.
 //!
-//! Shaders must not branch on those that are uniform: lavapipe (Mesa 22.3) would put their values into the shader and
-//! compile it anew for every draw whose values differ, and keep what it compiled until the process ends: 5 MB and tens of
-//! milliseconds a frame of `tori`. What sets draws apart is therefore a part of their pipeline (`specialization.rs`), or
-//! chosen with `select`. Programs that look up maps branch on their light: for them it is storage, which lavapipe does not
-//! look into, but whose values it fetches pixel by pixel.
+//! Shaders must not branch on those that are uniform: lavapipe (Mesa 22.3) would compile their values into the shader
+//! anew for every draw whose values differ, and keep what it compiled until the process ends: 5 MB and tens of
+//! milliseconds a frame of `tori`. What distinguishes draws is therefore a part of their pipeline
+//! (`specialization.rs`), or chosen with `select`. Programs that look up maps branch on their light: for them it is
+//! storage, which lavapipe does not look into, but whose values it fetches pixel by pixel.
 
 use crate::plan::{Carry, Draw, FramePlan, Pass, PlanLight, PlanMap, Program};
 use bytemuck::{Pod, Zeroable};
@@ -142,7 +142,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
         label: draw.constants.label,
         flat: draw.constants.flat,
         count: draw.constants.count,
-        // Of a layer that is left out, all of the light arrives.
+        // In a layer that is left out, all of the light arrives.
         layer: draw.constants.layer.and_then(|layer| map?.stored_layer(layer)).unwrap_or(NO_LAYER),
         checks_from: draw.constants.checks_from,
         emission: material.emission,
@@ -164,7 +164,7 @@ pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
 fn light_uniform(index: usize, light: &PlanLight) -> LightUniform {
     let lookup = light.map.as_ref().and_then(|map| map.lookup);
     let mut clip_from_relative = [[0.0; 16]; PlanMap::MOST_FACES];
-    // In the order of the texture's layers. What lies in a face that is left out lies in none.
+    // Matrices in the order of the texture's layers. What lies in a face that is left out lies in none.
     let faces = light.map.iter().flat_map(|map| map.clip_from_relative.iter().zip(&map.faces));
     let drawn = faces.filter_map(|(face, view)| view.map(|_| face));
     let mut face_count = 0;

@@ -1,5 +1,5 @@
-//! Holds a history against what the GPU stored, and against itself: a list with an event dropped,
-//! doubled or moved is found out.
+//! Compares a history with what the GPU stored, and checks it against itself: a list with an event dropped, doubled or
+//! moved is found out.
 
 use super::{CapturedAfter, FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, PixelValues};
 use crate::numbers;
@@ -22,29 +22,29 @@ pub enum Disagreement {
     },
     /// There are not as many fragments as the GPU counted.
     Counted {
-        /// By the GPU.
+        /// Fragments that the GPU counted.
         counted: u32,
-        /// In the list.
+        /// Number of those in the list.
         listed: u32,
     },
     /// There are not as many events without a fragment as plan and geometry ask for.
     WithoutFragment {
         /// Clears, culled and clipped triangles that there must be.
         expected: u32,
-        /// In the list.
+        /// Number of those in the list.
         listed: u32,
     },
     /// An event is not after the one before it in the order of the API.
     Order {
-        /// Its index.
+        /// Index of the event.
         event: usize,
     },
     /// An event does not begin with what the one before it left.
     Chain {
-        /// Its index.
+        /// Index of the event.
         event: usize,
     },
-    /// The capture holds nothing to compare with.
+    /// The capture contains nothing to compare with.
     NotCaptured,
     /// After a pass the GPU stored something else than the events make.
     Stored {

@@ -16,7 +16,7 @@ pub struct PixelDocument {
     /// What is wrong, where something is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     disagreements: Vec<String>,
-    /// Why each light does or does not arrive; null where the technique leaves no events that tell.
+    /// Why each light does or does not arrive; null where the technique leaves no events that show it.
     why: Vec<Option<String>>,
     milliseconds: f64,
 }
@@ -55,7 +55,7 @@ struct PixelEventEntry {
 }
 
 impl PixelDocument {
-    /// Of a history that took so long to find out.
+    /// Returns the document of a history that took this many milliseconds to compute.
     pub fn new(history: &PixelHistory, milliseconds: f64) -> PixelDocument {
         let stored = |depth, stencil| StoredEntry { stencil: history.has_stencil.then_some(stencil), depth };
         let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();

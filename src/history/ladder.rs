@@ -19,11 +19,11 @@ pub struct Ladder {
     pub start: i32,
     /// The part of `start` that it was cleared to.
     pub cleared_to: i32,
-    /// The bits that a stencil keeps of the count.
+    /// The bits of the stencil that the count is stored in.
     pub bits: CountBits,
     /// What it ended with.
     pub count: i32,
-    /// The same as the light pass tests it: in a stencil eight bits of it.
+    /// The count as the light pass tests it: in a stencil, its eight bits.
     pub tested: VolumeCount,
     /// Nearest first.
     pub rungs: Vec<Rung>,

@@ -2,17 +2,17 @@
 //!
 //! ```text
 //! FramePlan::covering ─► gpu's fragment log ─┐
-//!        FramePlan (tests, operations) ──────┼─► stencil machine ─► PixelHistory ─► story, ladder
+//!        FramePlan (tests, operations) ──────┼─► stencil machine ─► PixelHistory ─► story, ladder, verdict
 //!        Capture (what the GPU stored) ──────┘                          └─► disagreements
 //! ```
 //!
-//! The log tells which triangles left a fragment, how deep, and of which side. The stencil machine
-//! takes them through the tests one by one, so what was before and after each is known, which no
-//! buffer keeps. What comes out is held against the capture after every pass, bit for bit. Triangles
-//! that cover the pixel and were culled or clipped are in the list too: they explain what is missing.
+//! The log shows which triangles left a fragment, how deep, and of which side. The stencil machine takes them through
+//! the tests one by one, so what was before and after each is known, which no buffer stores. The result is compared
+//! with the capture after every pass, bit for bit. Triangles that cover the pixel and were culled or clipped are in the
+//! list too: they explain what is missing.
 //!
-//! Limits: depth, stencil and float counts are followed, colours are not; a pass of a shadow map has
-//! texels of its own and is not part of a pixel's history.
+//! Limits: depth, stencil and float counts are followed, colours are not; a pass of a shadow map has texels of its own
+//! and is not part of a pixel's history.
 
 mod check;
 mod json;
@@ -70,14 +70,14 @@ pub struct PixelHistory {
     pub contradictions: Vec<Disagreement>,
 }
 
-/// What a pixel holds.
+/// The values that a pixel's buffers store.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelValues {
-    /// As in the depth buffer.
+    /// The value in the depth buffer.
     pub depth: f32,
     /// Eight bits; 0 where there is no stencil buffer.
     pub stencil: u8,
-    /// The count of the volumes of the pass's light, where it is kept in a float; else 0.
+    /// The count of the volumes of the pass's light, where it is stored in a float; otherwise 0.
     pub count: f32,
 }
 
@@ -104,7 +104,7 @@ impl PixelValues {
 pub struct PixelEvent {
     /// Index of the pass, as in the capture.
     pub pass: usize,
-    /// Its name.
+    /// Name of that pass.
     pub pass_name: String,
     /// The light it belongs to.
     pub light: Option<usize>,
@@ -114,9 +114,9 @@ pub struct PixelEvent {
     pub target: FrameTarget,
     /// What happened.
     pub kind: PixelEventKind,
-    /// What the pixel held.
+    /// The pixel's values before the event.
     pub before: PixelValues,
-    /// What it holds now.
+    /// The pixel's values after it.
     pub after: PixelValues,
 }
 
@@ -143,7 +143,7 @@ pub struct TriangleEvent {
     pub draw: usize,
     /// Name of the draw.
     pub draw_name: String,
-    /// The object it shows or whose shadow it makes.
+    /// Name of the object that it shows, or that casts the shadow it belongs to.
     pub caster: Option<String>,
     /// Which part of the object or of its shadow.
     pub part: DrawPart,
@@ -153,13 +153,13 @@ pub struct TriangleEvent {
     pub triangle: u32,
     /// Corners, homogeneous and relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
-    /// Its front is seen.
+    /// The triangle's front is visible.
     pub is_front: bool,
     /// It faces into the volume that it bounds.
     pub faces_inwards: bool,
     /// Whom its shader asks how much of the light arrives, where it adds the light; of another program's surfaces nobody.
     pub lights: Option<Visibility>,
-    /// As the depth test sees it; outside 0 to 1 where it was clipped.
+    /// The depth that the depth test sees; outside 0 to 1 where the triangle was clipped.
     pub depth: f32,
     /// What became of it.
     pub outcome: FragmentOutcome,
@@ -168,7 +168,7 @@ pub struct TriangleEvent {
 /// What became of a triangle at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FragmentOutcome {
-    /// Its fragment went through the tests.
+    /// The triangle left a fragment, which went through the tests.
     Tested {
         /// The stencil test.
         stencil: TestResult,
@@ -234,8 +234,8 @@ impl PixelEvent {
         }
     }
 
-    /// How much it added to the count of shadow volumes, in the stencil or in a float: a step round
-    /// the end of the bits that are written counts as one, and so does a bit turned over.
+    /// Returns how much it added to the count of shadow volumes, in the stencil or in a float: a step that wraps at the
+    /// end of the bits that are written counts as one, and so does an inverted bit.
     pub fn counted(&self) -> i32 {
         let in_float = (self.after.count - self.before.count) as i32;
         let in_stencil = match self.operation().and_then(step_of) {
@@ -254,7 +254,7 @@ impl PixelEvent {
         }
     }
 
-    /// It changed what the pixel holds, or reached its colour: faces of shadow volumes have none.
+    /// Returns whether it changed a value of the pixel, or reached its colour: faces of shadow volumes have none.
     pub fn does_something(&self) -> bool {
         let has_passed = self.triangle().is_some_and(|one| one.outcome.passed());
         self.before != self.after || (has_passed && !self.is_of_volume())
@@ -274,7 +274,8 @@ impl PixelEvent {
     }
 }
 
-/// What an operation adds to a count; one that turns bits over adds as well, and parity is what is kept of the sum.
+/// Returns what an operation adds to a count; one that inverts bits adds as well, and parity is what is stored of the
+/// sum.
 fn step_of(operation: StencilOperation) -> Option<i32> {
     use StencilOperation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap, Invert};
     match operation {
@@ -296,8 +297,8 @@ impl PixelHistory {
         cleared.next().unwrap_or(0)
     }
 
-    /// Do the events make what the GPU stored, after every pass and bit for bit, and are they whole
-    /// and in order? If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] tells where.
+    /// Returns whether the events make what the GPU stored, after every pass and bit for bit, and are complete and in
+    /// order. If not, it is the GPU's rounding or a bug of ours; [`PixelHistory::disagreements`] says where.
     pub fn agrees(&self) -> bool {
         self.disagreements().is_empty()
     }
@@ -307,8 +308,9 @@ impl PixelHistory {
         self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
     }
 
-    /// What the pixel held when the light pass tested it: after the last face of the light's volumes, or where there is
-    /// none, when the light's last pass began; of what that pass does not draw, when its labels were drawn.
+    /// Returns the pixel's values when the light pass tested it: after the last face of the light's volumes, or where
+    /// there is none, when the light's last pass began; where that pass does not draw the pixel, when its labels were
+    /// drawn.
     fn tested_count(&self, light: usize) -> PixelValues {
         let of_light = || self.events.iter().filter(|event| event.light == Some(light));
         let last = of_light().rfind(|event| event.is_of_volume());
@@ -319,8 +321,8 @@ impl PixelHistory {
         last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
     }
 
-    /// On which side of the visible surface a light's volume faces count here. `None` where it has none here that
-    /// would tell: what was clipped or culled counts nowhere.
+    /// Returns on which side of the visible surface a light's volume faces count here. `None` where no face here shows
+    /// it: what was clipped or culled counts nowhere.
     pub fn counted_side(&self, light: usize) -> Option<CountedSide> {
         let is_behind = |event: &PixelEvent| {
             let depth = event.triangle()?.depth;
@@ -342,7 +344,7 @@ impl PixelHistory {
         }
     }
 
-    /// Does an event of a pass change what the pixel holds, or reach its colour?
+    /// Returns whether an event of a pass changes a value of the pixel, or reaches its colour.
     pub fn is_touched_by(&self, pass: usize) -> bool {
         self.events.iter().filter(|event| event.pass == pass).any(PixelEvent::does_something)
     }
@@ -367,7 +369,7 @@ fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<C
     after
 }
 
-/// The light whose float count a pass adds to.
+/// Returns the light to whose float count a pass adds.
 fn frame_counts(plan: &FramePlan, capture: &Capture, pass: usize) -> Option<usize> {
     match &capture.steps.get(pass)?.snapshot {
         Snapshot::Frame(frame) if frame.target == FrameTarget::Count => plan.passes[pass].light.map(|light| light.0),

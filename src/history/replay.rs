@@ -168,7 +168,7 @@ fn rounding(plan: &FramePlan) -> f32 {
     target.map_or(0.0, |target| target.depth_rounding())
 }
 
-/// What a pixel of the picture holds before the frame's first pass.
+/// Returns the values of a pixel of the picture before the frame's first pass.
 fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> PixelValues {
     let first = first_with_depth(plan).and_then(|index| start_content(&plan.passes[index]));
     first.map_or(NEW, |start| values_of(start, plan, pixel, NEW))
@@ -183,7 +183,7 @@ fn start_content(pass: &Pass) -> Option<&StartContent> {
     pass.recorded.as_ref()?.start.as_ref()
 }
 
-/// What a pixel holds of some content, and of `values` where that says nothing.
+/// Returns a pixel's values in some content, and those of `values` where the content says nothing.
 fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: PixelValues) -> PixelValues {
     let index = y as usize * plan.size[0] as usize + x as usize;
     let depth = start.depth.as_ref().and_then(|depth| depth.data().get(index).copied());

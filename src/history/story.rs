@@ -28,7 +28,7 @@ impl PixelHistory {
         self.story_with(curve, "")
     }
 
-    /// The same with lines of more reasons, each ended by a newline, after those that events give.
+    /// Returns the history in lines, with more `reasons`, each ended by a newline, after those that events give.
     pub fn story_with(&self, curve: &DepthCurve, reasons: &str) -> String {
         let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
@@ -197,7 +197,7 @@ fn who(one: &TriangleEvent) -> String {
         DrawPart::PlanarShadow => format!("flattened {}", one.draw_name),
         other => match &one.caster {
             Some(caster) => format!("{} of {caster}", other.name().replace('-', " ")),
-            // Of another program's volumes sides and caps are not told apart.
+            // In another program's volumes, sides and caps are not distinguished.
             None => format!("volume {}", one.draw_name),
         },
     }

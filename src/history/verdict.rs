@@ -1,8 +1,8 @@
 //! Why a pixel is dark or lit under a light: its label with the evidence for it, and the one place that words both.
 //!
-//! The mask of a capture has the label. The evidence is as much as is known: what decides about the light, the
-//! count that its light pass tested, or, where the pixel's history is known, the faces that made that count
-//! ([`LightDecision`]). A verdict claims nothing about geometry that neither the capture nor the history holds.
+//! The mask of a capture has the label. The evidence is as much as is known: what decides about the light, the count
+//! that its light pass tested, or, where the pixel's history is known, the faces that made that count
+//! ([`LightDecision`]). A verdict claims nothing about geometry that neither the capture nor the history contains.
 
 use super::{LightDecision, PixelHistory, VolumeCount};
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot, Step};
@@ -52,13 +52,13 @@ pub enum VerdictEvidence {
 pub struct TestedCount {
     /// The count.
     pub count: VolumeCount,
-    /// On which side of the surface faces count.
+    /// The side of the surface on which faces count.
     pub side: CountedSide,
     /// The bits of the stencil that are counted in.
     pub bits: CountBits,
     /// Each face inverts one bit of the stencil.
     pub inverts: bool,
-    /// The count may begin at another number than 0: parallel lines of sight end in volumes at infinity, and z-pass may
+    /// The count may begin at another number than 0: parallel view rays end in volumes at infinity, and z-pass may
     /// begin with the volumes around the eye.
     pub begins_elsewhere: bool,
     /// Volumes that contain the surface, counted in a float beside a stencil that reads them as 0.
@@ -95,7 +95,7 @@ impl Verdict {
         Verdict { light, label, count, evidence }
     }
 
-    /// The same with what the pixel's history shows, where that says more.
+    /// Returns the verdict with what the pixel's history shows, where that says more.
     pub fn with_history(mut self, history: &PixelHistory) -> Verdict {
         let Some(why) = history.why(self.light) else { return self };
         let is_dark = self.label == Some(Shadow);
@@ -115,7 +115,8 @@ impl Verdict {
         self
     }
 
-    /// The same with what the shadow map of a light stores, in a sentence; another light's map is no evidence.
+    /// Returns the verdict with what the shadow map of a light stores, in a sentence; another light's map is no
+    /// evidence.
     pub fn with_texels(mut self, light: usize, sentence: impl FnOnce() -> String) -> Verdict {
         if self.light == light && self.evidence == VerdictEvidence::Decision(DecidedBy::Map) {
             self.evidence = VerdictEvidence::Texels(sentence());
@@ -196,7 +197,7 @@ impl TestedCount {
         is_dark == self.count.is_zero()
     }
 
-    /// More faces were left than entered.
+    /// Returns whether the view ray left more volumes than it entered.
     pub fn is_negative(&self) -> bool {
         match self.count {
             VolumeCount::Stencil(count) => !self.inverts && self.bits == CountBits::EIGHT && count > 127,
@@ -261,7 +262,8 @@ impl TestedCount {
     }
 }
 
-/// Why a light is dark or not, as far as what decides about it tells; of counts no more than that they decided.
+/// Returns why a light is dark or lit, as far as the kind of what decides about it says; for counts no more than that
+/// they decided.
 pub fn reason(decided_by: DecidedBy, is_dark: bool) -> &'static str {
     match (decided_by, is_dark) {
         (DecidedBy::StencilCount { .. } | DecidedBy::FloatCount { .. }, true) => {

@@ -24,22 +24,22 @@ pub enum LightDecision {
 pub struct CountedFaces {
     /// Where they count: in front of the surface, as their depth test passes; on it or behind it, as it fails.
     pub side: CountedSide,
-    /// Those that counted.
+    /// The faces that counted.
     pub faces: FaceCounts,
-    /// What the count was cleared to: the volumes around the eye, where z-pass is told to begin with them.
+    /// What the count was cleared to: the number of volumes around the eye, where z-pass begins with them.
     pub cleared_to: i32,
     /// Volumes that contain the near plane, where that was asked.
     pub near: Option<i32>,
     /// What all that counted add up to, with what the count was cleared to and the near plane's.
     pub sum: i32,
-    /// What a stencil keeps of that.
+    /// The bits of the stencil that the sum is stored in.
     pub bits: CountBits,
     /// What was left, as the light pass reads it.
     pub count: VolumeCount,
 }
 
 impl CountedFaces {
-    /// No volume holds the surface, as the light pass reads it.
+    /// Returns whether no volume contains the surface, as the light pass reads the count.
     fn is_zero(&self) -> bool {
         match self.count {
             VolumeCount::Stencil(count) => i32::from(count) % self.bits.modulus() == 0,
@@ -55,18 +55,18 @@ pub struct FaceCounts {
     pub front: u32,
     /// Seen from the back.
     pub back: u32,
-    /// Of both, those that lie on the surface itself.
+    /// Number of faces, of both sides, that lie on the surface itself.
     pub on_surface: u32,
-    /// Of both, those whose step was lost, as the count was at its limit.
+    /// Number of faces, of both sides, whose step was lost, as the count was at its limit.
     pub stopped: u32,
 }
 
-/// A count as it was kept.
+/// A count as it was stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VolumeCount {
-    /// In the stencil.
+    /// The count in the stencil.
     Stencil(u8),
-    /// In a float.
+    /// The count in a float.
     Float(f32),
 }
 
@@ -90,16 +90,16 @@ pub struct FlattenedShadow {
 pub enum LightPassResult {
     /// It added the light.
     Adds,
-    /// Its test kept the light out.
+    /// Its test let no light through.
     Skips,
-    /// Nothing kept the light out, but it adds none: the surface faces away from it or is beyond its range.
+    /// Nothing blocked the light, but it adds none: the surface faces away from it or is beyond its range.
     FacesAway,
     /// The object receives no shadows: nothing was asked.
     AsksNothing,
 }
 
 impl PixelHistory {
-    /// What decided about a light; `None` where the technique leaves no events that tell.
+    /// Returns what decided about a light; `None` where the technique leaves no events that show it.
     pub fn why(&self, light: usize) -> Option<LightDecision> {
         let of_light = |event: &&PixelEvent| event.light == Some(light) && event.target != FrameTarget::Labels;
         let events = || self.events.iter().filter(of_light);
@@ -230,7 +230,7 @@ impl fmt::Display for CountedFaces {
             write!(f, "the count begins at {cleared_to}; ")?;
         }
         if let Some(near) = near {
-            // More back than front faces in it leave less than none.
+            // More back than front faces in front of the near plane leave less than none.
             let sign = if *near < 0 { "−" } else { "" };
             write!(f, "the near plane is in {sign}{}; ", amount(near.unsigned_abs(), "volume"))?;
         }
@@ -240,7 +240,7 @@ impl fmt::Display for CountedFaces {
             (side, _) => side.preposition().to_owned(),
         };
         let verb = match (count, side, all) {
-            // A float is counted by draws whose tests are the other way round.
+            // A float is counted by draws whose depth tests are reversed.
             (VolumeCount::Float(_), _, 1) => "is counted",
             (VolumeCount::Float(_), ..) => "are counted",
             (VolumeCount::Stencil(_), CountedSide::Behind, 1) => "fails the depth test",

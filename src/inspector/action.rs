@@ -1,10 +1,11 @@
-//! What the panels ask of the app, and what is named in it. Panels change nothing outside the inspector.
+//! The actions that panels ask the app for, and the names that occur in them. Panels change nothing outside the
+//! inspector.
 
 use crate::ask::{PendingQuestion, RunRequest};
 use crate::stress::Entrant;
 use std::collections::BTreeMap;
 
-/// A wish that needs files, windows or the GPU.
+/// A request that needs files, windows or the GPU.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Open a built-in scene by name, or a scene file, model or capture folder by path.
@@ -13,36 +14,36 @@ pub enum Action {
     Browse,
     /// Ask for a capture folder with the system's dialog, which shows files or folders, not both.
     BrowseFolder,
-    /// Render again, with this changed.
+    /// Render again with this request.
     Run(Box<RunRequest>),
-    /// Answer a question: with [`Inspector::answer`](super::Inspector::answer).
+    /// Answer a question, with [`Inspector::answer`](super::Inspector::answer).
     Ask(PendingQuestion),
     /// Load the open scene again from its file, which changed.
     Reload,
     /// Write what is shown into a file.
     Export {
-        /// What of it.
+        /// What is to be exported.
         kind: ExportKind,
-        /// Where to.
+        /// Path of the file or folder.
         path: String,
-        /// What is there may be replaced.
+        /// An existing file may be replaced.
         replace: bool,
     },
     /// Ask with the system's dialog where to export to.
     BrowseExport {
-        /// The place so far.
+        /// The path so far.
         path: String,
     },
     /// Open the scene of a stress case.
     OpenStress {
-        /// Its name.
+        /// Name of the case.
         case: &'static str,
-        /// The value of its number.
+        /// The value of the case's number.
         value: f64,
-        /// How its shadows are made; `None`: as before.
+        /// The technique and settings to use; `None`: those in use now.
         entrant: Option<Entrant>,
     },
-    /// Render the open scene as a row of the report was.
+    /// Render the open scene as for a row of the report.
     OpenReportRow {
         /// Name of the technique.
         technique: String,
@@ -51,7 +52,7 @@ pub enum Action {
     },
 }
 
-/// A dialog.
+/// A dialog window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DialogKind {
     /// Opens a scene.
@@ -63,16 +64,16 @@ pub enum DialogKind {
 }
 
 named_enum! {
-    /// A tab. Its name is that of stored layouts.
+    /// A tab. Its name is the one in stored layouts.
     pub enum PanelKind(
-        /// On its tab.
+        /// The text on its tab.
         title
     ) {
         /// The frame, step by step.
         Passes = "Passes" ("Passes"),
-        /// What can be changed.
+        /// The settings of technique and scene.
         Settings = "Settings" ("Scene settings"),
-        /// The selected buffer.
+        /// The selected picture.
         Picture = "Picture" ("Picture"),
         /// A second camera that sees the first.
         Scene = "Scene" ("Scene"),
@@ -88,9 +89,9 @@ named_enum! {
         Bench = "Bench" ("Bench"),
         /// Error against time.
         Report = "Report" ("Report"),
-        /// What is wrong, and what mends it.
+        /// What is wrong, and how to fix it.
         Diagnosis = "Diagnosis" ("Diagnosis"),
-        /// Extreme cases.
+        /// The stress cases.
         Stress = "Stress" ("Stress"),
     }
 }
@@ -98,7 +99,7 @@ named_enum! {
 named_enum! {
     /// Something drawn over the picture, in the order of the menu.
     pub enum Overlay(
-        /// What one sees.
+        /// What it shows.
         meaning
     ) {
         /// The edges that bound the shadows of the shown light.
@@ -107,19 +108,19 @@ named_enum! {
         Volumes = "Wireframe of volumes" (
             "Sides and caps of the shadow volumes that the frame draws, of the shown light"
         ),
-        /// How the step's fragments fared in depth and stencil test.
+        /// The results of the depth and stencil tests on the step's fragments.
         Tests = "Depth and stencil tests" (
             "Where fragments of the selected step pass or fail; hits of z-fail stay visible"
         ),
         /// Where objects receive shadows.
         Receivers = "Receivers" ("Where objects are darkened by shadows"),
-        /// What throws shadows is called.
+        /// The names of casters.
         Names = "Casters' names" ("The name of each caster at the middle of what is seen of it"),
     }
 }
 
 impl Overlay {
-    /// Does it follow from what the frame is made of in space?
+    /// Is it drawn from the frame's geometry in space, so that the anatomy has to be known?
     pub fn needs_anatomy(self) -> bool {
         self != Overlay::Tests
     }
@@ -128,11 +129,11 @@ impl Overlay {
 named_enum! {
     /// What is exported, in the order of the menu.
     pub enum ExportKind(
-        /// What is written.
+        /// The explanation in the menu.
         explanation
     ) {
-        /// The shown picture in its colours, or what the step changed, a pixel a texel: PNG. What lies over it
-        /// and what it is compared with is left out.
+        /// The shown picture in its colours, or what the step changed, a pixel for each texel: PNG. Overlays and the
+        /// compared picture are left out.
         Picture = "Shown picture (PNG)…" ("The shown picture in its colours, a pixel a texel"),
         /// The shown picture with overlays and the compared half, at the capture's resolution: PNG.
         AsShown = "Picture with overlays (PNG)…" (
@@ -144,7 +145,7 @@ named_enum! {
         Steps = "Frame pass by pass (animated PNG)…" (
             "Each pass with what it writes, one after the other, over its name"
         ),
-        /// A light once round the scene: animated PNG.
+        /// A light moving once round the scene: animated PNG.
         LightRound = "Light going round (animated PNG)…" (
             "The shown light once round the scene's vertical axis, as the scene is run now; colours are rounded by at \
              most 1 of 255"
@@ -159,7 +160,7 @@ named_enum! {
         ),
         /// The scene as it is now, with its technique: a scene file.
         Scene = "Scene file (TOML)…" ("The scene with its lights, camera and technique as they are now"),
-        /// The rows of the Report tab, or their plot: what the file's ending says.
+        /// The rows of the Report tab, or their plot, by the file's extension.
         Report = "Report (table or plot)…" (
             "Error against run time, as measured in the Report tab: .csv, .md or .json for the rows, .svg or .png for \
              the plot"

@@ -1,4 +1,4 @@
-//! The stops of every guided tour: what is said, and what the panels show meanwhile.
+//! The stops of every guided tour: their text, and what the panels show meanwhile.
 
 use crate::inspector::action::Overlay;
 use crate::inspector::action::PanelKind;
@@ -10,19 +10,19 @@ use crate::technique::Technique;
 pub enum TourMove {
     /// Opens a built-in scene, if another one is open.
     Scene(&'static str),
-    /// Makes shadows in another way at this stop.
+    /// Switches to another technique at this stop.
     Technique(Technique),
-    /// To the first pass.
+    /// Goes to the first pass.
     First,
-    /// To the last pass.
+    /// Goes to the last pass.
     Last,
-    /// To the first pass whose name has this word.
+    /// Goes to the first pass whose name contains this word.
     Step(&'static str),
     /// Shows this kind of picture.
     Picture(PictureKind),
     /// Shows this tab.
     Panel(PanelKind),
-    /// Lays this over the picture, and nothing else.
+    /// Shows this overlay over the picture, and no other.
     Over(Overlay),
     /// Picks a pixel in shadow.
     PickShadow,
@@ -32,19 +32,19 @@ pub enum TourMove {
     PickWrong,
 }
 
-/// One stop.
+/// One stop of a tour.
 #[derive(Debug)]
 pub struct TourStop {
-    /// Short.
+    /// A short title.
     pub title: &'static str,
-    /// Two or three sentences.
+    /// Text of two or three sentences.
     pub text: &'static str,
-    /// In order.
+    /// What the stop does to the panels, in order.
     pub go: &'static [TourMove],
 }
 
 impl TourStop {
-    /// How shadows are made at this stop.
+    /// The technique that is used at this stop.
     pub fn technique(&self, tour: &Tour) -> Technique {
         let own =
             self.go.iter().find_map(|go| if let TourMove::Technique(technique) = go { Some(*technique) } else { None });
@@ -57,9 +57,9 @@ impl TourStop {
 pub struct Tour {
     /// The technique.
     pub technique: Technique,
-    /// What one knows after it.
+    /// What the user knows after it.
     pub promise: &'static str,
-    /// In order.
+    /// The stops, in order.
     pub stops: &'static [TourStop],
 }
 
@@ -75,7 +75,7 @@ pub fn tour_of(technique: Technique) -> Option<(usize, &'static Tour)> {
     TOURS.iter().enumerate().find(|(_, tour)| tour.technique == technique)
 }
 
-/// One a technique, in the order in which they build on each other.
+/// One tour for each technique, in the order in which they build on each other.
 pub const TOURS: [Tour; 10] = [
     Tour {
         technique: Technique::None,

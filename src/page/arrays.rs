@@ -1,9 +1,10 @@
-//! The arrays of a page: each is there once, however often it is named.
+//! The arrays of a page: each is stored once, however often it is referred to.
 //!
-//! An array is rows of elements, an element is lanes of words, a word one byte or four. Packed, a word is
-//! what it adds to its neighbours (left + above − above left, as integers: stored depth and most colours are nearly
-//! planes) with the sign as its lowest bit, so that what is small has zeros above; then all first bytes of all words stand together, then all second ones, then zlib, then base64.
-//! `assets/page/arrays.js` goes the same way back. Integers wrap, so every bit comes back.
+//! An array is rows of elements, an element is lanes of words, a word one byte or four. Packed, a word is the
+//! difference from its prediction by its neighbours (left + above − above left, as integers: stored depth and most
+//! colours are nearly planes) with the sign as its lowest bit, so that small differences have zeros in the upper bits;
+//! then come the first bytes of all words, then all second ones, and so on; then zlib, then base64.
+//! `assets/page/arrays.js` reverses this. Integers wrap, so every bit is restored.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -15,7 +16,7 @@ use std::collections::BTreeMap;
 use std::hash::BuildHasher;
 use std::io::Write;
 
-/// What a word is to the page.
+/// The type of a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ArrayWord {
@@ -33,14 +34,14 @@ impl ArrayWord {
     }
 }
 
-/// How elements lie.
+/// The layout of an array's elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ArrayLayout {
-    /// What a word is.
+    /// The type of a word.
     pub word: ArrayWord,
-    /// Words of an element.
+    /// How many words an element has.
     pub lanes: usize,
-    /// Elements of a row; 0: all are in one.
+    /// How many elements a row has; 0: all are in one row.
     pub width: usize,
 }
 
@@ -54,21 +55,21 @@ pub struct PageArrays {
     known: BTreeMap<(ArrayLayout, usize, u64), ArrayIndex>,
 }
 
-/// An array as the page holds it.
+/// An array as the page stores it.
 #[derive(Debug, Serialize)]
 pub struct PageArray {
     word: ArrayWord,
     lanes: usize,
     width: usize,
-    /// Elements.
+    /// How many elements it has.
     length: usize,
-    /// Words are what they add to their neighbours.
+    /// Words are differences from their predictions.
     predicted: bool,
     data: String,
 }
 
 impl PageArrays {
-    /// Puts bytes in, little-endian, unless they are there.
+    /// Adds little-endian bytes, unless the same array is there already; returns its index.
     pub fn add(&mut self, layout: ArrayLayout, bytes: &[u8]) -> ArrayIndex {
         let key = (layout, bytes.len(), FixedState::with_seed(0).hash_one(bytes));
         if let Some(index) = self.known.get(&key) {
@@ -79,7 +80,7 @@ impl PageArrays {
         self.entries.len() - 1
     }
 
-    /// All of them, in the order of their indexes.
+    /// Returns all arrays, in the order of their indices.
     pub fn into_entries(self) -> Vec<PageArray> {
         self.entries
     }
@@ -101,7 +102,7 @@ fn words(word: ArrayWord, bytes: &[u8]) -> Vec<u32> {
     }
 }
 
-/// What each word adds to what its neighbours foretell; beyond the first row and column are zeros.
+/// Returns the difference of each word from its prediction by its neighbours; those outside the array are zero.
 fn residuals(words: &[u32], ArrayLayout { word, lanes, width }: ArrayLayout) -> Vec<u32> {
     let row = if width == 0 { words.len().max(1) } else { width * lanes };
     let at = |index: usize, left: usize, up: usize| {
@@ -124,7 +125,7 @@ fn residuals(words: &[u32], ArrayLayout { word, lanes, width }: ArrayLayout) -> 
     (0..words.len()).map(residual).collect()
 }
 
-/// The first bytes of each lane's words, the second ones, and so on, then those of the next lane.
+/// Returns the first bytes of the first lane's words, the second ones, and so on, then those of the next lane.
 fn planes(words: &[u32], ArrayLayout { word, lanes, .. }: ArrayLayout) -> Vec<u8> {
     let plane =
         |lane: usize, byte: usize| words.iter().skip(lane).step_by(lanes).map(move |word| word.to_le_bytes()[byte]);
@@ -143,7 +144,7 @@ mod tests {
     use flate2::read::ZlibDecoder;
     use std::io::Read;
 
-    /// As `arrays.js` unpacks.
+    /// Unpacks an array as `arrays.js` does.
     fn unpacked(entry: &PageArray) -> Vec<u8> {
         let deflated = BASE64_STANDARD.decode(&entry.data).expect("base64");
         let mut planes = Vec::new();
@@ -194,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Depth over the screen is a plane to the last bits; what is left of it is small.
+    /// Depth over the screen is a plane to the last bits; the remaining differences are small.
     #[test]
     fn a_plane_of_depths_packs_small() {
         let depth = |x: usize, y: usize| (0.001 + 0.000_01 * x as f64 + 0.000_02 * y as f64) as f32;

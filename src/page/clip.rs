@@ -1,7 +1,8 @@
-//! Corners in clip space, as the vertex shader makes them: the page needs no matrices.
+//! Corners in clip space, as the vertex shader computes them: the page needs no matrices.
 //!
 //! A matrix times a vector adds its columns from the last to the first, each product and each sum rounded to `f32`, as
-//! Mesa's compiler orders it. Another driver's last bits may be others; the page holds what follows against what was stored.
+//! Mesa's compiler orders it. Another driver's last bits may differ; the page compares its results with what was
+//! stored.
 
 use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::plan::{DrawMesh, FramePlan, ViewId};
@@ -12,13 +13,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A mesh as the passes of the picture show it.
 #[derive(Debug, Serialize)]
 pub struct PageMesh {
-    /// Three corners a triangle.
+    /// Three indices of corners for each triangle.
     indices: ArrayIndex,
     /// For each view that shows it, its corners in clip space.
     corners: BTreeMap<usize, ArrayIndex>,
 }
 
-/// The meshes of a plan; `None` where no pass of the picture shows one.
+/// Returns the meshes of a plan, in its order; `None` where no pass of the picture shows one.
 pub fn meshes(plan: &FramePlan, arrays: &mut PageArrays) -> Vec<Option<PageMesh>> {
     let mut shown: BTreeMap<usize, BTreeSet<(ViewId, bool)>> = BTreeMap::new();
     for pass in plan.passes.iter().filter(|pass| plan.is_of_picture(pass)) {
@@ -31,7 +32,7 @@ pub fn meshes(plan: &FramePlan, arrays: &mut PageArrays) -> Vec<Option<PageMesh>
         let layout = ArrayLayout { word: ArrayWord::U32, lanes: 3, width: 0 };
         let indices = arrays.add(layout, bytemuck::cast_slice(mesh.indices.data()));
         let corners = views.iter().map(|(view, is_recorded)| {
-            // Another program's corners are in clip space.
+            // Another program's corners are in clip space already.
             let matrix = (!is_recorded).then(|| plan.views[view.0].clip_from_relative);
             (view.0, add(mesh.vertices.data(), matrix, arrays))
         });

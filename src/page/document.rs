@@ -1,5 +1,5 @@
-//! What a page knows, as JSON: the plan, what was captured after each step and draw, and the palette. Arrays are
-//! named by their index.
+//! The data of a page, as JSON: the plan, what was captured after each step and draw, and the palette. Arrays are
+//! referred to by their index.
 
 use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArray, PageArrays};
 use super::clip::{self, PageMesh};
@@ -46,7 +46,7 @@ struct PageDocument<'a> {
 #[derive(Serialize)]
 struct PageStep<'a> {
     name: &'a str,
-    /// From 1; null for what stands beside the frame.
+    /// Counted from 1; null for a step that is not part of the frame.
     number: Option<usize>,
     purpose: &'a str,
     light: Option<usize>,
@@ -59,13 +59,13 @@ struct PageStepDraw<'a> {
     name: &'a str,
     part: DrawPart,
     triangles: u64,
-    /// Null where it was not captured.
+    /// The state after it; null where it was not captured.
     after: Option<PageState>,
-    /// Pixels at which another program's draw, computed anew, left something else.
+    /// Number of pixels at which another program's draw leaves another result when it is run again.
     differs: Option<u64>,
 }
 
-/// What is there after a step or a draw.
+/// What is captured after a step or a draw.
 #[derive(Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 enum PageState {
@@ -80,7 +80,7 @@ struct PageLight {
     counts: Option<&'static str>,
     /// Bits of the stencil in which its volumes are counted.
     bits: Option<u32>,
-    /// What is said of a pixel that is lit, and of one in shadow, where its history says nothing.
+    /// The sentences for a pixel that is lit, and for one in shadow, where its history gives no reason.
     reasons: [&'static str; 2],
     mask: Option<ArrayIndex>,
     count: Option<ArrayIndex>,
@@ -107,7 +107,7 @@ struct PageMeasure {
     is_linear: bool,
 }
 
-/// The program's own colours.
+/// The colours of pictures.
 #[derive(Serialize)]
 struct PagePalette {
     stencil: Vec<colors::Rgb>,
@@ -116,7 +116,7 @@ struct PagePalette {
     linear: Vec<u8>,
 }
 
-/// The document of a frame.
+/// Returns the document of a frame.
 pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<String> {
     let mut arrays = PageArrays::default();
     let document = PageDocument {
@@ -157,7 +157,7 @@ fn has_stencil(plan: &FramePlan) -> bool {
     plan.attachments.iter().any(is_stencil)
 }
 
-/// How far depths may be from what was stored: one computed here is not rounded where the GPU rounds.
+/// Returns how far depths computed in the browser may differ from the stored ones, as the GPU rounds elsewhere.
 fn depth_rounding(plan: &FramePlan) -> f32 {
     let pass = plan.passes.iter().filter(|pass| plan.is_of_picture(pass)).find_map(|pass| pass.depth_stencil.as_ref());
     pass.map_or(0.0, |target| plan.attachment(target.attachment).depth_rounding())

@@ -1,18 +1,18 @@
-//! The file: the template with style, script and document put in, and a policy that lets nothing else run or load.
+//! The file: the template with style, script and document inserted, and a policy that lets nothing else run or load.
 //!
 //! The modules are ES modules in `assets/page/`. A file from disk can't load another, so they become one script in the
-//! order of [`modules`]: lines that import are left out, and `export` before what is exported.
+//! order of [`modules`]: import lines are left out, and so is `export` before what is exported.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest, Sha256};
 
-/// A file of the page.
+/// A source file of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PageAsset {
     /// Its name in `assets/page/`.
     pub name: &'static str,
-    /// What it holds.
+    /// Its text.
     pub text: &'static str,
 }
 
@@ -22,12 +22,12 @@ macro_rules! asset {
     };
 }
 
-/// The page with places for all that goes into it.
+/// The page's HTML, with a `{{place}}` for everything that is inserted.
 pub const TEMPLATE: &str = include_str!("../../assets/page/page.html");
-/// How it looks.
+/// The style sheet.
 pub const STYLE: &str = include_str!("../../assets/page/style.css");
 
-/// The modules, each after those that it imports.
+/// Returns the modules, each after those that it imports.
 pub fn modules() -> Vec<PageAsset> {
     vec![
         asset!("arrays.js"),
@@ -49,7 +49,7 @@ pub fn modules() -> Vec<PageAsset> {
     ]
 }
 
-/// The page of a document of that title.
+/// Returns the page with a title and a document.
 pub fn page(title: &str, document: &str) -> String {
     let script = script();
     filled(TEMPLATE, |place| match place {
@@ -58,13 +58,13 @@ pub fn page(title: &str, document: &str) -> String {
         "script-hash" => hash(&script),
         "style" => STYLE.to_owned(),
         "style-hash" => hash(STYLE),
-        // `<` begins tags within a script; in a string of JSON it may be written so.
+        // `<` begins tags within a script; in a string of JSON it may be written as an escape.
         "document" => document.replace('<', "\\u003c"),
         _ => String::new(),
     })
 }
 
-/// All modules as one.
+/// Returns all modules as one script.
 pub fn script() -> String {
     let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
     let of_module = |module: &PageAsset| {
@@ -73,7 +73,7 @@ pub fn script() -> String {
     modules().iter().map(of_module).collect()
 }
 
-/// A template with what stands for each `{{place}}`; what is put in is not looked at again.
+/// Returns a template with each `{{place}}` replaced; inserted text is not searched for places.
 fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
     let mut text = String::new();
     let mut rest = template;
@@ -86,7 +86,7 @@ fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
     text + rest
 }
 
-/// As a content security policy names a text.
+/// Returns a text's hash in the form of a content security policy.
 fn hash(text: &str) -> String {
     format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(text)))
 }

@@ -1,4 +1,4 @@
-//! One HTML file of a frame: it opens in a browser, from disk, and asks no network for anything.
+//! One HTML file of a frame: it opens in a browser, from disk, and makes no network requests.
 //!
 //! ```text
 //! Capture, FramePlan ─► document (JSON) ─┐
@@ -6,10 +6,10 @@
 //!        assets/page/*.{html,css,js} ────┘
 //! ```
 //!
-//! The file holds what was captured, each array once, and the triangles in clip space, as the GPU has them
+//! The file contains what was captured, each array once, and the triangles in clip space, as the GPU has them
 //! (`clip.rs`). A pixel's history is computed in the browser, by modules that are named after those they mirror
-//! (`coverage.js`, `stencil_machine.js`, `history.js`, `ladder.js`, `why.js`), and held against what was stored.
-//! The same frame makes the same bytes: nothing in it tells of times.
+//! (`coverage.js`, `stencil_machine.js`, `history.js`, `ladder.js`, `why.js`), and compared with what was stored. The
+//! same frame gives the same bytes: no times are stored.
 
 mod arrays;
 mod clip;
@@ -28,26 +28,26 @@ use std::sync::Arc;
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
-    /// A number that JSON does not have, or no memory.
+    /// The document has a number that JSON does not have, or memory is short.
     #[error("the frame can't be put into a page ({0}): capture it again")]
     Document(#[from] serde_json::Error),
-    /// The disk.
+    /// The file can't be written.
     #[error("{path}: can't be written ({source}): choose another file")]
     Write {
-        /// Where to.
+        /// Path of the file.
         path: String,
-        /// What happened.
+        /// The system's error.
         source: std::io::Error,
     },
 }
 
-/// The page of a frame.
+/// Returns the page of a frame.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
     Ok(html::page(&title, &document::json(capture, plan)?))
 }
 
-/// Writes the page of a frame, and says how many bytes it has.
+/// Writes the page of a frame, and returns its size in bytes.
 pub fn write(capture: &Capture, plan: &Arc<FramePlan>, path: &Path) -> Result<u64, PageError> {
     let text = html(capture, plan)?;
     let failed = |source| PageError::Write { path: path.display().to_string(), source };

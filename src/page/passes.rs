@@ -1,5 +1,5 @@
-//! The passes of a plan as the page's history goes through them: what follows from programs and states is said here, so
-//! that the page need not know them.
+//! The passes of a plan in the form that the page's history needs: what follows from programs and states is computed
+//! here, so that the page need not know them.
 
 use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::capture::FrameTarget;
@@ -9,7 +9,7 @@ use crate::plan::{
 };
 use serde::Serialize;
 
-/// A pass.
+/// A pass of the plan.
 #[derive(Debug, Serialize)]
 pub struct PagePass<'a> {
     name: &'a str,
@@ -19,12 +19,12 @@ pub struct PagePass<'a> {
     is_of_picture: bool,
     has_depth: bool,
     target: FrameTarget,
-    /// Left, top, width and height in pixels.
+    /// The viewport: left, top, width and height in pixels.
     area: [f32; 4],
     /// The stored depths of clip depth 0 and 1.
     range: [f32; 2],
     scissor: Option<[u32; 4]>,
-    /// What its depth and stencil hold as it begins, where that is not what the pass before left.
+    /// What its depth and stencil contain as it begins, where that differs from what the previous pass left.
     start: Option<PageStart>,
     clear_depth: Option<f32>,
     clear_stencil: Option<u8>,
@@ -45,24 +45,24 @@ struct PageDraw<'a> {
     name: &'a str,
     caster: Option<&'a str>,
     part: DrawPart,
-    /// Of caps that a vertex shader carries, for each triangle: 1 in the dark cap, 0 in the light cap.
+    /// For caps that a vertex shader extrudes, one byte for each triangle: 1 in the dark cap, 0 in the light cap.
     is_dark: Option<ArrayIndex>,
     mesh: usize,
-    /// First triangle and the one after the last.
+    /// Index of the first triangle and of the one after the last.
     triangles: [u32; 2],
     base_vertex: u32,
-    /// Triangles run from the last to the first.
+    /// Triangles are drawn from the last to the first.
     is_reverse: bool,
     faces_inwards: bool,
     raster: &'a RasterState,
-    /// Of fronts and of backs.
+    /// The stencil state of front faces and of back faces.
     sides: [PageStencilFace<'a>; 2],
     tests_stencil: bool,
-    /// Its shader throws away what is nearer than the near plane, and what is beyond the far plane.
+    /// Its shader discards what is nearer than the near plane, and what is beyond the far plane.
     discards: [bool; 2],
-    /// Whom it asks how much light arrives, where it adds the light.
+    /// What decides how much light arrives, where it adds the light.
     lights: Option<Visibility>,
-    /// What fronts and backs add to a float count.
+    /// What front and back faces add to a float count.
     adds: [f32; 2],
 }
 
@@ -74,7 +74,7 @@ struct PageStencilFace<'a> {
     masks: FaceMasks,
 }
 
-/// The passes of a plan.
+/// Returns the passes of a plan.
 pub fn passes<'a>(plan: &'a FramePlan, arrays: &mut PageArrays) -> Vec<PagePass<'a>> {
     plan.passes.iter().map(|pass| entry(plan, pass, arrays)).collect()
 }
@@ -127,14 +127,14 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDr
         raster: &draw.raster,
         sides: [true, false].map(side),
         tests_stencil: draw.raster.stencil.is_enabled(),
-        // Whatever is outside of the range on either side.
+        // Any depths outside the range, one on either side.
         discards: [-1.0, 2.0].map(|depth| draw.program.discards(depth).is_some()),
         lights: history::asks(draw),
         adds: [true, false].map(|is_front| history::count_of(draw, is_front)),
     }
 }
 
-/// Which triangles of a draw are in the dark cap.
+/// Returns which triangles of a draw are in the dark cap.
 fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut PageArrays) -> ArrayIndex {
     let mesh = &plan.meshes[draw.mesh.0];
     let corners = mesh.indices.data().as_chunks::<3>().0;

@@ -8,21 +8,22 @@ use crate::technique::MapSettings;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What pixels read of a map.
+/// The texels of a map that pixels read.
 #[derive(Debug, Serialize)]
 pub struct PageReads {
-    /// Of each pixel the face, column and row of the texel in the middle of those that it reads, each with one added;
-    /// zeros where it reads none.
+    /// For each pixel the face, column and row of the texel in the middle of those that it reads, each plus 1; zeros
+    /// where it reads none.
     texels: ArrayIndex,
-    /// Of each pixel the depth that the middle one is compared with.
+    /// For each pixel the depth that the middle texel is compared with.
     depths: ArrayIndex,
-    /// How much that grows a column and a row on, where texels are compared with the plane of the surface.
+    /// How much that depth grows from one column and row to the next, where texels are compared with the plane of the
+    /// surface.
     slopes: Option<ArrayIndex>,
-    /// Texels along each side that are read.
+    /// How many texels are read along each side.
     filter: u32,
 }
 
-/// Of a light; `None` where no map decides, or it is not known how it is read.
+/// Returns what pixels read of a light's map; `None` where no map decides, or it is not known how it is read.
 pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut PageArrays) -> Option<PageReads> {
     if capture.origin.is_some() || capture.decided_by(light) != DecidedBy::Map {
         return None;
@@ -53,7 +54,7 @@ pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mu
     })
 }
 
-/// The depth at the middle of compared texels, and how much it grows a texel on; zeros of none.
+/// Returns the depth at the middle of compared texels, and how much it grows from texel to texel; zeros without texels.
 fn on_plane(compared: &[(MapTexel, f64)], filter: usize) -> (f32, [f32; 2]) {
     let middle = filter / 2 * (filter + 1);
     let Some((_, depth)) = compared.get(middle) else { return (0.0, [0.0; 2]) };

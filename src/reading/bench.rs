@@ -1,5 +1,5 @@
-//! The stencil test by itself: what a pixel holds, a draw's tests, and the fragments that were pushed through them, each in
-//! words. The same [`stencil_machine`] answers that a test holds against the GPU.
+//! The stencil test by itself: a pixel's stored depth and stencil, a draw's tests, and the fragments that were sent
+//! through them, each described in words. It uses [`stencil_machine`], the same code that tests compare with the GPU.
 
 use crate::history::operation_name;
 use crate::numbers;
@@ -7,10 +7,10 @@ use crate::plan::{ColorWrite, RasterState, StencilFace};
 use crate::stencil_machine::{self, DepthStencil, IncomingFragment, TestOutcome};
 use wgpu::{CompareFunction, StencilOperation};
 
-/// Fragments that are kept; older ones go.
+/// How many tested fragments are listed; older ones are dropped.
 const MOST_PUSHED: usize = 200;
 
-/// Every function, by name and as a sign between two numbers.
+/// Every compare function with its name and the sign that stands between two numbers.
 pub const COMPARES: [(CompareFunction, &str, &str); 8] = [
     (CompareFunction::Never, "never", ""),
     (CompareFunction::Less, "less", "<"),
@@ -26,27 +26,27 @@ pub const COMPARES: [(CompareFunction, &str, &str); 8] = [
 pub struct TestBench {
     /// The draw's tests.
     pub state: RasterState,
-    /// What the pixel holds.
+    /// The depth and stencil that the pixel stores.
     pub stored: DepthStencil,
-    /// Of the next fragment.
+    /// Depth of the next fragment.
     pub depth: f32,
-    /// The oldest first.
+    /// The tested fragments, the oldest first.
     pub pushed: Vec<TestedDraw>,
-    /// How many there were, the forgotten ones too.
+    /// How many fragments were tested, the dropped ones too.
     count: usize,
 }
 
 /// A fragment that went through the tests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestedDraw {
-    /// From 1.
+    /// The fragment's number, counted from 1.
     pub number: usize,
-    /// What became of it.
+    /// The outcome of its tests, in words.
     pub words: String,
 }
 
 impl Default for TestBench {
-    /// Z-fail's counting over a surface at half depth.
+    /// The settings of z-fail counting, over a surface at half depth.
     fn default() -> TestBench {
         let face = |operation| StencilFace {
             compare: CompareFunction::Always,
@@ -66,7 +66,7 @@ impl Default for TestBench {
 }
 
 impl TestBench {
-    /// Tests a fragment of one side, and keeps what comes out.
+    /// Tests a front- or back-facing fragment, stores the result in the pixel and lists the fragment.
     pub fn push(&mut self, front_facing: bool) {
         let fragment = IncomingFragment { depth: self.depth, front_facing };
         let before = self.stored;
@@ -81,7 +81,7 @@ impl TestBench {
     }
 }
 
-/// What became of a fragment, from what was tested and what came out.
+/// Describes a fragment's outcome in words, from the state before the tests and the tests' result.
 fn words(state: &RasterState, fragment: IncomingFragment, before: DepthStencil, outcome: &TestOutcome) -> String {
     let (face, masks) = state.face(fragment.front_facing);
     let side = if fragment.front_facing { "front" } else { "back" };
@@ -114,7 +114,7 @@ fn sign(compare: CompareFunction) -> Option<&'static str> {
     COMPARES.iter().find(|(one, ..)| *one == compare).map(|(_, _, sign)| *sign).filter(|sign| !sign.is_empty())
 }
 
-/// A function's name.
+/// Returns a compare function's name.
 pub fn name(compare: CompareFunction) -> &'static str {
     COMPARES.iter().find(|(one, ..)| *one == compare).map_or("", |(_, name, _)| name)
 }

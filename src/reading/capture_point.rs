@@ -1,19 +1,19 @@
-//! A moment of the frame, after a step or after one of its draws, and what a capture holds of it.
+//! A point of the frame, after a step or after one of its draws, and what a capture stores of it.
 //!
-//! After the last draw of a step is after the step, so the state after it is always known. Going
-//! draw by draw, a step whose draws nobody has selected counts as its last one, and a step
-//! without draws is a stop of its own. What stands beside the frame is passed over ([`steps`]).
+//! The state after the last draw of a step is the state after the step, so it is always known. When going through the
+//! frame draw by draw, a point without a selected draw counts as the last draw of its step, and a step without draws is
+//! one stop. Masks, which are not part of the frame, are passed over ([`steps`]).
 
 use crate::capture::{Capture, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, Snapshot};
 use crate::reading::steps;
 use std::sync::Arc;
 
-/// After a step, or after one of its draws.
+/// A point of the frame: after a step, or after one of its draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CapturePoint {
     /// Index of the step.
     pub step: usize,
-    /// Index of the draw; `None`: after the whole step.
+    /// Index of the draw; `None` means after the whole step.
     pub draw: Option<usize>,
 }
 
@@ -24,25 +24,25 @@ impl From<usize> for CapturePoint {
 }
 
 impl CapturePoint {
-    /// `step 2`, `draw 3 of step 2`, `the mask of light 1`.
+    /// Returns the point in words: `step 2`, `draw 3 of step 2`, `the mask of light 1`.
     pub fn words(self, capture: &Capture) -> String {
         let step = steps::words(capture, self.step);
         self.draw.map_or_else(|| step.clone(), |draw| format!("draw {} of {step}", draw + 1))
     }
 
-    /// Does the capture know the state at this moment?
+    /// Returns whether the capture knows the state at this point.
     pub fn is_known(self, capture: &Capture) -> bool {
         let Some(index) = self.draw else { return true };
         let draws = draws(capture, self.step);
         index + 1 >= draws.len() || draws[index].after.is_some()
     }
 
-    /// The state after the draw, where one is selected and was captured.
+    /// Returns the state after the draw, where a draw is selected and was captured.
     fn state(self, capture: &Capture) -> Option<&DrawState> {
         draws(capture, self.step).get(self.draw?)?.after.as_ref()
     }
 
-    /// The picture's aspects. Where the draw's are not known, those after the step.
+    /// Returns the picture's aspects after the draw, or after the step where the draw's are not known.
     pub fn frame(self, capture: &Capture) -> Option<&FrameSnapshot> {
         match self.state(capture).map(|state| &state.snapshot) {
             Some(Snapshot::Frame(frame)) => Some(frame),
@@ -50,12 +50,12 @@ impl CapturePoint {
         }
     }
 
-    /// The light whose labels the draw writes, with those.
+    /// Returns the light whose labels the draw writes, and the labels after it.
     pub fn labels(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
         self.own(capture, FrameTarget::Labels)
     }
 
-    /// The light whose count the draw changes, with that.
+    /// Returns the light whose count the draw changes, and the count after it.
     pub fn count(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
         self.own(capture, FrameTarget::Count)
     }
@@ -67,7 +67,7 @@ impl CapturePoint {
         state.target.as_ref().filter(|_| is_it).map(|aspect| (light, &aspect.image))
     }
 
-    /// The layer of a light's map that the draw draws into, with its texels.
+    /// Returns light, layer and texels of the layer of a light's map that the draw draws into.
     pub fn layer(self, capture: &Capture) -> Option<(usize, usize, &Arc<Image>)> {
         let state = self.state(capture)?;
         match &state.snapshot {
@@ -76,7 +76,7 @@ impl CapturePoint {
         }
     }
 
-    /// The moment one draw later; `None` at the end.
+    /// Returns the point one draw later; `None` at the end.
     pub fn next(self, capture: &Capture) -> Option<CapturePoint> {
         let following = self.draw.map(|draw| draw + 1).filter(|draw| *draw < draws(capture, self.step).len());
         let in_step = following.map(|draw| CapturePoint { draw: Some(draw), ..self });
@@ -86,7 +86,7 @@ impl CapturePoint {
         })
     }
 
-    /// The moment one draw earlier; `None` at the start.
+    /// Returns the point one draw earlier; `None` at the start.
     pub fn previous(self, capture: &Capture) -> Option<CapturePoint> {
         let last = |step: usize| draws(capture, step).len().checked_sub(1);
         match self.draw.or_else(|| last(self.step)).and_then(|draw| draw.checked_sub(1)) {

@@ -1,51 +1,51 @@
-//! What changed between two pictures of one kind, texel by texel: of counts by how much and which way,
-//! of depths how far the surface moved, of colours that they did.
+//! What changed between two pictures of one kind, texel by texel: of counts by how much and which way, of depths how
+//! far the surface moved, of colours only that they changed.
 //!
-//! A change is a picture of its own, made once and drawn over the frame's colours in dim grey. Texels
-//! that did not change are see-through.
+//! A change is a picture of its own, made once and drawn over the frame's colours in dim grey. Texels that did not
+//! change are see-through.
 
 use crate::capture::{Image, PixelFormat};
 use crate::reading::depth::DepthMeasure;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Changes that are kept.
+/// How many changes are cached.
 const MOST_CACHED: usize = 6;
-/// How much light the ground keeps.
+/// Brightness of the grey picture under a change, as a factor.
 const GROUND_LIGHT: f32 = 0.42;
 
-/// What changed.
+/// What changed between two pictures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepChange {
-    /// By how much, drawn in the colours of [`ChangeKind`].
+    /// The change at each texel, drawn in the colours of [`ChangeKind`].
     pub image: Arc<Image>,
     /// What kind of values changed.
     pub kind: ChangeKind,
-    /// Texels that changed.
+    /// How many texels changed.
     pub texels: u64,
-    /// What became of them, with how many.
+    /// The texels that changed, sorted by how they changed.
     pub sorts: ChangedTexels,
 }
 
 /// What kind of values changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// Bytes: by how much, as a signed byte.
+    /// Bytes: the difference as a signed byte.
     Count,
-    /// Floats: metres, or stored depth; infinite where a surface came or went.
+    /// Floats: the difference in metres or in stored depth; infinite where a surface came or went.
     Depth,
-    /// The new colour; alpha 0 where it is the old one.
+    /// The new colour; alpha is 0 where the colour did not change.
     Color,
 }
 
-/// What became of the texels that changed.
+/// The texels that changed, sorted by how they changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ChangedTexels {
-    /// Texels by how much they count more.
+    /// The number of texels for each difference in count.
     Counts(BTreeMap<i8, u64>),
-    /// Nearer, farther, with a surface now, without one now.
+    /// The numbers of texels where the surface is nearer, is farther, has come, is gone.
     Depths([u64; 4]),
-    /// Nothing more is told.
+    /// Colours are not sorted further.
     Colors,
 }
 
@@ -58,12 +58,12 @@ pub struct ChangeCache {
 }
 
 impl ChangeCache {
-    /// Drops everything.
+    /// Drops all cached changes.
     pub fn forget(&mut self) {
         *self = ChangeCache::default();
     }
 
-    /// What changed from one picture to another; `None` where they can't be compared.
+    /// Returns what changed from the first picture to the second; `None` where they can't be compared.
     pub fn change(&mut self, pair: [&Arc<Image>; 2], measure: DepthMeasure) -> Option<StepChange> {
         let is_it = |of: &[Arc<Image>; 2]| is_pair(of, pair);
         if let Some((_, _, change)) = self.changes.iter().find(|(of, by, _)| is_it(of) && *by == measure) {
@@ -74,7 +74,7 @@ impl ChangeCache {
         change
     }
 
-    /// A picture in colours as dim greys.
+    /// Returns a picture of colours as dim greys.
     pub fn ground(&mut self, colors: &Arc<Image>) -> Arc<Image> {
         if let Some((_, ground)) = self.grounds.iter().find(|(of, _)| Arc::ptr_eq(of, colors)) {
             return ground.clone();
@@ -84,7 +84,7 @@ impl ChangeCache {
         ground
     }
 
-    /// How many texels of two pictures differ; `None` where they can't be compared.
+    /// Returns how many texels of two pictures differ; `None` where they can't be compared.
     pub fn differing(&mut self, pair: [&Arc<Image>; 2]) -> Option<u64> {
         if let Some((_, texels)) = self.differing.iter().find(|(of, _)| is_pair(of, pair)) {
             return *texels;
@@ -156,7 +156,7 @@ fn depths(before: &Image, after: &Image, measure: DepthMeasure) -> StepChange {
     StepChange { image, kind: ChangeKind::Depth, texels: sorts.iter().sum(), sorts: ChangedTexels::Depths(sorts) }
 }
 
-/// How much farther, in the measure's unit; never 0, as the stored bits differ.
+/// Returns how much farther the new depth is, in the measure's unit; never 0, as the stored bits differ.
 fn moved(measure: DepthMeasure, [old, new]: [f32; 2]) -> f32 {
     let by = match (measure.value(old), measure.value(new)) {
         (None, Some(_)) => f64::NEG_INFINITY,
@@ -192,7 +192,7 @@ fn ground(colors: &Image) -> Image {
     Image::packed(PixelFormat::Rgba8Srgb, colors.size(), bytes)
 }
 
-/// A signed number; `None` of 0.
+/// Returns the number with its sign; `None` for 0.
 pub fn signed(by: i8) -> Option<String> {
     match by {
         0 => None,

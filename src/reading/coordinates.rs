@@ -14,7 +14,7 @@ use glam::{DMat4, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Bits of depth buffers that are compared; the last is the 32-bit float that is stored here.
+/// Bits of the depth buffers that are compared; the last one compared is the 32-bit float that is stored here.
 const BITS: [u32; 3] = [8, 16, 24];
 
 /// Digits of numbers in text.
@@ -38,7 +38,7 @@ pub struct Coordinates {
 /// A vertex in every space.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VertexCoordinates {
-    /// Of the object that it is of.
+    /// Name of the object that the vertex belongs to.
     pub object: String,
     /// Which vertex of its mesh, counted from 0.
     pub index: u32,
@@ -48,48 +48,50 @@ pub struct VertexCoordinates {
     pub eye: [f64; 3],
     /// Clip space, homogeneous.
     pub clip: [f64; 4],
-    /// Normalized device coordinates; `None` where w is not positive: it is not before the eye, and nothing is divided.
+    /// Normalized device coordinates; `None` where w is not positive: the vertex is not before the eye, and nothing is
+    /// divided.
     pub ndc: Option<[f64; 3]>,
-    /// Pixels from the top left of the picture, and depth; `None` likewise.
+    /// Pixels from the top left of the picture, and depth; `None` where w is not positive.
     pub window: Option<[f64; 3]>,
-    /// The planes of the view that it lies beyond: `left`, `right`, `bottom`, `top`, `near`, `far`; none: it is in view.
+    /// The planes of the view that it lies beyond: `left`, `right`, `bottom`, `top`, `near`, `far`; empty where it is
+    /// in view.
     pub beyond: Vec<&'static str>,
 }
 
 /// Why there is no such vertex.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoVertex {
-    /// It is not written as one.
+    /// The text is not of the form `OBJECT:INDEX`.
     #[error("`{0}` is no vertex: give OBJECT:INDEX, as in `floor:0`")]
     Form(String),
-    /// No object is called so.
+    /// No object has this name.
     #[error("no object is called `{object}`: {hint}")]
     Object {
         /// What was asked for.
         object: String,
-        /// The nearest name, or all.
+        /// The nearest name, or all names.
         hint: String,
     },
-    /// Its mesh has fewer.
+    /// The object's mesh has fewer vertices.
     #[error("{object} has no vertex {index}: it has {count}, counted from 0")]
     Index {
-        /// Whose.
+        /// Name of the object.
         object: String,
         /// What was asked for.
         index: u32,
-        /// How many there are.
+        /// How many vertices the mesh has.
         count: usize,
     },
 }
 
-/// What is told of vertices alone.
+/// Vertices in every space, without a pixel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VertexPlaces {
     /// The camera around its target.
     pub camera: Spherical,
-    /// World to window.
+    /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
-    /// Those that were asked for, in order.
+    /// The vertices that were asked for, in that order.
     pub vertices: Vec<VertexCoordinates>,
 }
 
@@ -98,13 +100,13 @@ pub struct VertexPlaces {
 pub struct TransformStep {
     /// `eye from world`, `clip from eye`, `window from NDC`.
     pub name: &'static str,
-    /// Rows; points are columns on its right.
+    /// The matrix by rows; it is multiplied with points as columns on its right.
     pub matrix: [[f64; 4]; 4],
-    /// The way back.
+    /// The inverse matrix.
     pub inverse: [[f64; 4]; 4],
 }
 
-/// How finely a depth buffer tells distances at a point.
+/// How finely a depth buffer distinguishes distances at a point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthStep {
     /// `8 bits`, `32-bit float`.
@@ -124,18 +126,18 @@ pub struct Spherical {
     pub phi_degrees: f64,
 }
 
-/// All that is told of a pixel's place.
+/// A pixel's place in every space, with the transforms and the depth resolution there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PixelCoordinates {
     /// The camera around its target.
     pub camera: Spherical,
-    /// World to window.
+    /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
     /// The surface at the pixel's middle; `None` where the picture shows none.
     pub point: Option<Coordinates>,
     /// The corners of the triangle that the pixel shows, as the GPU is given them; empty where it shows none.
     pub vertices: Vec<VertexCoordinates>,
-    /// How finely depth is kept there, the coarsest buffer first; empty without a surface.
+    /// How finely depth is stored there, the coarsest buffer first; empty without a surface.
     pub depth_steps: Vec<DepthStep>,
 }
 
@@ -144,12 +146,12 @@ struct CameraMatrices {
     eye_from_world: DMat4,
     clip_from_eye: DMat4,
     window_from_ndc: DMat4,
-    /// Depth is 1 at the near plane.
+    /// Depth is reversed: 1 at the near plane.
     is_reversed: bool,
 }
 
 impl PixelCoordinates {
-    /// Of a pixel of a capture, with the depth that its picture ends with.
+    /// Returns the coordinates of a pixel of a capture, with the depth that its picture ends with.
     pub fn of(capture: &Capture, pixel: [u32; 2]) -> PixelCoordinates {
         let matrices = CameraMatrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -165,7 +167,7 @@ impl PixelCoordinates {
         }
     }
 
-    /// The same with the corners of the triangle that the pixel's history ends with.
+    /// Adds the corners of the triangle that the pixel's history ends with.
     #[must_use]
     pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> PixelCoordinates {
         PixelCoordinates { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
@@ -186,10 +188,10 @@ fn corners(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Optio
 }
 
 impl VertexPlaces {
-    /// Of vertices of a scene's objects, `OBJECT:INDEX` each.
+    /// Returns the coordinates of vertices of a scene's objects, each asked for as `OBJECT:INDEX`.
     ///
     /// # Errors
-    /// The first that is not there.
+    /// The first vertex that does not exist.
     pub fn of(capture: &Capture, scene: &Scene, asked: &[String]) -> Result<VertexPlaces, NoVertex> {
         let matrices = CameraMatrices::of(capture);
         let vertex = |asked: &String| {
@@ -214,7 +216,7 @@ impl VertexPlaces {
         })
     }
 
-    /// In lines, for `pixel --vertex`.
+    /// Returns the lines that `pixel --vertex` prints.
     pub fn text(&self) -> String {
         let vertices: String = self.vertices.iter().map(VertexCoordinates::text).collect();
         self.camera.text() + &vertices + &chain_text(&self.chain)
@@ -222,12 +224,12 @@ impl VertexPlaces {
 }
 
 impl VertexCoordinates {
-    /// `vertex 3 of floor`.
+    /// Returns the vertex's name: `vertex 3 of floor`.
     pub fn name(&self) -> String {
         format!("vertex {} of {}", self.index, self.object)
     }
 
-    /// Name and value of each space, in order, and where it lies in the view.
+    /// Returns name and value for each space, in order, and then where the vertex lies in the view.
     pub fn rows(&self, digits: u32) -> [(&'static str, String); 6] {
         let divided = |values: Option<[f64; 3]>| match values {
             Some(values) => vector(&values, digits),
@@ -269,7 +271,7 @@ impl CameraMatrices {
             is_reversed: capture.depth.mapping.is_reversed(),
             eye_from_world: DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye),
             clip_from_eye: camera.clip_from_view(width / height, &capture.depth),
-            // Rows run down, as y does not.
+            // Rows run down, y runs up.
             window_from_ndc: DMat4::from_cols(
                 DVec4::new(width / 2.0, 0.0, 0.0, 0.0),
                 DVec4::new(0.0, -height / 2.0, 0.0, 0.0),
@@ -298,7 +300,7 @@ impl CameraMatrices {
         let clip = self.clip_from_eye * eye;
         let ndc = (clip.w > 0.0).then(|| clip.truncate() / clip.w);
         let window = ndc.map(|ndc| (self.window_from_ndc * ndc.extend(1.0)).truncate());
-        // Clip space says it without dividing: what is in view has −w ≤ x, y ≤ w and 0 ≤ z ≤ w.
+        // Clip space decides it without dividing: what is in view has −w ≤ x, y ≤ w and 0 ≤ z ≤ w.
         let [least, most] = if self.is_reversed { ["far", "near"] } else { ["near", "far"] };
         let planes = [
             ("left", clip.x < -clip.w),
@@ -349,7 +351,7 @@ impl Spherical {
 }
 
 impl PixelCoordinates {
-    /// In lines, for `pixel --coordinates`.
+    /// Returns the lines that `pixel --coordinates` prints.
     pub fn text(&self) -> String {
         let mut text = self.camera.text();
         match self.point {
@@ -383,25 +385,25 @@ fn chain_text(chain: &[TransformStep]) -> String {
 }
 
 impl Coordinates {
-    /// Name and values of each space, in order.
+    /// Returns name and values for each space, in order.
     pub fn rows(&self) -> [(&'static str, &[f64]); 5] {
         [("world", &self.world), ("eye", &self.eye), ("clip", &self.clip), ("NDC", &self.ndc), ("window", &self.window)]
     }
 }
 
-/// Numbers between commas, with so many digits.
+/// Returns numbers with `digits` decimals, separated by commas.
 pub fn vector(values: &[f64], digits: u32) -> String {
     let texts: Vec<String> = values.iter().map(|value| number(*value, digits)).collect();
     texts.join(", ")
 }
 
-/// A row of a matrix in columns of one width.
+/// Returns a row of a matrix, in columns of one width.
 pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
     let width = digits as usize + 5;
     row.map(|value| format!("{:>width$}", number(value, digits))).concat()
 }
 
-/// So many digits, and no sign where nothing is left.
+/// Returns a number with so many decimals, and without a sign where it rounds to 0.
 fn number(value: f64, shown: u32) -> String {
     let digits = if value == 0.0 || !value.is_finite() { 0.0 } else { value.abs().log10().floor() };
     let decimals = (f64::from(shown) - 1.0 - digits).clamp(0.0, f64::from(shown) + 3.0) as usize;

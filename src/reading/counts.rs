@@ -1,21 +1,21 @@
-//! Counts of shadow volumes that are kept in floats: signed, and without eight bits' limits.
+//! Counts of shadow volumes that are stored as floats: signed, and without the limits of eight bits.
 
 use crate::capture::{Capture, FrameTarget, Image, Snapshot};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How many texels have each count, rounded.
+/// The number of texels for each count, rounded.
 pub type Tally = BTreeMap<i64, u64>;
 
-/// What eight bits would hold of it.
+/// Returns what an eight-bit stencil would store for a count.
 pub fn in_eight_bits(count: f32) -> u8 {
     (count.round() as i64).rem_euclid(256) as u8
 }
 
-/// How many texels have each count.
+/// Returns the number of texels for each count.
 pub fn tally(image: &Image) -> Tally {
     let mut tally = Tally::new();
-    // Neighbours mostly agree: a run is looked up once.
+    // Neighbouring texels mostly agree, so the map is looked up once for a run of them.
     let (mut run, mut length) = (0, 0);
     for texel in image.rows().flat_map(|row| row.chunks_exact(4)) {
         let count = bytemuck::pod_read_unaligned::<f32>(texel).round() as i64;
@@ -30,8 +30,8 @@ pub fn tally(image: &Image) -> Tally {
     tally
 }
 
-/// The light whose counts a step leaves finished, with those: the last of its passes that count. What
-/// earlier ones left is not kept.
+/// Returns the light whose counts a step finishes (the last of its passes that count) and those counts. What earlier
+/// passes left is not captured.
 pub fn finished_by(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
     let light = capture.steps.get(index).filter(|step| counts(step))?.light?;
     let is_last = !capture.steps[index + 1..].iter().any(|step| counts(step) && step.light == Some(light));
@@ -42,7 +42,7 @@ fn counts(step: &crate::capture::Step) -> bool {
     matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Count)
 }
 
-/// The counts that are known after a step: of the light that was finished last.
+/// Returns the counts that are known after a step: those of the light that was finished last.
 pub fn known_after(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
     (0..=index).rev().find_map(|earlier| finished_by(capture, earlier))
 }

@@ -9,24 +9,24 @@ use glam::DMat4;
 /// How a stored depth is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DepthMeasure {
-    /// As stored.
+    /// The stored value.
     Raw,
     /// Metres along the view axis: `scale / (depth − offset)`.
     Perspective {
-        /// In metres.
+        /// Scale, metres.
         scale: f64,
-        /// What infinity is stored as.
+        /// The depth that infinity is stored as.
         offset: f64,
-        /// What is stored where nothing was drawn.
+        /// The depth that is stored where nothing was drawn.
         clear: f32,
     },
-    /// Metres of a parallel view: `(depth − near) · length`, behind a map's near plane or along the camera's axis.
+    /// Metres of a parallel projection: `(depth − near) · length`, from a map's near plane or along the camera's axis.
     Parallel {
-        /// What the near plane is stored as; of the camera, what the eye would be.
+        /// The stored depth of a map's near plane; for a camera, the depth that the eye would have.
         near: f64,
         /// From depth 0 to depth 1, metres; negative where depth is reversed.
         length: f64,
-        /// What is stored where nothing was drawn.
+        /// The depth that is stored where nothing was drawn.
         clear: f32,
     },
 }
@@ -37,14 +37,14 @@ pub const FIXED_BITS: u32 = 24;
 /// A measure with the range that the grey ramp covers, near (or small) first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthScale {
-    /// What is shown.
+    /// The measure.
     pub measure: DepthMeasure,
     /// Both ends in the measure's unit, `low ≤ high`.
     pub range: [f64; 2],
 }
 
 impl DepthMeasure {
-    /// Of the camera's depth buffer.
+    /// Returns the measure of the camera's depth buffer.
     pub fn of_camera(capture: &Capture) -> DepthMeasure {
         let DepthCurve { mapping, offset, scale, is_linear, .. } = capture.depth;
         let clear = mapping.clear_depth();
@@ -54,8 +54,8 @@ impl DepthMeasure {
         }
     }
 
-    /// Of a face of a light's shadow map; `None` where there is none or its matrix tells no distance, as
-    /// those of other programs, which are not known.
+    /// Returns the measure of a face of a light's shadow map; `None` where there is no map, or its matrix gives no
+    /// distance (as with maps of other programs, whose matrices are not known).
     pub fn of_map(capture: &Capture, light: usize, face: usize) -> Option<DepthMeasure> {
         let map = capture.lights.get(light)?.map.as_ref().filter(|_| capture.origin.is_none())?;
         DepthMeasure::of_matrix(*map.clip_from_light.get(face)?, capture.depth.mapping.clear_depth())
@@ -85,7 +85,8 @@ impl DepthMeasure {
         }
     }
 
-    /// What `depth` stands for; `None` where nothing was drawn and the measure is a distance.
+    /// Returns what `depth` stands for, in the measure's unit; `None` where nothing was drawn and the measure is a
+    /// distance.
     pub fn value(self, depth: f32) -> Option<f64> {
         let stored = f64::from(depth);
         match self {
@@ -111,7 +112,7 @@ impl DepthMeasure {
         self.between(stored / steps, next / steps, depth)
     }
 
-    /// Metres between two stored depths; `None` where nothing was drawn.
+    /// Returns the metres between two stored depths; `None` where nothing was drawn.
     fn between(self, one: f64, other: f64, depth: f32) -> Option<f64> {
         self.value(depth)?;
         Some(match self {
@@ -123,7 +124,7 @@ impl DepthMeasure {
         })
     }
 
-    /// The smallest and largest value in `image`; `None` where there is none.
+    /// Returns the smallest and the largest value in `image`; `None` where it has none.
     pub fn range_of(self, image: &Image) -> Option<[f64; 2]> {
         let mut range: Option<[f64; 2]> = None;
         for row in image.rows() {
@@ -140,7 +141,7 @@ impl DepthMeasure {
 }
 
 impl DepthScale {
-    /// Where a stored depth is between the ends, from near (0) to far (1); `None` where there is no surface.
+    /// Returns where a stored depth lies between the ends, from near (0) to far (1); `None` where there is no surface.
     pub fn place(self, depth: f32) -> Option<f32> {
         let value = self.measure.value(depth)?;
         let [low, high] = self.range;

@@ -1,6 +1,6 @@
-//! What a step does as a formula, and the same with this scene's own numbers put in.
+//! What a step does, as a formula and as that formula with this scene's own numbers.
 //!
-//! A step is known by what it draws: surfaces in ambient light, volumes, what a light sees, flattened
+//! The kind of step is known from what it draws: surfaces in ambient light, volumes, what a light sees, flattened
 //! casters, light, or labels. Where a pixel is picked the numbers are that pixel's, else the picture's.
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
@@ -16,16 +16,16 @@ use crate::technique::{CountOperations, VolumeSettings};
 use crate::truth::{LIT, PixelLabel, SHADOW};
 use std::collections::BTreeSet;
 
-/// A rule, and what it comes to here.
+/// A formula, and its values in this frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExplainFact {
-    /// The rule.
+    /// The formula.
     pub formula: String,
-    /// With numbers.
+    /// Lines with the formula's values in this frame.
     pub here: Vec<String>,
 }
 
-/// What is known of the shown frame.
+/// What is known of the frame that is shown.
 #[derive(Debug, Clone, Copy)]
 pub struct ExplainContext<'a> {
     /// The frame.
@@ -36,9 +36,9 @@ pub struct ExplainContext<'a> {
     pub lights: &'a [Light],
     /// The picked pixel.
     pub pick: Option<[u32; 2]>,
-    /// What happened to it.
+    /// The picked pixel's history.
     pub history: Option<&'a PixelHistory>,
-    /// What a shadow map says of it.
+    /// How a light's shadow map decides the picked pixel.
     pub map: Option<&'a MapDecision>,
 }
 
@@ -50,7 +50,7 @@ pub fn facts(known: &ExplainContext) -> Vec<ExplainFact> {
         return vec![map(known, step)];
     }
     if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
-        // Of another program's volumes sides and caps are not told apart.
+        // In another program's volumes, sides and caps can't be distinguished.
         let has_sides = has(DrawPart::Side);
         let parts = (known.capture.origin.is_none() && has_sides).then(|| triangles(known, step));
         return std::iter::once(volumes(known)).chain(parts).collect();
@@ -77,7 +77,7 @@ fn fact(formula: &str, here: Vec<String>) -> ExplainFact {
 /// `stored depth = offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
 fn depth(known: &ExplainContext) -> ExplainFact {
     let curve = known.capture.depth;
-    // With fewer digits the sum would not be what is stored.
+    // With fewer digits the sum would differ from what is stored.
     let sign = if curve.scale < 0.0 { "−" } else { "+" };
     let by = if curve.is_linear { "·" } else { "/" };
     let terms = format!("{} {sign} {} {by}", format::precise(curve.offset), format::precise(curve.scale.abs()));
@@ -103,13 +103,13 @@ fn depth(known: &ExplainContext) -> ExplainFact {
     fact(&format!("stored depth = offset + scale {by} distance along the view"), here)
 }
 
-/// By the side of the surface on which the light's volumes count.
+/// Returns the rule of counting, by the side of the surface on which the light's volumes count.
 fn volumes(known: &ExplainContext) -> ExplainFact {
     let light = known.capture.steps.get(known.step).and_then(|step| step.light);
     let side = light.and_then(|light| known.capture.decided_by(light).counted_side());
     let step = &known.capture.steps[known.step];
     let of_light = |other: &&Step| other.light == light;
-    // Triangles between light and near plane have no sides: what z-pass-plus begins with.
+    // Triangles between the light and the near plane have no sides: z-pass-plus begins with them.
     let is_at_near_plane = !step.draws.iter().any(|draw| draw.part == DrawPart::Side) && !step.draws.is_empty();
     let is_last = !known.capture.steps[known.step + 1..].iter().filter(of_light).any(has_volumes);
     let formula = match side {
@@ -165,7 +165,7 @@ fn volumes(known: &ExplainContext) -> ExplainFact {
                     )
                 }
             });
-            // Of a surface that faces away, and of none, no count decides.
+            // Where a surface faces away, or there is no surface, no count decides.
             let label = light.and_then(|light| known.capture.lights.get(light)?.shadow.as_ref()?.byte_at([x, y]));
             here.extend(last.map(|count| match label.filter(|_| is_last) {
                 Some(LIT) => format!("the stored count is {count} then, and the pixel is lit"),
@@ -186,7 +186,7 @@ fn has_volumes(step: &Step) -> bool {
     step.draws.iter().any(|draw| draw.part.is_of_volume())
 }
 
-/// What the whole picture's counts are after a step, in the stencil or in floats.
+/// Describes the counts of the whole picture after a step, in the stencil or in floats.
 fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
     let of_light = light.and_then(|light| known.capture.lights.get(light));
     let in_floats = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
@@ -194,7 +194,7 @@ fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
         format!("{} of {} pixels have a count other than 0", format::count(marked), format::count(all))
     };
     if in_floats {
-        // Floats are kept as the last pass leaves them.
+        // Float counts are captured only after the last pass.
         let is_last =
             !known.capture.steps[known.step + 1..].iter().any(|step| step.light == light && has_volumes(step));
         let Some(count) = of_light.and_then(|light| light.count.as_ref()).filter(|_| is_last) else {
@@ -215,7 +215,7 @@ fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
     let beyond: u64 = counts[128..].iter().sum();
     let highest = match beyond {
         0 => format!("the highest count is {most}"),
-        // Eight bits tell 255 from −1 no more.
+        // Eight bits no longer distinguish 255 from −1.
         _ => format!(
             "the highest count up to 127 is {most}; {} pixels hold 128 to 255, which may be less than 0",
             format::count(beyond)
@@ -245,7 +245,7 @@ fn triangles(known: &ExplainContext, step: &Step) -> ExplainFact {
         ];
         return fact("a closed volume = sides + light cap + dark cap", here);
     }
-    // Whose count does not begin there has none, or lacks it.
+    // A count that does not begin there is absent, or lacks that start.
     let side = step.light.and_then(|light| known.capture.decided_by(light).counted_side());
     let draws_them = settings.caps[1];
     let begins_there = is_parallel && side != Some(CountedSide::InFront) && draws_them;
@@ -259,7 +259,7 @@ fn triangles(known: &ExplainContext, step: &Step) -> ExplainFact {
         (true, false) => "dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none",
         (false, false) => "dark caps, fans over the silhouettes at infinity",
     };
-    // Which light's it was is not kept.
+    // The capture does not store which light it belonged to.
     let ending = match ends_early {
         true => "; what ends before, beyond all that it is looked at on, is counted in front and open there",
         false => "",
@@ -294,7 +294,7 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     }
     let before = known.step.checked_sub(1).and_then(|before| known.capture.frame_at(before));
     let stencil = before.and_then(|frame| frame.stencil.as_ref());
-    // Shadows that are blended come after the light, which then asks nothing.
+    // Shadows that are blended come after the light, whose pass then tests nothing.
     let has_shadows =
         |step: &Step| step.light == Some(index) && step.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow);
     let is_flattened = known.capture.steps[..known.step].iter().any(has_shadows);
@@ -323,7 +323,7 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     fact(&formula, here)
 }
 
-/// In which bits a count is kept, where that is not in all eight.
+/// Returns the bits in which a count is stored, where these are not all eight.
 fn in_bits(settings: &VolumeSettings) -> String {
     match CountBits::of_mask(settings.mask().into()) {
         CountBits::EIGHT => String::new(),
@@ -331,7 +331,7 @@ fn in_bits(settings: &VolumeSettings) -> String {
     }
 }
 
-/// How the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.
+/// Returns how the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.
 fn compared(known: &ExplainContext, light: usize) -> Option<ExplainFact> {
     if known.capture.decided_by(light) != DecidedBy::Map {
         return None;

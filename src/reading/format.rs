@@ -2,17 +2,17 @@
 
 pub use crate::numbers::{count, depth, digits, length, light, metres, precise};
 
-/// `count(value)` with the word in the right number: `1 draw`, `2 draws`.
+/// Returns `count(value)` with the noun in singular or plural: `1 draw`, `2 draws`.
 pub fn counted(value: u64, noun: &str) -> String {
     format!("{} {noun}{}", count(value), if value == 1 { "" } else { "s" })
 }
 
-/// `Light 1`, as a title.
+/// Returns a light's title: `Light 1` for index 0.
 pub fn light_title(index: usize) -> String {
     format!("Light {}", index + 1)
 }
 
-/// Milliseconds, or a dash where they were not measured.
+/// Returns milliseconds as text, or a dash where they were not measured.
 pub fn milliseconds(value: Option<f64>) -> String {
     match value {
         None => "–".to_owned(),
@@ -22,7 +22,7 @@ pub fn milliseconds(value: Option<f64>) -> String {
     }
 }
 
-/// A size in memory: `7.1 MB`.
+/// Returns a size in memory as text: `7.1 MB`.
 pub fn bytes(value: u64) -> String {
     match value {
         0..1_000 => format!("{value} B"),
@@ -32,7 +32,7 @@ pub fn bytes(value: u64) -> String {
     }
 }
 
-/// Shares of red, green and blue light: `20 % 0 % 100 %`.
+/// Returns the shares of red, green and blue light as text: `20 % 0 % 100 %`.
 pub fn shares([red, green, blue, _]: [u8; 4]) -> String {
     let share = |byte: u8| format!("{:.0} %", f32::from(byte) / 2.55);
     [red, green, blue].map(share).join("  ")

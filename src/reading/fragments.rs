@@ -1,8 +1,8 @@
-//! What the fragment shader is given at each pixel: the point of the surface, the normal that it is shaded
-//! with, the plane of its triangle.
+//! What the fragment shader is given at each pixel: the point of the surface, the normal that it is shaded with, the
+//! plane of its triangle.
 //!
-//! The plan's surfaces are drawn on the CPU, nearest first, once for a frame. A capture folder has no plan:
-//! there, and where depths tell of another surface, the plane goes through the points of neighbouring pixels.
+//! The plan's surfaces are drawn on the CPU, nearest first, once for a frame. A capture folder has no plan: there, and
+//! where the depths show that another surface is seen, the plane is fitted through the points of neighbouring pixels.
 
 use crate::capture::{Capture, Image};
 use crate::plan::{DrawMesh, FramePlan, LightId, Program, ViewId, Visibility};
@@ -13,32 +13,32 @@ use crate::scene::{CameraRays, Ray};
 use glam::{DVec2, DVec3, DVec4};
 use std::sync::Arc;
 
-/// The camera's view.
+/// The view of the camera.
 const CAMERA: ViewId = ViewId(0);
-/// Of a triangle's sides: the eye sees its back.
+/// A bit of a triangle's side flags: the eye sees its back.
 const SEES_BACK: u32 = 1 << 31;
-/// A drawn point that is farther than this from what the depth tells is of another surface, in parts of its
-/// distance.
+/// A drawn point that is farther than this from the point that the stored depth gives is of another surface, as a share
+/// of its distance.
 const SAME_SURFACE: f64 = 0.01;
 
-/// What the shader is given at a pixel.
+/// The inputs of the fragment shader at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentInputs {
-    /// A triangle that was drawn is known to be the one that is seen; else `normal`, `reads` and `layer` are guesses.
+    /// The seen triangle is one that the plan draws; else `normal`, `reads` and `layer` are guesses.
     pub is_drawn: bool,
-    /// World space.
+    /// Position in world space, metres.
     pub world: DVec3,
-    /// What it is shaded with: of unit length, to the side that the eye sees.
+    /// The normal that it is shaded with: of unit length, towards the side that the eye sees.
     pub normal: DVec3,
-    /// Of its triangle's plane, of unit length.
+    /// The normal of its triangle's plane, of unit length.
     pub plane: DVec3,
-    /// It looks the light's map or textures up.
+    /// Its shader looks up the light's map or textures.
     pub reads: bool,
-    /// The layer of the light's textures that is its own; `None` where it has none, or that is not known.
+    /// The layer of the light's textures that belongs to it; `None` where it has none, or that is not known.
     pub layer: Option<u32>,
 }
 
-/// The fragments of a picture's surfaces.
+/// The fragments of a picture's visible surfaces.
 #[derive(Debug)]
 pub struct SurfaceFragments {
     surface: PixelUnprojection,
@@ -47,7 +47,8 @@ pub struct SurfaceFragments {
 }
 
 impl SurfaceFragments {
-    /// Of the picture after a frame, with those that look the map of `light` up; `None` where nothing is drawn.
+    /// Finds the fragments of the picture after a frame, and which of them look up the map of `light`; `None` where
+    /// nothing is drawn.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<SurfaceFragments> {
         let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
         let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| DrawnTriangles::new(capture, plan, light));
@@ -59,7 +60,7 @@ impl SurfaceFragments {
         self.drawn.is_some()
     }
 
-    /// The one at a pixel; `None` where no surface is.
+    /// Returns the fragment at a pixel; `None` where no surface is.
     pub fn at(&self, at: [u32; 2]) -> Option<FragmentInputs> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         let most = SAME_SURFACE * world.distance(self.surface.eye);
@@ -71,14 +72,15 @@ impl SurfaceFragments {
         }))
     }
 
-    /// Where the surface of a pixel is, without its normal, and whether it looks the light's map up; `None` where no
-    /// surface is.
+    /// Returns the surface's position at a pixel, world space, and whether its shader looks up the light's map, without
+    /// computing the normal; `None` where no surface is.
     pub fn place(&self, at: [u32; 2]) -> Option<(DVec3, bool)> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         Some((world, self.drawn.as_ref().and_then(|drawn| drawn.place(at)).is_none_or(|place| place.reads)))
     }
 
-    /// Where the corners of a pixel lie on a plane, in order round it; `None` where one sees nothing of it.
+    /// Returns where the corners of a pixel lie on a fragment's plane, world space, in order round it; `None` where a
+    /// view ray through a corner does not hit the plane.
     pub fn corners(&self, [x, y]: [u32; 2], fragment: &FragmentInputs) -> Option<[DVec3; 4]> {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
@@ -90,8 +92,9 @@ impl SurfaceFragments {
         Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
     }
 
-    /// The normal of the plane through a pixel's point and those of its neighbours: of two on opposite sides the
-    /// nearer, as the other may be beyond an edge. Towards the eye where there is none.
+    /// Returns the normal of the plane through a pixel's point and those of its neighbours: of two neighbours on
+    /// opposite sides the nearer, as the other may be beyond an edge. Points towards the eye where there are no
+    /// neighbours.
     fn guessed(&self, [x, y]: [u32; 2], world: DVec3) -> DVec3 {
         let point = |x: Option<u32>, y: Option<u32>| {
             let at = [x?, y?];
@@ -110,16 +113,16 @@ impl SurfaceFragments {
     }
 }
 
-/// Which triangle of a plan is seen at each pixel.
+/// The plan's triangle that is seen at each pixel.
 #[derive(Debug)]
 struct DrawnTriangles {
     plan: Arc<FramePlan>,
-    /// Of each pixel the index of its place and one more; 0 where there is none.
+    /// For each pixel the index of its triangle in the list plus 1; 0 where there is none.
     ids: Vec<u32>,
     places: Vec<PlanTriangle>,
 }
 
-/// A triangle of a plan.
+/// The place of a triangle in a plan.
 #[derive(Debug, Clone, Copy)]
 struct PlanTriangle {
     mesh: u32,
@@ -221,7 +224,7 @@ fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
     places.collect()
 }
 
-/// Corners relative to the eye.
+/// Returns the draw's mesh and the triangle's corners relative to the eye.
 fn triangle(plan: &FramePlan, place: PlanTriangle) -> Option<(&DrawMesh, [DVec3; 3])> {
     let mesh = plan.meshes.get(place.mesh as usize)?;
     let first = place.triangle as usize * 3;
@@ -234,20 +237,20 @@ fn xyz(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
 }
 
-/// From a pixel and its depth to the world.
+/// Unprojects a pixel and its depth to world space.
 #[derive(Debug)]
 pub struct PixelUnprojection {
     measure: DepthMeasure,
     rays: CameraRays,
-    /// World space.
+    /// Position in world space, metres.
     pub eye: DVec3,
-    /// Where lines of sight meet: homogeneous, world space.
+    /// Where all view rays meet: homogeneous, world space.
     meeting: DVec4,
     size: [f64; 2],
 }
 
 impl PixelUnprojection {
-    /// Of the camera of a capture.
+    /// Returns the unprojection of a capture's camera.
     pub fn new(capture: &Capture) -> PixelUnprojection {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
@@ -260,13 +263,13 @@ impl PixelUnprojection {
         }
     }
 
-    /// World position of the surface at the middle of a pixel; `None` where there is none.
+    /// Returns the world position of the surface at the middle of a pixel; `None` where there is none.
     pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
         let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
         Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
     }
 
-    /// The line of sight through a texel position.
+    /// Returns the view ray through a texel position.
     fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         let [width, height] = self.size;
         self.rays.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))

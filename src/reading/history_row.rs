@@ -1,4 +1,4 @@
-//! An event of a pixel's history as the cells of a row, and as the row's name.
+//! An event of a pixel's history as the cells of a table row, and as the row's accessible name.
 
 use crate::capture::Capture;
 use crate::history::{
@@ -10,30 +10,30 @@ use crate::plan::{ClipPlane, DrawPart};
 use crate::reading::steps;
 use wgpu::StencilOperation;
 
-/// What stands in a row.
+/// The cells of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HistoryCells {
     /// Number of the pass, from 1; `None` for a mask.
     pub number: Option<usize>,
     /// `pass 2`, `mask`.
     pub pass: String,
-    /// What the fragment is of, for its colour.
+    /// The part that the fragment belongs to, for its colour.
     pub part: Option<DrawPart>,
     /// The part in words, or what is cleared.
     pub what: String,
-    /// Of which object.
+    /// Name of the object.
     pub of: String,
     /// `front` or `back`; empty for a clear.
     pub side: &'static str,
-    /// What came of it.
+    /// The event's outcome.
     pub outcome: EventOutcome,
-    /// Before and after, or what stayed.
+    /// The value before and after, or the value that did not change.
     pub change: String,
-    /// It changed what the pixel holds.
+    /// The event changed what the pixel stores.
     pub has_changed: bool,
 }
 
-/// What came of an event.
+/// The outcome of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventOutcome {
     /// A clear.
@@ -44,15 +44,15 @@ pub enum EventOutcome {
         depth: TestResult,
         /// The stencil test.
         stencil: TestResult,
-        /// What was done to the stencil; `None` without a stencil test.
+        /// The stencil operation; `None` without a stencil test.
         operation: Option<StencilOperation>,
     },
-    /// No fragment, and why in a word.
+    /// There was no fragment; the reason in a word.
     Nothing(&'static str),
 }
 
 impl HistoryCells {
-    /// The cells of an event.
+    /// Returns the cells of an event.
     pub fn of(history: &PixelHistory, event: &PixelEvent, capture: &Capture) -> HistoryCells {
         let (change, has_changed) = change(history, event, &capture.depth);
         let number = steps::number(capture, event.pass);
@@ -82,7 +82,7 @@ impl HistoryCells {
         cells
     }
 
-    /// The row in words, with every sign that it shows.
+    /// Returns the row in words, with every sign that it shows.
     pub fn name(&self) -> String {
         let mut name = format!("{}: {}", self.pass, self.what);
         let mut add = |separator: &str, text: &str| {
@@ -106,25 +106,25 @@ impl HistoryCells {
     }
 }
 
-/// The whole event in words; the face that words are set in has no arrow.
+/// Returns the whole event in words; without arrows, as the font for words has none.
 pub fn line(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> String {
     history.line(event, curve).replace('→', "to")
 }
 
-/// The part of a face and the object it belongs to: `dark cap` and `torus 2`.
+/// Returns the part of a face and the object it belongs to: `dark cap` and `torus 2`.
 pub fn named(one: &TriangleEvent) -> (String, String) {
     let caster = || one.caster.clone().unwrap_or_else(|| one.draw_name.clone());
     match one.part {
         DrawPart::Surface => (one.draw_name.clone(), String::new()),
         DrawPart::Receiver => ("receiver".to_owned(), one.draw_name.clone()),
         DrawPart::PlanarShadow => ("flattened".to_owned(), caster()),
-        // Of another program's volumes sides and caps are not told apart.
+        // In another program's volumes, sides and caps can't be distinguished.
         part if part.is_of_volume() && one.caster.is_none() => (one.draw_name.clone(), String::new()),
         other => (other.name().replace('-', " "), caster()),
     }
 }
 
-/// Which side of what a triangle belongs to is seen.
+/// Returns which side of a triangle is seen.
 pub fn side(one: &TriangleEvent) -> &'static str {
     if one.shows_outside() { "front" } else { "back" }
 }
@@ -141,7 +141,7 @@ fn outcome(outcome: FragmentOutcome) -> EventOutcome {
     }
 }
 
-/// The sign of a test beside its colour.
+/// Returns the sign that stands for a test's result beside its colour.
 pub fn sign(test: TestResult) -> &'static str {
     match test {
         TestResult::Passed => "✓",
@@ -151,7 +151,7 @@ pub fn sign(test: TestResult) -> &'static str {
     }
 }
 
-/// A stencil operation in a few letters; wrapping or clamping is in the row's whole line.
+/// Returns a stencil operation in a few letters; wrapping or clamping is in the row's whole line.
 pub fn short(operation: StencilOperation) -> &'static str {
     match operation {
         StencilOperation::Keep => "keep",
@@ -163,18 +163,17 @@ pub fn short(operation: StencilOperation) -> &'static str {
     }
 }
 
-/// A stencil value with its sign, and without the stored byte beside it.
+/// Returns a stencil value with its sign, without the stored byte beside it.
 pub fn signed(value: u8) -> String {
     numbers::signed(value).split(' ').next().unwrap_or_default().to_owned()
 }
 
-/// A float count with the sign that stencil values have.
+/// Returns a float count with the same sign that stencil values have.
 fn float(value: f32) -> String {
     if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
 }
 
-/// What changed at the pixel, and whether anything did: the count, else the depth, else the stencil
-/// as it stayed.
+/// Returns what changed at the pixel, and whether anything did: the count, else the depth, else the unchanged stencil.
 fn change(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> (String, bool) {
     let PixelValues { depth, stencil, count } = event.before;
     let after = event.after;

@@ -1,26 +1,25 @@
-//! Where the rungs of a ladder are: in order of distance, near and infinity both in sight, and no
-//! two closer than a line of text.
+//! The layout of a ladder's rungs: in order of distance, the near plane and infinity both visible, and no two marks
+//! closer than a line of text.
 //!
-//! A distance d is placed at d / (d + s), s the surface's: the eye is at 0, the surface in the
-//! middle, infinity at 1. What would overlap is moved apart, in order. Of more rungs than can be
-//! read some are folded into a line that says how many and what they added. In little room lines are
-//! closer, and then more rungs are folded.
+//! A distance d is placed at d / (d + s), s the surface's: the eye is at 0, the surface in the middle, infinity at 1.
+//! Marks that would overlap are moved apart, in order. Where there are more rungs than can be read, some are folded
+//! into a line that says how many they are and what they added. In little space lines are closer, and then more rungs
+//! are folded.
 
 use crate::history::Ladder;
 use crate::plan::CountedSide;
 use std::ops::Range;
 
-/// Between two marks where there is room for all, and the least where there is not, points.
+/// Distance between two marks, points: the first where there is space for all, the second the least distance otherwise.
 pub const LINE: f32 = 20.0;
 const LEAST_LINE: f32 = 14.0;
-/// The least height of a ladder where there is room for it, points.
+/// The least height of a ladder where there is space for it, points.
 const LEAST_HEIGHT: f32 = 220.0;
 /// Rungs that are shown one by one.
 const MOST_RUNGS: usize = 16;
-/// Of more than those: so many at either end, and on either side of the surface and of what is
-/// selected.
+/// When rungs are folded, so many stay open at either end, and on either side of the surface and of the selected rung.
 const ENDS: usize = 2;
-/// Marks that are no rungs.
+/// How many marks are not rungs.
 const OTHERS: usize = 4;
 
 /// Something on the view ray.
@@ -32,18 +31,18 @@ pub enum LadderMark {
     Near,
     /// A face: its index among the rungs.
     Rung(usize),
-    /// Faces that are folded: the first, and the one after the last.
+    /// Faces that are folded: index of the first, and of the one after the last.
     More(usize, usize),
-    /// What is seen.
+    /// The visible surface.
     Surface,
-    /// Where the ray ends, or never does.
+    /// The end of the ray, at infinity.
     Infinity,
 }
 
 /// A mark and its height, points below the ladder's top.
 pub type PlacedMark = (LadderMark, f32);
 
-/// A stretch of the ray, from a height to a lower one, and the count there.
+/// A stretch of the ray, between two heights, and the count there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CountStretch {
     /// Its nearer end, points below the ladder's top.
@@ -54,8 +53,8 @@ pub struct CountStretch {
     pub count: i32,
 }
 
-/// Places everything on the ray within `height` points, if need be by folding more rungs; `near` is the near plane's
-/// distance in metres, `selected` a rung, `open` rungs that are not to be folded. Also the height of a line.
+/// Places everything on the ray within `height` points, if necessary by folding more rungs. `near` is the near plane's
+/// distance in metres, `selected` a rung, `open` rungs that are not to be folded. Also returns the height of a line.
 pub fn place(
     ladder: &Ladder,
     near: f64,
@@ -69,7 +68,7 @@ pub fn place(
         .into_iter()
         .map(|(most, ends)| marks(ladder, near, selected, open, [most, ends]));
     let all = marks_of.next().unwrap_or_default();
-    // What the user has opened stays open, whatever the room.
+    // What the user has opened stays open, however little space there is.
     let marks = if is_whole(&all) || !open.is_empty() {
         all
     } else {
@@ -102,8 +101,8 @@ pub fn place(
     (placed, line)
 }
 
-/// The count along the ray: from where counting begins as far as the surface; where faces count on both sides of
-/// it, along all of the ray.
+/// Returns the count along the ray: from where counting begins as far as the surface; where faces count on both sides
+/// of it, along all of the ray.
 pub fn stretches(ladder: &Ladder, placed: &[PlacedMark]) -> Vec<CountStretch> {
     let mut stretches = Vec::new();
     let mut count = ladder.start;
@@ -128,7 +127,8 @@ pub fn stretches(ladder: &Ladder, placed: &[PlacedMark]) -> Vec<CountStretch> {
     stretches
 }
 
-/// Everything on the ray in order of distance: of more than `most` rungs, `ends` at either side of what matters.
+/// Returns everything on the ray in order of distance; where there are more than `most` rungs, only `ends` of them at
+/// either side of what matters, and the rest folded.
 fn marks(
     ladder: &Ladder,
     near: f64,
@@ -138,7 +138,7 @@ fn marks(
 ) -> Vec<LadderMark> {
     let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
     let before_surface = ladder.surface.map(|surface| {
-        // A face as far as the surface is on the side that its test says.
+        // A face at the surface's distance is on the side that its depth test says.
         let is_before = |added: i32| (added != 0) != ladder.is_from_infinity();
         let rungs = ladder.rungs.iter();
         let nearer = |distance: f64, added: i32| distance < surface || (distance == surface && is_before(added));
@@ -180,7 +180,7 @@ fn marks(
     marks
 }
 
-/// The distance in the middle of those that have an end.
+/// Returns the middle of the finite distances.
 fn middle_distance(ladder: &Ladder) -> Option<f64> {
     let finite = ladder.rungs.partition_point(|rung| rung.distance.is_finite());
     ladder.rungs[..finite].get(finite / 2).map(|rung| rung.distance)
@@ -192,7 +192,7 @@ mod tests {
     use crate::history::{Rung, VolumeCount};
     use crate::plan::CountBits;
 
-    /// With room for all.
+    /// Returns the marks at their heights where there is space for all.
     fn placed(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<PlacedMark> {
         place(ladder, near, selected, open, 2000.0).0
     }
@@ -300,7 +300,7 @@ mod tests {
             let ends = stretches(&ladder, &placed).last().map(|one| one.count);
             assert_eq!(ends, Some(ladder.count), "the sum is the same");
         }
-        // What was opened stays open, and what is selected stays in sight.
+        // What was opened stays open, and what is selected stays visible.
         let opened = [2..6, 6..10];
         let (open, line) = place(&ladder, 0.1, None, &opened, 140.0);
         assert_eq!((rungs_of(&open), line), (12, LEAST_LINE));

@@ -8,10 +8,10 @@ use crate::plan::DecidedBy;
 pub const CUBE_FACES: [&str; 6] = ["+x", "−x", "+y", "−y", "+z", "−z"];
 
 named_enum! {
-    /// What the layers of a light's map hold. Its name is on the button of
+    /// The content of the layers of a light's map. Its name is on the button of
     /// [`PictureKind::Map`](super::shown::PictureKind::Map).
     pub enum MapContent(
-        /// What one sees in it.
+        /// What the picture shows.
         meaning,
         /// What a layer is called in the Pixel panel.
         one,
@@ -20,9 +20,9 @@ named_enum! {
     ) {
         /// How far the casters are, seen from the light.
         Depth = "Shadow map" ("Depth as the light sees it", "map", "shadow map"),
-        /// For each flat receiver, what arrives on it.
+        /// How much light arrives on each flat receiver.
         Textures = "Textures" ("How much of the light arrives on each flat receiver", "texture", "textures"),
-        /// For each caster, what it lets through.
+        /// How much light each caster lets through.
         Silhouettes = "Silhouettes" ("How much of the light each caster lets through", "silhouette", "silhouettes"),
     }
 }
@@ -30,16 +30,16 @@ named_enum! {
 /// One layer of a light's map.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapLayer {
-    /// Short: `−x`, `floor, flat piece 1`.
+    /// Short name: `−x`, `floor, flat piece 1`.
     pub name: String,
-    /// In full: `face −x`, `texture of floor, flat piece 1`.
+    /// Full name: `face −x`, `texture of floor, flat piece 1`.
     pub full_name: String,
-    /// What to say of a layer that no pass drew; `None` where one did.
+    /// Why no pass drew the layer; `None` where one did.
     pub note: Option<&'static str>,
 }
 
 impl MapContent {
-    /// Of a light's map; `None` where there is none.
+    /// Returns the content of a light's map; `None` where there is none.
     pub fn of(capture: &Capture, light: usize) -> Option<MapContent> {
         let light = capture.lights.get(light)?;
         let map = light.map.as_ref()?;
@@ -50,13 +50,13 @@ impl MapContent {
         })
     }
 
-    /// Of the first light that has a map.
+    /// Returns the content of the first light's map that exists.
     pub fn of_capture(capture: &Capture) -> Option<MapContent> {
         (0..capture.lights.len()).find_map(|light| MapContent::of(capture, light))
     }
 }
 
-/// The layers of a light's map, in order; empty where there is none.
+/// Returns the layers of a light's map, in order; empty where there is none.
 pub fn layers(capture: &Capture, light: usize) -> Vec<MapLayer> {
     let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
     let count = map.map_or(0, |map| map.faces.len());

@@ -1,9 +1,9 @@
-//! What a frame did without, by reason.
+//! What a frame left out, by reason.
 
 use crate::plan::LeftOut;
 
-/// Each reason with what was left out for it, in the order of the frame. One thing is decided again for every light, and
-/// for many objects with one reason: once is enough to read.
+/// Returns each reason with what was left out for it, in the order of the frame. The same decision is often made for
+/// every light and for many objects with one reason: it is listed once.
 pub fn by_reason(left_out: &[LeftOut]) -> Vec<(&str, Vec<String>)> {
     let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
     for entry in left_out {

@@ -1,5 +1,5 @@
-//! Which texels of a light's shadow map decided a pixel: what each stores against the pixel's own depth, as
-//! `arriving_by_map.wgsl` compares them, and that in words.
+//! Which texels of a light's shadow map decided a pixel: the depth that each stores against the pixel's own, as
+//! `arriving_by_map.wgsl` compares them, and the decision in words.
 
 use crate::capture::Capture;
 use crate::reading::depth::DepthMeasure;
@@ -13,35 +13,35 @@ use crate::truth::{LIT, SHADOW};
 pub struct ComparedTexel {
     /// The texel.
     pub texel: MapTexel,
-    /// What it stores, its bias included.
+    /// Its stored depth, with the bias.
     pub stored: f32,
-    /// The depth of the pixel's surface there.
+    /// The depth of the pixel's surface at the texel.
     pub depth: f32,
-    /// What it stores is a caster, and not what the map was cleared to.
+    /// Its stored depth is a caster's, and not what the map was cleared to.
     pub is_caster: bool,
-    /// It holds nothing nearer to the light: the light passes.
+    /// It stores no depth nearer to the light than the surface: the light passes.
     pub is_lit: bool,
 }
 
-/// What the map of a light says of a pixel.
+/// How the map of a light decides a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapDecision {
     /// Index of the light.
     pub light: usize,
     /// The texels that are compared, row by row: one, or those of a filter.
     pub compared: Vec<ComparedTexel>,
-    /// The one in the middle of them.
+    /// The texel in the middle of them.
     pub middle: ComparedTexel,
-    /// What the face is called; empty where there is one only.
+    /// Name of the map's face; empty where there is only one.
     pub face: String,
-    /// What depths of this face stand for, where that is known.
+    /// The measure of this face's depths, where it is known.
     pub measure: Option<DepthMeasure>,
-    /// The technique's own answer, where it is another one: the depths are too close to be told apart anew.
+    /// The technique's own answer where it differs: the depths are too close for the CPU to decide it again.
     pub gpu_says: Option<&'static str>,
 }
 
 impl MapDecision {
-    /// Of a pixel under a light; `None` where it reads no texel.
+    /// Returns how the map of a light decides a pixel; `None` where the pixel reads no texel.
     pub fn of(capture: &Capture, readers: &MapReaders, light: usize, pixel: [u32; 2]) -> Option<MapDecision> {
         let map = capture.lights.get(light)?.map.as_ref()?;
         let clear = capture.depth.mapping.clear_depth();
@@ -68,29 +68,29 @@ impl MapDecision {
         Some(decision)
     }
 
-    /// How many of the texels let the light pass.
+    /// Returns how many of the texels let the light pass.
     pub fn lit(&self) -> usize {
         self.compared.iter().filter(|one| one.is_lit).count()
     }
 
-    /// A depth as stored, and how far from the light that is.
+    /// Returns a depth as stored, and its distance from the light, in words.
     pub fn depth_words(&self, depth: f32) -> String {
         let metres = self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
         metres.map_or_else(|| format::depth(depth), |metres| format!("{} ({metres})", format::depth(depth)))
     }
 
-    /// What the middle texel stores, in words.
+    /// Describes in words what the middle texel stores.
     pub fn stored_words(&self) -> String {
         if self.middle.is_caster { self.depth_words(self.middle.stored) } else { "no caster".to_owned() }
     }
 
-    /// Where the texel is: `412, 300 of face −x`.
+    /// Returns where the texel is: `412, 300 of face −x`.
     pub fn place_words(&self) -> String {
         let [x, y] = self.middle.texel.at;
         if self.face.is_empty() { format!("{x}, {y}") } else { format!("{x}, {y} of face {}", self.face) }
     }
 
-    /// What follows from the comparison, in a few words.
+    /// Describes the result of the comparison in a few words.
     pub fn outcome(&self) -> String {
         let all = self.compared.len();
         match (all, self.lit()) {
@@ -102,7 +102,7 @@ impl MapDecision {
         }
     }
 
-    /// Why the pixel is dark or lit, in a sentence.
+    /// Returns a sentence that says why the pixel is dark or lit.
     pub fn sentence(&self) -> String {
         let place = self.place_words();
         let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);

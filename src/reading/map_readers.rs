@@ -1,5 +1,5 @@
-//! Which texel of a light's shadow map each pixel of the picture reads: the pixel's surface carried into
-//! the map as `arriving_by_map.wgsl` does, moved along its normal first, made once for a frame and light.
+//! Which texel of a light's shadow map each pixel of the picture reads: the pixel's surface is moved along its normal
+//! and then transformed into the map, as in `arriving_by_map.wgsl`. Computed once for a frame and light.
 
 use crate::capture::{Capture, CapturedMap};
 use crate::plan::FramePlan;
@@ -27,18 +27,19 @@ pub struct MapReaders {
     size: [u32; 2],
     lookup: MapProjection,
     fragments: SurfaceFragments,
-    /// Of each pixel the first texel that it reads: face, column, row.
+    /// For each pixel the first texel that it reads: face, column, row.
     first: Vec<Option<[i16; 3]>>,
 }
 
 impl MapReaders {
-    /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
+    /// Finds the texels for the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing
+    /// is drawn.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
-        // Where another program's map looks is not known.
+        // How another program looks its map up is not known.
         let lookup = MapProjection::new(capture, plan, light).filter(|_| capture.origin.is_none())?;
         let fragments = SurfaceFragments::new(capture, plan, light)?;
         let of_pixel = |at: [u32; 2]| match lookup.bias_normal == 0.0 {
-            // Normals take time, and change nothing.
+            // Normals take time to compute, and change nothing here.
             true => fragments.place(at).filter(|(_, reads)| *reads).and_then(|(world, _)| lookup.first_of(world)),
             false => fragments.at(at).filter(|fragment| fragment.reads).and_then(|fragment| lookup.first(&fragment)),
         };
@@ -48,12 +49,12 @@ impl MapReaders {
         Some(MapReaders { size: capture.size, lookup, fragments, first })
     }
 
-    /// Are normals those that the shader had? Else they are guessed from depths.
+    /// Returns whether the normals are those that the shader had; else they are guessed from depths.
     pub fn knows_normals(&self) -> bool {
         self.fragments.are_drawn()
     }
 
-    /// The texel that a pixel reads, the middle one of several; `None` where it reads none.
+    /// Returns the texel that a pixel reads, the middle one of several; `None` where it reads none.
     pub fn texel_of(&self, [x, y]: [u32; 2]) -> Option<MapTexel> {
         let index = (y as usize).checked_mul(self.size[0] as usize)? + x as usize;
         let [face, column, row] = (*self.first.get(index).filter(|_| x < self.size[0])?)?;
@@ -65,7 +66,7 @@ impl MapReaders {
         Some(MapTexel { face: face as usize, at })
     }
 
-    /// The pixels that read a texel.
+    /// Returns the pixels that read a texel.
     pub fn of_texel(&self, texel: MapTexel) -> Vec<[u32; 2]> {
         let reads = |first: [i16; 3]| {
             let is_in = |first: i16, at: u32, side: u32| {
@@ -83,14 +84,14 @@ impl MapReaders {
         found.map(|(index, _)| place(index)).collect()
     }
 
-    /// The depth that the map's texels are compared with at a pixel; `None` where it reads none.
+    /// Returns the depth that the map's texels are compared with at a pixel; `None` where it reads none.
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (_, clip) = self.lookup.place(&fragment)?;
         Some(clip.z / clip.w)
     }
 
-    /// The texels that a pixel is compared with, row by row, and its depth at each; none where it reads none.
+    /// Returns the texels that a pixel is compared with, row by row, and its depth at each; empty where it reads none.
     pub fn compared(&self, pixel: [u32; 2]) -> Vec<(MapTexel, f64)> {
         let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
         let found = found.and_then(|fragment| Some((fragment, self.lookup.place(&fragment)?)));
@@ -112,8 +113,8 @@ impl MapReaders {
         texels.map(compare).collect()
     }
 
-    /// What a pixel covers of the map: its four corners on the plane of its surface, carried into the face that it
-    /// reads, in texels and in order round it. `None` where it reads none, or a corner has no place there.
+    /// Returns what a pixel covers of the map: its four corners on the plane of its surface, transformed into the face
+    /// that it reads, in texels and in order round it. `None` where it reads none, or a corner has no position there.
     pub fn footprint(&self, pixel: [u32; 2]) -> Option<(usize, [DVec2; 4])> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (face, _) = self.lookup.place(&fragment)?;
@@ -127,19 +128,19 @@ impl MapReaders {
         Some((face, [a?, b?, c?, d?]))
     }
 
-    /// Where a texel lies on the plane of the surface that a pixel shows: its four corners, world space, in order
-    /// round it. `None` where the pixel reads none, or the plane is edge-on to the light.
+    /// Returns where a texel lies on the plane of the surface that a pixel shows: its four corners, world space, in
+    /// order round it. `None` where the pixel reads none, or the plane is edge-on to the light.
     pub fn texel_on_surface(&self, texel: MapTexel, pixel: [u32; 2]) -> Option<[DVec3; 4]> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let pushed = self.lookup.push(texel.face, &fragment)?;
         let world_from_clip = self.lookup.matrices.get(texel.face)?.inverse();
-        // What is moved onto this plane is looked up there.
+        // A point of this plane, once moved, is looked up on the surface.
         let plane = fragment.plane.extend(-fragment.plane.dot(fragment.world + pushed));
         let corner = |right: u32, down: u32| {
             let place = DVec2::new(f64::from(texel.at[0] + right), f64::from(texel.at[1] + down));
             let size = DVec2::new(f64::from(self.lookup.size[0]), f64::from(self.lookup.size[1]));
             let device = (place / size * 2.0 - 1.0) * DVec2::new(1.0, -1.0);
-            // All points that the light sees there: one, and as much of the other as there is depth.
+            // The ends of the light ray through the texel's corner: one point of it, and another at another depth.
             let at = world_from_clip * device.extend(0.0).extend(1.0);
             let along = world_from_clip * DVec4::Z;
             let point = at - along * (plane.dot(at) / plane.dot(along));
@@ -149,22 +150,22 @@ impl MapReaders {
         Some([corner(0, 0)?, corner(1, 0)?, corner(1, 1)?, corner(0, 1)?])
     }
 
-    /// How wide a texel of a face is at a pixel's surface, metres; `None` where the face does not see it.
+    /// Returns how wide a texel of a face is at a pixel's surface, metres; `None` where the face does not see it.
     pub fn texel_width(&self, face: usize, pixel: [u32; 2]) -> Option<f64> {
         self.lookup.width(face, self.fragments.at(pixel)?.world)
     }
 }
 
-/// How points are carried into a light's map.
+/// How points are transformed into a light's map.
 #[derive(Debug)]
 struct MapProjection {
     /// Clip space of each face from world space.
     matrices: Vec<DMat4>,
-    /// Of each face: no pass draws it. Empty where that is not known, as of a folder.
+    /// For each face, whether no pass draws it. Empty where that is not known, as for a capture folder.
     left_out: Vec<bool>,
     /// Texels along each side.
     size: [u32; 2],
-    /// Homogeneous.
+    /// The light's position, homogeneous, world space.
     light: DVec4,
     /// Texels that are compared along each side.
     filter: u32,
@@ -175,7 +176,7 @@ struct MapProjection {
 }
 
 impl MapProjection {
-    /// `None` where the light has no shadow map.
+    /// Returns the projection of a light's shadow map; `None` where it has none.
     fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapProjection> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
@@ -193,25 +194,25 @@ impl MapProjection {
         })
     }
 
-    /// The face that sees a point, and where it is in its clip space.
+    /// Returns the face that sees a point, and the point's position in its clip space.
     fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
         let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
         let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
-        // On a border between two, the shader finds the one that is drawn: it has no other.
+        // On a border between two faces, the shader finds the one that is drawn: it has no other.
         let is_drawn = |face: usize| !self.left_out.get(face).copied().unwrap_or(false);
         let drawn = clips().find(|(face, clip)| is_drawn(*face) && is_in(clip));
         drawn.or_else(|| clips().find(|(_, clip)| is_in(clip)))
     }
 
-    /// The face that a fragment reads, and where it is looked up in its clip space. The face is chosen before the
-    /// point is moved.
+    /// Returns the face that a fragment reads, and the position in its clip space where it is looked up. The face is
+    /// chosen before the point is moved.
     fn place(&self, fragment: &FragmentInputs) -> Option<(usize, DVec4)> {
         let (face, _) = self.seen(fragment.world)?;
         Some((face, self.matrices[face] * (fragment.world + self.push(face, fragment)?).extend(1.0)))
     }
 
-    /// How far a fragment is moved off its surface before it is looked up in a face, metres: some texels along its
-    /// normal, more where light grazes it.
+    /// Returns how far a fragment is moved off its surface before it is looked up in a face, metres: some texels along
+    /// its normal, more where light grazes it.
     fn push(&self, face: usize, fragment: &FragmentInputs) -> Option<DVec3> {
         if self.bias_normal == 0.0 {
             return Some(DVec3::ZERO);
@@ -222,7 +223,7 @@ impl MapProjection {
         Some(fragment.normal * (self.bias_normal * self.width(face, fragment.world)? * sine))
     }
 
-    /// How wide a texel is at a world position, metres.
+    /// Returns how wide a texel is at a world position, metres.
     fn width(&self, face: usize, world: DVec3) -> Option<f64> {
         let matrix = self.matrices.get(face)?;
         let distance = (*matrix * world.extend(1.0)).w;
@@ -230,13 +231,14 @@ impl MapProjection {
         (distance > 0.0 && focal > 0.0).then(|| 2.0 * distance / (focal * f64::from(self.size[0])))
     }
 
-    /// Place in a face, texels.
+    /// Returns the position in a face, texels.
     fn texel(&self, clip: DVec4) -> DVec2 {
         let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
         (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size
     }
 
-    /// How depth grows along x and y of a face on a plane with this normal; zero where the light sees it edge-on.
+    /// Returns how depth grows along x and y of a face on a plane with this normal; zero where the light sees it
+    /// edge-on.
     fn slope(&self, face: usize, clip: DVec4, plane: DVec3) -> DVec2 {
         let along = |direction: DVec3| {
             let moved = self.matrices[face] * direction.extend(0.0);
@@ -251,13 +253,13 @@ impl MapProjection {
         DVec2::new(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / area
     }
 
-    /// Face and first texel that a fragment reads.
+    /// Returns face, column and row of the first texel that a fragment reads.
     fn first(&self, fragment: &FragmentInputs) -> Option<[i16; 3]> {
         let (face, clip) = self.place(fragment)?;
         Some(self.first_at(face, clip))
     }
 
-    /// Face and first texel that a point reads which is not moved.
+    /// Returns face, column and row of the first texel that a point reads when it is not moved.
     fn first_of(&self, world: DVec3) -> Option<[i16; 3]> {
         self.seen(world).map(|(face, clip)| self.first_at(face, clip))
     }

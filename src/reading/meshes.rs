@@ -1,20 +1,20 @@
-//! How each object's mesh hangs together, in a line, and what that does to which technique.
+//! The topology of each object's mesh (closed, open, non-manifold), in a line, and how that affects which technique.
 
 use crate::geometry::Topology;
 use crate::reading::format;
 use crate::scene::{MaterialTexture, Object};
 use std::sync::Arc;
 
-/// An object of the open scene, and how its mesh hangs together.
+/// An object of the open scene, and its mesh's topology.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectMesh {
-    /// Its name.
+    /// The object's name.
     pub object: String,
-    /// Of its mesh.
+    /// The topology of its mesh.
     pub topology: Arc<Topology>,
 }
 
-/// The pictures on an object, and how they lie on it, a line each.
+/// Describes the pictures on an object and how they are mapped, one in a line.
 pub fn pictures(object: &Object) -> Vec<String> {
     let line = |texture: &MaterialTexture| {
         let [width, height] = texture.picture.size();
@@ -29,12 +29,12 @@ pub fn pictures(object: &Object) -> Vec<String> {
     lines
 }
 
-/// Is there nothing to tell of it but that it is closed?
+/// Returns whether the only thing to say of the mesh is that it is closed.
 pub fn is_whole(topology: &Topology) -> bool {
     findings(topology).is_empty()
 }
 
-/// `closed`, or all that is found.
+/// Returns `closed`, or all that was found.
 pub fn line(topology: &Topology) -> String {
     let mut parts: Vec<String> = findings(topology).into_iter().map(|(text, _)| text).collect();
     if topology.is_closed() {
@@ -43,7 +43,7 @@ pub fn line(topology: &Topology) -> String {
     parts.join(", ")
 }
 
-/// What the findings do to which technique, a paragraph each.
+/// Describes which techniques the findings affect and how, one paragraph each.
 pub fn effects(topology: &Topology) -> String {
     let mut paragraphs: Vec<&str> = findings(topology).into_iter().map(|(_, effect)| effect).collect();
     if topology.is_closed() && topology.is_oriented() {
@@ -56,7 +56,7 @@ pub fn effects(topology: &Topology) -> String {
     paragraphs.join("\n\n")
 }
 
-/// Each thing that was found, in words with its count, and what it does.
+/// Returns each finding in words with its count, and its effect.
 fn findings(topology: &Topology) -> Vec<(String, &'static str)> {
     let edges = |count: usize, kind: &str| format::counted(count as u64, &format!("{kind} edge"));
     let all = [

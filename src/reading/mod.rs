@@ -1,14 +1,16 @@
-//! What a frame says, as data: which picture stands for a moment, what a value in it means, why a pixel is dark, which
-//! texel it read. Whoever shows a frame, the window or a page, takes it from here: nothing knows a widget.
+//! What a frame says, as data: which picture stands for a point of the frame, what a value in it means, which texel a
+//! pixel read, what each light adds. The window and the page both show a frame from here: nothing in this module knows
+//! a widget.
 //!
 //! ```text
-//! steps.rs     what has a number, what is beside moment.rs    after a step or a draw    shown.rs    the picture of it
-//! layers.rs    maps, textures                left_out.rs what the frame did without
+//! steps.rs     numbered steps, and masks      capture_point.rs after a step or a draw   shown.rs    the picture of it
+//! layers.rs    maps, textures                left_out.rs what the frame left out
 //! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
-//! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
+//! explain_facts.rs a step as a formula       meshes.rs   the topology of meshes  outcomes.rs results of a step's tests
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
 //! map_decision.rs what a texel stores against a pixel's depth; texture_decision.rs what textures let through to it
 //! texels_read.rs both, as text and as JSON                    shading.rs   what each light adds, term by term
+//! coordinates.rs a pixel's point in every space               bench.rs    the stencil test by itself
 //! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```

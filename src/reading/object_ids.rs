@@ -1,24 +1,24 @@
-//! Which object is seen at each pixel: triangles drawn on the CPU, nearest first, made once for a frame.
+//! The object that is seen at each pixel: triangles are drawn on the CPU, the nearest wins, once for a frame.
 
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, Image, PixelFormat};
 use crate::reading::projected::Projector;
 use glam::DVec2;
 
-/// Texels of [`ObjectIds::receivers`]: elsewhere, on a receiver, at its outline.
+/// Texel values of [`ObjectIds::receivers`]: elsewhere, on a receiver, at its outline.
 pub const RECEIVER_INKS: [u8; 3] = [0, 1, 2];
 
-/// Which object is seen where.
+/// The object that is seen at each pixel.
 #[derive(Debug)]
 pub struct ObjectIds {
-    /// Where objects receive shadows, a byte of [`RECEIVER_INKS`] a pixel.
+    /// Where objects receive shadows: one byte of [`RECEIVER_INKS`] for each pixel.
     pub receivers: Image,
-    /// A pixel of each object near the middle of what is seen of it; `None` of those that are hidden.
+    /// For each object, a pixel of it near the middle of its visible part; `None` where it is hidden.
     pub middles: Vec<Option<[u32; 2]>>,
 }
 
 impl ObjectIds {
-    /// Of the objects of `anatomy`, seen as in `capture`.
+    /// Draws the objects of `anatomy` as they are seen in `capture`.
     pub fn new(anatomy: &Anatomy, capture: &Capture) -> ObjectIds {
         let ids = draw(anatomy, capture);
         let [width, height] = capture.size.map(|side| side as usize);
@@ -42,7 +42,7 @@ impl ObjectIds {
     }
 }
 
-/// Index of the nearest object at each pixel and one more; 0 where there is none.
+/// Returns for each pixel the index of the nearest object plus 1; 0 where there is none.
 fn draw(anatomy: &Anatomy, capture: &Capture) -> Vec<u32> {
     let size = capture.size.map(|side| side as usize);
     let projector = Projector::new(capture);
@@ -87,7 +87,7 @@ pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut add: im
     }
 }
 
-/// Of the pixels of each object the one nearest to their mean.
+/// Returns, for each object, the pixel of it that is nearest to the mean of its pixels.
 fn middles(ids: &[u32], width: usize, objects: usize) -> Vec<Option<[u32; 2]>> {
     let mut sums = vec![(DVec2::ZERO, 0.0_f64); objects];
     let place = |index: usize| DVec2::new((index % width) as f64, (index / width) as f64);

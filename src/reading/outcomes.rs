@@ -1,12 +1,12 @@
-//! How the fragments of a step fared in its tests, with what follows for the whole picture.
+//! The results of a step's tests on its fragments, and their statistics over the whole picture.
 
 use crate::capture::{Image, StepTests, TestCounts};
 use std::sync::Arc;
 
-/// Tests, and the outcomes of every pixel.
+/// A step's tests, and the outcomes at every pixel.
 #[derive(Debug, Clone)]
 pub struct TestOutcomes {
-    /// As counted.
+    /// The counts of tested fragments.
     pub tests: Arc<StepTests>,
     /// [`TestCounts::outcomes`] of every pixel.
     pub outcomes: Arc<Image>,
@@ -15,7 +15,7 @@ pub struct TestOutcomes {
 }
 
 impl TestOutcomes {
-    /// Of a step's tests.
+    /// Collects the outcomes of a step's tests.
     pub fn new(tests: StepTests) -> TestOutcomes {
         let outcomes = Arc::new(tests.outcomes());
         let histogram = outcomes.histogram();
@@ -24,7 +24,7 @@ impl TestOutcomes {
     }
 }
 
-/// What is said where it is not told apart how fragments fared.
+/// The text where the outcomes of single fragments can't be distinguished.
 pub const SEVERAL: &str = "Several fragments came to these pixels, and the step changes what it tests: their number does \
                            not tell which of them passed. The history of a pixel does: right-click one.";
 

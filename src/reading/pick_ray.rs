@@ -1,48 +1,49 @@
-//! The ray through a pixel of the picture, and the surface that it meets.
+//! The ray through a pixel of the picture, and the surface that it hits.
 
 use crate::capture::Capture;
 use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 
-/// The line of sight through the middle of a pixel.
+/// Returns the view ray through the middle of a pixel.
 pub fn ray(capture: &Capture, at: [u32; 2]) -> Ray {
     ray_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }
 
-/// The line of sight through any position in texels.
+/// Returns the view ray through a position in texels.
 pub fn ray_at(capture: &Capture, at: [f64; 2]) -> Ray {
     let [width, height] = capture.size.map(f64::from);
     let place = DVec2::new(at[0] / width * 2.0 - 1.0, 1.0 - at[1] / height * 2.0);
     capture.camera.rays(width / height).through(place)
 }
 
-/// The surface at a pixel by the end of the frame, world space; `None` where there is none.
+/// Returns the surface at a pixel at the end of the frame, world space; `None` where there is none.
 pub fn surface(capture: &Capture, at: [u32; 2]) -> Option<DVec3> {
     let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
     let distance = capture.depth.distance(frame.depth.image.depth_at(at)?)?;
     Some(capture.camera.eye + ray(capture, at).at(distance))
 }
 
-/// A homogeneous point of the world in view space, the view along −z.
+/// Returns a homogeneous world-space point in view space, where the view is along −z.
 fn in_view(capture: &Capture, world: glam::DVec4) -> DVec3 {
     let camera = &capture.camera;
     camera.world_from_view().transpose() * (world.truncate() - camera.eye * world.w)
 }
 
-/// Which way out of the picture a point is that is not before the eye: right and down, of length 1.
+/// Returns the direction out of the picture, right and down and of length 1, towards a point that is not before the
+/// eye.
 pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
     let view = in_view(capture, world);
-    // Right behind the eye any way is as good.
+    // For a point right behind the eye any direction is as good.
     let way = DVec2::new(view.x, -view.y).try_normalize().unwrap_or(DVec2::Y);
     way.to_array()
 }
 
-/// Where a homogeneous point of the world is in the picture, texels; `None` where it is not before the eye.
+/// Returns where a homogeneous world-space point is in the picture, texels; `None` where it is not before the eye.
 pub fn texel_of(capture: &Capture, world: glam::DVec4) -> Option<[f64; 2]> {
     let camera = &capture.camera;
     let [width, height] = capture.size.map(f64::from);
     let view = in_view(capture, world);
-    // Where depth is stored does not matter here.
+    // How depth is stored does not matter here.
     let clip = camera.clip_from_view(width / height, &capture.depth) * view.extend(1.0);
     let at = DVec2::new(clip.x, clip.y) / clip.w;
     (view.z < -1e-9).then(|| [(at.x + 1.0) / 2.0 * width, (1.0 - at.y) / 2.0 * height])

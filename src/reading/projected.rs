@@ -7,21 +7,21 @@
 use crate::capture::Capture;
 use glam::{DMat4, DVec2, DVec4};
 
-/// How far outside the picture's edges lines are cut, where the picture ends at 1.
+/// How far outside the picture's edges lines are clipped, where the picture ends at 1.
 const GUARD: f64 = 1.2;
-/// How far outside a triangle that is outlined is cut: where it is, none of its edges may be seen.
+/// How far outside the picture's edges an outlined triangle is clipped: the edges that clipping adds must not be seen.
 const OUTLINE_GUARD: f64 = 1.5;
 
-/// What tells how near a point of clip space is, linear in the picture.
+/// The value that says how near a point of clip space is, linear in the picture.
 #[derive(Debug, Clone, Copy)]
 enum Nearness {
     /// 1 over w.
     InverseDistance,
-    /// This row's product over w: w tells nothing in a parallel view.
+    /// The product with this row, over w: w says nothing in a parallel projection.
     Linear(DVec4),
 }
 
-/// From the world to the texels of a capture's picture.
+/// Projects world positions to the texels of a capture's picture.
 #[derive(Debug, Clone)]
 pub struct Projector {
     clip_from_world: DMat4,
@@ -31,7 +31,7 @@ pub struct Projector {
 }
 
 impl Projector {
-    /// Of the camera of a capture.
+    /// Returns the projector of a capture's camera.
     pub fn new(capture: &Capture) -> Projector {
         Projector::guarded(capture, GUARD)
     }
@@ -57,7 +57,7 @@ impl Projector {
         }
     }
 
-    /// What is seen of a segment between homogeneous positions, in texels.
+    /// Returns the visible part of a segment between homogeneous positions, in texels.
     pub fn segment(&self, ends: [DVec4; 2]) -> Option<[DVec2; 2]> {
         let [mut from, mut to] = ends.map(|end| self.clip_from_world * end);
         for plane in self.planes {
@@ -75,12 +75,13 @@ impl Projector {
         is_before.then(|| [from, to].map(|end| self.place(end)))
     }
 
-    /// What is seen of a triangle: a convex polygon in texels, with how near it is at each corner, in proportion to 1
-    /// over the distance along the view; of a parallel view, from 2 at the near plane to 1 where depth ends. Empty where nothing is.
+    /// Returns the visible part of a triangle: a convex polygon in texels, with how near it is at each corner, in
+    /// proportion to 1 over the distance along the view; in a parallel projection, from 2 at the near plane to 1 where
+    /// depth ends. Empty where nothing is visible.
     pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
         let corners = corners.map(|corner| self.clip_from_world * corner);
         let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
-        // Most triangles are seen whole or not at all.
+        // Most triangles are visible as a whole or not at all.
         if self.planes.iter().any(|plane| corners.iter().all(|corner| is_beyond(plane, corner))) {
             return Vec::new();
         }
@@ -102,8 +103,8 @@ impl Projector {
     }
 }
 
-/// Corners of what is seen of a triangle, in texels of the capture's picture. `corners` are
-/// homogeneous and relative to the eye. Empty where nothing of it is before the eye.
+/// Returns the corners of the visible part of a triangle, in texels of the capture's picture. `corners` are homogeneous
+/// and relative to the eye. Empty where no part of it is before the eye.
 pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     let world = |corner: [f32; 4]| {
         let relative = DVec4::from_array(corner.map(f64::from));
@@ -113,8 +114,8 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     seen.into_iter().map(|(at, _)| at).collect()
 }
 
-/// What lies before the near plane, in clip space: near is where depth is 1, or 0; depth that is clamped has
-/// no such end, but of a parallel view, where nothing else ends it.
+/// Returns the near plane in clip space: near is where depth is 1, or 0. Depth that is clamped has no such end, except
+/// in a parallel projection, which nothing else bounds.
 pub fn near_plane(capture: &Capture) -> DVec4 {
     match (capture.depth.mapping.clamps() && !capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
         (true, _) => DVec4::W,
@@ -123,7 +124,7 @@ pub fn near_plane(capture: &Capture) -> DVec4 {
     }
 }
 
-/// The part of a polygon on one side of a plane through the origin.
+/// Returns the part of a polygon on one side of a plane through the origin.
 pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
     let mut clipped = Vec::with_capacity(polygon.len() + 1);
     for (index, &corner) in polygon.iter().enumerate() {

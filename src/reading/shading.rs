@@ -13,75 +13,77 @@ use glam::{DVec2, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// How much of its colour every other check has.
+/// The dark checks' share of the surface's colour.
 const DARK_CHECK: f64 = 1.0 / 3.0;
 
-/// How the surface of a pixel is lit.
+/// How the surface at a pixel is lit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceShading {
     /// Name of the draw that shows it.
     pub surface: String,
     /// Where its light is computed: `flat`, `gouraud`, `phong`.
     pub shading: &'static str,
-    /// `lambert`, `wrapped`.
+    /// The diffuse term: `lambert`, `wrapped`.
     pub diffuse: &'static str,
     /// Unit normal that it is shaded with, world space, to the side that the eye sees; Gouraud's corners have their own.
     pub normal: [f64; 3],
     /// Linear RGB reflectance, with its checks and its texture.
     pub color: [f64; 3],
-    /// What the picture on it has there.
+    /// What its texture has there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub texture: Option<TextureTerm>,
-    /// Strength of the highlight.
+    /// Strength of the specular highlight.
     pub specular: f64,
     /// Its Blinn-Phong exponent.
     pub shininess: f64,
-    /// Linear RGB that it has without any light: under ambient light, and sent out by itself.
+    /// Linear RGB without any light source: what it reflects of ambient light, and what it emits.
     pub unlit: [f64; 3],
     /// What each light adds.
     pub lights: Vec<LightTerms>,
 }
 
-/// What a picture has where a pixel's middle sees it.
+/// A texture's value at a pixel's middle.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TextureTerm {
-    /// Its file's name.
+    /// Name of the texture's file.
     pub name: String,
-    /// Where in it: 0, 0 is its lower left, 1, 1 its upper right, and beyond it repeats or is clamped.
+    /// Texture coordinates: 0, 0 is the lower left, 1, 1 the upper right, and beyond it repeats or is clamped.
     pub uv: [f64; 2],
     /// Column and row of the texel there, from the top left.
     pub texel: [u32; 2],
-    /// Of its pyramid: on level k a texel is 2^k texels large, and the four nearest on the two levels beside are mixed.
+    /// The mip level: on level k a texel is 2^k texels large, and the four nearest texels on the two levels beside are
+    /// mixed.
     pub level: f64,
-    /// Linear RGB that comes of it: a factor of the surface's colour.
+    /// The resulting linear RGB: a factor of the surface's colour.
     pub color: [f64; 3],
 }
 
-/// What a light adds to a surface, if it arrives.
+/// What a light adds to a surface where it arrives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LightTerms {
-    /// Linear RGB times intensity.
+    /// The light's linear RGB times its intensity.
     pub color: [f64; 3],
-    /// N·L: of the angle between the normal and the way to the light.
+    /// N·L: cosine of the angle between the normal and the direction to the light.
     pub cosine: f64,
-    /// The same at the triangle's corners, where Gouraud computes light.
+    /// N·L at the triangle's corners, where Gouraud shading computes light; else `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corner_cosines: Option<[f64; 3]>,
-    /// Its triangle faces away from the light, which Lambert's light does not reach then, whatever the cosine.
+    /// Its triangle faces away from the light, so that Lambert's light does not reach it, whatever the cosine.
     pub is_turned_away: bool,
-    /// Lambert's max(0, N·L), or wrapped (N·L + 1) / 2; of Gouraud mixed of its corners.
+    /// Lambert's max(0, N·L), or wrapped (N·L + 1) / 2; with Gouraud shading interpolated from the corners.
     pub diffuse: f64,
-    /// Blinn-Phong's strength × max(0, N·H)^exponent, 0 where N·L is; of Gouraud mixed of its corners.
+    /// Blinn-Phong's strength × max(0, N·H)^exponent, 0 where N·L is; with Gouraud shading interpolated from the
+    /// corners.
     pub highlight: f64,
-    /// What is left at its distance, 0 to 1.
+    /// The light's share that is left at this distance, 0 to 1.
     pub fading: f64,
     /// Linear RGB that it adds where it arrives.
     pub adds: [f64; 3],
-    /// What the technique says: `lit`, `in shadow`, `faces away`; `None`: it has no mask.
+    /// The technique's label: `lit`, `in shadow`, `faces away`; `None` where it has no mask.
     pub label: Option<PixelLabel>,
 }
 
-/// A place of a surface, relative to the eye, with its unit normal.
+/// A point of a surface, relative to the eye, with its unit normal.
 #[derive(Debug, Clone, Copy)]
 struct ShadingPoint {
     relative: DVec3,
@@ -97,7 +99,8 @@ struct ShadingTerms {
 }
 
 impl SurfaceShading {
-    /// Of the surface that a pixel's history ends with; `None` where there is none, or another program drew it.
+    /// Returns the shading of the surface that a pixel's history ends with; `None` where there is none, or another
+    /// program drew it.
     pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<SurfaceShading> {
         if capture.origin.is_some() {
             return None;
@@ -175,7 +178,7 @@ impl SurfaceShading {
         })
     }
 
-    /// A line for the surface, and one a light.
+    /// Returns a line for the surface, and one for each light.
     pub fn text(&self) -> String {
         let mut text = format!(
             "  {}, {} shading: normal {}, colour {}; without light {}\n",
@@ -205,7 +208,7 @@ impl SurfaceShading {
 }
 
 impl LightTerms {
-    /// The cosine, and the formula with its numbers.
+    /// Returns the cosine, and the formula with its numbers.
     fn text(&self, of: &SurfaceShading) -> String {
         let cosines = self.corner_cosines.map_or_else(String::new, |cosines| {
             format!(" (at the corners, where light is computed and then mixed: {})", three(cosines))
@@ -236,8 +239,8 @@ impl LightTerms {
     }
 }
 
-/// Where lines of sight meet, relative to the eye point, and the draw and the triangle of its mesh that a pixel shows: the
-/// last that passed in ambient light, which all surfaces are drawn in first.
+/// Returns where view rays meet, relative to the eye point, and the draw and the triangle of its mesh that a pixel
+/// shows: the last one that passed in ambient light, in which all surfaces are drawn first.
 pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.outcome.passed())?;
@@ -248,7 +251,7 @@ pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(D
     })
 }
 
-/// Unit normals of a triangle's corners, to the side that the eye sees.
+/// Returns the unit normals of a triangle's corners, towards the side that the eye sees.
 fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]> {
     const SEES_BACK: u32 = 1 << 31;
     let sign = if sides & SEES_BACK == 0 { 1.0 } else { -1.0 };
@@ -256,7 +259,7 @@ fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]
     Some([0, 1, 2].map(|corner| wide(all[corner]).truncate() * sign))
 }
 
-/// The shares of a triangle's corners in a point of its plane.
+/// Returns the barycentric weights of a triangle's corners at a point of its plane.
 fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     let across = (b - a).cross(c - a);
     let area = across.length_squared();
@@ -284,7 +287,7 @@ fn terms(at: ShadingPoint, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bo
     }
 }
 
-/// Light of the corners, mixed.
+/// Interpolates the light of the corners.
 fn mix(corners: [ShadingTerms; 3], weights: [f64; 3], cosine: f64) -> ShadingTerms {
     let sum = |of: fn(&ShadingTerms) -> f64| {
         corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>()
@@ -301,19 +304,19 @@ struct SeenTriangle<'a> {
     capture: &'a Capture,
     pixel: [u32; 2],
     corners: [DVec3; 3],
-    /// Of its plane, of any length.
+    /// Normal of its plane, of any length.
     normal: DVec3,
 }
 
 impl SeenTriangle<'_> {
-    /// The point of the triangle's plane behind the middle of a pixel.
+    /// Returns the point of the triangle's plane behind the middle of a pixel.
     fn point(&self, [x, y]: [u32; 2]) -> DVec3 {
         let ray = ray_at(self.capture, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
         ray.at(self.normal.dot(self.corners[0] - ray.from) / self.normal.dot(ray.along))
     }
 }
 
-/// What the picture on a surface has at a pixel, as `texture.wgsl` looks it up.
+/// Returns the texture's value on a surface at a pixel, as `texture.wgsl` looks it up.
 fn texture(
     plan: &FramePlan,
     draw: &Draw,
@@ -329,7 +332,7 @@ fn texture(
     };
     let uv = place(seen.pixel);
     let [x, y] = seen.pixel;
-    // The GPU compares pixels in blocks of two by two.
+    // The GPU takes derivatives in blocks of two by two pixels.
     let size = DVec2::from_array(shown.picture.size().map(f64::from));
     let across = (place([x | 1, y]) - place([x & !1, y])) * size;
     let down = (place([x, y | 1]) - place([x, y & !1])) * size;
@@ -346,7 +349,7 @@ fn texture(
     })
 }
 
-/// How much of its colour a surface has at a place.
+/// Returns the share of its colour that a checkered surface has at a point.
 fn checks(draw: &Draw, relative: DVec3) -> f64 {
     let side = f64::from(draw.constants.material.checks);
     if side == 0.0 {
@@ -361,14 +364,14 @@ fn wide(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
 }
 
-/// Four digits behind the point at most.
+/// Returns a number with at most four decimals.
 pub fn digits(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
 }
 
-/// `0.25, 0.5, 1`.
+/// Returns three numbers as text: `0.25, 0.5, 1`.
 pub fn three(values: [f64; 3]) -> String {
     values.map(digits).join(", ")
 }

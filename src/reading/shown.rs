@@ -1,9 +1,9 @@
-//! Which picture is shown and how: its kind, what a texel's value means, zoom and place.
+//! Which picture is shown and how: its kind, the meaning of a texel's value, zoom and position.
 //!
-//! A capture holds up to eight kinds of picture. [`PictureView::shown`] finds the one wished for
-//! at a step, or what is shown while there is none; where none is wished for, it follows the steps and
-//! shows what each writes ([`written`]). Truth and error may be wished for before they are there: until
-//! then those of the frame before stay, or else the picture before them.
+//! A capture contains up to eight kinds of picture. [`PictureView::shown`] finds the chosen kind at a step, or what is
+//! shown while there is none; where none is chosen, it follows the steps and shows what each writes ([`written`]).
+//! Truth and error may be chosen before they are computed: until then those of the previous frame stay, or else the
+//! picture before them.
 
 use crate::capture::{
     Capture, CapturedLight, CapturedTruth, FrameTarget, FrameTruth, Image, PixelFormat, Snapshot, StepTests,
@@ -15,16 +15,17 @@ use crate::reading::layers::{self, MapContent, MapLayer};
 use std::sync::Arc;
 
 named_enum! {
-    /// A kind of picture that a capture may hold, in the order of their buttons: what only some frames have comes last.
+    /// A kind of picture that a capture may contain, in the order of their buttons: kinds that only some frames have
+    /// come last.
     pub enum PictureKind(
-        /// What one sees in it, whatever a light's map holds.
+        /// What the picture shows, whatever a light's map stores.
         meaning
     ) {
-        /// What is seen.
+        /// The visible surfaces.
         Color = "Colour" ("The picture so far"),
         /// Counts and marks.
         Stencil = "Stencil" ("The stencil count of every pixel"),
-        /// How far the surfaces are.
+        /// How far the surfaces are from the camera.
         Depth = "Depth" ("How far the surface at every pixel is"),
         /// A technique's answer for one light.
         Mask = "Mask" ("Where the technique says that a light is blocked"),
@@ -42,7 +43,7 @@ named_enum! {
 }
 
 impl PictureKind {
-    /// On its button over a capture, and what one sees in it.
+    /// Returns the text on its button over a capture, and what the picture shows.
     pub fn label(self, capture: &Capture) -> [&'static str; 2] {
         match self {
             PictureKind::Map => {
@@ -53,12 +54,12 @@ impl PictureKind {
         }
     }
 
-    /// Is it of some frames only: of those with counts in floats, or with a light's map?
+    /// Returns whether only some frames have it: those with counts in floats, or with a light's map.
     pub fn is_of_some_frames(self) -> bool {
         matches!(self, PictureKind::Count | PictureKind::Map)
     }
 
-    /// Why there is none at a step.
+    /// Returns the reason why there is none at a step.
     pub fn why_missing(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Stencil if !has_stencil(capture) => "This frame has no stencil buffer",
@@ -70,19 +71,19 @@ impl PictureKind {
         }
     }
 
-    /// Can it be shown only once the truth is known?
+    /// Returns whether it can be shown only once the truth is known.
     pub fn needs_truth(self) -> bool {
         matches!(self, PictureKind::Truth | PictureKind::Error)
     }
 }
 
-/// Which layer of a light's map is shown.
+/// The layer of a light's map that is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceChoice {
-    /// All, small.
+    /// All layers, small.
     #[default]
     Grid,
-    /// One.
+    /// One layer, by index.
     One(usize),
 }
 
@@ -92,7 +93,7 @@ pub enum TexelZoom {
     /// The whole picture fills its panel.
     #[default]
     Fit,
-    /// Screen pixels a texel.
+    /// Screen pixels for each texel.
     Pixels(f32),
 }
 
@@ -102,32 +103,32 @@ pub enum DepthMode {
     /// As a distance in metres.
     #[default]
     Linear,
-    /// As stored.
+    /// The stored value.
     Raw,
 }
 
 /// Everything about the picture panel that the user can change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureView {
-    /// The kind wished for; `None`: what each step writes.
+    /// The chosen kind; `None`: what each step writes.
     pub kind: Option<PictureKind>,
-    /// Whose mask or map.
+    /// Index of the light whose mask or map is shown.
     pub light: usize,
-    /// Which layer of a map.
+    /// The shown layer of a map.
     pub face: FaceChoice,
     /// Size of a texel.
     pub zoom: TexelZoom,
     /// The texel position in the middle of the panel, unless it fits.
     pub center: [f64; 2],
-    /// Distance or stored value.
+    /// Whether depth is shown as a distance or as the stored value.
     pub depth_mode: DepthMode,
-    /// The grey ramp's ends as set by hand; `None`: those of the picture.
+    /// The grey ramp's ends as set by the user; `None`: those of the picture.
     pub depth_range: Option<[f64; 2]>,
-    /// How the fragments of a step fared, of which the overdraw is shown.
+    /// The counts of a step's tested fragments, of which the overdraw is shown.
     pub tests: Option<Arc<StepTests>>,
-    /// What was wished for before the truth: shown until that is known.
+    /// The kind that was chosen before the truth: shown until the truth is known.
     kind_before_truth: Option<PictureKind>,
-    /// The truth of the frame before, shown until that of the frame is known.
+    /// The truth of the previous frame, shown until this frame's is known.
     pub older_truth: Option<Arc<FrameTruth>>,
 }
 
@@ -151,24 +152,24 @@ impl Default for PictureView {
 /// A picture of the capture, ready to be drawn.
 #[derive(Debug, Clone)]
 pub struct ShownPicture {
-    /// Its kind: the one wished for, or what exists instead.
+    /// Its kind: the chosen one, or the one that exists instead.
     pub kind: PictureKind,
-    /// One, or all layers of a light's map.
+    /// One picture, or all layers of a light's map.
     pub images: Vec<Arc<Image>>,
-    /// What each image is, where they are layers of a light's map.
+    /// The layer that each image is, for a light's map; else empty.
     pub layers: Vec<MapLayer>,
     /// How depths are measured; [`DepthMeasure::Raw`] for other kinds.
     pub measure: DepthMeasure,
     /// For the status bar: `stencil after step 4`.
     pub title: String,
-    /// The GPU's format.
+    /// The texture format on the GPU.
     pub format: &'static str,
-    /// It is of the frame before.
+    /// It belongs to the previous frame.
     pub is_older: bool,
 }
 
 impl PictureView {
-    /// The user wishes to see `kind`.
+    /// Sets the chosen kind to `kind`.
     pub fn choose(&mut self, kind: PictureKind) {
         if kind.needs_truth() && !self.wants_truth() {
             self.kind_before_truth = self.kind;
@@ -176,7 +177,7 @@ impl PictureView {
         self.wish(Some(kind));
     }
 
-    /// The user wishes to see what each step writes.
+    /// Makes the view follow what each step writes.
     pub fn follow_steps(&mut self) {
         self.wish(None);
     }
@@ -191,7 +192,7 @@ impl PictureView {
         self.kind = kind;
     }
 
-    /// Is a picture wished for that can be shown only once the truth is known?
+    /// Returns whether the chosen kind can be shown only once the truth is known.
     pub fn wants_truth(&self) -> bool {
         self.kind.is_some_and(PictureKind::needs_truth)
     }
@@ -217,14 +218,14 @@ impl PictureView {
         }
     }
 
-    /// The picture to show at a moment: the kind wished for, or what stands in for it.
+    /// Returns the picture to show at a point of the frame: the chosen kind, or the one that stands in for it.
     pub fn shown(&self, capture: &Capture, at: impl Into<CapturePoint>) -> Option<ShownPicture> {
         let at = at.into();
         self.shown_as(capture, at, self.kind_at(capture, at)?)
     }
 
-    /// The kind of picture to show at a moment: the one wished for; its twin, as a light's counts are kept in one of
-    /// two places; or what the step writes.
+    /// Returns the kind of picture to show at a point of the frame: the chosen one; its twin, as a light's counts are
+    /// stored in one of two places; or what the step writes.
     pub fn kind_at(&self, capture: &Capture, at: CapturePoint) -> Option<PictureKind> {
         let kinds = available(capture, at);
         let lacks_truth = self.wants_truth() && self.truth_to_show(capture).is_none();
@@ -241,7 +242,7 @@ impl PictureView {
         wishes.find(can_show).or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))
     }
 
-    /// The picture of this kind at a moment.
+    /// Returns the picture of this kind at a point of the frame.
     pub fn shown_as(&self, capture: &Capture, at: CapturePoint, kind: PictureKind) -> Option<ShownPicture> {
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words(capture));
@@ -294,7 +295,7 @@ impl PictureView {
         })
     }
 
-    /// The light whose truth is shown, and that truth: of the frame, or of the one before.
+    /// Returns the light whose truth is shown, and that truth: of this frame, or of the previous one.
     pub fn truth_to_show<'a>(&'a self, capture: &'a Capture) -> Option<(usize, &'a CapturedTruth)> {
         if has_truth(capture) {
             let light = self.light_with(capture, |light| light.truth.is_some())?;
@@ -309,7 +310,7 @@ impl PictureView {
         linear.filter(|_| self.depth_mode == DepthMode::Linear).unwrap_or(DepthMeasure::Raw)
     }
 
-    /// The chosen light if `has` holds for it, else the first for which it does.
+    /// Returns the chosen light if `has` is true for it, else the first light for which it is.
     pub fn light_with(&self, capture: &Capture, has: impl Fn(&CapturedLight) -> bool) -> Option<usize> {
         let chosen = capture.lights.get(self.light).filter(|light| has(light));
         chosen.map_or_else(|| capture.lights.iter().position(&has), |_| Some(self.light))
@@ -317,7 +318,7 @@ impl PictureView {
 }
 
 impl PictureView {
-    /// The chosen layer of a light's map, or all.
+    /// Returns the chosen layer of a light's map, or all layers.
     fn shown_map(&self, capture: &Capture, at: CapturePoint) -> Option<ShownPicture> {
         let light = self.light_with(capture, |light| light.map.is_some())?;
         let map = capture.lights.get(light)?.map.as_ref()?;
@@ -359,18 +360,18 @@ impl PictureView {
 }
 
 impl ShownPicture {
-    /// Does it show colours that a light's map lets through?
+    /// Returns whether it shows colours that a light's map lets through.
     pub fn is_let_through(&self) -> bool {
         self.kind == PictureKind::Map && self.images.first().is_some_and(|image| image.format() == PixelFormat::Rgba8)
     }
 }
 
-/// Is the truth of this frame known?
+/// Returns whether the truth of this frame is known.
 pub fn has_truth(capture: &Capture) -> bool {
     capture.lights.iter().any(|light| light.truth.is_some())
 }
 
-/// The kind of picture that a step writes: what it changed, colour before stencil before depth.
+/// Returns the kind of picture that a step writes: what it changed, colour before stencil before depth.
 pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     let frame = match &capture.steps.get(step)?.snapshot {
         Snapshot::Map { .. } => return Some(PictureKind::Map),
@@ -388,7 +389,7 @@ pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     })
 }
 
-/// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.
+/// Returns the kinds of picture that exist at a point of the frame, or can be asked for, in the order of their buttons.
 pub fn available(capture: &Capture, at: impl Into<CapturePoint>) -> Vec<PictureKind> {
     let at = at.into();
     let frame = at.frame(capture);
@@ -406,7 +407,7 @@ pub fn available(capture: &Capture, at: impl Into<CapturePoint>) -> Vec<PictureK
     PictureKind::ALL.into_iter().filter(exists).collect()
 }
 
-/// Does a step draw triangles that the picture's depth test sees?
+/// Returns whether a step draws triangles that the picture's depth test sees.
 fn draws_into_picture(capture: &Capture, step: usize) -> bool {
     let draws = |step: &crate::capture::Step| !step.draws.is_empty() && matches!(step.snapshot, Snapshot::Frame(_));
     capture.steps.get(step).is_some_and(draws)

@@ -1,12 +1,12 @@
-//! The steps of a frame as one goes through them. A mask is none of them: it stands beside the frame, has no number,
-//! and is passed over.
+//! The steps of a frame in the order in which a user goes through them. A mask is not one of them: it is not part of
+//! the frame, has no number, and is passed over.
 
 use crate::capture::{Capture, FrameTarget, Snapshot};
 use crate::plan::DecidedBy;
 use crate::reading::format;
 
-/// Does a step stand beside the frame? So does a mask: it writes what the technique says of a light at every pixel, to
-/// compare techniques, and nothing reads it. Labels that the light pass reads are part of the frame.
+/// Returns whether a step is not part of the frame. That is true of a mask: it writes the technique's label for a light
+/// at every pixel, to compare techniques, and nothing reads it. Labels that the light pass reads are part of the frame.
 pub fn is_beside(capture: &Capture, index: usize) -> bool {
     capture.steps.get(index).is_some_and(|step| {
         let writes_labels = matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Labels);
@@ -14,38 +14,38 @@ pub fn is_beside(capture: &Capture, index: usize) -> bool {
     })
 }
 
-/// The steps that have a number, by index, in order.
+/// Returns the indices of the steps that have a number, in order.
 pub fn numbered(capture: &Capture) -> impl DoubleEndedIterator<Item = usize> {
     (0..capture.steps.len()).filter(|index| !is_beside(capture, *index))
 }
 
-/// How many steps have a number.
+/// Returns how many steps have a number.
 pub fn count(capture: &Capture) -> usize {
     numbered(capture).count()
 }
 
-/// The number of a step, from 1; `None` for a mask.
+/// Returns the number of a step, from 1; `None` for a mask.
 pub fn number(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).position(|step| step == index).map(|place| place + 1)
 }
 
-/// The step of this number, by index; the last where there are fewer, the first for 0.
+/// Returns the index of the step with this number; of the last step where there are fewer, of the first for 0.
 pub fn of_number(capture: &Capture, number: usize) -> usize {
     let last = numbered(capture).next_back();
     numbered(capture).nth(number.saturating_sub(1)).or(last).unwrap_or(0)
 }
 
-/// The step with a number after this one.
+/// Returns the next step that has a number.
 pub fn next(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).find(|step| *step > index)
 }
 
-/// The step with a number before this one.
+/// Returns the previous step that has a number.
 pub fn previous(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).rfind(|step| *step < index)
 }
 
-/// `step 2`, `the mask of light 1`.
+/// Returns a step in words: `step 2`, `the mask of light 1`.
 pub fn words(capture: &Capture, index: usize) -> String {
     match (number(capture, index), capture.steps.get(index)) {
         (Some(number), _) => format!("step {number}"),
@@ -57,7 +57,7 @@ pub fn words(capture: &Capture, index: usize) -> String {
     }
 }
 
-/// `2 · volumes`, `mask`: what its row is called.
+/// Returns the title of a step's row: `2 · volumes`, `mask`.
 pub fn title(capture: &Capture, index: usize) -> String {
     let name = capture.steps.get(index).map_or("", |step| step.name.as_str());
     number(capture, index).map_or_else(|| name.to_owned(), |number| format!("{number} · {name}"))

@@ -1,6 +1,6 @@
-//! The texels that decided each light at a pixel, for who reads text or JSON: of a shadow map both depths, the bias and
-//! the side of the comparison; of textures what they let through. `assets/help/json.md` says what each field means; names are
-//! a contract with scripts.
+//! The texels that decided each light at a pixel, as text and as JSON: of a shadow map both depths, the bias and the
+//! side of the comparison; of textures what they let through. `assets/help/json.md` says what each field means; names
+//! are a contract with scripts.
 
 use crate::capture::Capture;
 use crate::history::Verdict;
@@ -15,10 +15,10 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// So many texels are listed in text, one a line; more are counted.
+/// At most so many texels are listed in text, one a line; of the others the number is given.
 const MOST_LINES: usize = 25;
 
-/// Who reads which texels in a frame: made once, asked for any pixel.
+/// Which texels the pixels of a frame read: computed once, asked for any pixel.
 #[derive(Debug)]
 pub struct TexelReaders {
     lights: Vec<TexelReader>,
@@ -51,18 +51,18 @@ pub struct DepthsCompared {
     because: String,
     face: usize,
     texels: Vec<DepthTexel>,
-    /// How many of them let the light pass.
+    /// How many of the texels let the light pass.
     lit: usize,
     lit_where: &'static str,
     bias: BiasEntry,
-    /// The GPU's answer where depths computed anew give another.
+    /// The GPU's answer where the depths computed on the CPU give another one.
     gpu_says: Option<&'static str>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct DepthTexel {
     at: [u32; 2],
-    /// `None` where no caster is stored.
+    /// The stored depth; `None` where it is not a caster's.
     stored: Option<f32>,
     stored_metres: Option<f64>,
     surface: f32,
@@ -103,7 +103,7 @@ struct ShareTexel {
 }
 
 impl TexelReaders {
-    /// Of the picture after the frame of `plan`.
+    /// Finds the texels for the picture after the frame of `plan`.
     pub fn new(capture: &Capture, plan: &Arc<FramePlan>) -> TexelReaders {
         let reader = |light: usize| match capture.decided_by(light) {
             _ if capture.origin.is_some() => None,
@@ -119,7 +119,7 @@ impl TexelReaders {
         }
     }
 
-    /// For each light what the pixel read of it; `None` where it read nothing.
+    /// Returns for each light what the pixel read of its map; `None` where it read nothing.
     pub fn at(&self, capture: &Capture, pixel: [u32; 2]) -> Vec<Option<TexelsRead>> {
         let of_light = |(light, reader): (usize, &TexelReader)| match reader {
             TexelReader::Map(readers) => {
@@ -141,7 +141,7 @@ impl TexelReaders {
 }
 
 impl TexelsRead {
-    /// The reason in a line, what was read in lines below it.
+    /// Returns the reason in a line, and what was read in lines below it.
     pub fn text(&self, light: usize) -> String {
         let because = match self {
             TexelsRead::ShadowMap(read) => &read.because,
@@ -252,7 +252,7 @@ impl LightLetThrough {
     }
 }
 
-/// `red 0.25, green 0.25, blue 0.25, alpha 0`, of 1.
+/// Returns shares of 1 as text: `red 0.25, green 0.25, blue 0.25, alpha 0`.
 fn shares(rgba: [f64; 4]) -> String {
     let [red, green, blue, alpha] = rgba.map(|share| {
         let digits = format!("{share:.3}");

@@ -1,5 +1,6 @@
-//! Which texels of a light's textures decided how much of it arrives at a pixel: of a flat receiver's own texture, or of
-//! each silhouette that is on its way; as `arriving_by_receiver.wgsl` and `arriving_by_projection.wgsl` read them.
+//! Which texels of a light's textures decided how much of it arrives at a pixel: those of a flat receiver's own
+//! texture, or of each silhouette between light and pixel; as `arriving_by_receiver.wgsl` and
+//! `arriving_by_projection.wgsl` read them.
 
 use crate::capture::{Capture, CapturedMap};
 use crate::reading::fragments::{FragmentInputs, SurfaceFragments};
@@ -8,10 +9,10 @@ use crate::technique::TextureSettings;
 use crate::truth::{LIT, SHADOW};
 use glam::{DVec2, DVec4};
 
-/// Labels take light for blocked where less of it arrives.
+/// A label says that the light is blocked where less than this share of it arrives.
 const BLOCKED_BELOW: f64 = 0.5;
 
-/// A texel that is read, with its share of what is.
+/// A texel that is read, with its weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelShare {
     /// Column and row.
@@ -25,33 +26,34 @@ pub struct TexelShare {
 /// What is read of one texture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerRead {
-    /// Index of the texture among the light's.
+    /// Index of the texture among the light's textures.
     pub layer: usize,
-    /// What it is of: a receiver or a caster.
+    /// Name of the receiver or caster that the texture belongs to.
     pub name: String,
-    /// Those that have a share, row by row.
+    /// The texels with a weight above 0, row by row.
     pub texels: Vec<TexelShare>,
-    /// Their sum: red, green, blue and alpha, 0 to 1.
+    /// Their weighted sum: red, green, blue and alpha, 0 to 1.
     pub lets_through: [f64; 4],
 }
 
-/// What a light's textures say of a pixel.
+/// How a light's textures decide a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextureDecision {
     /// Index of the light.
     pub light: usize,
-    /// Textures of receivers, or silhouettes of casters.
+    /// Whether they are textures of receivers or silhouettes of casters.
     pub content: MapContent,
-    /// The textures that are on the way, in order; none where a receiver has none, or no silhouette is before it.
+    /// The textures between light and pixel, in order; empty where a receiver has none, or no silhouette is before it.
     pub layers: Vec<LayerRead>,
-    /// What all of them let through together: red, green, blue, and alpha, which labels ask; 0 to 1.
+    /// What all of them let through together: red, green, blue, and alpha, which decides the label; 0 to 1.
     pub lets_through: [f64; 4],
-    /// The technique's own answer, where it is another one: rounding decides.
+    /// The technique's own answer where it differs: rounding decides.
     pub gpu_says: Option<&'static str>,
 }
 
 impl TextureDecision {
-    /// Of a pixel under a light; `None` where it looks no texture up, or it is not known which is its own.
+    /// Returns how a light's textures decide a pixel; `None` where it looks up no texture, or its own layer is not
+    /// known.
     pub fn of(
         capture: &Capture,
         fragments: &SurfaceFragments,
@@ -59,7 +61,7 @@ impl TextureDecision {
         pixel: [u32; 2],
     ) -> Option<TextureDecision> {
         let content = MapContent::of(capture, light).filter(|content| *content != MapContent::Depth)?;
-        // Whose own a layer is, draws tell.
+        // Which layer belongs to a receiver is known from the draws.
         if capture.origin.is_some() || !fragments.are_drawn() {
             return None;
         }
@@ -95,13 +97,13 @@ impl TextureDecision {
         Some(TextureDecision { light, content, layers, lets_through, gpu_says })
     }
 
-    /// At least half of the light arrives: its label is lit.
+    /// Returns whether at least half of the light arrives: its label is lit.
     pub fn is_lit(&self) -> bool {
         self.lets_through[3] >= BLOCKED_BELOW
     }
 }
 
-/// The texels of a layer that a fragment reads; `None` where it is not looked up there.
+/// Returns the texels of a layer that a fragment reads; `None` where it is not looked up there.
 fn texels(
     map: &CapturedMap,
     layer: usize,
@@ -119,7 +121,7 @@ fn texels(
     }
     let image = map.faces.get(layer)?;
     let [width, height] = image.size();
-    // Texels have their values at their middles; beyond the edge its own go on.
+    // Texels have their values at their middles; beyond the edge the last texel repeats.
     let at = place * DVec2::new(f64::from(width), f64::from(height)) - 0.5;
     let first = at.floor();
     let part = at - first;

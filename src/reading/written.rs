@@ -1,5 +1,5 @@
-//! What a step or a draw wrote: the picture that stands for it where there is room for one, as in the list of passes
-//! and in animations of a frame.
+//! What a step or a draw wrote: the one picture that stands for it, as in the list of passes and in animations of a
+//! frame.
 
 use super::counts;
 use super::depth::{DepthMeasure, DepthScale};
@@ -9,23 +9,23 @@ use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 use std::sync::Arc;
 
-/// What was written.
+/// The picture that stands for a step or a draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WrittenAspects {
-    /// After it.
+    /// The picture after it.
     pub image: Arc<Image>,
-    /// What its texels are.
+    /// The meaning of its texels.
     pub content: TexelContent,
-    /// In a word or two: `stencil`.
+    /// Its name in a word or two: `stencil`.
     pub name: &'static str,
 }
 
-/// What the texels of a picture are.
+/// The meaning of a picture's texels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TexelContent {
     /// sRGB bytes.
     Color,
-    /// Linear shares of light that come through.
+    /// Shares of light that come through, linear.
     LetThrough,
     /// Stencil values.
     Stencil,
@@ -50,7 +50,8 @@ impl WrittenAspects {
         WrittenAspects { image: Arc::clone(image), content, name }
     }
 
-    /// By a step: its map, its finished count, its mask, or the first of colour, stencil and depth that it changed.
+    /// Returns what a step wrote: its map, its finished count, its mask, or the first of colour, stencil and depth that
+    /// it changed.
     pub fn by_step(capture: &Capture, index: usize) -> Option<WrittenAspects> {
         let step = capture.steps.get(index)?;
         match &step.snapshot {
@@ -69,7 +70,7 @@ impl WrittenAspects {
         }
     }
 
-    /// By a draw; `None` too where the state after it is not known.
+    /// Returns what a draw wrote; `None` also where the state after it is not known.
     pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<WrittenAspects> {
         let after = capture.steps.get(step)?.draws.get(draw)?.after.as_ref()?;
         let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
@@ -83,7 +84,7 @@ impl WrittenAspects {
         }
     }
 
-    /// A layer of a light's map.
+    /// Returns a layer of a light's map.
     fn layer(capture: &Capture, [light, face]: [usize; 2], image: &Arc<Image>) -> WrittenAspects {
         let content = match image.format() {
             PixelFormat::Rgba8 => TexelContent::LetThrough,
@@ -105,7 +106,7 @@ impl WrittenAspects {
         }
     }
 
-    /// Its texels in their colours; depths over their whole range.
+    /// Returns its texels in their colours; depths use their whole range.
     pub fn picture(&self) -> Picture {
         let image = &self.image;
         let in_color = |color: &dyn Fn([u32; 2]) -> Option<Rgb>| {

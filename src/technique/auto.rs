@@ -34,7 +34,7 @@ use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
-/// What is said of it.
+/// What commands, tables and the inspector say of `auto`.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
     lesson: Lesson {
@@ -49,7 +49,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
         sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::LLOYD, cited::MCGUIRE],
     },
     plan,
-    // With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
+    // With everything that may be left out; also leaving out what occlusion queries show to be hidden; and with nothing
     // left out.
     report_rows: &[&[], &[("occlusion", "queries")], &[("leave-out", "none")]],
     standing: ComparisonRole::Rival {
@@ -59,10 +59,10 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// What eight bits hold.
+/// The largest count that eight bits of stencil hold.
 const MOST_IN_STENCIL: usize = 255;
 
-/// Plans a frame of volumes that each have the form they need.
+/// Plans a frame in which each volume is counted in the cheapest way that is right for it.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = VolumeSettings::of_auto(&job.choice.common());
     let mut frame = FrameBuilder::new(job, StencilUse::Always)?;
@@ -78,24 +78,24 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(volume::finish(frame, &settings, begin))
 }
 
-/// What a light's volumes are asked about.
+/// Decides about the volumes of one light for `auto`: what is asked about them, prepared once.
 struct AutoPolicy {
     light: LightId,
     position: DVec4,
     view: ViewVolume,
     near_clip: NearClipVolume,
-    /// Around the eye and all that shows and receives, within the light's range: what is looked at.
+    /// The box, world space, around the eye and all that shows and receives within the light's range.
     looked_at: AxisBox,
-    /// Of each object points whose hull holds it, and the box around them.
+    /// For each object, points whose convex hull contains it, and the box around them; world space.
     outlines: Vec<Vec<DVec3>>,
     boxes: Vec<AxisBox>,
-    /// By object: what may hold others in its umbra.
+    /// For each object, the convex occluder that it is; `None` where it can hide nothing.
     occluders: Vec<Option<ConvexOccluder>>,
 }
 
-/// Points whose hull holds a volume; homogeneous, relative to the eye.
+/// Points whose convex hull contains a volume; homogeneous, relative to the eye.
 struct VolumeHull {
-    /// The caster's, then the same carried away from the light.
+    /// First the caster's own points, then the same points carried away from the light.
     points: Vec<DVec4>,
 }
 
@@ -137,7 +137,7 @@ impl AutoPolicy {
         AutoPolicy { light, position, view, near_clip, looked_at, outlines, boxes, occluders }
     }
 
-    /// A caster whose umbra holds all of another.
+    /// Index of an object whose umbra contains all of another.
     fn umbra_caster(&self, index: usize) -> Option<usize> {
         let corners = self.boxes[index].corners();
         let holds = |occluder: &Option<ConvexOccluder>| {
@@ -146,18 +146,18 @@ impl AutoPolicy {
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
 
-    /// Points around a volume of this extrusion.
+    /// Points whose hull contains the volume of a caster with this extrusion.
     fn hull(&self, frame: &FrameBuilder, index: usize, extrusion: Extrusion) -> VolumeHull {
         let outline = &self.outlines[index];
         VolumeHull::of(outline, &Extruder::new(outline, self.position, extrusion), frame.eye())
     }
 
-    /// Where a volume lies outside of the view.
+    /// Says in words how far a volume lies outside of the view; `None` where it may reach into it.
     fn beside_view(&self, hull: &VolumeHull) -> Option<String> {
         self.view.outside(&hull.points).map(|outside| beyond(outside, VIEW_PLANES[outside.plane]))
     }
 
-    /// How a caster's volume is counted that goes on to infinity.
+    /// Decides how a caster's volume is counted when it extends to infinity.
     fn without_end(&self, frame: &FrameBuilder, index: usize) -> VolumeDecision {
         let object = frame.placed[index].object;
         let allowed = |decision: Decision| frame.common.allows(decision);
@@ -187,7 +187,7 @@ impl AutoPolicy {
         if let Some(outside) = self.near_clip.outside(hull.near()).filter(|_| allowed(Decision::Caps)) {
             let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
             let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
-            // What is not drawn has no surface where its volume begins.
+            // A caster that is not drawn has no surface where its volume begins.
             let form =
                 VolumeSpec { counting: CountingMode::InFront, extrusion, light_cap: !object.visible, dark_cap: false };
             return VolumeDecision { form: Some(form), left_out: vec![left_out(Decision::Caps, because)] };
@@ -209,8 +209,8 @@ impl AutoPolicy {
         VolumeDecision { form: Some(form), left_out: not_needed }
     }
 
-    /// Ends volumes beyond all that is looked at: those of casters that touch on one plane, and only where all of them
-    /// are counted in front.
+    /// Ends volumes beyond everything that can be seen: casters that touch end on one plane, and only where all of them
+    /// are counted in front of surfaces.
     fn end_volumes(&self, frame: &FrameBuilder, casters: &[usize], decided: &mut [VolumeDecision]) {
         let with_volume: Vec<usize> = (0..casters.len()).filter(|place| decided[*place].form.is_some()).collect();
         let caster = |place: &usize| (self.boxes[casters[*place]], &*frame.placed[casters[*place]].world);
@@ -227,7 +227,8 @@ impl AutoPolicy {
         }
     }
 
-    /// Ends the volume of a caster there.
+    /// Ends the volume of one caster at a plane, or leaves it out where it then lies beyond the plane or outside the
+    /// view.
     fn end_at(&self, end: ClampedEnd, frame: &FrameBuilder, index: usize, decided: &mut VolumeDecision) {
         let name = &frame.placed[index].object.name;
         let (axis, at) = end.place();
@@ -262,8 +263,8 @@ impl AutoPolicy {
     }
 }
 
-/// The box around the eye, the near rectangle, and all that shows, receives and is within a light's range; of the boxes
-/// around each object.
+/// Returns the box around the eye, the near rectangle, and all that shows, receives and is within a light's range.
+/// `boxes` are those around each object.
 fn looked_at(frame: &FrameBuilder, light: LightId, view: &ViewVolume, boxes: &[AxisBox]) -> AxisBox {
     let eye = frame.eye();
     let from = [eye].into_iter().chain(view.near_rectangle().map(|corner| eye + corner));

@@ -30,8 +30,8 @@ pub fn can_darken(frame: &FrameBuilder, index: usize, light: LightId, what: Dark
     light_frame::object_can_darken(&placed.world, triangles, frame.light_position(light), receivers)
 }
 
-/// Why a caster needs no volume: nothing that receives is behind it. `None` where something may be: under wrapped light the
-/// back of the caster itself, which else is dark as it faces away.
+/// Returns why a caster needs no volume: nothing that receives lies behind it. `None` where something may; under
+/// wrapped light also where the back of the caster itself may be lit, which otherwise is dark as it faces away.
 pub fn darkens_nothing(frame: &FrameBuilder, index: usize, light: LightId) -> Option<LeftOut> {
     let is_asked = frame.common.allows(Decision::Caster) && !frame.plan.wraps_diffuse;
     if !is_asked || can_darken(frame, index, light, DarkenedObjects::All) {

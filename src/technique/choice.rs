@@ -10,7 +10,7 @@ pub enum ChoiceError {
     /// No such technique.
     #[error("no technique is called `{name}`: {hint}")]
     UnknownTechnique {
-        /// What was asked for.
+        /// What was asked for, as it was written.
         name: String,
         /// The nearest name, or all of them.
         hint: String,
@@ -18,23 +18,23 @@ pub enum ChoiceError {
     /// The technique has no such setting.
     #[error("{technique} has no setting `{key}`: {hint}")]
     UnknownSetting {
-        /// The technique.
+        /// Name of the technique.
         technique: &'static str,
-        /// What was asked for.
+        /// What was asked for, as it was written.
         key: String,
         /// The nearest key, or all of them.
         hint: String,
     },
-    /// The setting can't be that.
+    /// The setting can't have this value.
     #[error("the setting `{key}` of {technique} can't be `{value}`: {hint}")]
     BadValue {
-        /// The technique.
+        /// Name of the technique.
         technique: &'static str,
-        /// The setting.
+        /// Key of the setting.
         key: &'static str,
-        /// What was asked for.
+        /// What was asked for, as it was written.
         value: String,
-        /// What it may be.
+        /// The values that are allowed, in words.
         hint: String,
     },
 }
@@ -47,7 +47,8 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// As a scene file names it: the technique, and the settings that are not as they are by default.
+    /// Returns the request that a scene file would hold: the technique, and the settings that differ from their
+    /// defaults.
     pub fn to_request(&self) -> TechniqueRequest {
         let changed = self.technique().settings().iter().filter_map(|spec| {
             let value = self.settings().get(spec.key)?;
@@ -56,13 +57,13 @@ impl Choice {
         TechniqueRequest { name: self.technique().name().to_owned(), settings: changed.collect() }
     }
 
-    /// `technique` with its defaults.
+    /// Returns a technique with the default of each of its settings.
     pub fn new(technique: Technique) -> Choice {
         let settings = technique.settings().iter().map(|spec| (spec.key.to_owned(), spec.default.to_owned()));
         Choice { technique, settings: settings.collect() }
     }
 
-    /// Checks names and values of a request.
+    /// Checks the names and values of a request, and returns the choice that it asks for.
     pub fn parse(request: &TechniqueRequest) -> Result<Choice, ChoiceError> {
         let technique = Technique::from_name(&request.name).ok_or_else(|| {
             let names: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
@@ -93,7 +94,7 @@ impl Choice {
         Ok(())
     }
 
-    /// Which technique.
+    /// Returns the technique.
     pub fn technique(&self) -> Technique {
         self.technique
     }
@@ -152,7 +153,7 @@ impl Choice {
         truth
     }
 
-    /// Why a setting does nothing as the others are; `None` where it does something.
+    /// Returns why a setting does nothing while the others are as they are; `None` where it does something.
     pub fn without_effect(&self, key: &str) -> Option<&'static str> {
         let of_planar = || (self.technique == Technique::Planar).then(|| PlanarSettings::read(&self.settings));
         CommonSettings::without_effect(&self.settings, key)
@@ -204,7 +205,7 @@ mod tests {
         };
         assert_eq!(off(Technique::Planar, &[]), ["epsilon"]);
         assert_eq!(off(Technique::Planar, &[("stencil", "off")]), ["epsilon", "blend"]);
-        // Volumes without end, and one pass for both faces.
+        // Volumes that extend to infinity, and one pass for both faces.
         let infinite = ["far-vertices", "order"];
         assert_eq!(off(Technique::ZFail, &[("depth", "standard-infinite-epsilon")]), infinite);
         let finite_in_turn = [("depth", "standard-infinite-epsilon"), ("extrusion", "finite:2"), ("faces", "two-pass")];

@@ -1,4 +1,4 @@
-//! What is said of a technique beside its plan: one constant each, in the technique's own file.
+//! What is said of a technique beside its plan: one constant for each, in the technique's own file.
 
 use super::PlanError;
 use super::frame::PlanRequest;
@@ -8,7 +8,7 @@ use crate::plan::FramePlan;
 /// Rows of a technique in a report: the settings that each changes.
 pub type ReportRows = &'static [&'static [(&'static str, &'static str)]];
 
-/// One row with the defaults.
+/// A report has one row of the technique, with its defaults.
 pub(super) const ONE_ROW: ReportRows = &[&[]];
 
 /// A technique, as commands, tables and the inspector know it.
@@ -16,17 +16,17 @@ pub(super) const ONE_ROW: ReportRows = &[&[]];
 pub struct TechniqueDescription {
     /// What it does, in one sentence.
     pub summary: &'static str,
-    /// What there is to know of it.
+    /// What a learner should know about it.
     pub lesson: Lesson,
     /// Makes a frame's plan.
     pub(super) plan: fn(PlanRequest) -> Result<FramePlan, PlanError>,
     /// The settings that a report compares by default.
     pub report_rows: ReportRows,
-    /// How it stands to the others where they are compared.
+    /// Its part where techniques are compared.
     pub standing: ComparisonRole,
 }
 
-/// How a technique stands to the others where they are compared.
+/// The part of a technique where techniques are compared.
 #[derive(Debug, Clone, Copy)]
 pub enum ComparisonRole {
     /// It makes shadows on the GPU, and runs in every stress case that does not say otherwise.
@@ -35,13 +35,13 @@ pub enum ComparisonRole {
         place: usize,
         /// Why it is expected to be right where no failure of it is known.
         right_because: &'static str,
-        /// The share of pixels that texels may make wrong along a shadow's edge, and why: of one that is never
-        /// promised to be right.
+        /// For a technique that is never promised to be right: the share of pixels that texels may make wrong along a
+        /// shadow's edge, and why.
         texels: Option<(f64, &'static str)>,
     },
-    /// It is compared with nothing.
+    /// It is compared with no other.
     Apart {
-        /// Why.
+        /// Why it is not compared, in words.
         because: &'static str,
     },
 }

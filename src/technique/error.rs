@@ -8,10 +8,10 @@ pub enum PlanError {
     /// A camera, light or object that no technique can draw.
     #[error("{problem}")]
     Unusable {
-        /// What is wrong, and the mend.
+        /// What is wrong and how to fix it, in a sentence.
         problem: String,
     },
-    /// More lights than bits in a word.
+    /// The scene has more lights than a word has bits.
     #[error("{count} lights are too many: leave out {}, at most {MOST_LIGHTS} fit", count - MOST_LIGHTS)]
     TooManyLights {
         /// How many the scene has.

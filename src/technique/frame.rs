@@ -1,8 +1,8 @@
-//! What all techniques share: a frame in the making.
+//! What all techniques share: the builder of a frame's plan.
 //!
-//! A technique starts a [`FrameBuilder`], which is placed then (`places.rs`), adds its own passes between `ambient_pass`
-//! and, for each light, `mask_pass` and `light_pass` (`passes.rs`, of what `drawn.rs` says), and finishes it into a
-//! plan.
+//! A technique starts a [`FrameBuilder`], in which objects and lights are then placed (`places.rs`), adds its own
+//! passes between `ambient_pass` and, for each light, `mask_pass` and `light_pass` (`passes.rs`, drawn as `drawn.rs`
+//! says), and finishes it into a plan.
 
 mod coincident;
 mod drawn;
@@ -23,63 +23,63 @@ pub use drawn::SurfaceDrawing;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
-/// What a technique is asked for.
+/// What a technique plans a frame from.
 #[derive(Debug)]
 pub struct PlanRequest<'a> {
-    /// At one moment.
+    /// The scene at one time.
     pub scene: &'a Scene,
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Technique and settings.
     pub choice: &'a Choice,
-    /// Kept between plans.
+    /// What is known of meshes, cached between plans.
     pub cache: &'a mut GeometryCache,
 }
 
-/// An object with its vertices in world space and its drawn surface.
+/// An object as a frame shows it: with its vertices in world space and its drawn surface.
 #[derive(Debug)]
 pub struct FrameObject<'a> {
-    /// As the scene has it.
+    /// The object of the scene.
     pub object: &'a Object,
-    /// Welded, world space.
+    /// World positions of its welded vertices, metres.
     pub world: Vec<DVec3>,
-    /// `None` for what is not drawn.
+    /// The mesh of its drawn surface; `None` for an object that is not drawn.
     pub surface: Option<MeshId>,
 }
 
 /// A part of a visible surface that is drawn by itself: one group of an object, or less.
 #[derive(Debug, Clone)]
 pub struct SurfacePiece {
-    /// For people: the object, and which of its groups.
+    /// A name for people: the object, and which of its groups.
     pub name: String,
     /// Index into [`FrameBuilder::placed`].
     pub object: usize,
-    /// Of its surface.
+    /// The material of its surface.
     pub material: Material,
     /// The mesh that it is a part of.
     pub mesh: MeshId,
     /// Which triangles of the mesh's index list.
     pub triangles: Range<u32>,
-    /// The layer of each light's map that is its own.
+    /// The layer of each light's map that belongs to it alone; `None` where it has none.
     pub layer: Option<u32>,
-    /// The picture on it.
+    /// The texture on it, if any.
     pub texture: Option<TextureId>,
 }
 
-/// A plan in the making: objects and lights are placed, and passes are added in the order in which they run.
+/// Builds a plan: objects and lights are placed, and passes are added in the order in which they run.
 #[derive(Debug)]
 pub struct FrameBuilder<'a> {
-    /// What is asked for.
+    /// What the frame is planned from.
     pub job: PlanRequest<'a>,
-    /// The job's settings that every technique has.
+    /// The settings that every technique has.
     pub common: CommonSettings,
-    /// Parallel to the scene's objects.
+    /// Objects as the frame shows them, parallel to the scene's.
     pub placed: Vec<FrameObject<'a>>,
     /// All visible surfaces, in the order in which they are drawn.
     pub pieces: Vec<SurfacePiece>,
-    /// Those that the next light's pass draws, where they are not all.
+    /// The pieces that the next light's pass draws; `None`: all of them.
     pub lit: Option<Vec<SurfacePiece>>,
-    /// What there is of the plan; passes of other kinds than the methods make are pushed here.
+    /// The plan so far; passes of other kinds than the methods make are pushed here.
     pub plan: FramePlan,
     /// Clamped depth clips volumes at the near plane all the same: what counts in front of surfaces
     /// must not begin before them.
@@ -87,21 +87,21 @@ pub struct FrameBuilder<'a> {
     color: AttachmentId,
     depth_stencil: AttachmentId,
     has_stencil: bool,
-    /// What [`FrameBuilder::surfaces_coincide`] has found out.
+    /// The result of [`FrameBuilder::surfaces_coincide`], once it was asked for.
     coincide: Option<bool>,
-    /// The light whose passes have last written the stencil.
+    /// The light whose passes wrote the stencil last.
     stencil_of: Option<LightId>,
     /// By light: the pixels that its passes are cut to.
     scissors: Vec<Option<[u32; 4]>>,
 }
 
-/// What a technique wants of the stencil buffer.
+/// What a technique needs the stencil buffer for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StencilUse {
-    /// It counts or marks.
+    /// The technique counts or marks in it.
     Always,
-    /// Nothing, but where triangles have the same three corners it keeps them from being lit twice. Others that overlap in
-    /// one plane are, where their depths round alike.
+    /// Only where triangles have the same three corners: there the stencil prevents that they are lit twice. Other
+    /// triangles that overlap in one plane are lit twice where their depths round alike.
     ToLightOnce,
 }
 
@@ -157,12 +157,13 @@ impl<'a> FrameBuilder<'a> {
         Ok(frame)
     }
 
-    /// The eye, world space: what every vertex of the camera's passes is relative to.
+    /// Returns the eye, world space: every vertex of the camera's passes is relative to it.
     pub fn eye(&self) -> DVec3 {
         self.job.scene.camera.eye
     }
 
-    /// Where lines of sight meet, homogeneous, world space: of a parallel camera the direction towards it.
+    /// Returns where view rays meet, homogeneous, world space; for a parallel projection the direction towards the
+    /// camera.
     pub fn eye_position(&self) -> DVec4 {
         self.job.scene.camera.eye_position()
     }
@@ -172,12 +173,12 @@ impl<'a> FrameBuilder<'a> {
         *self.coincide.get_or_insert_with(|| coincident::coincide(&self.placed, self.job.cache))
     }
 
-    /// The lights in order.
+    /// Returns the lights in order.
     pub fn light_ids(&self) -> impl Iterator<Item = LightId> + use<> {
         (0..self.job.scene.lights.len()).map(LightId)
     }
 
-    /// Homogeneous world position of a light.
+    /// Returns the homogeneous world position of a light: w is 0 for a directional one.
     pub fn light_position(&self, light: LightId) -> DVec4 {
         self.job.scene.lights[light.0].homogeneous()
     }
@@ -194,7 +195,7 @@ impl<'a> FrameBuilder<'a> {
         MeshId(self.plan.meshes.len() - 1)
     }
 
-    /// The picture of a surface as one of the plan, which has each once.
+    /// Returns the texture of a surface in the plan, which has each only once.
     pub(super) fn add_texture(&mut self, texture: &MaterialTexture) -> TextureId {
         let wanted = PlanTexture { picture: texture.picture.clone(), clamps: texture.clamps };
         let textures = &mut self.plan.textures;
@@ -210,25 +211,27 @@ impl<'a> FrameBuilder<'a> {
         self.plan.left_out.push(LeftOut::new(decision, of, because));
     }
 
-    /// By how many metres an object lies beyond the light's range.
+    /// Returns by how many metres an object lies beyond the light's range; `None` where it lies within, or the light
+    /// has no range.
     pub fn beyond_range(&self, light: LightId, index: usize) -> Option<f64> {
         let (place, range) = self.range_of(light)?;
         geometry::beyond_range(&self.placed[index].world, place, range, self.eye())
     }
 
-    /// The box that holds all that a light of limited range reaches.
+    /// Returns the box that contains all that a light of limited range reaches.
     pub fn reached(&self, light: LightId) -> Option<AxisBox> {
         let (place, range) = self.range_of(light)?;
         Some(geometry::reached(place, range, self.eye()))
     }
 
-    /// Where a lamp is, world space, and its range in metres if it has one.
+    /// Returns where a lamp is, world space, and its range in metres if it has one.
     fn range_of(&self, light: LightId) -> Option<(DVec3, f64)> {
         let light = &self.job.scene.lights[light.0];
         Some(light.position.truncate()).zip(light.range.filter(|_| !light.is_directional()))
     }
 
-    /// The plan. Techniques are written for reversed depth: this turns it round where another is set.
+    /// Returns the plan. Techniques are written for reversed depth: this reverses tests and clear values where another
+    /// mapping is set.
     pub fn finish(mut self) -> FramePlan {
         let mapping = self.plan.depth.mapping;
         for pass in &mut self.plan.passes {
@@ -238,7 +241,8 @@ impl<'a> FrameBuilder<'a> {
             }
             let is_of_camera = pass.view == ViewId(0);
             for draw in &mut pass.draws {
-                // Of a pinhole, what counts in front and is not cut at the near plane ends at the eye; else nowhere.
+                // For a perspective camera, a volume that counts in front and is not clipped at the near plane ends at
+                // the eye; for a parallel one, nowhere.
                 let is_of_these = self.plan.depth.is_linear && draw.part.is_of_volume() && !draw.raster.unclipped_depth;
                 let is_in_front = self.clips_volumes || is_of_these;
                 let is_unclipped = match self.plan.depth.keeps_volumes() {

@@ -1,13 +1,13 @@
-//! What a setting or a technique teaches. Each says so beside its own definition, which is not complete without.
+//! What a setting or a technique teaches; it stands beside the definition of each, which is not complete without it.
 
 /// What `stencilscope help` says of a setting or a technique, beside its values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lesson {
-    /// In a few sentences; a table's rows have lines of their own. Of a setting it says each word that can be chosen.
+    /// A few sentences; a table's rows have lines of their own. For a setting it explains each word that can be chosen.
     pub text: &'static str,
-    /// What it decides, as a formula, its letters explained.
+    /// The rule as a formula, with its letters explained.
     pub formula: &'static str,
-    /// Where it was described; none where it is this program's own.
+    /// Where it was described; empty where it is this program's own.
     pub sources: &'static [Citation],
 }
 

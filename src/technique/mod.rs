@@ -12,15 +12,15 @@
 //!
 //! ```
 //! use stencilscope::geometry::{GeometryCache, relative};
-//! use stencilscope::plan::{ColorWrite, Draw, DrawMesh, FramePlan, Part, RasterState, StencilFace};
+//! use stencilscope::plan::{ColorWrite, Draw, DrawMesh, FramePlan, DrawPart, RasterState, StencilFace};
 //! use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
 //! use stencilscope::session::Session;
-//! use stencilscope::technique::{Choice, Drawn, Frame, Job, PlanError, StencilUse, Technique};
-//! use stencilscope::testing::{Label, Rendered};
+//! use stencilscope::technique::{Choice, FrameBuilder, PlanError, PlanRequest, SurfaceDrawing, StencilUse, Technique};
+//! use stencilscope::testing::{PixelLabel, Rendered};
 //! use stencilscope::wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 //!
-//! fn ground_shadows(job: Job) -> Result<FramePlan, PlanError> {
-//!     let mut frame = Frame::new(job, StencilUse::Always)?;
+//! fn ground_shadows(job: PlanRequest) -> Result<FramePlan, PlanError> {
+//!     let mut frame = FrameBuilder::new(job, StencilUse::Always)?;
 //!     frame.plan.technique = "ground-shadows".to_owned();
 //!     frame.ambient_pass();
 //!     let mark = StencilFace {
@@ -48,12 +48,12 @@
 //!             let mesh = DrawMesh::of_positions(&name, vertices, indices);
 //!             let triangles = mesh.triangles();
 //!             let mesh = frame.add_mesh(mesh);
-//!             draws.push(Draw::of_positions(name, Part::PlanarShadow, mesh, triangles, raster.clone()));
+//!             draws.push(Draw::of_positions(name, DrawPart::PlanarShadow, mesh, triangles, raster.clone()));
 //!         }
 //!         frame.stencil_pass(light, "shadows", "Marks what the flattened casters cover.", draws);
-//!         frame.mask_pass(light, &[Drawn::lit(), Drawn::shadow().where_stencil(0xff, 1)]);
+//!         frame.mask_pass(light, &[SurfaceDrawing::lit(), SurfaceDrawing::shadow().where_stencil(0xff, 1)]);
 //!         let purpose = "Adds the light where nothing is marked.";
-//!         frame.light_pass(light, purpose, &Drawn::light_once_where_zero(0xff));
+//!         frame.light_pass(light, purpose, &SurfaceDrawing::light_once_where_zero(0xff));
 //!     }
 //!     Ok(frame.finish())
 //! }
@@ -65,12 +65,12 @@
 //!     .seen_from([4.0, 2.0, 0.0], [0.0, 0.3, 0.0])
 //!     .build();
 //! let (choice, mut cache) = (Choice::new(Technique::None), GeometryCache::default());
-//! let job = Job { scene: &scene, size: [160, 120], choice: &choice, cache: &mut cache };
+//! let job = PlanRequest { scene: &scene, size: [160, 120], choice: &choice, cache: &mut cache };
 //! let mut frame = Rendered::of_plan(Session::new(None)?, &scene, ground_shadows(job)?)?;
 //!
 //! // It agrees with z-fail on the ground: below the box, and far from it.
 //! let mut truth = Rendered::new(&scene, Choice::new(Technique::ZFail), [160, 120])?;
-//! for (pixel, label) in [([80, 70], Label::Shadow), ([20, 100], Label::Lit)] {
+//! for (pixel, label) in [([80, 70], PixelLabel::Shadow), ([20, 100], PixelLabel::Lit)] {
 //!     frame.at(pixel).label(0, label).agrees();
 //!     truth.at(pixel).label(0, label);
 //! }

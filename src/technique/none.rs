@@ -6,7 +6,7 @@ use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::Lesson;
 use crate::plan::{FramePlan, Visibility};
 
-/// What is said of it.
+/// What commands, tables and the inspector say of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Every light reaches every surface that faces it: the picture to compare others with.",
     lesson: Lesson {

@@ -1,4 +1,4 @@
-//! What lies outside of the view, and how far, in words.
+//! How far something lies outside of the view, in words.
 
 use crate::geometry::OutsidePlane;
 use crate::math::AxisBox;
@@ -6,10 +6,10 @@ use crate::numbers;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Objects of more vertices are asked about by the corners of their boxes.
+/// Objects with more vertices are represented by the corners of their boxes.
 const MOST_VERTICES_TO_LOOK_AT: usize = 4096;
 
-/// In the order of [`ViewVolume`]'s planes.
+/// Names of the planes, in the order of [`ViewVolume`](crate::geometry::ViewVolume)'s.
 pub const VIEW_PLANES: [&str; 5] = [
     "the view's near plane",
     "the view's left side",
@@ -18,7 +18,7 @@ pub const VIEW_PLANES: [&str; 5] = [
     "the view's upper side",
 ];
 
-/// `0.8 m outside the view's left side`.
+/// Returns text such as `0.8 m outside the view's left side`.
 pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     match outside.distance.is_finite() {
         true => format!("{} outside {plane}", numbers::metres(outside.distance)),
@@ -26,7 +26,7 @@ pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     }
 }
 
-/// Points whose hull holds an object.
+/// Returns points whose convex hull contains an object: its vertices, or the corners of its box.
 pub fn outline(world: &[DVec3]) -> Cow<'_, [DVec3]> {
     if world.len() <= MOST_VERTICES_TO_LOOK_AT {
         return Cow::Borrowed(world);

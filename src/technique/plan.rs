@@ -1,4 +1,4 @@
-//! Which technique plans a frame, and what is said of each.
+//! Which function plans a frame for each technique, and what is said of each.
 
 use super::choice::{Choice, ChoiceError};
 use super::description::{ComparisonRole, TechniqueDescription};
@@ -14,7 +14,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
 }
 
 impl Technique {
-    /// All that is said of it.
+    /// Returns all that is said of the technique.
     pub const fn description(self) -> &'static TechniqueDescription {
         match self {
             Technique::None => &none::DESCRIPTION,
@@ -30,12 +30,12 @@ impl Technique {
         }
     }
 
-    /// What it does, in one sentence.
+    /// Returns what the technique does, in one sentence.
     pub fn summary(self) -> &'static str {
         self.description().summary
     }
 
-    /// Those that make shadows on the GPU, in the order of stress tables.
+    /// Returns the techniques that make shadows on the GPU, in the order of stress tables.
     pub fn rivals() -> Vec<Technique> {
         let place = |technique: Technique| match technique.description().standing {
             ComparisonRole::Rival { place, .. } => Some((place, technique)),
@@ -48,7 +48,7 @@ impl Technique {
 }
 
 impl Choice {
-    /// What a report compares by default: every row of every technique.
+    /// Returns what a report compares by default: every row of every technique.
     pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
         let mut grid = Vec::new();
         for technique in Technique::ALL {

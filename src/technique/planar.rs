@@ -23,10 +23,10 @@ use crate::plan::{
 use std::sync::Arc;
 use wgpu::{CompareFunction, StencilOperation};
 
-/// What is left of the light behind a shadow that is blended over it.
+/// Share of the light that is left where a shadow is blended over it.
 const BLENDED: f32 = 0.4;
 
-/// What is said of it.
+/// What commands, tables and the inspector say of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
     lesson: Lesson {
@@ -39,7 +39,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
         sources: &[cited::BLINN, cited::KILGARD],
     },
     plan,
-    // The defaults, and shadows that fight with their plane.
+    // The defaults, and shadows that z-fight with their plane.
     report_rows: &[&[], &[("z-fighting", "none")]],
     standing: ComparisonRole::Rival {
         place: 5,
@@ -48,7 +48,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// A receiver that can show shadows, and its mark.
+/// A receiver that can show shadows, with its stencil mark.
 struct MarkedReceiver {
     receiver: FlatReceiver,
     mark: u8,
@@ -73,13 +73,13 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Of a draw of flattened casters, before stencil and colour.
+/// Returns the state of a draw of flattened casters, before stencil and colour are set.
 fn raster_of(options: &PlanarSettings, color: ColorWrite) -> RasterState {
     let PlanarSettings { depth_compare, depth_bias, .. } = *options;
     RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
 }
 
-/// Shadows counted in the stencil: an odd number is in shadow.
+/// Adds the passes that count shadows in the stencil: an odd number is in shadow.
 fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     mark_pass(frame, marked, light);
     let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
@@ -101,7 +101,7 @@ fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.light_pass(light, purpose, &SurfaceDrawing::light_once_where_zero(1));
 }
 
-/// Shadows blended over the lit picture, on their receivers only where those are marked.
+/// Adds the passes that blend shadows over the lit picture; on their receivers only, where those are marked.
 fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     let purpose = "Adds the light everywhere: shadows are blended over it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
@@ -128,7 +128,7 @@ fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.mask_pass_with(light, &[SurfaceDrawing::lit()], labels);
 }
 
-/// The largest receivers whose lit side the eye sees: any other shows no shadow of this light.
+/// Returns the largest receivers whose lit side the eye sees: any other shows no shadow of this light.
 fn shown_receivers(
     frame: &mut FrameBuilder,
     all: &[FlatReceiver],
@@ -148,7 +148,7 @@ fn shown_receivers(
         receivers::leave_out_unmarked(frame, &mut shown, &name);
     }
     receivers::leave_out_small(frame, shown.len(), &name);
-    // Marks are even and shadows one more: a byte would hold 127.
+    // Marks are even, and a shadow on a mark is one more: a byte has space for 127.
     let mark = |index: usize| (index as u8 + 1) * 2;
     let marked = shown.into_iter().take(MOST_RECEIVERS).enumerate();
     marked.map(|(index, receiver)| MarkedReceiver { receiver: receiver.clone(), mark: mark(index) }).collect()
@@ -186,7 +186,7 @@ fn mark_pass(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId
     }
 }
 
-/// Every caster flattened onto every receiver, drawn as `look` says for the receiver's mark.
+/// Returns every caster flattened onto every receiver, drawn as `look` says for the receiver's mark.
 fn shadow_draws(
     frame: &mut FrameBuilder,
     marked: &[MarkedReceiver],
@@ -214,7 +214,7 @@ fn shadow_draws(
     draws
 }
 
-/// A caster flattened onto one receiver; `None` where no part of it is between plane and light.
+/// Returns a caster flattened onto one receiver; `None` where no part of it is between plane and light.
 fn shadow_draw(
     frame: &mut FrameBuilder,
     one: &MarkedReceiver,

@@ -1,10 +1,9 @@
 //! Receiver textures: each flat receiver gets a picture of the light that arrives on it.
 //!
-//! The pyramid from the light to a receiver is mapped to a box whose x and y are the receiver's
-//! own (Heckbert and Herf 1997), so drawing the casters through it leaves their shadow in the
-//! receiver's texture; what is beyond the light or behind the receiver is clipped. The light pass
-//! reads the texture. Ambient light has a pass of its own. Surfaces that are not flat get no
-//! shadow, and edges are as coarse as the texture.
+//! The frustum from the light to a receiver is mapped to a box whose x and y are the receiver's own (Heckbert and Herf
+//! 1997), so drawing the casters through it leaves their shadow in the receiver's texture; what is beyond the light or
+//! behind the receiver is clipped. The light pass reads the texture. Ambient light has a pass of its own. Surfaces that
+//! are not flat get no shadow, and edges are as coarse as the texture.
 
 use super::PlanError;
 use super::description::{ComparisonRole, TechniqueDescription};
@@ -20,7 +19,7 @@ use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
 use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
-/// What is said of it.
+/// What commands, tables and the inspector say of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
     lesson: Lesson {
@@ -73,7 +72,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// The frame's pieces with each receiver a piece of its own, so that it can read its own layer.
+/// Returns the frame's pieces with each receiver as a piece of its own, so that it can read its own layer.
 fn split_at(frame: &mut FrameBuilder, receivers: &[FlatReceiver]) -> Vec<SurfacePiece> {
     let mut split = Vec::new();
     for piece in std::mem::take(&mut frame.pieces) {
@@ -146,8 +145,8 @@ fn clip_from_world(frame: &FrameBuilder, receiver: &FlatReceiver, light: DVec4) 
         .clip_from_world(light)
 }
 
-/// The triangles of a caster that are drawn into a receiver's texture: those that reach above its
-/// plane, on the light's side.
+/// Returns the triangles of a caster that are drawn into a receiver's texture: those that reach above its plane, on the
+/// light's side.
 fn caster_triangles(frame: &FrameBuilder, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
     let placed = &frame.placed[caster];
     let triangles = placed.object.mesh.triangles();

@@ -1,9 +1,8 @@
-//! Projective shadow textures: the casters' silhouettes, thrown over the scene like slides.
+//! Projective shadow textures: the casters' silhouettes, projected over the scene like slides.
 //!
-//! Each caster has a picture of what it lets through, seen from the light in a frame that fits it;
-//! the light passes through all of them on its way to a surface. No depths are compared: what lies
-//! between light and caster is darkened like what lies behind it, and a caster can't darken itself.
-//! Casters may be translucent.
+//! Each caster has a picture of what it lets through, seen from the light in a frame that fits it; the light passes
+//! through all of them on its way to a surface. No depths are compared: what lies between light and caster is darkened
+//! like what lies behind it, and a caster can't darken itself. Casters may be translucent.
 
 use super::PlanError;
 use super::casters::{self, DarkenedObjects};
@@ -17,7 +16,7 @@ use crate::math::AxisBox;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
 
-/// What is said of it.
+/// What commands, tables and the inspector say of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
     lesson: Lesson {
@@ -69,7 +68,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Lit first, then darkened by one silhouette after another.
+/// Adds passes that light the scene first, and then darken it by one silhouette after another.
 fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_layers: &[usize]) {
     let purpose = "Adds the light everywhere: silhouettes darken it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
@@ -85,7 +84,7 @@ fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_
     frame.mask_pass(light, &[SurfaceDrawing::lit_by(Visibility::Projected)]);
 }
 
-/// The objects that cast and can darken anything under any light: as many as fit.
+/// Returns the objects that cast and can darken anything under any light, as many as there are layers for.
 fn casting_objects(frame: &mut FrameBuilder) -> Vec<usize> {
     let casts = |index: &usize| {
         let object = frame.placed[*index].object;
@@ -103,10 +102,10 @@ fn casting_objects(frame: &mut FrameBuilder) -> Vec<usize> {
     objects
 }
 
-/// Half of what a lamp's picture has that is not fitted.
+/// Tangent of half the angle that a lamp's picture spans where it is not fitted.
 const TANGENT_OF_45_DEGREES: f64 = 1.0;
 
-/// The diagonal of the box around all objects.
+/// Returns the diagonal of the box around all objects, metres.
 fn size_of_scene(frame: &FrameBuilder) -> f64 {
     AxisBox::around(frame.placed.iter().flat_map(|placed| placed.world.iter().copied())).diagonal()
 }

@@ -15,7 +15,7 @@ use crate::truth::Tracer;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-/// The labels of one light.
+/// Makes the labels of one light by following rays, each time the frame runs.
 #[derive(Debug)]
 struct LightLabels {
     tracer: Arc<Tracer>,
@@ -29,7 +29,7 @@ impl MakeImage for LightLabels {
     }
 }
 
-/// Labels that rays have found already.
+/// Labels that rays found before: no ray is followed again.
 #[derive(Debug)]
 struct KnownLabels(Vec<u8>);
 
@@ -39,7 +39,7 @@ impl MakeImage for KnownLabels {
     }
 }
 
-/// What is said of it.
+/// What commands, tables and the inspector say of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
     lesson: Lesson {
@@ -57,7 +57,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
 };
 
 /// Others are measured against its colours. So no surface that receives shadows may be lit twice, not even where two
-/// overlap in one plane: the stencil marks what is lit, and nothing need be proven of the scene.
+/// overlap in one plane: the stencil marks what is lit, and nothing has to be proven of the scene.
 const LIT_ONCE: StencilUse = StencilUse::Always;
 
 /// Plans a frame with traced shadows.
@@ -69,14 +69,14 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(lit_by(frame, |light| Arc::new(LightLabels { tracer: tracer.clone(), light })))
 }
 
-/// The same frame of labels that are known, one list a light, a byte a pixel: no ray is followed again.
+/// Plans the ray-traced frame of known labels: a list for each light, a byte a pixel, row by row. No ray is followed.
 pub fn plan_of_labels(job: PlanRequest, labels: &[Vec<u8>]) -> Result<FramePlan, PlanError> {
     let frame = FrameBuilder::new(job, LIT_ONCE)?;
     let known = |light: LightId| labels.get(light.0).cloned().unwrap_or_default();
     Ok(lit_by(frame, |light| Arc::new(KnownLabels(known(light)))))
 }
 
-/// Surfaces, to which each light is added where its labels say so.
+/// Returns a plan of the surfaces, to which each light is added where its labels say so.
 fn lit_by(mut frame: FrameBuilder, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> FramePlan {
     frame.ambient_pass();
     for light in frame.light_ids() {
@@ -109,7 +109,7 @@ fn ray_pass(frame: &mut FrameBuilder, light: LightId, source: Arc<dyn MakeImage>
     });
 }
 
-/// Of the camera, the light and every object as it is placed.
+/// Returns a hash of the camera, the light and every object as it is placed.
 fn content_hash(scene: &Scene, light: LightId) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{:?} {:?}", scene.camera, scene.lights[light.0].position).hash(&mut hasher);

@@ -6,7 +6,7 @@ use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
-/// The largest are served; each costs a draw a caster.
+/// At most this many receivers, the largest, get shadows; each costs a draw for every caster.
 pub const MOST_RECEIVERS: usize = 64;
 
 /// A flat piece of an object that is drawn and receives.
@@ -15,11 +15,11 @@ pub struct FlatReceiver {
     /// Index of its object in [`FrameBuilder::placed`].
     pub object: usize,
     pub receiver: planar::Receiver,
-    /// For people: its object, and which of all pieces it is, from 1.
+    /// A name for people: its object, and which of all pieces it is, counted from 1.
     pub name: String,
 }
 
-/// Every flat receiver, the largest first.
+/// Returns every flat receiver, the largest first.
 pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
     let mut all = Vec::new();
     for (index, placed) in frame.placed.iter().enumerate() {
@@ -38,7 +38,7 @@ pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
 }
 
 impl FlatReceiver {
-    /// Does the eye see it from the side that a light is on? Any other shows no shadow of that light.
+    /// Returns whether the eye sees it from the side that a light is on. Any other shows no shadow of that light.
     pub fn shows_lit_side(&self, frame: &FrameBuilder, light: LightId) -> bool {
         let (eye, light) = (frame.eye_position(), frame.light_position(light));
         let placed = &frame.placed[self.object];
@@ -50,11 +50,11 @@ impl FlatReceiver {
     }
 }
 
-/// A smaller share of its object's surface is a facet of something round.
+/// A piece with a smaller share of its object's surface is taken for a facet of something round.
 const FACET: f64 = 1.0 / 20.0;
 
 /// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
-/// insides of closed ones. Without marks each would throw shadows over all that is in its plane.
+/// insides of closed ones. Without marks each would cast shadows over all that is in its plane.
 pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceiver>, of: &str) {
     let (eye, place) = (frame.eye_position(), frame.eye());
     let all = shown.len();
@@ -62,7 +62,8 @@ pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceive
         let placed = &frame.placed[one.object];
         let (world, triangles) = (&placed.world, placed.object.mesh.triangles());
         let corners = triangles[one.receiver.triangles[0] as usize].map(|vertex| world[vertex as usize]);
-        // The inside of a room is what one sees of it: an object that the eye is in has the eye within its bounds.
+        // The inside of a box-shaped room is what one sees of it: an object that the eye is in has the eye within its
+        // bounds.
         let is_inside = side_of_triangle(corners, eye) != Sign::Positive
             && !AxisBox::around(world.iter().copied()).holds(place)
             && frame.job.cache.connectivity(&placed.object.mesh).is_closed();
@@ -84,7 +85,7 @@ fn area(world: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     triangles.iter().map(of).sum()
 }
 
-/// Says how many receivers a light has more than fit.
+/// Records how many receivers a light has beyond those that get shadows.
 pub fn leave_out_small(frame: &mut FrameBuilder, count: usize, of: &str) {
     if count > MOST_RECEIVERS {
         let because = "the 64 largest are kept: every one costs a draw for each caster";

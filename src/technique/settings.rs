@@ -1,8 +1,8 @@
 //! Settings as data: keys, values and defaults of every technique, and what each value becomes.
 //!
 //! The command line, scene files and the inspector read and write words, which [`Choice`](super::Choice) checks; here
-//! they become a typed struct for each family of techniques: no word is compared anywhere else. Only what works is
-//! listed: a value that is not there yet is refused, not ignored.
+//! they become a typed struct for each family of techniques: no word is compared anywhere else. A value that is not
+//! implemented is refused, not ignored.
 
 mod common;
 mod face;
@@ -24,7 +24,7 @@ use super::named::Technique;
 const COMMON: [SettingSpec; 6] = common::with_own([]);
 
 impl Technique {
-    /// Its settings, in the order in which they are shown.
+    /// Returns the technique's settings, in the order in which they are shown.
     pub fn settings(self) -> &'static [SettingSpec] {
         match self {
             Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,

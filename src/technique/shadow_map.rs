@@ -29,13 +29,13 @@ struct MapCaster {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// What a map's faces are drawn into, and how.
+/// What the faces of a map are drawn into, and how.
 struct MapTarget {
     attachment: AttachmentId,
     raster: RasterState,
 }
 
-/// What is said of it.
+/// What commands, tables and the inspector say of it.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Stores the depth of what the light sees, and darkens what lies behind it.",
     lesson: Lesson {
@@ -47,8 +47,8 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
         sources: &[cited::WILLIAMS, cited::REEVES],
     },
     plan,
-    // Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
-    // keep them from it; and a soft edge.
+    // Sizes with the default bias, and with so little that surfaces shadow themselves; other ways to prevent that; and
+    // a soft edge.
     report_rows: &[
         &[("size", "256")],
         &[("size", "512")],
@@ -149,7 +149,7 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     });
 }
 
-/// Casters but those behind which, seen from the light, there is nothing that receives.
+/// Returns the casters behind which, seen from the light, something receives.
 fn darkening_casters(frame: &mut FrameBuilder, light: LightId) -> Vec<usize> {
     let mut darkening = Vec::new();
     for index in 0..frame.placed.len() {
@@ -176,7 +176,7 @@ fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> Mes
     frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
-/// The pass of one face; `None` and no pass where it sees no caster.
+/// Adds the pass of one face; adds none and returns `None` where the face sees no caster.
 fn add_face(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -230,7 +230,7 @@ fn add_face(
     Some(view)
 }
 
-/// With reversed depth, away from the light is down: biases change sign.
+/// Returns the state of a map's draws. With reversed depth, away from the light is smaller: biases change sign.
 fn map_raster(settings: &MapSettings) -> RasterState {
     let depth_bias =
         DepthBiasState { constant: -settings.bias_constant, slope_scale: -(settings.bias_slope as f32), clamp: 0.0 };

@@ -13,7 +13,7 @@ use glam::{DVec3, DVec4};
 /// A triangle this nearly edge-on to the eye, as a sine, may be rasterised as facing it.
 const EDGE_ON: f64 = 1e-4;
 
-/// Leaves out of the frame's surfaces what can't show.
+/// Leaves out of the frame's surfaces the triangles that can't show.
 pub fn leave_out_hidden(frame: &mut FrameBuilder) {
     let [width, height] = frame.job.size.map(f64::from);
     let view = ViewVolume::new(&frame.job.scene.camera, width / height);
@@ -38,7 +38,7 @@ pub fn leave_out_hidden(frame: &mut FrameBuilder) {
 #[derive(Clone)]
 enum ShownTriangles {
     All,
-    /// By triangle.
+    /// Whether each triangle shows.
     Triangles(Vec<bool>),
     Nothing,
 }
@@ -67,7 +67,7 @@ fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> ShownTria
         let (normal, to_eye): (DVec3, DVec3) = ((b - a).cross(c - a), sees_from.truncate() - a * sees_from.w);
         normal.dot(to_eye) > -EDGE_ON * normal.length() * to_eye.length()
     };
-    // Along an edge with one that faces the eye, rounding may let the other win: neighbours stay.
+    // Along an edge with a triangle that faces the eye, rounding may let the other win: neighbours stay.
     let mut is_neighbour = vec![false; world.len()];
     let facing = object.mesh.triangles().iter().filter(|corners| faces_eye(corners));
     facing.flatten().for_each(|vertex| is_neighbour[*vertex as usize] = true);
@@ -82,7 +82,7 @@ fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> ShownTria
     ShownTriangles::Triangles(shows)
 }
 
-/// A piece's triangles for which `shows` holds, of the mesh it has; `None` where there are none.
+/// Returns the piece with only the triangles for which `shows` returns true; `None` where there are none.
 fn subset(frame: &mut FrameBuilder, piece: SurfacePiece, shows: impl Fn(u32) -> bool) -> Option<SurfacePiece> {
     let triangles: Vec<u32> = piece.triangles.clone().filter(|triangle| shows(*triangle)).collect();
     if triangles.len() == piece.triangles.len() {
@@ -96,8 +96,8 @@ fn subset(frame: &mut FrameBuilder, piece: SurfacePiece, shows: impl Fn(u32) -> 
     Some(SurfacePiece { mesh, triangles: 0..triangles.len() as u32, ..piece })
 }
 
-/// The pieces that a light adds anything to: all of them where wrapped light reaches round edges, or
-/// where of surfaces that coincide only the first may be lit.
+/// Returns the pieces that a light adds anything to: all of them where wrapped light reaches round edges, or where only
+/// the first of coinciding surfaces may be lit.
 pub fn lit_by(frame: &mut FrameBuilder, light: LightId) -> Vec<SurfacePiece> {
     let pieces = frame.pieces.clone();
     if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || frame.surfaces_coincide() {

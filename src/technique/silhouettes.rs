@@ -1,4 +1,4 @@
-//! Pictures of what casters let through, one layer a receiver or a caster of a light.
+//! Pictures of what casters let through, with one layer for each receiver or each caster of a light.
 
 use super::frame::FrameBuilder;
 use super::settings::TextureSettings;
@@ -11,7 +11,7 @@ use crate::scene::Material;
 use glam::{DMat4, Mat4};
 use wgpu::{CompareFunction, TextureFormat};
 
-/// All of the light.
+/// The colour of a texel that lets all of the light through.
 const ALL_OF_IT: [f64; 4] = [1.0; 4];
 
 /// The pass that draws one layer.
@@ -21,8 +21,8 @@ pub struct LayerPass {
     pub draws: Vec<Draw>,
 }
 
-/// Gives a light a map of so many layers as there are names and matrices, each clip space from world space,
-/// and a pass for each layer that is drawn. In the others all of the light arrives.
+/// Gives a light a map with a layer for each name and matrix (clip space from world space), and adds a pass for each
+/// layer that is drawn. In the others all of the light arrives.
 pub fn add_map(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -79,7 +79,7 @@ pub fn add_map(
     });
 }
 
-/// Draws of some triangles of a caster, one a material.
+/// Returns draws of some triangles of a caster, one for each material.
 pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
     let placed = &frame.placed[caster];
     let (object, triangles) = (placed.object, placed.object.mesh.triangles());
@@ -106,7 +106,7 @@ pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
             raster: RasterState {
                 depth_compare: CompareFunction::Always,
                 depth_write: false,
-                // Whichever is drawn first, and however many of its faces: a caster lets through once.
+                // Whichever face is drawn first, and however many: a caster lets light through once.
                 color: ColorWrite::Minimum,
                 ..RasterState::surface()
             },
@@ -123,11 +123,11 @@ pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
     draws
 }
 
-/// How much of each colour of light a material lets through, and how much for labels, which count
-/// translucent casters as opaque.
+/// Returns how much of each colour of light a material lets through, and how much for labels, which take translucent
+/// casters for opaque.
 fn let_through(material: &Material) -> [f32; 4] {
     let brightest = material.color.iter().copied().fold(0.0, f32::max);
-    // Black has no colour to give: it takes of all alike.
+    // Black has no colour of its own: it takes from all channels alike.
     let tint = |channel: f32| if brightest > 0.0 { channel / brightest } else { 1.0 };
     let [r, g, b] = material.color.map(|channel| (1.0 - material.opacity) * tint(channel));
     [r, g, b, 0.0]

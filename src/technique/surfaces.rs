@@ -6,7 +6,8 @@ use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use std::cell::LazyCell;
 
-/// The surface of `object`, relative to the eye; shaded as its materials say unless told otherwise.
+/// Returns the surface of `object` as a mesh, relative to the eye; shaded as its materials say unless the settings say
+/// otherwise.
 pub fn draw_mesh(
     object: &Object,
     world: &[DVec3],
@@ -38,7 +39,7 @@ pub fn draw_mesh(
     }
 }
 
-/// [`SurfaceData::uvs`].
+/// Returns [`SurfaceData::uvs`]: texture coordinates of all corners.
 fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
     let mesh = &object.mesh;
     mesh.groups().iter().find_map(|group| object.texture_of(group))?;
@@ -58,7 +59,8 @@ fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
                     DVec2::new(at.x, -at.z)
                 };
                 let corners = || group.triangles.clone().flat_map(|triangle| mesh.triangles()[triangle]);
-                // Whole pictures less, which are not seen where it repeats, it is small: single precision holds it.
+                // Whole repetitions are subtracted, which changes nothing where a texture repeats: small numbers are
+                // exact enough in single precision.
                 let repeats = texture.is_some_and(|texture| !texture.clamps);
                 let first = corners().map(place).reduce(DVec2::min).filter(|_| repeats).unwrap_or_default().floor();
                 uvs.extend(corners().map(|vertex| (place(vertex) - first).as_vec2().to_array()));
@@ -68,7 +70,7 @@ fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
     Some(uvs)
 }
 
-/// [`SurfaceData::sides`].
+/// Returns [`SurfaceData::sides`]: which triangles face away from each light.
 fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCache) -> Vec<u32> {
     let triangles = object.mesh.triangles();
     let planes = cache.planes(Caster { mesh: &object.mesh, pose: &object.pose, world });
@@ -85,13 +87,13 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCa
     sides
 }
 
-/// Unit world-space normals of all corners, on the side from where corners run counter-clockwise.
+/// Returns unit world-space normals of all corners, on the side from which corners run counter-clockwise.
 fn corner_normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> Vec<[f32; 4]> {
     let mesh = &object.mesh;
     let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
     let averaged = LazyCell::new(|| averaged_normals(mesh, &face_normals));
     let world_from_object = DMat3::from_mat4(object.pose.world_from_object());
-    // Mirroring turns the way corners run, but not a stored normal.
+    // Mirroring flips the winding, but not a stored normal.
     let orientation = world_from_object.determinant().signum();
     let normal_from_object = world_from_object.inverse().transpose() * orientation;
     let mut normals = Vec::with_capacity(mesh.triangles().len() * 3);
@@ -116,7 +118,7 @@ fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// The sum of the area-weighted normals around each vertex.
+/// Returns the sum of the area-weighted normals around each vertex.
 fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
     for (corners, normal) in mesh.triangles().iter().zip(face_normals) {
@@ -125,7 +127,7 @@ fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     sums
 }
 
-/// Some triangles of a surface, with the same vertices, so that their depths are bit-equal.
+/// Returns a mesh of some triangles of a surface, with the same vertices, so that their depths are bit-equal.
 pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
     fn pick<T: bytemuck::Pod>(blob: &Blob<T>, triangles: &[u32], per_triangle: usize) -> Blob<T> {
         let of = |triangle: &u32| {

@@ -1,19 +1,24 @@
-//! Shadow volumes counted in the stencil buffer: z-pass, z-fail and z-pass-plus.
+//! Shadow volumes counted in the stencil buffer: z-pass (Heidmann 1991), z-fail (Bilodeau, Carmack) and z-pass-plus
+//! (Hornus and others 2005).
 //!
-//! Every caster's volume is drawn with depth and colour writes off. A volume face raises or lowers
-//! the count of the pixels where it passes the depth test (z-pass: in front of the surface) or
-//! fails it (z-fail: behind it, with caps so that volumes are closed there). What is left is the
-//! number of volumes that contain the surface; the light pass skips where it is not zero.
-//! Z-pass-plus starts z-pass from the count at the near plane instead of zero
+//! Every caster's volume is drawn with depth and colour writes off. A volume face increments or decrements the count of
+//! the pixels where it passes the depth test (z-pass: in front of the surface) or fails it (z-fail: behind it, with
+//! caps so that volumes are closed there). What is left is the number of volumes that contain the surface; the light
+//! pass skips pixels where it is not zero. Z-pass-plus starts z-pass from the count at the near plane instead of zero
 //! ([`near_count`]).
 //!
-//! Light caps are the surface's own triangles in its own vertex order, so that their depths are
-//! bit-equal and the strict test is exact. Triangles that face away from the light count as
-//! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
-//! Sides that hug the surface they are thrown by are drawn a little behind their place (`counting`).
+//! ```text
+//! policy (same for all, or `auto`) ─► volumes_of: a VolumePlan for each caster ─► write_passes: draws, mask, light
+//! ```
 //!
-//! Where casters go by topology, they are looked at. Of closed surfaces, what can't show is not drawn, nor in the light's
-//! pass what faces away from it (`shown`); and z-fail draws no volume of a caster behind which nothing receives.
+//! Light caps are the surface's own triangles in its own vertex order, so that their depths are bit-equal and the
+//! strict test is exact. Triangles that face away from the light count as flipped: they are not flipped in the buffer,
+//! but drawn with front and back operations swapped. Sides that graze the surface that casts them are drawn a little
+//! behind their place (`counting`).
+//!
+//! Where the casting triangles are chosen by topology, meshes are examined. Of closed surfaces, what can't show is not
+//! drawn, nor in the light's pass what faces away from it (`shown`); and z-fail draws no volume of a caster behind
+//! which nothing receives.
 
 mod counting;
 mod counting_purpose;
@@ -41,7 +46,7 @@ use counting_purpose::{CountStart, CountingPurpose};
 use drawn::{CasterVolume, VolumeMesh, VolumePlan};
 use glam::{DVec3, DVec4};
 
-/// What is said of z-pass.
+/// What commands, tables and the inspector say of z-pass.
 pub(super) const Z_PASS: TechniqueDescription = TechniqueDescription {
     summary: "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on.",
     lesson: Lesson {
@@ -59,7 +64,7 @@ pub(super) const Z_PASS: TechniqueDescription = TechniqueDescription {
         texels: None,
     },
 };
-/// What is said of z-fail.
+/// What commands, tables and the inspector say of z-fail.
 pub(super) const Z_FAIL: TechniqueDescription = TechniqueDescription {
     summary: "Counts the same volumes from infinity back to the surface, so the eye may be inside one.",
     lesson: Lesson {
@@ -93,7 +98,7 @@ pub(super) const Z_FAIL: TechniqueDescription = TechniqueDescription {
     },
     ..Z_PASS
 };
-/// What is said of z-pass-plus.
+/// What commands, tables and the inspector say of z-pass-plus.
 pub(super) const Z_PASS_PLUS: TechniqueDescription = TechniqueDescription {
     summary: "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one.",
     lesson: Lesson {
@@ -112,53 +117,54 @@ pub(super) const Z_PASS_PLUS: TechniqueDescription = TechniqueDescription {
     ..Z_PASS
 };
 
-/// Who decides about the volumes of one light.
+/// Decides how the volumes of one light are counted: all alike, or each as `auto` finds best.
 pub trait VolumePolicy {
-    /// How volumes are counted, where there are none that tell.
+    /// Returns how volumes are counted where there are none that would show it.
     fn usual(&self) -> CountingMode;
 
-    /// Is there a pass where no volume is needed?
+    /// Returns whether a pass without any volume is added to the plan all the same.
     fn keeps_empty_pass(&self) -> bool {
         true
     }
 
-    /// How the volumes of these casters must be counted, indices into [`FrameBuilder::placed`]; as many.
+    /// Decides about the volumes of these casters (indices into [`FrameBuilder::placed`]), one decision for each.
     fn forms(&self, frame: &FrameBuilder, casters: &[usize]) -> Vec<VolumeDecision>;
 
-    /// Of each triangle of a caster: another part of the caster holds its part in the umbra, and so it needs no volume.
-    /// Empty: none. With what is said of it.
+    /// Returns, for each triangle of a caster, whether another part of the caster contains it in its umbra, so that it
+    /// needs no volume; empty where none is. The second part says so for the plan.
     fn in_umbra_of_parts(&self, _frame: &mut FrameBuilder, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
         (Vec::new(), None)
     }
 
-    /// Could a count of these casting triangles, world space, reach 256? Only of who has an answer to it.
+    /// Returns whether a count of these casting triangles, world space, could reach 256. A policy that counts in eight
+    /// bits in any case never asks, and returns false.
     fn may_overflow(&self, _casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {
         false
     }
 }
 
-/// What is decided about a caster's volume.
+/// What a policy decides about a caster's volume.
 #[derive(Debug, Clone)]
 pub struct VolumeDecision {
-    /// `None` where it needs none.
+    /// How the volume is counted; `None` where the caster needs none.
     pub form: Option<VolumeSpec>,
-    /// What is not needed of it, or why all of it is not.
+    /// The parts that are not needed, or why the whole volume is not.
     pub left_out: Vec<LeftOut>,
 }
 
 impl VolumeDecision {
-    /// It needs none, because of this.
+    /// Returns the decision that a caster needs no volume, for this reason.
     pub fn nothing(left_out: LeftOut) -> VolumeDecision {
         VolumeDecision { form: None, left_out: vec![left_out] }
     }
 }
 
-/// Every caster's volume alike.
+/// Counts every caster's volume alike.
 struct UniformPolicy {
     light: LightId,
     counting: CountingMode,
     extrusion: Extrusion,
-    /// A caster behind which nothing receives needs no volume: all that receives reads 0 of it either way.
+    /// A caster behind which nothing receives gets no volume: all that receives reads 0 of it either way.
     only_what_darkens: bool,
 }
 
@@ -196,13 +202,13 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let stencil = if settings.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = FrameBuilder::new(job, stencil)?;
     frame.clips_volumes = counting != CountingMode::Behind;
-    // What is proven closed to say who casts hides its far side, too.
+    // A mesh that is proven closed to choose its casting triangles also hides its own far side.
     let looks = settings.casters == CasterRule::ByTopology;
     if looks {
         shown::leave_out_hidden(&mut frame);
     }
     let extrusion = settings.extrusion;
-    // Z-pass is wrong where the eye is in a volume, if only in a floor's.
+    // Z-pass is wrong where the eye is in a volume, even in a floor's.
     let only_what_darkens = looks && counting == CountingMode::Behind && settings.volumes_count_right();
     let begin = |frame: &mut FrameBuilder, light| {
         frame.lit = looks.then(|| shown::lit_by(frame, light));
@@ -211,7 +217,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(finish(frame, &settings, begin))
 }
 
-/// Refuses what would take minutes.
+/// Refuses settings that would take minutes on this scene.
 fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
     let searches = settings.silhouette == SilhouetteBy::Search && !extruded::can_serve(settings, scene);
     let too_large = |triangles: usize| searches && triangles > MOST_TO_SEARCH;
@@ -228,7 +234,8 @@ fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
     }
 }
 
-/// Adds all passes to a frame. `begin` says who decides about a light's volumes, or why it needs no passes at all.
+/// Adds all passes to a frame, and returns the plan. `begin` returns the policy for a light's volumes, or why the light
+/// needs no passes at all.
 pub fn finish<D: VolumePolicy>(
     mut frame: FrameBuilder,
     settings: &VolumeSettings,
@@ -252,7 +259,7 @@ pub fn finish<D: VolumePolicy>(
     frame.finish()
 }
 
-/// The volumes of a light, then the passes that count them.
+/// Finds the volumes of a light, then adds the passes that count them.
 fn add_light(frame: &mut FrameBuilder, light: LightId, settings: &VolumeSettings, decides: &impl VolumePolicy) {
     let LightVolumes { volumes, meshes, left_out } = volumes_of(frame, light, settings, decides);
     frame.plan.meshes.extend(meshes);
@@ -268,7 +275,7 @@ struct LightVolumes {
     left_out: Vec<LeftOut>,
 }
 
-/// Every volume that a light needs. It asks the frame's cache of geometry, and adds nothing to the plan.
+/// Returns every volume that a light needs. It asks the frame's cache of geometry, and adds nothing to the plan.
 fn volumes_of(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -329,7 +336,7 @@ fn volumes_of(
     all
 }
 
-/// The passes that count a light's volumes, and those that read the count.
+/// Adds the passes that count a light's volumes, and those that read the count.
 fn write_passes(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -411,7 +418,8 @@ fn count_in_stencil(
     frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
 }
 
-/// Counts in a float target: signed, and right beyond eight bits. It adds and takes away in one draw, and stops nowhere.
+/// Counts in a float target: signed, and right beyond eight bits. It increments and decrements in one draw, and has no
+/// limits.
 fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at: u32, volumes: &[VolumePlan]) {
     let (light, step) = (counts.light, FaceSelection::BothFaces);
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(counts.options)).collect();
@@ -422,7 +430,7 @@ fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at:
     frame.light_pass(light, purpose, &frame.light_by(Visibility::Count));
 }
 
-/// What a light's count begins at, and why where that is said.
+/// Returns what a light's count begins at, and the reason where that is worth saying.
 fn begin(
     frame: &FrameBuilder,
     light: LightId,
@@ -438,11 +446,11 @@ fn begin(
     (start, Some(in_bits(start)).filter(|in_bits| *in_bits != 0).map(CountStart::FarEnd))
 }
 
-/// What a count of these counts at a surface; `None` if there are none.
+/// Returns what a count of these volumes is a count of; `None` if there are none.
 fn what_counts(volumes: &[VolumePlan]) -> Option<CountOf> {
     let bodies = volumes.iter().filter(|volume| volume.is_body).count();
     let others = volumes.iter().filter(|volume| !volume.is_body && !volume.darkens_nothing).count();
-    // Where nothing is darkened at all, what casts is told.
+    // Where nothing is darkened at all, all that casts is counted.
     let all = if bodies + others == 0 { volumes.len() } else { bodies + others };
     match all {
         0 => None,
@@ -452,13 +460,15 @@ fn what_counts(volumes: &[VolumePlan]) -> Option<CountOf> {
     }
 }
 
-/// How all of these are counted, `usual` if there are none; `None` where each has its own way.
+/// Returns how all of these volumes are counted, `usual` if there are none; `None` where they are counted in different
+/// ways.
 fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMode> {
     let first = volumes.first().map_or(usual, |volume| volume.counting);
     volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
-/// Which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no volumes.
+/// Returns which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no
+/// volumes.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
     let who = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
     match who {
@@ -468,7 +478,7 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
     }
 }
 
-/// Which triangles of an object cast; for `by-topology`, with what decided it.
+/// Returns which triangles of an object cast; for `by-topology`, with the decision to record.
 fn who_casts(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -484,7 +494,7 @@ fn who_casts(
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
     let name = light.name();
     match frame.job.cache.light_facing_suffices(caster, position) {
-        // They are its dark cap there.
+        // A vertex shader makes the others the dark cap.
         Ok(()) if by_vertex_shader => (Casters::LightFacing, None),
         Ok(()) => {
             let because = format!(

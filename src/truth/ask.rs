@@ -1,9 +1,9 @@
-//! Questions about single rays: what is seen at a point of the picture, and what its light meets.
+//! Questions about single rays: what is visible at a point of the picture, and what its light ray hits.
 //!
-//! Which triangles a ray meets is decided as for the truth itself. Where along it, is not exact: that
-//! is for people, and for telling causes apart.
+//! Which triangles a ray hits is decided as for the truth itself. The distance along it is not exact: it is for people,
+//! and for distinguishing causes.
 
-use super::chart::OriginRay;
+use super::direction_projection::OriginRay;
 use super::hierarchy::SearchLimit;
 use super::packet::RayPacket;
 use super::shadow::OccludingTriangle;
@@ -16,19 +16,19 @@ use glam::{DVec3, DVec4};
 pub struct SeenSurface {
     /// Which triangle.
     pub place: TriangleSource,
-    /// Where it is met, world space.
+    /// Where the ray hits it, world space.
     pub point: DVec3,
     /// The triangle's corners, world space.
     pub corners: [DVec3; 3],
     surface: TracedSurface,
 }
 
-/// A casting triangle that a ray of light meets.
+/// A casting triangle that a light ray hits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OccluderHit {
     /// Which triangle.
     pub place: TriangleSource,
-    /// Its corners, world space.
+    /// The triangle's corners, world space.
     pub corners: [DVec3; 3],
     /// How far from the ray's point towards the light, metres; negative on the other side of the point.
     pub towards_light: f64,
@@ -48,7 +48,7 @@ impl Tracer {
         })
     }
 
-    /// Where the ray of sight through a point of the picture begins: on the near plane, world space.
+    /// Returns where the view ray through a point of the picture begins: on the near plane, world space.
     pub fn near_point(&self, point: [f64; 2]) -> DVec3 {
         self.view.eye + self.view.ray(point).at(self.view.near)
     }
@@ -79,16 +79,16 @@ impl Tracer {
     pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<OccluderHit> {
         let of = &self.lights[light];
         let mut found = Vec::new();
-        let mut bundle = RayPacket::new(OriginRay::To);
-        bundle.push(seen.point);
-        of.hierarchy.for_each_meeting(&bundle, |met, corners, _| {
-            let mut occluder = OccludingTriangle::new(of.hierarchy.origin, met, corners);
+        let mut packet = RayPacket::new(OriginRay::To);
+        packet.push(seen.point);
+        of.hierarchy.for_each_hit(&packet, |hit, corners, _| {
+            let mut occluder = OccludingTriangle::new(of.hierarchy.origin, hit, corners);
             if self.lies_between(of, &mut occluder, &seen.surface) {
-                found.push(met.index as usize);
+                found.push(hit.index as usize);
             }
             SearchLimit::NOTHING
         });
-        self.met(light, seen.point, found)
+        self.hit(light, seen.point, found)
     }
 
     /// The casting triangles between a light and any point of space, the nearest to the point first.
@@ -98,11 +98,11 @@ impl Tracer {
     pub fn between_points(&self, light: usize, point: DVec3) -> Vec<OccluderHit> {
         let farthest = self.light_distance(light, point);
         let mut all = self.along(light, point);
-        all.retain(|met| met.towards_light > 0.0 && met.towards_light < farthest);
+        all.retain(|hit| hit.towards_light > 0.0 && hit.towards_light < farthest);
         all
     }
 
-    /// The casting triangles that the whole line through a light and a point meets: before the point,
+    /// Returns the casting triangles that the whole line through a light and a point intersects: before the point,
     /// behind it, and beyond the light.
     ///
     /// # Panics
@@ -118,14 +118,14 @@ impl Tracer {
         }
         let mut found = Vec::new();
         for end in ends {
-            let mut bundle = RayPacket::new(OriginRay::To);
-            bundle.push(end);
-            of.hierarchy.for_each_meeting(&bundle, |met, _, _| {
-                found.push(met.index as usize);
+            let mut packet = RayPacket::new(OriginRay::To);
+            packet.push(end);
+            of.hierarchy.for_each_hit(&packet, |hit, _, _| {
+                found.push(hit.index as usize);
                 SearchLimit::NOTHING
             });
         }
-        self.met(light, point, found)
+        self.hit(light, point, found)
     }
 
     /// How far a light is from a point, metres; infinite for a directional one.
@@ -154,11 +154,11 @@ impl Tracer {
         self.lights[light].position
     }
 
-    fn met(&self, light: usize, point: DVec3, mut triangles: Vec<usize>) -> Vec<OccluderHit> {
+    fn hit(&self, light: usize, point: DVec3, mut triangles: Vec<usize>) -> Vec<OccluderHit> {
         let towards = self.towards(light, point);
         triangles.sort_unstable();
         triangles.dedup();
-        let met = |triangle: usize| {
+        let hit = |triangle: usize| {
             let corners = self.world.triangles[triangle];
             let [a, b, c] = corners;
             let normal = (b - a).cross(c - a);
@@ -170,7 +170,7 @@ impl Tracer {
             }
         };
         let mut all: Vec<OccluderHit> =
-            triangles.into_iter().map(met).filter(|met| met.towards_light.is_finite()).collect();
+            triangles.into_iter().map(hit).filter(|hit| hit.towards_light.is_finite()).collect();
         all.sort_by(|a, b| a.towards_light.total_cmp(&b.towards_light));
         all
     }

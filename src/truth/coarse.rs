@@ -1,6 +1,6 @@
-//! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
+//! Rays and triangles in single precision, which decides most pairs: sixteen rays or four triangles at a time.
 
-use super::chart::DirectionProjection;
+use super::direction_projection::DirectionProjection;
 use super::packet::RayPacket;
 use super::tree::ProjectedRect;
 use glam::{DVec3, Vec3A, Vec4};
@@ -25,7 +25,7 @@ pub struct TriangleEdges4 {
     least_rounding: Vec4,
 }
 
-/// A bundle's places relative to a pencil's origin.
+/// A packet's places relative to the ray origin.
 pub struct PacketOrigin {
     /// By axis; where the origin is the centre they are scaled, which moves no line.
     places: [[Vec4; RayPacket::MOST / 4]; 3],
@@ -33,14 +33,14 @@ pub struct PacketOrigin {
     span: f32,
     /// The largest coordinate of a place before it was scaled.
     pub largest: f64,
-    /// Where the lines are seen, if that is clearly on one face of the chart.
+    /// Where the rays are seen, if that is clearly on one face of the projection.
     pub area: Option<ProjectedRect>,
 }
 
 impl PacketOrigin {
-    pub fn new(chart: &DirectionProjection, bundle: &RayPacket) -> PacketOrigin {
-        let points = bundle.points();
-        let base = bundle.base(chart.origin());
+    pub fn new(projection: &DirectionProjection, packet: &RayPacket) -> PacketOrigin {
+        let points = packet.points();
+        let base = packet.base(projection.origin());
         // What is left over is as the first line.
         let mut places = [[0.0_f32; RayPacket::MOST]; 3];
         for index in 0..RayPacket::MOST {
@@ -48,8 +48,8 @@ impl PacketOrigin {
             (places[0][index], places[1][index], places[2][index]) = (place.x as f32, place.y as f32, place.z as f32);
         }
         let places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
-        if chart.is_centered() {
-            return PacketOrigin::centered(chart, places, bundle.is_endless());
+        if projection.is_centered() {
+            return PacketOrigin::centered(projection, places, packet.is_endless());
         }
         let mut span = Vec4::ZERO;
         for four in 0..RayPacket::MOST / 4 {
@@ -61,7 +61,7 @@ impl PacketOrigin {
 
     /// Scales places so that they lie on a cube around the centre.
     fn centered(
-        chart: &DirectionProjection,
+        projection: &DirectionProjection,
         mut places: [[Vec4; RayPacket::MOST / 4]; 3],
         is_endless: bool,
     ) -> PacketOrigin {
@@ -82,7 +82,7 @@ impl PacketOrigin {
         let low = Vec3A::from_array(low.map(Vec4::min_element));
         let high = Vec3A::from_array(high.map(Vec4::max_element));
         let largest = end.max_element();
-        let area = chart.on_one_face(low, high, if is_endless { f32::INFINITY } else { largest });
+        let area = projection.on_one_face(low, high, if is_endless { f32::INFINITY } else { largest });
         // It is rounded by far less than that.
         let largest = f64::from(largest) * (1.0 + f64::from(ROUNDING));
         PacketOrigin { places, span: span.max_element(), largest, area }
@@ -111,15 +111,15 @@ impl PacketOrigin {
 }
 
 impl TriangleEdges4 {
-    /// Of up to four triangles, in single precision from the differences of their corners on.
-    pub fn new(chart: &DirectionProjection, triangles: &[[DVec3; 3]]) -> TriangleEdges4 {
+    /// Computes the edges of up to four triangles in single precision, from the differences of their corners on.
+    pub fn new(projection: &DirectionProjection, triangles: &[[DVec3; 3]]) -> TriangleEdges4 {
         let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
         for (lane, &[a, b, c]) in triangles.iter().enumerate() {
             for (edge, (p, q)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
-                levers[edge].set(lane, chart.lever(p));
+                levers[edge].set(lane, projection.lever(p));
                 sides[edge].set(lane, q - p);
-                if !chart.is_centered() {
-                    places[edge].set(lane, p - chart.origin());
+                if !projection.is_centered() {
+                    places[edge].set(lane, p - projection.origin());
                 }
             }
         }
@@ -130,7 +130,7 @@ impl TriangleEdges4 {
         // Where single precision ends, nothing is sorted out: what is infinite or not a number decides nothing.
         let is_small = lever.min(side).cmplt(Vec4::splat(SMALLEST));
         let rounding = Vec4::select(is_small, Vec4::INFINITY, (lever * side * ROUNDING).max(Vec4::splat(LEAST)));
-        let least_rounding = if chart.is_centered() { Vec4::ZERO } else { rounding * largest(places) };
+        let least_rounding = if projection.is_centered() { Vec4::ZERO } else { rounding * largest(places) };
         TriangleEdges4 { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding }
     }
 }

@@ -1,15 +1,14 @@
-//! A pencil: all lines through one centre, and the triangles that they meet.
+//! A hierarchy of triangles as they are seen from one ray origin, and which of them rays from there hit.
 //!
-//! The centre is the eye, a point light, or the direction towards a directional one. Which side
-//! of a triangle's edge a line passes is the sign of `det(a, b, q)` with the corners seen from
-//! the centre, so each edge is one plane through the centre, computed once a triangle, and a test
-//! is three dot products. Where rounding could turn a sign it is decided exactly, and where it is
-//! exactly zero the line is taken as moved a little along x, by less along y and by still less
-//! along z (simulation of simplicity, Edelsbrunner and Mücke 1990). So the two triangles at an edge
-//! always see a line on opposite sides of it: it slips between none, and meets no two.
+//! The origin is the eye, a point light, or the direction towards a directional one. Which side of a triangle's edge a
+//! ray passes is the sign of `det(a, b, q)` with the corners seen from the origin, so each edge is one plane through
+//! the origin, computed once for a triangle, and a test is three dot products. Where rounding could change a sign it is
+//! decided exactly, and where it is exactly zero the ray is taken as moved a little along x, by less along y and by
+//! still less along z (simulation of simplicity, Edelsbrunner and Mücke 1990). So the two triangles at an edge always
+//! see a ray on opposite sides of it: it slips between none, and hits no two.
 
-use super::chart::{DirectionProjection, NEAREST, OriginRay};
 use super::coarse::{PacketOrigin, TriangleEdges4};
+use super::direction_projection::{DirectionProjection, NEAREST, OriginRay};
 use super::packet::RayPacket;
 use super::tree::{ProjectedRect, RectTree, set_bits};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
@@ -20,12 +19,12 @@ use rayon::prelude::*;
 /// of the sum of their products' absolute values.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A triangle that lines meet.
+/// A triangle that rays may hit.
 #[derive(Debug, Clone, Copy)]
 pub struct Hit {
     /// Which of all.
     pub index: u32,
-    /// On which side of it the centre is; exact.
+    /// The side of it that the ray origin is on; exact.
     pub center_side: Sign,
 }
 
@@ -33,16 +32,16 @@ pub struct Hit {
 #[derive(Debug, Clone, Copy)]
 pub struct ScaledPlane {
     pub normal: DVec3,
-    /// What `normal · p` is for its points, relative to the pencil's origin.
+    /// The value of `normal · p` for its points, relative to the hierarchy's origin.
     pub offset: f64,
 }
 
 /// What need not be looked for any more.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchLimit {
-    /// For these lines nothing: a bit each.
+    /// Rays, a bit each, for which nothing more has to be found.
     pub lines: u32,
-    /// For all lines of sight nothing beyond this many times their directions.
+    /// For view rays, the distance beyond which nothing has to be found, in multiples of their directions.
     pub distance: f64,
 }
 
@@ -53,7 +52,7 @@ impl SearchLimit {
 /// Planes through the centre and a triangle's edges.
 #[derive(Debug, Clone, Copy)]
 struct EdgePlanes {
-    /// Of the edges opposite to each corner: normal …
+    /// Normals of the planes of the edges opposite to each corner …
     normals: [DVec3; 3],
     /// … and offset, which is zero where the centre is the origin.
     offsets: [f64; 3],
@@ -63,10 +62,10 @@ struct EdgePlanes {
     size: f64,
 }
 
-/// How many triangles are charted in a row.
+/// How many triangles are projected in one task.
 const PART: usize = 4096;
 
-/// Whose lines they are: an eye's go on without end, a light's end at a surface.
+/// The kind of rays: view rays have no end, light rays end at a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RayKind {
     Eye,
@@ -78,11 +77,11 @@ pub struct RayOriginHierarchy {
     center: DVec4,
     /// What points and corners are relative to: the centre, or near the scene.
     pub origin: DVec3,
-    chart: DirectionProjection,
+    projection: DirectionProjection,
     tree: RectTree,
-    /// In the order of the tree.
+    /// Triangles' edges, in the order of the tree.
     fours: Vec<TriangleEdges4>,
-    met: Vec<Hit>,
+    hit: Vec<Hit>,
     corners: Vec<[DVec3; 3]>,
 }
 
@@ -93,10 +92,10 @@ impl std::fmt::Debug for RayOriginHierarchy {
 }
 
 impl RayOriginHierarchy {
-    /// The lines through a homogeneous centre and what they meet of `triangles`: those that
-    /// `takes_part` says so of. A triangle edge-on to the centre is met by none.
+    /// Builds the hierarchy of those of `triangles` for which `takes_part` returns true, around a homogeneous ray
+    /// origin. A triangle that is edge-on to the origin is hit by no ray.
     pub fn new(
-        whose: RayKind,
+        ray_kind: RayKind,
         center: DVec4,
         triangles: &[[DVec3; 3]],
         takes_part: impl Fn(usize) -> bool + Sync,
@@ -104,7 +103,7 @@ impl RayOriginHierarchy {
         let (low, high) = bounds(triangles, &takes_part);
         let middle = low + (high - low) / 2.0;
         let reach = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
-        let chart = match whose {
+        let projection = match ray_kind {
             RayKind::Eye => DirectionProjection::of_eye(center, middle, reach),
             RayKind::Light => DirectionProjection::of_light(center, middle, reach),
         };
@@ -112,37 +111,37 @@ impl RayOriginHierarchy {
         let parts: Vec<Vec<(ProjectedRect, Hit)>> = (0..triangles.len().div_ceil(PART))
             .into_par_iter()
             .map(|part| {
-                let mut charted = Vec::with_capacity(PART);
+                let mut rects_of_part = Vec::with_capacity(PART);
                 for index in (part * PART..triangles.len()).take(PART).filter(|index| takes_part(*index)) {
                     let corners = triangles[index];
                     let Some((center_side, is_near)) = side_of(center, &corners) else { continue };
-                    let met = Hit { index: index as u32, center_side };
-                    chart.for_each_area(corners, is_near, |area| charted.push((area, met)));
+                    let hit = Hit { index: index as u32, center_side };
+                    projection.for_each_area(corners, is_near, |area| rects_of_part.push((area, hit)));
                 }
-                charted
+                rects_of_part
             })
             .collect();
         let areas: Vec<ProjectedRect> = parts.iter().flatten().map(|(area, _)| *area).collect();
-        let met: Vec<Hit> = parts.iter().flatten().map(|(_, met)| *met).collect();
+        let hit: Vec<Hit> = parts.iter().flatten().map(|(_, hit)| *hit).collect();
         let (tree, order) = RectTree::new(&areas);
         let nothing = (Hit { index: 0, center_side: Sign::Zero }, [DVec3::ZERO; 3]);
         let in_order = |place: &Option<u32>| {
-            place.map_or(nothing, |place| (met[place as usize], triangles[met[place as usize].index as usize]))
+            place.map_or(nothing, |place| (hit[place as usize], triangles[hit[place as usize].index as usize]))
         };
-        let (met, corners): (Vec<Hit>, Vec<[DVec3; 3]>) = order.par_iter().with_min_len(PART).map(in_order).unzip();
-        let four = |corners: &[[DVec3; 3]]| TriangleEdges4::new(&chart, corners);
+        let (hit, corners): (Vec<Hit>, Vec<[DVec3; 3]>) = order.par_iter().with_min_len(PART).map(in_order).unzip();
+        let four = |corners: &[[DVec3; 3]]| TriangleEdges4::new(&projection, corners);
         let fours = corners.par_chunks(RectTree::WIDTH).with_min_len(256).map(four).collect();
-        RayOriginHierarchy { center, origin: chart.origin(), chart, tree, fours, met, corners }
+        RayOriginHierarchy { center, origin: projection.origin(), projection, tree, fours, hit, corners }
     }
 
-    /// Calls `meets` with each triangle that lines of the bundle meet and with these lines, a bit each, in no
-    /// particular order, some perhaps more than once; some lie on a line's other side of the centre or beyond
-    /// its end. `meets` says what need not be looked for any more.
-    pub fn for_each_meeting(&self, bundle: &RayPacket, mut meets: impl FnMut(&Hit, &[DVec3; 3], u32) -> SearchLimit) {
-        let core = PacketOrigin::new(&self.chart, bundle);
-        let mut left = (1_u32 << bundle.len()) - 1;
+    /// Calls `meets` with each triangle that rays of the packet hit and with these rays, a bit each, in no particular
+    /// order, some perhaps more than once; some lie on a ray's other side of the origin or beyond its end. `meets`
+    /// returns what does not have to be found any more.
+    pub fn for_each_hit(&self, packet: &RayPacket, mut meets: impl FnMut(&Hit, &[DVec3; 3], u32) -> SearchLimit) {
+        let core = PacketOrigin::new(&self.projection, packet);
+        let mut left = (1_u32 << packet.len()) - 1;
         let mut follow = |area: &ProjectedRect| {
-            self.tree.for_each_meeting(*area, |index, found, depth| {
+            self.tree.for_each_hit(*area, |index, found, depth| {
                 let four = &self.fours[index];
                 for lane in set_bits(found) {
                     let (near, sure) = core.near(four, lane);
@@ -150,13 +149,13 @@ impl RayOriginHierarchy {
                     let open = near & !sure & left;
                     let mut lines = sure & left;
                     if open != 0 {
-                        lines |= self.met_of(&self.corners[place], bundle, open);
+                        lines |= self.hits_of(&self.corners[place], packet, open);
                     }
                     if lines != 0 {
-                        let settled = meets(&self.met[place], &self.corners[place], lines);
+                        let settled = meets(&self.hit[place], &self.corners[place], lines);
                         left &= !settled.lines;
                         if settled.distance < f64::INFINITY {
-                            *depth = depth.min(self.chart.depth(settled.distance * core.largest));
+                            *depth = depth.min(self.projection.depth(settled.distance * core.largest));
                         }
                     }
                 }
@@ -165,23 +164,24 @@ impl RayOriginHierarchy {
         };
         match core.area {
             Some(area) => follow(&area),
-            None => self.chart.bundle(bundle.lines()).iter().flatten().for_each(follow),
+            None => self.projection.packet(packet.lines()).iter().flatten().for_each(follow),
         }
     }
 
-    /// Which of some lines, a bit each, meet a triangle: in double precision, or exactly where that leaves it open.
+    /// Returns which of some rays, a bit each, hit a triangle: in double precision, or exactly where that leaves it
+    /// open.
     #[cold]
-    fn met_of(&self, corners: &[DVec3; 3], bundle: &RayPacket, lines: u32) -> u32 {
-        let edges = EdgePlanes::new(&self.chart, corners);
-        let is_met = |line: &usize| {
-            let line = bundle.line(*line);
-            edges.is_met(line.from(self.origin)).unwrap_or_else(|| self.is_met(corners, line))
+    fn hits_of(&self, corners: &[DVec3; 3], packet: &RayPacket, lines: u32) -> u32 {
+        let edges = EdgePlanes::new(&self.projection, corners);
+        let is_hit = |line: &usize| {
+            let line = packet.line(*line);
+            edges.is_hit(line.from(self.origin)).unwrap_or_else(|| self.is_hit(corners, line))
         };
-        set_bits(lines).filter(is_met).fold(0, |met, line| met | 1 << line)
+        set_bits(lines).filter(is_hit).fold(0, |hit, line| hit | 1 << line)
     }
 
     /// Does a line pass all three edges on the same side? Exact.
-    fn is_met(&self, corners: &[DVec3; 3], line: OriginRay) -> bool {
+    fn is_hit(&self, corners: &[DVec3; 3], line: OriginRay) -> bool {
         let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
         first != Sign::Zero && side(1, 2) == first && side(2, 0) == first
@@ -211,14 +211,14 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
 }
 
 impl EdgePlanes {
-    fn new(chart: &DirectionProjection, &[a, b, c]: &[DVec3; 3]) -> EdgePlanes {
-        let (lever, origin) = (|corner| chart.lever(corner), chart.origin());
-        // Planes through the centre and an edge: differences of near corners keep what products of
-        // far ones would lose.
+    fn new(projection: &DirectionProjection, &[a, b, c]: &[DVec3; 3]) -> EdgePlanes {
+        let (lever, origin) = (|corner| projection.lever(corner), projection.origin());
+        // Planes through the origin and an edge: differences of near corners are exact where products of far ones would
+        // lose digits.
         let edges = [(b, c), (c, a), (a, b)];
         let normals = edges.map(|(p, q)| lever(p).cross(q - p));
         let products = largest_span([b - a, c - b, a - c]) * largest_span([lever(a), lever(b), lever(c)]);
-        if chart.is_centered() {
+        if projection.is_centered() {
             return EdgePlanes { normals, offsets: [0.0; 3], products, size: 0.0 };
         }
         let offset = |i: usize| -normals[i].dot(edges[i].0 - origin);
@@ -227,7 +227,7 @@ impl EdgePlanes {
     }
 
     /// Does a line pass all edges on the same side? `None` where rounding leaves it open.
-    fn is_met(&self, place: DVec3) -> Option<bool> {
+    fn is_hit(&self, place: DVec3) -> Option<bool> {
         let rounding = ROUNDING * self.products * (place.abs().element_sum() + self.size);
         let value = |i: usize| self.normals[i].dot(place) + self.offsets[i];
         let (a, b, c) = (value(0), value(1), value(2));
@@ -240,7 +240,7 @@ impl EdgePlanes {
 }
 
 impl ScaledPlane {
-    /// Relative to a pencil's origin.
+    /// Computes the plane of a triangle relative to the hierarchy's origin.
     pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> ScaledPlane {
         let normal = (b - a).cross(c - a);
         ScaledPlane { normal, offset: normal.dot(a - origin) }
@@ -257,25 +257,25 @@ impl ScaledPlane {
 pub struct PlaneRounding {
     /// What it may move a height by, for each unit of its spread.
     height: f64,
-    /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
+    /// The largest sum of a corner's absolute coordinates, relative to the hierarchy's origin.
     size: f64,
 }
 
 impl PlaneRounding {
-    /// Of what is relative to a pencil's origin.
+    /// Bounds the rounding of a triangle's plane relative to the hierarchy's origin.
     pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> PlaneRounding {
         let edge = largest_span([b - a, c - b, a - c]);
         PlaneRounding { height: ROUNDING * edge * edge, size: largest_span([a - origin, b - origin, c - origin]) }
     }
 
-    /// More than what it may have moved a place's height by.
+    /// Returns more than what rounding may have moved a place's height over the plane by.
     pub fn of_height(&self, place: DVec3) -> f64 {
         self.height * (self.size + place.abs().element_sum())
     }
 }
 
-/// More than what rounding may have moved a point of a triangle's plane off it, where the plane was computed relative to
-/// `origin`.
+/// Returns more than what rounding may have moved a point of a triangle's plane off it, where the plane was computed
+/// relative to `origin`.
 pub fn point_rounding(origin: DVec3, corners: &[DVec3; 3]) -> f64 {
     ROUNDING * largest_span(corners.map(|corner| corner - origin))
 }

@@ -1,23 +1,22 @@
-//! Ground truth: who is lit and who is not, by rays in `f64` from the scene alone.
+//! Ground truth: what is lit and what is not, by rays in `f64` from the scene alone.
 //!
-//! It shares no code with shadow volumes, plans or techniques, so that no mistake can hide in
-//! both answers. A ray of sight goes through each pixel's centre, from the near plane on; where it
-//! meets a surface, a ray of light is followed from the light to that point. Which triangles a ray
-//! meets is decided by exact orientation signs, so rays slip through no edge and meet no edge
-//! twice; nothing is moved off a surface by an offset, which would lose occluders at grazing
-//! angles. What is left out instead are triangles whose plane goes through the point itself.
+//! It shares no code with shadow volumes, plans or techniques, so that no mistake can hide in both answers. A view ray
+//! goes through each pixel's centre, from the near plane on; where it hits a surface, a light ray is followed from the
+//! light to that point. Which triangles a ray hits is decided by exact orientation signs, so rays slip through no edge
+//! and hit no edge twice; nothing is moved off a surface by an offset, which would lose occluders at grazing angles.
+//! What is left out instead are triangles whose plane goes through the point itself.
 //!
 //! ```text
-//! scene ─► World (triangles) ─► Pencil of the eye    ─► nearest triangle ─┐
-//!                             ► Pencil of each light ─► anything between? ┴► labels
+//! scene ─► TracedTriangles ─► RayOriginHierarchy of the eye    ─► nearest triangle ─┐
+//!                           ► RayOriginHierarchy of each light ─► anything between? ┴► labels
 //! ```
 //!
-//! A pencil is all lines through one centre. All rays of a frame belong to one pencil
-//! or another, which makes a test cheap enough for a picture in a tenth of a second.
+//! All rays of a frame begin in the eye or end in a light. A hierarchy of the triangles as they are seen from there
+//! makes a test cheap enough for a picture in a tenth of a second.
 
 mod ask;
-mod chart;
 mod coarse;
+mod direction_projection;
 mod hierarchy;
 mod packet;
 mod shadow;
@@ -33,7 +32,7 @@ pub use world::TriangleSource;
 use crate::math::Sign;
 use crate::progress::Progress;
 use crate::scene::{Ray, Scene};
-use chart::OriginRay;
+use direction_projection::OriginRay;
 use glam::DVec3;
 use hierarchy::{RayKind, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use packet::RayPacket;
@@ -76,18 +75,18 @@ pub const FACES_AWAY: u8 = PixelLabel::FacesAway as u8;
 
 /// Pixels along each side of the tiles whose rays are followed together.
 const TILE: usize = 4;
-/// Rows of pixels that are traced in a go: tiles below each other meet much the same as those beside each other, and
-/// what was just met is near at hand.
+/// Rows of pixels that one task traces: tiles below each other hit much the same as those beside each other, and what
+/// was just hit is in the processor's cache.
 const BAND: usize = 4 * TILE;
 /// Units in the last place by which a surface point may be off: the eye, the direction and their
 /// sum are rounded.
 const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A scene whose truth can't be told.
+/// Why the truth of a scene can't be computed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}")]
 pub struct TruthError {
-    /// What is wrong, and the mend.
+    /// What is wrong and how to fix it, in a sentence.
     problem: String,
 }
 
@@ -120,21 +119,21 @@ pub struct Tracer {
     most_rounding: f64,
 }
 
-/// What a ray of sight meets first.
+/// What a view ray hits first.
 #[derive(Debug, Clone, Copy)]
 struct TracedSurface {
     triangle: usize,
-    /// On which side of it the eye is.
+    /// The side of it that the eye is on.
     eye_side: Sign,
     /// World space, rounded.
     point: DVec3,
-    /// From the eye, of which `point` is the rounded sum.
+    /// The vector from the eye, of which `point` is the rounded sum.
     offset: DVec3,
     /// The largest coordinate of where the ray is at distance 0, relative to the eye.
     from: f64,
 }
 
-/// What a ray of sight has met so far.
+/// What a view ray has hit so far.
 #[derive(Debug, Clone, Copy)]
 struct NearestHit {
     /// Along the view's axis.
@@ -176,8 +175,8 @@ impl Tracer {
         Ok(Tracer { view: PictureRays::new(&scene.camera, size), world, size, eye, lights, most_rounding })
     }
 
-    /// The same, with rays of sight that end at a far plane: what lies beyond is not looked for. A far plane is a part of
-    /// another program's picture; of ours it is a technique's, which may be wrong with it.
+    /// Returns the tracer with view rays that end at a far plane. A far plane is a part of another program's picture;
+    /// in our own frames it belongs to a technique, which may be wrong because of it.
     #[must_use]
     pub fn ending_at(mut self, far: Option<f64>) -> Tracer {
         self.view.far = far.unwrap_or(f64::INFINITY);
@@ -189,7 +188,7 @@ impl Tracer {
         self.size
     }
 
-    /// How many rays a truth follows: one of sight a pixel, and for each light one to every surface
+    /// Returns how many rays a truth follows: a view ray for each pixel, and for each light a ray to every surface
     /// point that faces it and receives shadows.
     pub fn rays(truth: &Truth) -> u64 {
         let is_followed = |label: &&u8| matches!(**label, LIT | SHADOW);
@@ -203,7 +202,7 @@ impl Tracer {
         self.trace_lights(&lights, progress)
     }
 
-    /// The same for some of the lights, in the order given.
+    /// Traces some of the lights, in the order given; `None` where it is cancelled.
     pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
         let [width, height] = self.size.map(|n| n as usize);
         let bands: Vec<usize> = (0..height).step_by(BAND).collect();
@@ -244,7 +243,7 @@ impl Tracer {
 
     fn surfaces_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<TracedSurface>; N] {
         let mut surfaces = [None; N];
-        self.meet_surfaces(&points.map(|point| self.view.ray(point)), &mut surfaces);
+        self.hit_surfaces(&points.map(|point| self.view.ray(point)), &mut surfaces);
         surfaces
     }
 
@@ -269,7 +268,7 @@ impl Tracer {
                 }
                 let mut surfaces = [None; TILE * TILE];
                 let surfaces = &mut surfaces[..count];
-                self.meet_surfaces(&rays[..count], surfaces);
+                self.hit_surfaces(&rays[..count], surfaces);
                 for (light, labels) in lights.iter().zip(&mut labels) {
                     let mut tile = [BACKGROUND; TILE * TILE];
                     self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..count]);
@@ -280,24 +279,24 @@ impl Tracer {
         labels
     }
 
-    /// What rays of sight meet first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
-    fn meet_surfaces(&self, rays: &[Ray], surfaces: &mut [Option<TracedSurface>]) {
-        let mut bundle = RayPacket::new(if self.view.is_parallel { OriginRay::Through } else { OriginRay::Along });
+    /// Finds what view rays hit first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
+    fn hit_surfaces(&self, rays: &[Ray], surfaces: &mut [Option<TracedSurface>]) {
+        let mut packet = RayPacket::new(if self.view.is_parallel { OriginRay::Through } else { OriginRay::Along });
         for ray in rays {
-            bundle.push(if self.view.is_parallel { self.view.eye + ray.from } else { ray.along });
+            packet.push(if self.view.is_parallel { self.view.eye + ray.from } else { ray.along });
         }
         let mut nearest = [NearestHit::NOTHING; RayPacket::MOST];
         let mut open = (1_u32 << rays.len()) - 1;
-        self.eye.for_each_meeting(&bundle, |met, corners, lines| {
+        self.eye.for_each_hit(&packet, |hit, corners, lines| {
             let plane = ScaledPlane::new(self.eye.origin, corners);
             let depths = self.depths(corners);
             let mut is_changed = false;
             for line in set_bits(lines) {
                 let distance = self.distance(&plane, depths, &rays[line]);
                 let best = nearest[line];
-                let is_nearer = distance < best.distance || (distance == best.distance && met.index < best.triangle);
+                let is_nearer = distance < best.distance || (distance == best.distance && hit.index < best.triangle);
                 if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
-                    nearest[line] = NearestHit { distance, triangle: met.index, eye_side: met.center_side };
+                    nearest[line] = NearestHit { distance, triangle: hit.index, eye_side: hit.center_side };
                     open &= !(1 << line);
                     is_changed = true;
                 }
@@ -337,7 +336,7 @@ impl Tracer {
     /// steep that rounding puts the meeting anywhere.
     fn distance(&self, plane: &ScaledPlane, [least, most]: [f64; 2], ray: &Ray) -> f64 {
         let from = match self.view.is_parallel {
-            // Relative to what the pencil's places are relative to.
+            // Relative to the same place as the hierarchy's points.
             true => plane.normal.dot(self.view.eye - self.eye.origin + ray.from),
             false => 0.0,
         };

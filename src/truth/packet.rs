@@ -1,9 +1,9 @@
 //! Rays of one origin that are near each other, followed together.
 
-use super::chart::OriginRay;
+use super::direction_projection::OriginRay;
 use glam::DVec3;
 
-/// Up to [`RayPacket::MOST`] lines of a kind that are near each other.
+/// Up to [`RayPacket::MOST`] rays of one kind that are near each other.
 #[derive(Debug)]
 pub struct RayPacket {
     kind: fn(DVec3) -> OriginRay,
@@ -12,10 +12,10 @@ pub struct RayPacket {
 }
 
 impl RayPacket {
-    /// Larger ones meet more triangles that most of their lines miss.
+    /// Larger packets hit more triangles that most of their rays miss.
     pub const MOST: usize = 16;
 
-    /// Of lines that `kind` makes of points.
+    /// Makes an empty packet of rays that `kind` makes of points.
     pub fn new(kind: fn(DVec3) -> OriginRay) -> RayPacket {
         RayPacket { kind, points: [DVec3::ZERO; RayPacket::MOST], len: 0 }
     }
@@ -42,7 +42,7 @@ impl RayPacket {
         self.points().iter().map(|point| (self.kind)(*point))
     }
 
-    /// What its points are relative to where a pencil's places are relative to `origin`.
+    /// Returns the place that the packet's points are relative to, where the hierarchy's are relative to `origin`.
     pub fn base(&self, origin: DVec3) -> DVec3 {
         if matches!((self.kind)(DVec3::ZERO), OriginRay::Along(_)) { DVec3::ZERO } else { origin }
     }

@@ -1,6 +1,6 @@
 //! Whether anything lies between a light and surfaces.
 
-use super::chart::OriginRay;
+use super::direction_projection::OriginRay;
 use super::hierarchy::{Hit, PlaneRounding, RayOriginHierarchy, ScaledPlane, SearchLimit, point_rounding};
 use super::packet::RayPacket;
 use super::tree::set_bits;
@@ -12,7 +12,7 @@ use glam::{DVec3, DVec4};
 #[derive(Debug)]
 pub struct LightRays {
     pub position: DVec4,
-    /// Of a lamp that fades: nothing at this distance, metres, is lit.
+    /// Range of a light that fades: nothing at this distance, metres, is lit.
     pub range: Option<f64>,
     pub hierarchy: RayOriginHierarchy,
 }
@@ -33,17 +33,17 @@ pub struct OccludingTriangle {
     rounding: PlaneRounding,
     /// The sum of the normal's absolute coordinates.
     normal_span: f64,
-    /// The last surface's triangle whose plane was held against it, and whether they share it.
+    /// The last surface's triangle whose plane was compared with it, and whether they share one.
     compared: (usize, bool),
 }
 
 impl OccludingTriangle {
-    /// Relative to a pencil's origin.
-    pub fn new(origin: DVec3, met: &Hit, corners: &[DVec3; 3]) -> OccludingTriangle {
+    /// Prepares a triangle relative to the hierarchy's origin.
+    pub fn new(origin: DVec3, hit: &Hit, corners: &[DVec3; 3]) -> OccludingTriangle {
         let plane = ScaledPlane::new(origin, corners);
         OccludingTriangle {
-            triangle: met.index as usize,
-            light_side: met.center_side,
+            triangle: hit.index as usize,
+            light_side: hit.center_side,
             plane,
             rounding: PlaneRounding::new(origin, corners),
             normal_span: plane.normal.abs().element_sum(),
@@ -55,7 +55,7 @@ impl OccludingTriangle {
 impl Tracer {
     /// Labels surfaces near each other.
     pub(super) fn label_surfaces(&self, light: &LightRays, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
-        let mut bundle = RayPacket::new(OriginRay::To);
+        let mut packet = RayPacket::new(OriginRay::To);
         let mut lines = [0; RayPacket::MOST];
         let mut last = (usize::MAX, Sign::Zero, false);
         for (index, surface) in surfaces.iter().enumerate() {
@@ -73,23 +73,23 @@ impl Tracer {
             }
             labels[index] = LIT;
             if last.2 {
-                lines[bundle.len()] = index;
-                bundle.push(surface.point);
+                lines[packet.len()] = index;
+                packet.push(surface.point);
             }
         }
-        if bundle.len() == 0 {
+        if packet.len() == 0 {
             return;
         }
-        light.hierarchy.for_each_meeting(&bundle, |met, corners, met_lines| {
+        light.hierarchy.for_each_hit(&packet, |hit, corners, hit_rays| {
             let mut occluder = None;
             let mut dark = 0;
-            for line in set_bits(met_lines) {
-                let Some(surface) = surfaces[lines[line]].as_ref().filter(|of| of.triangle != met.index as usize)
+            for line in set_bits(hit_rays) {
+                let Some(surface) = surfaces[lines[line]].as_ref().filter(|of| of.triangle != hit.index as usize)
                 else {
                     continue;
                 };
                 let occluder =
-                    occluder.get_or_insert_with(|| OccludingTriangle::new(light.hierarchy.origin, met, corners));
+                    occluder.get_or_insert_with(|| OccludingTriangle::new(light.hierarchy.origin, hit, corners));
                 if self.lies_between(light, occluder, surface) {
                     labels[lines[line]] = SHADOW;
                     dark |= 1 << line;
@@ -99,9 +99,8 @@ impl Tracer {
         });
     }
 
-    /// Are the light and a surface point on different sides of a triangle that their line meets?
-    /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
-    /// has the surface's own plane.
+    /// Returns whether the light and a surface point are on different sides of a triangle that their ray hits. A plane
+    /// through the point itself, as far as its rounding shows, has it on neither; nor has the surface's own plane.
     pub(super) fn lies_between(
         &self,
         light: &LightRays,
@@ -128,8 +127,8 @@ impl Tracer {
         !occluder.compared.1
     }
 
-    /// How far above a triangle's plane a point is that is so near that it takes care, times twice
-    /// the triangle's area; 0 where rounding can't tell it from the plane.
+    /// Returns how far above a triangle's plane a point is that is so near that rounding matters, times twice the
+    /// triangle's area; 0 where rounding can't distinguish it from the plane.
     fn height_near(&self, triangle: usize, surface: &TracedSurface) -> f64 {
         let [a, b, c] = self.world.triangles[triangle];
         let (ab, ac, offset) = (b - a, c - a, surface.point - a);
@@ -140,7 +139,7 @@ impl Tracer {
         if height.abs() > rounding { height } else { 0.0 }
     }
 
-    /// More than [`Tracer::rounding`], in less time.
+    /// Returns more than [`Tracer::rounding`], in less time.
     fn most_rounding(&self, surface: &TracedSurface) -> f64 {
         self.most_rounding + 3.0 * POINT_ROUNDING * (surface.from + surface.offset.abs().element_sum())
     }

@@ -1,37 +1,37 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
-use super::chart::OriginRay;
+use super::direction_projection::OriginRay;
 use super::hierarchy::{RayKind, RayOriginHierarchy, SearchLimit, side_of};
 use super::packet::RayPacket;
 use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};
 
-/// Which triangles each of up to 16 lines meets.
-fn met<const N: usize>(hierarchy: &RayOriginHierarchy, lines: [OriginRay; N]) -> [Vec<u32>; N] {
-    let mut bundle = RayPacket::new(match lines[0] {
+/// Returns which triangles each of up to 16 rays hits.
+fn hit<const N: usize>(hierarchy: &RayOriginHierarchy, lines: [OriginRay; N]) -> [Vec<u32>; N] {
+    let mut packet = RayPacket::new(match lines[0] {
         OriginRay::To(_) => OriginRay::To,
         OriginRay::Through(_) => OriginRay::Through,
         OriginRay::Along(_) => OriginRay::Along,
     });
     for line in lines {
         match line {
-            OriginRay::To(point) | OriginRay::Through(point) | OriginRay::Along(point) => bundle.push(point),
+            OriginRay::To(point) | OriginRay::Through(point) | OriginRay::Along(point) => packet.push(point),
         }
     }
-    let mut met = lines.map(|_| Vec::new());
-    hierarchy.for_each_meeting(&bundle, |triangle, _, lines| {
-        set_bits(lines).for_each(|line| met[line].push(triangle.index));
+    let mut hit = lines.map(|_| Vec::new());
+    hierarchy.for_each_hit(&packet, |triangle, _, lines| {
+        set_bits(lines).for_each(|line| hit[line].push(triangle.index));
         SearchLimit::NOTHING
     });
-    for met in &mut met {
-        met.sort_unstable();
-        met.dedup();
+    for hit in &mut hit {
+        hit.sort_unstable();
+        hit.dedup();
     }
-    met
+    hit
 }
 
-/// The line of sight from a centre through a point.
+/// Returns the ray from an origin through a point.
 fn through(center: DVec4, point: DVec3) -> OriginRay {
     if center.w == 0.0 { OriginRay::To(point) } else { OriginRay::Along(point - center.truncate()) }
 }
@@ -59,14 +59,14 @@ fn a_line_through_an_edge_or_a_vertex_meets_exactly_one_triangle_of_a_sheet() {
     ];
     for center in centers {
         // A light's line to a point in the sheet would end there; an eye's goes on.
-        let whose = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
-        let hierarchy = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
+        let ray_kind = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
+        let hierarchy = RayOriginHierarchy::new(ray_kind, center, &triangles, |_| true);
         // Halves: vertices, middles of edges and of diagonals.
         for y in -5..=5 {
             for x in -5..=5 {
                 let point = DVec3::new(f64::from(x) / 2.0, f64::from(y) / 2.0, 0.0);
-                let [met] = met(&hierarchy, [through(center, point)]);
-                let count = met.len();
+                let [hit] = hit(&hierarchy, [through(center, point)]);
+                let count = hit.len();
                 assert_eq!(count, 1, "from {center} through {point}");
             }
         }
@@ -85,8 +85,8 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
     }
     let mut crossed = 0;
     for center in [DVec4::new(0.0, 0.0, 5.0, 1.0), DVec4::new(3.0, 3.0, 3.0, 1.0), DVec4::new(1.0, 1.0, 0.0, 0.0)] {
-        let whose = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
-        let hierarchy = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
+        let ray_kind = if center.w == 0.0 { RayKind::Light } else { RayKind::Eye };
+        let hierarchy = RayOriginHierarchy::new(ray_kind, center, &triangles, |_| true);
         for i in -4..=4 {
             for j in -4..=4 {
                 for point in [
@@ -99,10 +99,10 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
                     } else {
                         through(center, point)
                     };
-                    let [met] = met(&hierarchy, [line]);
-                    let balance: i32 = met.iter().map(|index| side(&triangles[*index as usize], center)).sum();
-                    assert_eq!(balance, 0, "from {center} through {point}: {met:?}");
-                    crossed += met.len();
+                    let [hit] = hit(&hierarchy, [line]);
+                    let balance: i32 = hit.iter().map(|index| side(&triangles[*index as usize], center)).sum();
+                    assert_eq!(balance, 0, "from {center} through {point}: {hit:?}");
+                    crossed += hit.len();
                 }
             }
         }
@@ -125,8 +125,8 @@ fn is_on_line(corners: [DVec3; 3], center: DVec4, line: OriginRay) -> bool {
     sides == [1; 3] || sides == [-1; 3]
 }
 
-/// Must a triangle on the line be found? Between the centre and the line's end, or before the eye; anywhere on a
-/// parallel line of sight.
+/// Returns whether a triangle on the ray must be found: between the origin and the ray's end, or before the eye;
+/// anywhere on a parallel view ray.
 fn is_on_the_way(corners: [DVec3; 3], center: DVec4, line: OriginRay) -> bool {
     match line {
         OriginRay::To(point) => side(&corners, center) == -side(&corners, point.extend(1.0)),
@@ -135,11 +135,10 @@ fn is_on_the_way(corners: [DVec3; 3], center: DVec4, line: OriginRay) -> bool {
     }
 }
 
-/// Random triangles, some of them close to the centre, through it and across all faces of the
-/// cube around it, small ones in a tall scene, centres near, far and at infinity: bundles find what
-/// a test of every triangle finds.
+/// Random triangles, some of them close to the origin, through it and across all faces of the cube around it, small
+/// ones in a tall scene, origins near, far and at infinity: packets find what a test of every triangle finds.
 #[test]
-fn bundles_find_every_triangle_that_their_lines_meet() {
+fn packets_find_every_triangle_that_their_rays_hit() {
     let mut seed = 7u64;
     let mut number = |reach: f64| {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -169,14 +168,14 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
             }
             _ => (point(reach) + offset).extend(1.0),
         };
-        for whose in [RayKind::Eye, RayKind::Light] {
-            let hierarchy = RayOriginHierarchy::new(whose, center, &triangles, |_| true);
-            for bundle in 0..8 {
-                let middle = triangles[bundle * 3][1];
-                let spread = [reach, reach * 1e-3][bundle % 2];
+        for ray_kind in [RayKind::Eye, RayKind::Light] {
+            let hierarchy = RayOriginHierarchy::new(ray_kind, center, &triangles, |_| true);
+            for packet in 0..8 {
+                let middle = triangles[packet * 3][1];
+                let spread = [reach, reach * 1e-3][packet % 2];
                 // Some lines run exactly through edges and corners.
                 let lines: [OriginRay; 16] = std::array::from_fn(|line| {
-                    let [a, b, _] = triangles[bundle * 3];
+                    let [a, b, _] = triangles[packet * 3];
                     let target = match line {
                         0 => a,
                         1 => (a + b) / 2.0,
@@ -185,20 +184,26 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
                         }
                         _ => middle + point(spread),
                     };
-                    match (whose, center.w == 0.0) {
+                    match (ray_kind, center.w == 0.0) {
                         (RayKind::Light, _) => OriginRay::To(target),
                         (RayKind::Eye, true) => OriginRay::Through(target),
                         (RayKind::Eye, false) => OriginRay::Along(target - center.truncate()),
                     }
                 });
-                for (line, met) in lines.into_iter().zip(met(&hierarchy, lines)) {
+                for (line, hit) in lines.into_iter().zip(hit(&hierarchy, lines)) {
                     for (index, corners) in (0..).zip(triangles) {
-                        let (is_met, is_on) = (met.contains(&index), is_on_line(corners, center, line));
+                        let (is_hit, is_on) = (hit.contains(&index), is_on_line(corners, center, line));
                         let must_be = is_on && is_on_the_way(corners, center, line);
-                        assert!(is_met || !must_be, "round {round}, {whose:?} {center}, {line:?}: {index} is missed");
-                        // Exactly on an edge it may be met or not, as the perturbation says.
+                        assert!(
+                            is_hit || !must_be,
+                            "round {round}, {ray_kind:?} {center}, {line:?}: {index} is missed"
+                        );
+                        // Exactly on an edge it may be hit or not, as the perturbation says.
                         let is_off = !is_on && !is_on_an_edge(corners, center, line);
-                        assert!(!is_met || !is_off, "round {round}, {whose:?} {center}, {line:?}: {index} is not met");
+                        assert!(
+                            !is_hit || !is_off,
+                            "round {round}, {ray_kind:?} {center}, {line:?}: {index} is not met"
+                        );
                         found += usize::from(must_be);
                     }
                 }

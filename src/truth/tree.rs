@@ -1,9 +1,9 @@
-//! Areas of a chart in trees, four to a node: those that another area meets are found four at a time.
+//! Rectangles of a projection in trees, four to a node: those that another rectangle overlaps are found four at a time.
 //!
-//! Areas are sorted along a space-filling curve, four in a row make a node, and four nodes in a row one
-//! of the next level (a linear hierarchy: Lauterbach et al. 2009), so that building takes little more than a
-//! sort. A node of large areas and small ones alike would be met by lines far from most of them:
-//! areas of each size make a tree of their own.
+//! Rectangles are sorted along a space-filling curve, four in a row make a node, and four nodes in a row one of the
+//! next level (a linear hierarchy: Lauterbach et al. 2009), so that building takes little more than a sort. A node of
+//! large and small rectangles alike would be overlapped by rays far from most of them: rectangles of each size make a
+//! tree of their own.
 
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -17,12 +17,12 @@ const CURVE_BITS: u32 = 20;
 /// More levels of four than 32-bit indices reach.
 const MOST_LEVELS: usize = 17;
 
-/// A rectangle of a chart.
+/// A rectangle of a projection, with a depth.
 #[derive(Debug, Clone, Copy)]
 pub struct ProjectedRect {
     pub low: Vec2,
     pub high: Vec2,
-    /// Of triangles: how near they come; of lines: how far they go.
+    /// For triangles, how near they come; for rays, how far they go.
     pub depth: f32,
 }
 
@@ -89,9 +89,10 @@ impl RectTree {
         self.tops.push(first as u32);
     }
 
-    /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each; and
-    /// with the depth of `area`, which it may lessen. Ends where that is false. Near ones come first, more or less.
-    pub fn for_each_meeting(&self, mut area: ProjectedRect, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
+    /// Calls `meets` with the number of each four rectangles of the order of which `area` overlaps one, and which, a
+    /// bit each; and with the depth of `area`, which it may lessen. Ends where it returns false. Near ones come first,
+    /// more or less.
+    pub fn for_each_hit(&self, mut area: ProjectedRect, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
         let mut stack = [0; MOST_LEVELS * (RectTree::WIDTH - 1) + 1];
         for top in &self.tops {
             stack[0] = *top;
@@ -100,16 +101,16 @@ impl RectTree {
                 count -= 1;
                 let index = stack[count] as usize;
                 let node = &self.nodes[index];
-                let mut met = node.met(&area);
+                let mut hit = node.hit(&area);
                 if index >= self.leaves {
                     // The first of them is looked at first.
-                    while met != 0 {
-                        let lane = met.ilog2();
-                        met ^= 1 << lane;
+                    while hit != 0 {
+                        let lane = hit.ilog2();
+                        hit ^= 1 << lane;
                         stack[count] = node.first + lane;
                         count += 1;
                     }
-                } else if met != 0 && !meets(index, met, &mut area.depth) {
+                } else if hit != 0 && !meets(index, hit, &mut area.depth) {
                     return;
                 }
             }
@@ -118,13 +119,13 @@ impl RectTree {
 }
 
 impl RectNode {
-    /// Up to four areas; what is left of the node is met by nothing.
+    /// Makes a node of up to four rectangles; nothing overlaps the empty places.
     fn new(areas: impl Iterator<Item = ProjectedRect>, first: u32) -> RectNode {
         let mut node =
             RectNode { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY, first };
         for (lane, area) in areas.enumerate() {
             for axis in 0..2 {
-                // What has overflown is still met, and an empty lane never is.
+                // A rectangle that overflowed is still found, and an empty lane never is.
                 node.low[axis][lane] = area.low[axis].min(f32::MAX);
                 node.high[axis][lane] = area.high[axis].max(-f32::MAX);
             }
@@ -140,8 +141,8 @@ impl RectNode {
         ProjectedRect { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
     }
 
-    /// Which of the four meet the area of lines: a bit each.
-    fn met(&self, area: &ProjectedRect) -> u32 {
+    /// Returns which of the four rectangles overlap that of rays, a bit each.
+    fn hit(&self, area: &ProjectedRect) -> u32 {
         let along_x = self.low[0].cmple(Vec4::splat(area.high.x)) & self.high[0].cmpge(Vec4::splat(area.low.x));
         let along_y = self.low[1].cmple(Vec4::splat(area.high.y)) & self.high[1].cmpge(Vec4::splat(area.low.y));
         (along_x & along_y & self.depth.cmple(Vec4::splat(area.depth))).bitmask()
@@ -161,7 +162,7 @@ fn keys(areas: &[ProjectedRect]) -> Vec<(u64, u32)> {
         let at = (place(area) - low) * scale;
         let curve = spread(at.x as u64) | spread(at.y as u64) << 1 | spread(at.z as u64) << 2;
         let part = ((area.high - area.low).max_element() / size).clamp(f32::MIN_POSITIVE, 1.0);
-        // From the exponent: 127 for 1.
+        // The exponent of the size: 127 for 1.
         let class = (127_u32.saturating_sub(part.to_bits() >> 23) / CLASS_BITS).min(MOST_CLASSES - 1);
         (u64::from(class) << (3 * CURVE_BITS) | curve, index as u32)
     };

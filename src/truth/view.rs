@@ -34,12 +34,12 @@ impl PictureRays {
         self.ray_through([self.across(x), self.down(y)])
     }
 
-    /// From a point's x in pixels: from −1 at the left edge to 1.
+    /// Maps a point's x in pixels to −1 at the left edge and 1 at the right.
     pub fn across(&self, x: f64) -> f64 {
         x / self.size[0] * 2.0 - 1.0
     }
 
-    /// From a point's y in pixels: from 1 at the upper edge to −1.
+    /// Maps a point's y in pixels to 1 at the upper edge and −1 at the lower.
     pub fn down(&self, y: f64) -> f64 {
         1.0 - y / self.size[1] * 2.0
     }

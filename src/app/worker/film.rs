@@ -1,4 +1,4 @@
-//! A film, a picture a turn: everything that is asked for comes between two of them.
+//! A film, one picture at a time: all other orders are carried out between two pictures.
 
 use super::WorkerState;
 use crate::app::news::News;
@@ -11,20 +11,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// A film that is being made.
+/// The film that is being written.
 pub(super) struct FilmRun {
     ticket: u64,
     film: Film,
 }
 
 impl WorkerState {
-    /// The film that is being made; of the one before nothing is left.
+    /// Sets the film that is being written; an incomplete one before it is deleted.
     pub(super) fn set_film(&mut self, film: Option<FilmRun>) {
         self.film = film;
         self.is_filming.store(self.film.is_some(), Ordering::Release);
     }
 
-    /// Makes the next picture of the film that is asked for, and puts the question back while any is left.
+    /// Writes the next picture of the film that is asked for, and puts the question back while there are more.
     pub(super) fn film_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let had_session = self.session.is_some();
         self.is_filming.store(true, Ordering::Release);
@@ -41,7 +41,7 @@ impl WorkerState {
         (self.notify)(News::Answered { ticket: asked.ticket, result });
     }
 
-    /// The film once it is whole; `None` where more is to come. Of one that fails nothing is left.
+    /// Returns the film once it is complete; `None` where more is to come. A film that fails is deleted.
     fn next_picture(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<Option<Filmed>, String> {
         let before = self.film.take();
         let mut run = match (before, &asked.ask) {

@@ -192,7 +192,7 @@ fn the_last_frame_is_judged_and_timed_when_nothing_else_is_asked() {
 fn the_draws_of_a_pass_are_reported_and_stale_wishes_for_them_are_dropped() {
     let (worker, frame, news) = started();
     ask(&worker, frame + 1, 1, DrawsOf { step: 0 });
-    // The order before is obeyed or replaced first: of both only one is answered.
+    // The earlier order is carried out or replaced first: of both only one is answered.
     ask(&worker, frame, 2, DrawsOf { step: 1 });
     let draws = wait(&news, |news| match news {
         News::Answered { ticket: 1, .. } => panic!("of no frame that is there"),
@@ -283,7 +283,7 @@ fn walls_are_those_of_the_scene_as_it_would_be_run() {
     let mut scene = table();
     let walls =
         |off: std::ops::Range<usize>| WallsOf { off: off.collect(), objects: ObjectChanges::default(), time: 0.0 };
-    // Of a scene that is open no more nothing is told.
+    // Nothing is reported about a scene that is no longer open.
     ask_of(&worker, [0, frame], 1, walls(0..0));
     ask(&worker, frame, 2, history(0, 0));
     wait(&news, |news| {
@@ -354,7 +354,7 @@ fn a_changed_file_is_loaded_again_with_camera_and_lights_as_they_are() {
     assert_eq!(request.choice.technique(), Technique::ZPass);
 }
 
-/// What is made in the window is in the next frame, in the walls, and in the scene file, which opens as it was left.
+/// Changes made in the window are in the next frame, in the walls, and in the scene file, which opens as it was left.
 #[test]
 fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     let (worker, _, news) = started();

@@ -1,5 +1,5 @@
-//! What takes many turns: a report, which lets short questions come between its rows, and stress cases, which let
-//! everything come between theirs.
+//! Work in many parts: a report, which is interrupted for short questions between its rows, and stress cases, which are
+//! interrupted for every order between theirs.
 
 use super::WorkerState;
 use crate::app::allocator;
@@ -13,22 +13,22 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// While rows of a report come and go.
+/// How often memory is returned to the system while rows of a report are measured.
 const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
-/// Pictures of stress cases, but for those with a size of their own.
+/// Size of the pictures of stress cases, unless a case has its own.
 const STRESS_SIZE: [u32; 2] = [320, 240];
 
 /// Stress cases that are being run.
 pub(super) struct StressRun {
     ticket: u64,
-    /// The rows to make.
+    /// The rows that are still to be run.
     steps: StressSteps,
-    /// The rows so far of the case that is under way.
+    /// The rows so far of the present case.
     rows: Vec<StressRow>,
 }
 
 impl StressRun {
-    /// All of the named cases, but for what would keep the window waiting.
+    /// Begins all of the named cases, except those that would block the window.
     fn new(ticket: u64, cases: &[&'static str]) -> StressRun {
         let cases: Vec<&'static StressCase> = cases.iter().filter_map(|name| StressCase::named(name)).collect();
         let steps = StressSteps::new(&cases, &[], STRESS_SIZE).without_heavy();
@@ -37,7 +37,7 @@ impl StressRun {
 }
 
 impl WorkerState {
-    /// Makes the next row of the stress cases that are asked for, and puts the question back while any is left.
+    /// Runs the next row of the stress cases that are asked for, and puts the question back while there are more.
     pub(super) fn stress_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::StressOf(question) = &asked.ask else { return };
         let run = self.stress.take().filter(|run| run.ticket == asked.ticket);
@@ -67,7 +67,7 @@ impl WorkerState {
         inbox.queue.restore_waiting(Order::Answer { scene: of[0], frame: of[1], asked });
     }
 
-    /// Hundreds of scenes were open: what was kept of them is of no use any longer.
+    /// Drops what was cached for the hundreds of scenes that were open.
     pub(super) fn end_stress(&mut self) {
         self.stress = None;
         self.session.iter_mut().for_each(Session::forget);
@@ -75,8 +75,7 @@ impl WorkerState {
         (self.notify)(News::Idle);
     }
 
-    /// Measures the open scene as it was captured last. What is asked of its frame meanwhile is told
-    /// in between.
+    /// Measures the open scene as it was captured last. Questions about its frame are answered in between.
     pub(super) fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::ReportOf(question) = &asked.ask else { return };
         (self.notify)(News::Busy("measuring every technique".to_owned()));
@@ -85,7 +84,7 @@ impl WorkerState {
         } else {
             Err("another scene was opened meanwhile: measure again when it is the one you want".to_owned())
         };
-        // Where it was cancelled, the window has asked for it.
+        // Where it was cancelled, the window knows: it has asked for it.
         if !asked.progress.is_cancelled() {
             let result = result.map(|measured| Answer::ReportOf(Arc::new(measured)));
             (self.notify)(News::Answered { ticket: asked.ticket, result });
@@ -99,7 +98,7 @@ impl WorkerState {
         asked: &PendingQuestion,
         inbox: &mut Inbox,
     ) -> Result<MeasuredReport, SessionError> {
-        // A folder's frame was shown without it.
+        // A folder's frame was shown without a session.
         self.session()?;
         let (Some(session), Some(frame), Some(open)) = (&mut self.session, &self.last, &self.open) else {
             return Err(SessionError::NoFrame);
@@ -110,7 +109,7 @@ impl WorkerState {
         let what = Measurement { choices: question.choices.clone(), size: frame.plan.size, runs: question.runs };
         let mut given_back = Instant::now();
         let mut between = |session: &mut Session| {
-            // What one row leaves behind, the next does not fill.
+            // The next row does not reuse the memory that one row leaves free.
             if given_back.elapsed() > GIVE_BACK_EVERY {
                 allocator::give_back();
                 given_back = Instant::now();

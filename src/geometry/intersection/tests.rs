@@ -82,7 +82,7 @@ fn triangles_with_a_common_corner() {
     assert!(!meets(floor, [o, p(1.0, -3.0, 1.0), p(1.0, -3.0, -1.0)]), "through the plane beside");
 }
 
-/// Held against points of both triangles: where some of them coincide in fine steps, they meet.
+/// Compared with points of both triangles: where some of them coincide in fine steps, the triangles intersect.
 #[test]
 fn random_pairs_agree_with_points_sampled_on_them() {
     let mut state = 3u64;

@@ -12,7 +12,7 @@ use egui::{
 /// Size of the handle, points.
 const HANDLE: [f32; 2] = [14.0, 36.0];
 
-/// The part of `rect` that the compared picture takes.
+/// The part of `rect` in which the compared picture is drawn.
 pub fn part(rect: Rect, compare: &Comparison) -> Rect {
     let x = rect.left() + rect.width() * compare.at;
     if compare.flipped { rect.with_min_x(x) } else { rect.with_max_x(x) }
@@ -46,7 +46,7 @@ pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Comparison, names: [&str; 2]) {
     }
 }
 
-/// The line at `x` and the names of both sides, if any: of the compared one, and of the other.
+/// Draws the line at `x` and the names of both sides, if any: first that of the compared picture.
 pub fn paint(ui: &Ui, rect: Rect, compare: &Comparison, x: f32, names: [&str; 2]) {
     let painter = ui.painter_at(rect);
     for (width, color) in [(4.0, Color32::from_black_alpha(150)), (1.5, Color32::WHITE)] {
@@ -69,7 +69,7 @@ fn steps(ui: &Ui, id: egui::Id, has_focus: bool) -> i32 {
     })
 }
 
-/// A name on a dark ground, so that it can be read on any picture.
+/// Draws a name on a dark plate, so that it can be read on any picture.
 fn label(ui: &Ui, rect: Rect, at: egui::Pos2, align: Align2, name: &str) {
     let painter = ui.painter_at(rect);
     let galley =

@@ -1,4 +1,4 @@
-//! Handles of lights and camera: what can be moved, where it stands, and how it is grabbed.
+//! Handles of lights, camera and objects: what can be moved, where its handle is, and how it is dragged.
 
 use crate::inspector::look::widgets::keep_arrows;
 use crate::reading::format;
@@ -6,7 +6,7 @@ use crate::scene::Light;
 use egui::{Id, Key, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::{DMat3, DVec3, DVec4};
 
-/// How far an arrow key moves, in parts of the view's height, and with Shift.
+/// How far an arrow key moves a handle, as a share of the view's height: without and with Shift.
 const STEPS: [f64; 2] = [0.01, 0.1];
 
 /// What can be moved.
@@ -23,7 +23,7 @@ pub enum HandleKind {
 }
 
 impl HandleKind {
-    /// For people: `Light 1`.
+    /// Its name, as shown: `Light 1`.
     pub fn name(self) -> String {
         match self {
             HandleKind::Light(index) => format::light_title(index),
@@ -34,16 +34,16 @@ impl HandleKind {
     }
 }
 
-/// Where the handle of a directional light stands: so far from a point towards the light.
+/// Where the handle of a directional light is: `reach` from the point `middle`, towards the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandleAnchor {
     /// World space.
     pub middle: DVec3,
-    /// Metres.
+    /// Distance from `middle`, metres.
     pub reach: f64,
 }
 
-/// Where a light's handle is at a moment, world space.
+/// Where a light's handle is at a time in seconds, world space.
 pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     let position = light.motion.apply_to_light(light.position, time);
     match position.w == 0.0 {
@@ -52,7 +52,7 @@ pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     }
 }
 
-/// The light's homogeneous position at the scene's start once its handle was moved at a moment.
+/// The light's homogeneous position at the scene's start, after its handle was moved by `by` at a time in seconds.
 pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) -> DVec4 {
     let rotated = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
     let back = DMat3::from_cols(rotated(DVec3::X), rotated(DVec3::Y), rotated(DVec3::Z)).transpose();
@@ -67,7 +67,7 @@ pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) ->
     }
 }
 
-/// A named thing that can be dragged, and takes the focus when it is.
+/// Makes a named widget that can be dragged, and takes the focus when it is.
 pub fn grabbed(ui: &Ui, id: Id, rect: Rect, name: &str) -> Response {
     let response = ui.interact(rect, id, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -77,7 +77,7 @@ pub fn grabbed(ui: &Ui, id: Id, rect: Rect, name: &str) -> Response {
     response
 }
 
-/// How far the arrow keys of what has the focus go right and up, in parts of the view's height.
+/// How far the arrow keys move the focused widget right and up, as a share of the view's height.
 pub fn arrows(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;

@@ -13,7 +13,7 @@ const CELLS: [i64; 2] = [7, 5];
 /// Size of a texel in the inset, points.
 const CELL: f32 = 26.0;
 
-/// Room between the inset and the picture's borders, points.
+/// Distance between the inset and the picture's borders, points.
 const MARGIN: f32 = 12.0;
 
 /// Draws the inset around `pick` into a lower corner of `rect`.
@@ -38,7 +38,7 @@ pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &ShownPicture, coloring: C
             canvas::texel_number(&painter, image, coloring, [x, y], cell);
         }
     }
-    // Over the cells, so that it is seen on a count of zero too, which is as dark as the ground.
+    // Drawn over the cells, so that it is also seen on a count of zero, which is as dark as the background.
     let grid = Stroke::new(1.0, theme::of(ui).faint);
     for column in 1..CELLS[0] {
         painter.vline(inset.left() + column as f32 * CELL, inset.y_range(), grid);
@@ -59,7 +59,7 @@ pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &ShownPicture, coloring: C
     );
 }
 
-/// In the lower left corner, or in the lower right one where `pick` would be under it.
+/// The inset's place: the lower left corner, or the lower right one where `pick` would be under it.
 fn place(rect: Rect, size: Vec2, pick: Rect) -> Rect {
     let left = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
     if left.intersects(pick) { left.translate(vec2(rect.right() - MARGIN - left.right(), 0.0)) } else { left }

@@ -23,13 +23,13 @@ use egui::{
 use egui::{WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
-/// Screen pixels a texel from which on each texel shows its number.
+/// From so many screen pixels for each texel, each texel shows its number.
 pub const NUMBERS_FROM: f32 = 24.0;
 /// How far the crosshair reaches beyond the middle of a small texel, points.
 pub const CROSSHAIR: f32 = 24.0;
-/// Marks are at least so large, points.
+/// The least size of a mark, points.
 const LEAST_MARK: f32 = 2.5;
-/// Marks that are drawn at most.
+/// The largest number of marks that are drawn.
 const MOST_MARKS: usize = 12_000;
 /// How much one point of wheel movement zooms, as a power of e; a notch is about 50 points.
 const WHEEL_ZOOM: f32 = 0.004;
@@ -37,35 +37,35 @@ const WHEEL_ZOOM: f32 = 0.004;
 /// Name of the picture's own canvas.
 pub const PICTURE: &str = "Picture canvas";
 
-/// A picture over the shown one, of the same size.
+/// A picture that is drawn over the shown one, and is of the same size.
 #[derive(Debug, Clone)]
 pub struct PictureSheet {
-    /// Its texels.
+    /// Its image.
     pub image: Arc<Image>,
-    /// What they mean.
+    /// How its texels are coloured.
     pub coloring: Coloring,
-    /// Where on the screen it is seen.
+    /// The part of the screen in which it is drawn.
     pub part: Rect,
     /// Do its texels show their numbers?
     pub has_numbers: bool,
 }
 
-/// What a canvas shows, and changes: its own view and pick.
+/// What a canvas shows, and the view and pick that it changes.
 #[derive(Debug)]
 pub struct Canvas<'a> {
     /// The name of the widget.
     pub name: &'a str,
-    /// Zoom and place.
+    /// Zoom and position.
     pub view: &'a mut PictureView,
     /// The picked texel.
     pub pick: &'a mut Option<[u32; 2]>,
-    /// Where textures are kept.
+    /// The cache of textures.
     pub textures: &'a mut PictureCache,
     /// Arrow keys move its pick while it has the focus.
     pub has_arrows: bool,
 }
 
-/// The widget of the picture's own canvas.
+/// The id of the picture's own canvas.
 pub fn picture_id() -> Id {
     Id::unique(PICTURE)
 }
@@ -142,7 +142,7 @@ pub fn ui(
     (placement, hover)
 }
 
-/// How many texels have to be one, each way, so that every one is a screen pixel at least.
+/// How many texels, each way, have to become one so that every one covers at least a screen pixel.
 fn block_of(pixels: f32) -> u32 {
     (1.0 / pixels).ceil().clamp(1.0, 64.0) as u32
 }
@@ -152,7 +152,7 @@ fn uv_of(whole: Rect, part: Rect) -> Rect {
     Rect::from_min_max(at(part.min), at(part.max))
 }
 
-/// The wheel zooms at the pointer, left-drag pans.
+/// Zooms at the pointer with the wheel, pans with a left drag.
 fn move_view(ui: &Ui, view: &mut PictureView, response: &Response, placement: Placement, pixels_per_point: f32) {
     if response.dragged_by(PointerButton::Primary) && response.drag_delta() != egui::Vec2::ZERO {
         let moved = placement.texel_position(response.rect.center() - response.drag_delta());
@@ -176,7 +176,7 @@ fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
     view.center = [f64::from(center.x), f64::from(center.y)];
 }
 
-/// Right-click and right-drag pick; where it `has_arrows`, they move the pick while it has the focus.
+/// Picks with right click and right drag; where it `has_arrows`, arrow keys move the pick while it has the focus.
 fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement, has_arrows: bool) {
     if response.clicked() || response.secondary_clicked() || response.drag_started() {
         response.request_focus();
@@ -194,7 +194,7 @@ fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: 
     }
 }
 
-/// Texels to move by: one a key press, ten with Shift.
+/// How many texels the arrow keys ask to move by: one for a key press, ten with Shift.
 fn nudge(ui: &Ui) -> [i32; 2] {
     ui.input(|input| {
         let far = if input.modifiers.shift { 10 } else { 1 };
@@ -203,12 +203,12 @@ fn nudge(ui: &Ui) -> [i32; 2] {
     })
 }
 
-/// What of `rect` lies left or right of `part`.
+/// The part of `rect` that lies left or right of `part`.
 fn beside(rect: Rect, part: Rect) -> Rect {
     if part.left() <= rect.left() { rect.with_min_x(part.right()) } else { rect.with_max_x(part.left()) }
 }
 
-/// The number of every visible texel.
+/// Draws the number of every visible texel.
 fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Placement) {
     let painter = ui.painter_at(rect);
     let first = placement.texel_position(rect.min).max(egui::Vec2::ZERO);
@@ -237,7 +237,7 @@ pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, 
     painter.galley(at, galley, ink);
 }
 
-/// A box around the picked texel with four ticks, light on dark so that it shows on any picture.
+/// Draws a box around the picked texel with four ticks, light on dark so that it shows on any picture.
 pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     let middle = texel.center();
     let half = vec2(texel.width().max(11.0), texel.height().max(11.0)) / 2.0;
@@ -252,7 +252,7 @@ pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     }
 }
 
-/// A square a pixel, as one mesh.
+/// A square for each pixel, as one mesh.
 pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_MARKS).max(1)) {

@@ -1,4 +1,4 @@
-//! Lines of overlays as one mesh: projected once a frame of the scene, placed once a view.
+//! Lines of overlays as one mesh: projected once for each frame of the scene, placed once for each view.
 
 use crate::anatomy::Anatomy;
 use crate::capture::Capture;
@@ -12,16 +12,16 @@ use glam::DVec2;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Lines that are drawn at most.
+/// The largest number of lines that are drawn.
 const MOST_LINES: usize = 24_000;
-/// A multiplicity is written where its edge is so long on the screen, points.
+/// An edge's multiplicity is written where the edge is at least so long on the screen, points.
 const LEAST_EDGE: f32 = 44.0;
-/// Multiplicities that are written at most.
+/// The largest number of multiplicities that are written.
 const MOST_NUMBERS: usize = 400;
-/// What a multiplicity takes on the screen, points.
+/// Width and height of a written multiplicity, points.
 const NUMBER_SIZE: [f32; 2] = [26.0, 18.0];
 
-/// What a line is of.
+/// What a line belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineKind {
     /// A silhouette edge, with its multiplicity.
@@ -30,12 +30,12 @@ pub enum LineKind {
     Volume(DrawPart),
 }
 
-/// Lines in texels.
+/// Lines over the picture, in texels.
 #[derive(Debug, Default)]
 pub struct OverlayLines {
-    /// Both ends, and what each is of.
+    /// Both ends of each line, and what it belongs to.
     pub lines: Vec<([DVec2; 2], LineKind)>,
-    /// Lines that were too many to be drawn.
+    /// How many lines are not drawn, as there are too many.
     pub left_out: usize,
 }
 
@@ -54,7 +54,7 @@ impl OverlayLines {
         lines
     }
 
-    /// The edges of the shadow volumes of a light, each once a part.
+    /// The edges of the shadow volumes of a light, each once for each part that it belongs to.
     pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
         let mut lines = OverlayLines::default();
@@ -71,7 +71,7 @@ impl OverlayLines {
         lines
     }
 
-    /// Edges of silhouettes that do not count once, on the screen.
+    /// The silhouette edges, on the screen, whose multiplicity is not 1.
     fn counting(&self, placement: Placement) -> impl Iterator<Item = ([Pos2; 2], i32)> {
         self.lines.iter().filter_map(move |(ends, kind)| match kind {
             LineKind::Silhouette(multiplicity) if multiplicity.unsigned_abs() != 1 => {
@@ -81,8 +81,8 @@ impl OverlayLines {
         })
     }
 
-    /// The multiplicities that can be read: in the middle of their edges where those are long enough, lie in
-    /// `seen`, and do not lie on one another.
+    /// The multiplicities that can be read, in the middle of their edges: those edges are long enough, the numbers lie
+    /// in `seen` and do not overlap.
     pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
         let mut numbers: Vec<(Pos2, i32)> = Vec::new();
         let mut taken = TakenCells::default();
@@ -100,7 +100,8 @@ impl OverlayLines {
         numbers
     }
 
-    /// The multiplicity of the nearest edge that does not count once, where one is so near to `at`, points.
+    /// The multiplicity of the edge nearest to `at`, of those where it is not 1; `None` where none is within `reach`
+    /// points.
     pub fn number_near(&self, placement: Placement, at: Pos2, reach: f32) -> Option<i32> {
         let near = self.counting(placement).map(|(ends, multiplicity)| (distance(ends, at), multiplicity));
         let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
@@ -116,7 +117,7 @@ impl OverlayLines {
         }
     }
 
-    /// The lines on the screen, with soft edges.
+    /// The lines as a mesh on the screen, with soft edges.
     pub fn mesh(&self, placement: Placement, theme: &Theme, pixels_per_point: f32) -> Arc<Mesh> {
         let mut mesh = Mesh::default();
         for (ends, kind) in &self.lines {
@@ -127,13 +128,13 @@ impl OverlayLines {
     }
 }
 
-/// Where numbers are written, by cells of a number's size: each holds one middle at most, and what is written at another
-/// cell's middle reaches the cells beside it and no farther.
+/// Where numbers are written, by cells of a number's size: each contains at most one middle, so that a number overlaps
+/// only numbers of the cells beside its own.
 #[derive(Debug, Default)]
 struct TakenCells(HashMap<[i32; 2], Pos2>);
 
 impl TakenCells {
-    /// Takes the room of a number with its middle at `at`, where no other is written over it.
+    /// Reserves the space of a number with its middle at `at`; false where it would overlap another.
     fn take(&mut self, at: Pos2) -> bool {
         let [width, height] = NUMBER_SIZE;
         let cell = [(at.x / width).floor() as i32, (at.y / height).floor() as i32];
@@ -151,7 +152,7 @@ fn on_screen(placement: Placement, at: DVec2) -> Pos2 {
     placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale
 }
 
-/// From a point to a segment.
+/// Distance from a point to a segment.
 fn distance([from, to]: [Pos2; 2], at: Pos2) -> f32 {
     let along = to - from;
     let share = ((at - from).dot(along) / along.length_sq().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -163,7 +164,7 @@ pub fn multiplicity(value: i32) -> String {
     format!("{}{}", if value < 0 { "−" } else { "+" }, value.unsigned_abs())
 }
 
-/// Colour and width in points.
+/// Colour of a kind of line, and its width in points.
 fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
     match kind {
         LineKind::Silhouette(multiplicity) => (theme.lit, 0.6 + 0.6 * multiplicity.unsigned_abs().min(3) as f32),
@@ -171,7 +172,7 @@ fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
     }
 }
 
-/// A strip of four rails: outside see-through, inside full.
+/// A strip of four rails: the outer ones see-through, the inner ones opaque.
 fn add_line(mesh: &mut Mesh, [from, to]: [Pos2; 2], color: Color32, width: f32, soft: f32) {
     let along = (to - from).normalized();
     let across = vec2(-along.y, along.x);

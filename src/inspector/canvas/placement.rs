@@ -1,4 +1,4 @@
-//! Where the picture lies on the screen, and which texel is where.
+//! Where the picture lies on the screen, and which texel lies at which screen position.
 
 use crate::reading::shown::{PictureView, TexelZoom};
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
@@ -8,14 +8,14 @@ use egui::{Pos2, Rect, Vec2, pos2, vec2};
 pub struct Placement {
     /// Screen position of the picture's upper left corner, points.
     pub origin: Pos2,
-    /// Points a texel.
+    /// Points for each texel.
     pub scale: f32,
-    /// Texels.
+    /// Width and height, texels.
     pub size: [u32; 2],
 }
 
 impl Placement {
-    /// The smallest and largest number of screen pixels a texel.
+    /// The smallest and largest number of screen pixels for each texel.
     pub const ZOOM_LIMITS: [f32; 2] = [1.0 / 64.0, 256.0];
 
     /// Places a picture of `size` in `panel`.
@@ -34,7 +34,7 @@ impl Placement {
         Placement { origin: pos2(on_grid(origin.x), on_grid(origin.y)), scale, size }
     }
 
-    /// Screen pixels a texel.
+    /// Screen pixels for each texel.
     pub fn pixels(&self, pixels_per_point: f32) -> f32 {
         self.scale * pixels_per_point
     }
@@ -44,7 +44,7 @@ impl Placement {
         (at - self.origin) / self.scale
     }
 
-    /// The texel under a screen position.
+    /// The texel under a screen position; `None` outside the picture.
     pub fn texel(&self, at: Pos2) -> Option<[u32; 2]> {
         let position = self.texel_position(at);
         let inside = position.x >= 0.0 && position.y >= 0.0;

@@ -10,7 +10,7 @@ use crate::reading::depth::DepthScale;
 use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::Color32;
 
-/// How much of what lies under an overlay of colours is hidden.
+/// Opacity of an overlay of colours.
 pub const OVER: f32 = 0.62;
 
 /// What the texels of a picture mean.
@@ -18,7 +18,7 @@ pub const OVER: f32 = 0.62;
 pub enum Coloring {
     /// sRGB bytes.
     Srgb,
-    /// Bytes of linear shares of light.
+    /// Shares of light in linear bytes.
     Linear,
     /// Stencil counts.
     Stencil,
@@ -32,22 +32,22 @@ pub enum Coloring {
     Depth(DepthScale),
     /// One bit of a stencil count.
     Bit(u8),
-    /// How much more is counted, as a signed byte.
+    /// The change of a count, as a signed byte.
     CountChange,
-    /// How much farther surfaces are, in floats.
+    /// How much farther surfaces are, as floats.
     DepthChange,
-    /// How fragments fared in the tests.
+    /// The results of the tests on a pixel's fragments.
     Outcomes,
     /// Where objects receive shadows.
     Receivers,
-    /// How many fragments there were.
+    /// How many fragments reached a pixel.
     Overdraw,
     /// sRGB bytes where they changed; alpha 0 where they did not.
     ColorChange,
 }
 
 impl Coloring {
-    /// Of a shown picture, depths over `range`.
+    /// Returns the colouring of a shown picture, depths over `range`.
     pub fn of_shown(shown: &ShownPicture, range: [f64; 2]) -> Coloring {
         match shown.kind {
             PictureKind::Color => Coloring::Srgb,
@@ -61,7 +61,7 @@ impl Coloring {
         }
     }
 
-    /// Of a picture of what changed.
+    /// Returns the colouring of a picture of what changed.
     pub fn of_change(kind: ChangeKind) -> Coloring {
         match kind {
             ChangeKind::Count => Coloring::CountChange,
@@ -90,8 +90,8 @@ impl Coloring {
         }
     }
 
-    /// The texel's number for a cell that holds `columns` characters a line; `None` outside the
-    /// picture. Colours have a line a channel.
+    /// The texel's number for a cell that fits `columns` characters a line; `None` outside the picture. Colours have
+    /// one line for each channel.
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
@@ -123,23 +123,23 @@ impl Coloring {
         }
     }
 
-    /// Lines that a texel's number takes.
+    /// How many lines a texel's number has.
     pub fn lines(self) -> usize {
         if matches!(self, Coloring::Srgb | Coloring::Linear | Coloring::ColorChange) { 3 } else { 1 }
     }
 }
 
-/// The ink of one bit of a value.
+/// The colour of one bit of a value.
 pub fn bit_color(value: u8, bit: u8) -> Color32 {
     palette::BITS[usize::from(value >> bit & 1)]
 }
 
-/// A colour where it changed.
+/// The new colour where it changed, see-through elsewhere.
 pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
     if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
 }
 
-/// How a share of light, linear bytes, is shown on the screen.
+/// The screen colour of a share of light in linear bytes.
 pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
     palette::opaque(colors::linear([r, g, b]))
 }

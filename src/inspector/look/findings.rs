@@ -11,23 +11,23 @@ use crate::picture::colors;
 use crate::reading::format;
 use egui::{Color32, ColorImage};
 
-/// How a finding is drawn and called.
+/// A finding's colour, hatching and words.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FindingStyle {
-    /// In legends.
+    /// Its name in legends.
     pub name: &'static str,
-    /// At a pixel, in a sentence.
+    /// Its meaning at a pixel, in a sentence.
     pub meaning: &'static str,
-    /// Its own colour.
+    /// Its colour.
     pub color: Color32,
-    /// The second sign beside colour.
+    /// The hatching, which distinguishes it besides the colour.
     pub pattern: FindingPattern,
 }
 
-/// What lies over a finding's colour.
+/// The hatching over a finding's colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FindingPattern {
-    /// Nothing.
+    /// No hatching.
     Plain,
     /// ╱
     Rising,
@@ -39,7 +39,7 @@ pub enum FindingPattern {
     Dotted,
 }
 
-/// How a finding is drawn and called.
+/// A finding's colour, hatching and words.
 pub fn style(finding: Finding) -> FindingStyle {
     let (name, meaning, color, pattern) = match finding {
         Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, FindingPattern::Plain),
@@ -77,7 +77,7 @@ pub fn style(finding: Finding) -> FindingStyle {
     FindingStyle { name, meaning, color: palette::opaque(color), pattern }
 }
 
-/// How far a line of the hatching goes from the colour towards black.
+/// How much darker a line of the hatching is than the colour: 1 is black.
 const LINE_DARKNESS: f32 = 0.5;
 /// Texels from one line of the hatching to the next.
 const LINE_SPACING: usize = 5;
@@ -98,13 +98,13 @@ impl FindingPattern {
     }
 }
 
-/// The colour of a finding's number, without hatching; a number that is none is drawn as its
-/// stencil colour would be.
+/// The colour of a finding's number, without hatching; a number that is not a finding's is drawn as its stencil colour
+/// would be.
 pub fn color(byte: u8) -> Color32 {
     Finding::from_byte(byte).map_or_else(|| palette::stencil(byte), |finding| style(finding).color)
 }
 
-/// Which finding stands for several: wrong ones first, as each of them must be seen.
+/// The rank of a finding among several in one block: wrong ones come first, as each of them must be seen.
 fn weight(byte: u8) -> u8 {
     match Finding::from_byte(byte) {
         Some(Finding::FalseShadow) => 5,
@@ -116,7 +116,7 @@ fn weight(byte: u8) -> u8 {
     }
 }
 
-/// The picture of findings, `block` × `block` of them as one texel: the worst of them.
+/// The picture of findings in which each block of `block` × `block` texels is one texel: the worst of them.
 pub fn colored(image: &Image, block: usize) -> ColorImage {
     let block = block.max(1);
     let [width, height] = image.size().map(|side| (side as usize).div_ceil(block));
@@ -146,7 +146,7 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
     ColorImage::new([width, height], pixels.collect())
 }
 
-/// How a technique did for one light, in a sentence.
+/// Describes in a sentence how right a technique is for one light.
 pub fn sentence(error: &ErrorCounts, worst: Option<&WrongRegion>) -> String {
     // A line of the sentence must not end inside a number.
     let count = |value: u64| format::count(value).replace('\u{2009}', "\u{a0}");

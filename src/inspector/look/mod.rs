@@ -1,4 +1,4 @@
-//! How things look: colours, words of colours, and pictures as textures.
+//! The look of the inspector: themes, palettes, the names of colours, and pictures as textures.
 
 pub mod coloring;
 pub mod findings;

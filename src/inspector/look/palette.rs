@@ -18,14 +18,14 @@ pub const LABELS: [LabelMeaning; 4] = [
     },
 ];
 
-/// What a byte of a shadow mask means.
+/// The meaning of a byte of a shadow mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabelMeaning {
-    /// In words.
+    /// A short name.
     pub name: &'static str,
-    /// In more words.
+    /// A sentence that explains it.
     pub meaning: &'static str,
-    /// In pictures and legends.
+    /// Its colour in pictures and legends.
     pub color: Color32,
 }
 
@@ -34,13 +34,13 @@ pub(super) const fn opaque([red, green, blue]: Rgb) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
-/// each turn; 255 (−1) downwards in reds, lighter further away.
+/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle again and again, each time darker by a
+/// step; 255 (−1) downwards in reds, lighter further away.
 pub fn stencil(value: u8) -> Color32 {
     opaque(colors::stencil(value))
 }
 
-/// The colour of a label; a value that is none is drawn as its stencil colour would be.
+/// The colour of a label; a value that is not a label's is drawn as its stencil colour would be.
 pub fn label(value: u8) -> Color32 {
     opaque(colors::label(value))
 }
@@ -65,10 +65,11 @@ pub const APPEARED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
 /// No surface where there was one.
 pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
 
-/// The two inks of a bit: not set, set.
+/// The two colours of a bit: not set, set.
 pub const BITS: [Color32; 2] = [Color32::from_rgb(0x1b, 0x2a, 0x3d), Color32::from_rgb(0xf0, 0xe4, 0x42)];
 
-/// What becomes of a pixel's fragments, as bits of [`crate::capture::TestCounts`]; see-through where there are none.
+/// The colour of the test results on a pixel's fragments, bits of [`crate::capture::TestCounts`]; see-through without
+/// fragments.
 pub fn outcome(outcomes: u8) -> Color32 {
     use crate::capture::TestCounts as Counts;
     match outcomes {
@@ -77,12 +78,12 @@ pub fn outcome(outcomes: u8) -> Color32 {
         Counts::DEPTH_FAILED => Color32::from_rgb(0xe0, 0x70, 0x3a),
         Counts::STENCIL_FAILED => Color32::from_rgb(0x96, 0x78, 0xdc),
         Counts::UNKNOWN => Color32::from_rgb(0x7b, 0x82, 0x90),
-        // Apart from the caps' and the light's yellow for every eye: see the test below.
+        // Distinguishable from the caps' yellow and the light's for every eye: see the test below.
         _ => Color32::from_rgb(0x8f, 0xf2, 0xff),
     }
 }
 
-/// The ink of a receiver: 1 on it, 2 at its outline; see-through elsewhere.
+/// The colour for receivers: 1 on one, 2 at its outline; see-through elsewhere.
 pub fn receiver(ink: u8) -> Color32 {
     let color = Color32::from_rgb(0x56, 0xb4, 0xe9);
     match ink {
@@ -92,7 +93,8 @@ pub fn receiver(ink: u8) -> Color32 {
     }
 }
 
-/// How many fragments reached a pixel: dark for none, clearly more for one, then lighter, about twice as many a step.
+/// The colour for the number of fragments at a pixel: dark for none, clearly lighter for one, then lighter by a step
+/// each time the number about doubles.
 pub fn overdraw(fragments: u8) -> Color32 {
     const RAMP: [(u8, u8, u8); 6] = [
         (0x35, 0x55, 0x9c),
@@ -181,7 +183,7 @@ mod tests {
         let volumes = [&theme::DARK, &theme::LIGHT].map(of_theme);
         for other in outcomes.into_iter().chain(volumes.into_iter().flatten()).chain([receiver(2)]) {
             for (kind, eyes) in EYES.into_iter().enumerate() {
-                // A step that one sees at a glance, five times what one can just tell.
+                // A difference that is seen at a glance, five times the smallest that can be seen.
                 let found = apart(eyes, both, other);
                 assert!(found >= 0.1, "{other:?}, eyes {kind}: {found:.3}");
             }

@@ -1,8 +1,8 @@
-//! Pictures as egui textures, and what is worth knowing of a picture as a whole.
+//! Pictures as egui textures, and statistics of whole pictures.
 //!
-//! A texture is made once for an image and a colouring and kept, so that stepping back and forth
-//! shows in the next frame. Images are told apart by their `Arc`, which the cache keeps alive,
-//! so that a new image can't be taken for an old one at the same address.
+//! A texture is made once for an image and a colouring and cached, so that stepping back and forth shows in the next
+//! frame. Images are distinguished by their `Arc`, which the cache keeps alive, so that a new image can't be taken for
+//! an old one at the same address.
 
 use crate::capture::Image;
 use crate::inspector::look::coloring::{self, Coloring};
@@ -15,12 +15,12 @@ use egui::{Color32, ColorImage, Context, TextureFilter, TextureHandle, TextureOp
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Bytes of textures that are kept, beyond those of the current frame.
+/// Bytes of textures that are cached, beyond those of the current frame.
 const CACHED_BYTES: usize = 384 << 20;
 /// Largest side of a thumbnail in texels: twice the points, for sharp screens.
 const THUMBNAIL_SIDE: u32 = 112;
 
-/// Textures and facts of images, made on first use.
+/// Textures and statistics of images, computed on first use.
 #[derive(Default)]
 pub struct PictureCache {
     textures: Vec<CachedTexture>,
@@ -35,11 +35,11 @@ pub struct PictureCache {
 /// How many texels let all of the light through, none of it, or a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LightShares {
-    /// White.
+    /// All: white.
     pub all: u64,
-    /// Black.
+    /// None: black.
     pub none: u64,
-    /// Any other colour.
+    /// A part: any other colour.
     pub part: u64,
 }
 
@@ -48,13 +48,12 @@ pub const DEPTH_BARS: usize = 48;
 /// How many texels lie in each part of a range of depths.
 pub type DepthHistogram = [u64; DEPTH_BARS];
 
-/// How large a texture is needed.
+/// The resolution that is needed of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextureSize {
-    /// A texel each, unless the GPU can't hold that many.
+    /// One texel for each of the image's, unless the GPU allows no texture of that size.
     Full,
-    /// So many texels each way as one, at least; only findings are made small so, of which the
-    /// worst is shown.
+    /// At least so many texels each way become one; only pictures of findings are reduced so, and the worst is shown.
     Blocks(u32),
     /// At most [`THUMBNAIL_SIDE`].
     Thumbnail,
@@ -69,7 +68,7 @@ struct CachedTexture {
 }
 
 impl PictureCache {
-    /// Call once a frame: what has not been used for long goes first when memory is short.
+    /// Call once a frame: drops what has not been used for long when memory is short.
     pub fn tick(&mut self) {
         self.clock += 1;
         let mut bytes: usize = self.textures.iter().map(|texture| texture.handle.byte_size()).sum();
@@ -81,7 +80,7 @@ impl PictureCache {
         }
     }
 
-    /// Drops what is about images that nobody else holds any more.
+    /// Drops what belongs to images that nothing else refers to.
     pub fn forget_unused(&mut self) {
         let own_uses = |image: &Arc<Image>| {
             let textures = self.textures.iter().filter(|texture| Arc::ptr_eq(&texture.image, image)).count();
@@ -135,7 +134,7 @@ impl PictureCache {
             _ => colored(image, coloring, side),
         };
         let handle = ctx.load_texture("picture", picture, options(coloring));
-        // While a range is dragged only its latest texture is worth keeping.
+        // While a range is dragged only its latest texture is worth caching.
         if let Coloring::Depth(_) = coloring {
             let is_older = |cached: &CachedTexture| {
                 Arc::ptr_eq(&cached.image, image) && cached.size == size && cached.last_used < clock
@@ -157,7 +156,7 @@ impl PictureCache {
         histogram
     }
 
-    /// How many texels of a picture of counts have each.
+    /// How many texels of a picture of counts have each count.
     pub fn tally(&mut self, image: &Arc<Image>) -> Arc<Tally> {
         if let Some((_, tally)) = self.tallies.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return tally.clone();
@@ -177,7 +176,7 @@ impl PictureCache {
         shares
     }
 
-    /// How many texels of a depth picture lie in each part of `range`; those outside of it in none.
+    /// How many texels of a depth picture lie in each part of `range`; texels outside it are not counted.
     pub fn depth_histogram(&mut self, image: &Arc<Image>, measure: DepthMeasure, range: [f64; 2]) -> DepthHistogram {
         if let Some((of, by, over, bars)) = &self.depth_histogram
             && Arc::ptr_eq(of, image)
@@ -222,7 +221,7 @@ fn options(coloring: Coloring) -> TextureOptions {
     TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
 }
 
-/// Texels that become one in a texture of at most `most` a side.
+/// How many texels become one, each way, in a texture of at most `most` a side.
 fn thinning(image: &Image, most: u32) -> usize {
     let [width, height] = image.size();
     width.max(height).div_ceil(most.max(1)).max(1) as usize
@@ -298,7 +297,7 @@ pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     picture
 }
 
-/// Lays these columns of a picture over another of its size: where it is see-through the other stays.
+/// Lays these columns of a picture over another of its size, whose texels stay where it is see-through.
 pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring, columns: Range<u32>) {
     let colored = colored(image, coloring, u32::MAX);
     let [width, height] = image.size();
@@ -310,7 +309,7 @@ pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring, column
     }
 }
 
-/// A colour over another: a colour is multiplied by its alpha already.
+/// Blends a colour, which is premultiplied by its alpha, over another.
 pub fn over(color: Color32, under: Rgb) -> Rgb {
     let [red, green, blue, alpha] = color.to_array();
     let stays = |under: u8| (u16::from(under) * u16::from(255 - alpha) / 255) as u8;

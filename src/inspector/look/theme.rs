@@ -6,26 +6,26 @@
 use crate::plan::DrawPart;
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2};
 
-/// What each colour means, and what it is in one theme.
+/// The colours of a theme, by what they mean.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Theme {
-    /// Behind everything.
+    /// The window's background.
     pub background: Color32,
-    /// A panel.
+    /// A panel's background.
     pub panel: Color32,
-    /// A button or card on a panel.
+    /// The background of a button or card on a panel.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
-    /// Words that matter.
+    /// Important words.
     pub text: Color32,
-    /// Words beside them.
+    /// Words that accompany them.
     pub dim: Color32,
-    /// What is not there, or did not change.
+    /// Words for what is absent, or did not change.
     pub faint: Color32,
-    /// The accent: selected.
+    /// The accent, which means selected.
     pub selected: Color32,
-    /// The outline of what has the keyboard, apart from the accent.
+    /// The outline of the widget with the keyboard focus, distinct from the accent.
     pub focus: Color32,
     /// A selected row.
     pub selected_row: Color32,
@@ -35,9 +35,9 @@ pub struct Theme {
     pub passed: Color32,
     /// A test that failed.
     pub failed: Color32,
-    /// A test that was decided in advance, or not asked.
+    /// A test whose result is fixed in advance, or that is not done.
     pub decided: Color32,
-    /// The light reaches it.
+    /// Lit by a light.
     pub lit: Color32,
     /// A count goes up by one.
     pub count_up: Color32,
@@ -55,7 +55,7 @@ const fn rgb(hex: u32) -> Color32 {
     Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
 }
 
-/// Light ink on dark ground.
+/// Light text on a dark background.
 pub const DARK: Theme = Theme {
     background: rgb(0x14161b),
     panel: rgb(0x1b1e25),
@@ -79,7 +79,7 @@ pub const DARK: Theme = Theme {
     dark_cap: rgb(0x7a86ff),
 };
 
-/// Dark ink on light ground: the same hues, darker, so that words in them can be read.
+/// Dark text on a light background: the hues of the dark theme, darker, so that words in them can be read.
 pub const LIGHT: Theme = Theme {
     background: rgb(0xe4e7ec),
     panel: rgb(0xf6f7f9),
@@ -114,7 +114,7 @@ pub fn in_visuals(visuals: &egui::Visuals) -> &'static Theme {
 }
 
 impl Theme {
-    /// The colour of a part of a shadow volume; `None` for what has none of its own.
+    /// The colour of a part of a shadow volume; `None` for parts that have no colour of their own.
     pub fn part(&self, part: DrawPart) -> Option<Color32> {
         match part {
             DrawPart::Side => Some(self.side),
@@ -197,12 +197,12 @@ fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
     }
 }
 
-/// A number or an address: the monospaced face.
+/// Text in the monospaced face, for numbers and addresses.
 pub fn number(text: impl Into<String>) -> RichText {
     RichText::new(text).font(number_font(SMALL_SIZE))
 }
 
-/// The monospaced face in a size, in points.
+/// The font id of the monospaced face at a size in points.
 pub fn number_font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Monospace)
 }
@@ -212,13 +212,13 @@ pub fn switch_word(ui: &Ui, word: &str, is_on: bool) -> RichText {
     RichText::new(word).color(if is_on { of(ui).text } else { of(ui).dim })
 }
 
-/// A side note.
+/// Text of a side note.
 pub fn note(text: impl Into<String>) -> RichText {
     RichText::new(text).size(SMALL_SIZE).weak()
 }
 
-/// A heading: told apart by weight, not by size. The bundled face has one weight, so its
-/// strokes are thickened by drawing the text twice, half a point apart.
+/// Draws a heading: it stands out by weight, not by size. The bundled face has one weight, so its strokes are thickened
+/// by drawing the text twice, half a point apart.
 pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
     let response = ui.label(RichText::new(text).color(of(ui).text));
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(TEXT_SIZE), of(ui).text);
@@ -229,7 +229,7 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
     response
 }
 
-/// One line of text, cut off with an ellipsis where there is no room.
+/// Draws one line of text, cut off with an ellipsis where it does not fit.
 pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, color: Color32) {
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
@@ -237,7 +237,7 @@ pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, c
     ui.painter().galley(at, galley, color);
 }
 
-/// Two words on one line, the second dim, cut off with an ellipsis; `at` is its left end, half way up.
+/// Draws two words on one line, the second dim, cut off with an ellipsis; `at` is the left end, at half height.
 pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
     let mut job = egui::text::LayoutJob::default();
     let format = |color| egui::TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
@@ -250,7 +250,7 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Co
     ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
 }
 
-/// What is behind a row that can be clicked: the accent where it is selected.
+/// Draws the background of a row that can be clicked: the accent where it is selected.
 pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &egui::Response) {
     let painter = ui.painter();
     if is_selected {
@@ -265,7 +265,7 @@ pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &e
     }
 }
 
-/// A card on a panel.
+/// The frame of a card on a panel.
 pub fn card(ui: &Ui) -> egui::Frame {
     egui::Frame::new()
         .fill(of(ui).raised)
@@ -274,17 +274,17 @@ pub fn card(ui: &Ui) -> egui::Frame {
         .inner_margin(Margin::same(8))
 }
 
-/// A frame around a dialog over everything.
+/// The frame of a dialog over everything.
 pub fn dialog(ctx: &egui::Context) -> egui::Frame {
     egui::Frame::window(&ctx.global_style()).corner_radius(CornerRadius::same(4)).inner_margin(Margin::same(16))
 }
 
-/// A frame around the contents of a docked panel.
+/// The frame around the contents of a docked panel.
 pub fn panel_frame(ui: &Ui) -> egui::Frame {
     egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::same(8))
 }
 
-/// A small square of colour, as in legends.
+/// Draws a small square of colour, as in legends.
 pub fn swatch(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().rect(rect, CornerRadius::same(2), color, Stroke::new(1.0, of(ui).faint), egui::StrokeKind::Inside);
@@ -294,7 +294,7 @@ pub fn swatch(ui: &mut Ui, color: Color32) {
 mod tests {
     use super::*;
 
-    /// Contrast of two colours after WCAG 2.
+    /// Contrast ratio of two colours by WCAG 2.
     fn contrast(a: Color32, b: Color32) -> f64 {
         let light = |color: Color32| {
             let [red, green, blue, _] = color.to_array().map(|byte| {

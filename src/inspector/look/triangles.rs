@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use egui::epaint::{ImageData, Mesh, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TexturesDelta};
 
-/// The texture of letters, as a first frame of egui makes it; its first texel is white.
+/// The font texture, as egui creates it in its first frame; its first texel is white.
 pub fn letters(textures: &TexturesDelta) -> ColorImage {
     let mut letters = ColorImage::filled([1, 1], Color32::WHITE);
     for delta in textures.set.get(&TextureId::default()).into_iter().flatten() {
@@ -69,7 +69,7 @@ fn fill_triangle(picture: &mut Picture, corners: [Vertex; 3], clip: Rect, letter
     }
 }
 
-/// Where the line at height `y` enters and leaves a triangle; an edge has its upper end, and not its lower one.
+/// Where the line at height `y` enters and leaves a triangle; an edge includes its upper end, and not its lower one.
 fn between([a, b, c]: [Pos2; 3], y: f32) -> Option<[f32; 2]> {
     let crossing = |[p, q]: [Pos2; 2]| {
         let [upper, lower] = if p.y <= q.y { [p, q] } else { [q, p] };
@@ -80,7 +80,7 @@ fn between([a, b, c]: [Pos2; 3], y: f32) -> Option<[f32; 2]> {
     met.fold(None, |ends: Option<[f32; 2]>, x| Some(ends.map_or([x, x], |[low, high]| [low.min(x), high.max(x)])))
 }
 
-/// The corners' colours in these shares, times the letter there.
+/// The corners' colours interpolated with these weights, times the texel of the font texture there.
 fn color(corners: [Vertex; 3], shares: [f32; 3], letters: &ColorImage) -> Color32 {
     let mixed = |value: &dyn Fn(&Vertex) -> f32| -> f32 {
         corners.iter().zip(shares).map(|(corner, share)| value(corner) * share).sum()

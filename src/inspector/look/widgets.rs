@@ -1,4 +1,4 @@
-//! Small widgets that several panels are made of.
+//! Small widgets that several panels use.
 
 use super::theme;
 use egui::{Align2, CornerRadius, Response, RichText, Stroke, StrokeKind, Ui, pos2, vec2};
@@ -6,37 +6,37 @@ use egui::{Align2, CornerRadius, Response, RichText, Stroke, StrokeKind, Ui, pos
 /// One of several buttons side by side.
 #[derive(Debug, Clone, Copy)]
 pub struct ButtonSegment<'a> {
-    /// Its words.
+    /// Its text.
     pub label: &'a str,
     /// What it does, or why it can't be pressed.
     pub explanation: &'a str,
-    /// It can be pressed.
+    /// Whether it can be pressed.
     pub is_enabled: bool,
-    /// It is not chosen, but what it stands for is seen.
+    /// It is not chosen, but its picture is the one that is shown.
     pub is_seen: bool,
-    /// What was changed of what it stands for, marked by a dot; empty where nothing was.
+    /// The settings that were changed, marked by a dot; empty where none was.
     pub changed: &'a str,
 }
 
 impl<'a> ButtonSegment<'a> {
-    /// One that can be pressed.
+    /// Returns a segment that can be pressed.
     pub fn new(label: &'a str, explanation: &'a str) -> ButtonSegment<'a> {
         ButtonSegment { label, explanation, is_enabled: true, is_seen: false, changed: "" }
     }
 }
 
-/// Between the words of joined buttons and their borders, points.
+/// Padding between the words of joined buttons and their borders, points.
 const SEGMENT_PADDING: f32 = 7.0;
 
-/// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
-/// Returns the one that was clicked.
+/// Draws buttons side by side in one frame, of which one is chosen: label and explanation of each. Returns the one that
+/// was clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
     let all: Vec<ButtonSegment> =
         labels.iter().map(|(label, explanation)| ButtonSegment::new(label, explanation)).collect();
     segments_of(ui, &all, chosen)
 }
 
-/// As [`segments`], where some can't be pressed.
+/// Does the same as [`segments`] for segments some of which can't be pressed.
 pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize>) -> Option<usize> {
     let mut clicked = None;
     let frame = egui::Frame::new()
@@ -44,10 +44,10 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
         .stroke(Stroke::new(1.0, theme::of(ui).line))
         .corner_radius(CornerRadius::same(4));
     frame.show(ui, |ui| {
-        // Laid out left to right whatever surrounds them.
+        // Left to right in any surrounding layout.
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            // So that all kinds of picture have room in a window of 1280 points.
+            // So that the buttons for all kinds of picture fit into a window of 1280 points.
             ui.spacing_mut().button_padding.x = SEGMENT_PADDING;
             for (index, segment) in segments.iter().enumerate() {
                 let is_chosen = chosen == Some(index);
@@ -91,17 +91,17 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
     clicked
 }
 
-/// The name of a setting: brighter where it was changed.
+/// Draws the name of a setting: brighter where it was changed.
 pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
     let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
     ui.label(theme::note(name).color(ink))
 }
 
-/// Width of a button that takes one change back, points.
+/// Width of a button that resets one setting, points.
 const RESET_WIDTH: f32 = 14.0;
 
-/// The start of a setting's row: where it was changed a mark, which takes the change back when pressed. It has its room
-/// all the same, so that nothing moves.
+/// Draws the start of a setting's row: where it was changed a mark that resets it when pressed. The space is there also
+/// without a mark, so that nothing moves. Returns whether it was pressed.
 pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
     let size = vec2(RESET_WIDTH, ui.spacing().interact_size.y);
     if !is_changed {
@@ -117,7 +117,7 @@ pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
     button.on_hover_text(format!("Changed. Back to {before}")).clicked()
 }
 
-/// A widget that arrows move itself: while it has the focus they do not step.
+/// Marks a widget as moved by arrow keys: while it has the focus they do not step through the frame.
 pub fn keep_arrows(ui: &Ui, response: &Response) {
     if response.has_focus() {
         let arrows =
@@ -127,17 +127,17 @@ pub fn keep_arrows(ui: &Ui, response: &Response) {
     }
 }
 
-/// Do arrows move the widget with the focus itself?
+/// Is the widget with the focus one that arrow keys move?
 pub fn has_own_arrows(ctx: &egui::Context, focus: Option<egui::Id>) -> bool {
     focus.is_some() && focus == ctx.data(|data| data.get_temp(own_arrows()))
 }
 
-/// Where it is noted which one that is.
+/// The id under which the focused widget that arrow keys move is stored.
 fn own_arrows() -> egui::Id {
     egui::Id::unique("moved by arrows itself")
 }
 
-/// What stands at the right end of a row, in the order in which it is read and Tab goes.
+/// Draws the contents at the right end of a row, in the order in which they are read and Tab goes.
 pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     let id = ui.scope_id().with(name);
     let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
@@ -150,7 +150,7 @@ pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     }
 }
 
-/// Words on a plate of the ground's colour, so that they can be read over anything.
+/// Draws words on a plate in the background colour, so that they can be read over anything.
 pub fn plate(
     painter: &egui::Painter,
     at: egui::Pos2,

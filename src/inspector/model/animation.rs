@@ -1,27 +1,27 @@
-//! The scene's animation: it runs in the time of the wall, one capture after the other.
+//! The scene's animation: it runs in real time, one capture after the other.
 //!
-//! The next moment is asked for when the last is shown, so nothing queues up: a slow technique shows
-//! fewer moments, not later ones.
+//! The next time is asked for when the last one is shown, so nothing queues up: a slow technique shows fewer frames,
+//! not later ones.
 
 use super::Model;
 use crate::inspector::action::Action;
 
-/// Seconds of a step by hand.
+/// Length of a single step by hand, seconds.
 const STEP: f64 = 1.0 / 30.0;
-/// A pause in drawing is no jump in the scene: a moment lasts this long at most, seconds.
+/// The scene's time advances by at most this much a frame, seconds, so that a pause in drawing is no jump in the scene.
 const LONGEST: f64 = 0.25;
 
-/// Is it running, and since when is the shown moment on?
+/// Whether the animation is running, and when its last frame was asked for.
 #[derive(Debug, Default)]
 pub struct Animation {
     /// It runs.
     pub is_running: bool,
-    /// egui's time when the last moment was asked for, seconds.
+    /// egui's time when the last frame was asked for, seconds.
     last: Option<f64>,
 }
 
 impl Animation {
-    /// Runs, or stops.
+    /// Starts the animation, or stops it.
     pub fn toggle(&mut self) {
         self.is_running = !self.is_running;
         self.last = None;
@@ -34,7 +34,7 @@ impl Model {
         self.scene.as_ref().is_some_and(|scene| scene.animated)
     }
 
-    /// Asks for the next moment, when the last one is shown. `now`: egui's time, seconds.
+    /// Asks for the next frame once the last one is shown. `now` is egui's time, seconds.
     pub fn animate(&mut self, now: f64, actions: &mut Vec<Action>) {
         if !self.animation.is_running || !self.is_animated() {
             self.animation.is_running = false;
@@ -48,7 +48,7 @@ impl Model {
         self.advance(passed, actions);
     }
 
-    /// A step by hand; it stops a running animation.
+    /// Advances the animation by one step; stops it if it is running.
     pub fn step_animation(&mut self, actions: &mut Vec<Action>) {
         self.animation.is_running = false;
         if self.is_animated() {

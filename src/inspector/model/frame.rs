@@ -1,5 +1,5 @@
 //! The frame that is shown: its capture with all that is known of it by now. The capture as it was captured stays as it
-//! is; its truth, its draws and its time are answers, and are put beside it here and nowhere else.
+//! is; its truth, its draws and its time are answers, and are added to it here and nowhere else.
 
 use super::Model;
 use crate::ask::{DrawsOf, FilmOf, Filmed, QuestionKind, TestsOf, TimingOf, TruthOf};
@@ -9,16 +9,16 @@ use crate::reading::format;
 use crate::reading::shown::has_truth;
 use std::sync::Arc;
 
-/// What is looked at.
+/// The frame that is shown.
 #[derive(Debug, Default)]
 pub struct ShownFrame {
-    /// The capture with what is known of it.
+    /// The capture, with all answers that are known.
     pub capture: Option<Arc<Capture>>,
     /// Memory of its pictures, bytes.
     pub bytes: u64,
-    /// What was run; `None` for a capture folder.
+    /// The plan that was run; `None` for a capture folder.
     pub plan: Option<Arc<FramePlan>>,
-    /// How many frames were shown: what is made for one is of no use for the next.
+    /// How many frames have been shown: what is computed for one can't be used for the next.
     pub number: u64,
 }
 
@@ -30,7 +30,7 @@ impl ShownFrame {
 }
 
 impl Model {
-    /// Can it be asked what only a run of the frame tells? Not of a folder that holds pictures alone.
+    /// Can questions be asked that only a run of the frame answers? Not of a folder that contains only pictures.
     pub fn can_ask(&self) -> bool {
         self.scene.is_some() || self.frame.plan.is_some()
     }
@@ -55,7 +55,7 @@ impl Model {
         self.frame.set(capture);
     }
 
-    /// Shows the same frame, of which more is known.
+    /// Shows the same frame with more answers in its capture.
     pub fn update_capture(&mut self, capture: Arc<Capture>) {
         if has_truth(&capture) {
             self.view.older_truth = None;
@@ -64,7 +64,7 @@ impl Model {
         self.textures.forget_unused();
     }
 
-    /// Where truth is looked at, that of the frame before is shown until that of this one is known.
+    /// Where the truth is shown, that of the previous frame stays until that of this frame is known.
     fn keep_truth(&mut self, before: Option<&Capture>, now: &Capture) {
         let is_alike = |before: &&Capture| before.scene == now.scene && before.size == now.size;
         match before.filter(is_alike).filter(|_| self.view.wants_truth()) {
@@ -77,7 +77,7 @@ impl Model {
         }
     }
 
-    /// Stops what is being found out, for good.
+    /// Stops the work on questions of this kind, for good.
     pub fn cancel(&mut self, kind: QuestionKind) {
         self.answers.cancel(kind);
         if kind == QuestionKind::TruthOf {
@@ -85,7 +85,7 @@ impl Model {
         }
     }
 
-    /// Takes an answer to a question of this kind into the frame, where it belongs there.
+    /// Adds an answer to a question of this kind to the frame, where it belongs there.
     pub fn take_in(&mut self, kind: QuestionKind) {
         if kind == QuestionKind::FilmOf
             && let Some((film, Filmed { pictures, bytes })) =

@@ -1,7 +1,7 @@
-//! The history of the picked pixel, while it is known, on its way, or of what was picked just before.
+//! The history of the picked pixel: known, being computed, or still that of the pixel picked before.
 //!
-//! An answer takes a few milliseconds. For as long as [`PATIENCE`] what was known of the pixel
-//! before stays as it is, so that a dragged pick does not flicker; after that it is greyed.
+//! An answer takes a few milliseconds. For as long as [`PATIENCE`] the history of the pixel picked before stays on the
+//! screen, so that a dragged pick does not flicker; after that it is greyed.
 
 use super::Model;
 use crate::ask::{HistoryOf, Reply};
@@ -12,7 +12,8 @@ use std::sync::Arc;
 pub const PATIENCE: f64 = 0.12;
 
 impl Model {
-    /// Wants the history of the picked pixel; nothing where no pixel is picked, or there are pictures alone.
+    /// Asks for the history of the picked pixel; nothing where no pixel is picked, or the capture contains only
+    /// pictures.
     pub fn want_history(&self) -> Reply<PixelHistory> {
         match self.selection.pick.filter(|_| self.can_ask() && self.frame.capture.is_some()) {
             Some(at) => self.answers.want(HistoryOf { at }),
@@ -20,14 +21,15 @@ impl Model {
         }
     }
 
-    /// Wants the history of the picked pixel; seconds until it is late, while it is waited for and not late yet.
+    /// Asks for the history of the picked pixel. Returns the seconds until it is late, while it is waited for and not
+    /// late yet.
     pub fn want_history_until(&self) -> Option<f64> {
         let reply = self.want_history();
         let is_waited_for = self.selection.pick.is_some() && reply.ready.is_none() && reply.failed.is_none();
         (is_waited_for && self.can_ask() && !is_late(&reply)).then(|| (PATIENCE - reply.waits_for).max(0.001))
     }
 
-    /// The history of the picked pixel, or of the one that was picked just before, of the same frame.
+    /// The history of the picked pixel, or of the pixel picked before in the same frame.
     pub fn history_of_frame(&self) -> Option<Arc<PixelHistory>> {
         let reply = self.want_history();
         let is_late = is_late(&reply);
@@ -41,7 +43,7 @@ impl Model {
     }
 }
 
-/// What is shown is of another pixel or frame, and has been for a while.
+/// Is the shown history that of another pixel or frame, and has it been for longer than [`PATIENCE`]?
 pub fn is_late(reply: &Reply<PixelHistory>) -> bool {
     reply.ready.is_none() && reply.waits_for >= PATIENCE
 }

@@ -19,37 +19,37 @@ use crate::technique::{Choice, Technique};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// What the divider moves by a key press, in shares of the panel.
+/// How far a key press moves the divider, as a share of the panel's width.
 pub const NUDGE: f32 = 0.02;
 
 named_enum! {
     /// Which side of the selected step or draw is shown, in the order of their buttons.
     #[derive(Default)]
     pub enum StepPhase(
-        /// What its button does.
+        /// The explanation on its button.
         explanation
     ) {
-        /// As it was before.
+        /// The state before it.
         Before = "Before" ("As it was before the selected step or draw (B goes there and back)"),
-        /// As it is now.
+        /// The state after it.
         #[default]
         After = "After" ("As the selected step or draw left it"),
-        /// What changed.
+        /// What it changed.
         Diff = "Diff" ("What the selected step or draw changed (D)"),
     }
 }
 
-/// Why there is nothing to show of the time before.
+/// Why there is no state before the selected one to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoStepBefore {
     /// It is the first step.
     First,
-    /// The state after the draw before is being captured, or can't be had.
+    /// The state after the previous draw is being captured, or can't be captured.
     NotKnown,
 }
 
 impl NoStepBefore {
-    /// In a sentence, with what to do.
+    /// Returns the reason in a sentence, with what to do.
     pub fn sentence(self) -> &'static str {
         match self {
             NoStepBefore::First => {
@@ -62,10 +62,10 @@ impl NoStepBefore {
     }
 }
 
-/// A comparison.
+/// A comparison of the shown picture with another one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Comparison {
-    /// What is shown beside the picture.
+    /// The picture that is shown beside it.
     pub with: ComparedWith,
     /// Where the divider is: 0 at the left, 1 at the right.
     pub at: f32,
@@ -73,7 +73,7 @@ pub struct Comparison {
     pub flipped: bool,
 }
 
-/// What is compared with.
+/// The picture that the shown one is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ComparedWith {
     /// Another step of the frame, by index.
@@ -83,14 +83,14 @@ pub enum ComparedWith {
 }
 
 impl Comparison {
-    /// Beside step `step`: the one before it, or the one after the first.
+    /// Compares step `step` with the one before it, or the first step with the second.
     pub fn new(step: usize) -> Comparison {
         Comparison { with: ComparedWith::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
     }
 }
 
 impl ComparedWith {
-    /// In a few words.
+    /// Describes it in a few words.
     pub fn words(self, capture: &Capture) -> String {
         match self {
             ComparedWith::Step(step) => step_words(capture, step),
@@ -110,13 +110,13 @@ pub fn step_words(capture: &Capture, step: usize) -> String {
 /// How the picture is looked at.
 #[derive(Debug, Default)]
 pub struct ViewModes {
-    /// Before, after, or what changed.
+    /// Whether the state before, the state after, or the change is shown.
     pub phase: StepPhase,
-    /// The one bit of the stencil that is shown; `None`: all.
+    /// The one bit of the stencil that is shown; `None`: all bits.
     pub bit: Option<u8>,
-    /// What is shown beside it.
+    /// The comparison; `None` while nothing is compared.
     pub compare: Option<Comparison>,
-    /// What is drawn over it.
+    /// The overlays that are drawn over the picture.
     pub overlays: BTreeSet<Overlay>,
 }
 
@@ -125,10 +125,10 @@ pub fn has_phases(kind: PictureKind) -> bool {
     matches!(kind, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
 }
 
-/// What came before a moment.
+/// Returns the point of the frame before this one.
 ///
 /// # Errors
-/// There is nothing, or it is not known.
+/// There is none, or its state is not known.
 pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoStepBefore> {
     match at.draw.and_then(|draw| draw.checked_sub(1)) {
         Some(draw) => {
@@ -140,7 +140,7 @@ pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoSte
 }
 
 impl Model {
-    /// The picture that is shown: of the selected moment, or of the one before it.
+    /// The picture that is shown: of the selected point of the frame, or of the one before it.
     pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
         let now = self.view.shown(capture, self.moment());
         match self.modes.phase {
@@ -152,7 +152,7 @@ impl Model {
         }
     }
 
-    /// The picture before the selected moment.
+    /// The picture before the selected point of the frame.
     ///
     /// # Errors
     /// There is nothing before it, or it is not known.
@@ -166,13 +166,13 @@ impl Model {
         Ok(shown)
     }
 
-    /// Does something that is shown need the state before the selected draw, which is not known?
+    /// Does something that is shown need the state before the selected draw, while that is not known?
     pub fn lacks_draw_before(&self) -> bool {
         let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoStepBefore::NotKnown);
         self.modes.phase != StepPhase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
     }
 
-    /// The run that captures another technique as the shown frame was.
+    /// Returns the run that captures another technique with all else as in the shown frame.
     fn request_of(&self, technique: Technique) -> Option<RunRequest> {
         let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
         let remembered = scene.choices.get(&technique).cloned();
@@ -180,8 +180,8 @@ impl Model {
         Some(RunRequest { choice, ..scene.draft.clone() })
     }
 
-    /// What stands beside the picture first: the step before it, or of a picture of the whole frame, which no step
-    /// changes, that of another technique.
+    /// Returns the comparison to begin with: with the step before, or, for a picture of the whole frame, which no step
+    /// changes, with another technique.
     pub fn first_comparison(&self) -> Comparison {
         let compare = Comparison::new(self.selection.step);
         let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
@@ -227,18 +227,19 @@ impl Model {
         if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
     }
 
-    /// Wants to know how the fragments of the selected step or draw fared in the tests.
+    /// Asks for the results of the tests on the fragments of the selected step or draw.
     pub fn want_tests(&self) -> Reply<TestOutcomes> {
         let CapturePoint { step, draw } = self.selected();
         self.answers.want(TestsOf { step, draw })
     }
 
-    /// Wants to know that where the picture of it is wished for.
+    /// Asks for the results of the tests where a picture of them is to be shown.
     pub fn want_tests_shown(&self) -> Option<Reply<TestOutcomes>> {
         (self.view.kind == Some(PictureKind::Overdraw)).then(|| self.want_tests())
     }
 
-    /// The counts to show a pixel of: of the light whose picture is shown, or else of the step's.
+    /// Returns the light whose counts a pixel is read from, and those: the light whose picture is shown, else the
+    /// step's.
     pub fn counts_to_show<'a>(&self, capture: &'a Capture) -> Option<(usize, &'a Arc<Image>)> {
         let at = self.moment();
         if self.view.shown(capture, at).is_some_and(|shown| shown.kind == PictureKind::Count) {
@@ -251,7 +252,7 @@ impl Model {
 }
 
 impl Model {
-    /// What the texels of `shown` mean as it is looked at, and the ends of the grey ramp.
+    /// Returns what the texels of `shown` mean in the current modes, and the ends of the grey ramp.
     pub fn shown_coloring(&mut self, shown: &ShownPicture) -> (Coloring, [f64; 2]) {
         let range = self.shown_range(shown);
         match (Coloring::of_shown(shown, range), self.modes.bit) {
@@ -260,7 +261,7 @@ impl Model {
         }
     }
 
-    /// The grey ramp's ends: as set by hand, or those of all shown pictures.
+    /// The grey ramp's ends: as set by the user, or those of all shown pictures.
     fn shown_range(&mut self, shown: &ShownPicture) -> [f64; 2] {
         self.view.depth_range.unwrap_or_else(|| self.full_range(shown))
     }
@@ -271,7 +272,7 @@ impl Model {
     }
 }
 
-/// As [`Model::full_range`].
+/// Returns the smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
 pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2] {
     if !matches!(Coloring::of_shown(shown, [0.0, 1.0]), Coloring::Depth(_)) {
         return [0.0, 1.0];
@@ -280,7 +281,7 @@ pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2]
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
 }
 
-/// How many texels differ, in a sentence.
+/// Returns a sentence that says how many texels differ.
 pub fn sentence(texels: Option<u64>, all: u64) -> String {
     match texels {
         None => "Pictures of different kinds: nothing to count.".to_owned(),
@@ -288,7 +289,7 @@ pub fn sentence(texels: Option<u64>, all: u64) -> String {
         Some(texels) => {
             let share = texels as f64 / all.max(1) as f64;
             let verb = if texels == 1 { "differs" } else { "differ" };
-            // A few of many are not none.
+            // A share of a few texels must not round to zero.
             let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
             format!("{} {verb}: {share}", format::counted(texels, "texel"))
         }

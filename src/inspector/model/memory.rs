@@ -1,24 +1,24 @@
-//! What the window remembers from one run to the next: theme, layout, what was open.
+//! What the window stores from one run to the next: theme, layout, what was open.
 
 use super::Model;
 use serde::{Deserialize, Serialize};
 
-/// Sources that are remembered.
+/// How many recent sources are stored.
 const MOST_RECENT: usize = 12;
 
 /// Dark or light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ThemeChoice {
-    /// Light ink on dark ground.
+    /// Light text on a dark background.
     #[default]
     Dark,
-    /// Dark ink on light ground.
+    /// Dark text on a light background.
     Light,
 }
 
 impl ThemeChoice {
-    /// The other one.
+    /// Returns the other theme.
     #[must_use]
     pub fn other(self) -> ThemeChoice {
         match self {
@@ -27,7 +27,7 @@ impl ThemeChoice {
         }
     }
 
-    /// In egui's words.
+    /// Returns egui's name for the theme.
     pub fn in_egui(self) -> egui::Theme {
         match self {
             ThemeChoice::Dark => egui::Theme::Dark,
@@ -36,20 +36,20 @@ impl ThemeChoice {
     }
 }
 
-/// What is remembered; unknown or missing parts of a stored one are as at first.
+/// What is stored; unknown or missing parts of a stored file have their initial values.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct StoredSettings {
     /// Dark or light.
     pub theme: ThemeChoice,
-    /// What was opened, the last first: built-in names and paths.
+    /// The sources that were opened, the last first: built-in names and paths.
     pub recent: Vec<String>,
-    /// Where the panels are, if they were moved.
+    /// The panels' layout, if the user changed it.
     pub layout: Option<serde_json::Value>,
 }
 
 impl Model {
-    /// Something was opened: it comes first among what was.
+    /// Puts a source that was opened in the first place of the recent ones.
     pub fn note_recent(&mut self, source: &str) {
         self.recent.retain(|other| other != source);
         self.recent.insert(0, source.to_owned());

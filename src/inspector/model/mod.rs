@@ -1,13 +1,13 @@
 //! What the panels show: the frame, the scene and how it is to be run, what is selected, what is known.
 //!
-//! Panels read it. What they may change of it, the selection, the picture that is looked at and the next run, they change
-//! through its methods; what only one of them needs to remember is its own. No widget is drawn here.
+//! Panels read it. What they may change of it, the selection, the picture that is looked at and the next run, they
+//! change through its methods; what only one of them needs is stored in the panel itself. No widget is drawn here.
 //!
 //! ```text
 //! frame.rs     the capture that is shown, and all that is known of it by now     scene.rs   the open scene and its next run
 //! selection.rs step, draw, pixel, triangle                                       looking.rs which picture, and how
-//! history.rs   the picked pixel's history while it is on its way                 undo.rs    changes that can be taken back
-//! animation.rs, walk.rs  time and eye that move by themselves                    memory.rs  from one run to the next
+//! history.rs   the picked pixel's history while it is being computed             undo.rs    undo and redo
+//! animation.rs, walk.rs  the scene's time, and walking                           memory.rs  from one run to the next
 //! ```
 
 pub mod animation;
@@ -36,38 +36,38 @@ use std::sync::Arc;
 use undo::UndoHistory;
 use walk::WalkState;
 
-/// All that more than one panel looks at.
+/// The state that more than one panel reads.
 #[derive(Debug, Default)]
 pub struct Model {
-    /// What is looked at.
+    /// The frame that is shown.
     pub frame: ShownFrame,
-    /// What can be changed; `None` for a capture folder.
+    /// The open scene with its settings; `None` for a capture folder.
     pub scene: Option<OpenScene>,
-    /// How many scenes were opened: what is remembered of one is of no use for the next.
+    /// How many scenes were opened: what is stored for one can't be used for the next.
     pub scenes_opened: u64,
-    /// What was asked of frame and scene.
+    /// Questions about frame and scene, with their answers.
     pub answers: Answers,
     /// What is selected.
     pub selection: Selection,
     /// The picture panel's picture.
     pub view: PictureView,
-    /// How it is looked at.
+    /// How that picture is looked at.
     pub modes: ViewModes,
-    /// What goes on.
+    /// The jobs that are running, and their messages.
     pub activity: Activity,
-    /// What one panel wishes of another.
+    /// What one panel asks of another.
     pub requests: Requests,
     /// The dialog that is open.
     pub dialog: Option<DialogKind>,
     /// Dark or light.
     pub theme: ThemeChoice,
-    /// What was opened, the last first.
+    /// The sources that were opened, the last first.
     pub recent: Vec<String>,
-    /// What was measured of scenes that were open before, by name.
+    /// Reports that were measured of scenes that were open before, by the scene's name.
     reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
     /// Changes that can be taken back.
     pub undo: UndoHistory,
-    /// How the scene is to be run that was asked for by taking a change back.
+    /// The run to restore once the scene is open that undo or redo asked for.
     restoring: Option<undo::RunState>,
     /// The scene's animation.
     pub animation: Animation,
@@ -77,61 +77,61 @@ pub struct Model {
     pub textures: PictureCache,
 }
 
-/// What goes on, and what has to be said.
+/// The jobs that are running, and the messages to show.
 #[derive(Debug, Default)]
 pub struct Activity {
     /// What is being done, in a few words.
     pub job: Option<String>,
-    /// A run was asked for whose capture is not there yet.
+    /// A run was asked for, and its capture has not come yet.
     pub is_waiting: bool,
-    /// Errors that were not dismissed yet.
+    /// Errors that the user has not dismissed yet.
     pub errors: Vec<String>,
-    /// Those of them that say why a scene could not be opened or run.
+    /// The errors among them that say why a scene could not be opened or run.
     failures: BTreeSet<String>,
-    /// The file that is open changed: it can be loaded again.
+    /// Name of the open file, which changed: it can be loaded again.
     pub changed_file: Option<String>,
-    /// What was exported last.
+    /// The path that was exported last.
     pub exported: Option<String>,
 }
 
 impl Activity {
-    /// A scene was opened or run: that it could not be before is past.
+    /// Removes the errors about opening and running a scene, after one was opened or run.
     pub fn succeeded(&mut self) {
         let failures = std::mem::take(&mut self.failures);
         self.errors.retain(|error| !failures.contains(error));
     }
 }
 
-/// What one panel wishes of another: done in the same or the next frame.
+/// What one panel asks of another: done in the same or the next frame.
 #[derive(Debug, Default)]
 pub struct Requests {
     /// Tabs to show.
     pub panels: Vec<PanelKind>,
     /// A tour to begin, by its index.
     pub tour: Option<usize>,
-    /// The Scene tab brings the selected triangle to the middle.
+    /// The Scene tab is to bring the selected triangle to the middle.
     pub triangle_in_scene: bool,
-    /// The Shadow map tab brings the texel that the picked pixel reads to the middle: of this light's map.
+    /// The Shadow map tab is to bring the texel that the picked pixel reads in this light's map to the middle.
     pub texel_under: Option<usize>,
-    /// The menu of overlays opens.
+    /// The menu of overlays is to open.
     pub overlay_menu: bool,
-    /// The search field of the passes opens.
+    /// The search field of the passes that is to open.
     pub search: Option<StepSearch>,
-    /// The panels go to their first places.
+    /// The panels are to go back to their first places.
     pub first_layout: bool,
 }
 
-/// The field above the passes.
+/// The search field above the passes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StepSearch {
     /// Ctrl-G: a step's number.
     GoTo(String),
-    /// Ctrl-F: words of a pass.
+    /// Ctrl-F: words in the name of a pass.
     Find(String),
 }
 
 impl Model {
-    /// The user wishes to see `kind`. Wishing again for what was not traced tries again.
+    /// Chooses the kind of picture. Choosing it again where it could not be traced tries again.
     pub fn choose_picture(&mut self, kind: PictureKind) {
         if kind.needs_truth() {
             self.answers.try_again(QuestionKind::TruthOf);
@@ -139,12 +139,12 @@ impl Model {
         self.view.choose(kind);
     }
 
-    /// The kind of picture that is shown at the selected moment.
+    /// The kind of picture that is shown at the selected point of the frame.
     pub fn kind(&self) -> Option<PictureKind> {
         self.view.kind_at(self.frame.capture.as_ref()?, self.moment())
     }
 
-    /// Wants the truth where its picture is wished for and it is not known.
+    /// Asks for the truth where its picture is chosen and it is not known.
     pub fn want_truth(&self) {
         let is_missing = self.frame.capture.as_ref().is_some_and(|capture| {
             let kinds = available(capture, self.moment());
@@ -161,9 +161,9 @@ impl Model {
         self.push_error(error);
     }
 
-    /// Shows an error with its mend until it is dismissed; what was shown before stays.
+    /// Shows an error with its remedy until it is dismissed; what was shown before stays.
     pub fn push_error(&mut self, error: String) {
-        // What failed is tried no further by itself.
+        // What failed is not tried again automatically.
         self.restoring = None;
         self.animation.is_running = false;
         if !self.activity.errors.contains(&error) {

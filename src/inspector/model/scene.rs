@@ -12,44 +12,44 @@ use std::sync::Arc;
 /// The scene that is open.
 #[derive(Debug, Clone)]
 pub struct OpenScene {
-    /// For people.
+    /// Its name, as shown.
     pub name: String,
     /// What opens it again: a built-in name or a path.
     pub source: Option<String>,
-    /// Does anything move?
+    /// Does anything in it move?
     pub animated: bool,
     /// Names of its objects.
     pub objects: Vec<String>,
     /// Its objects, as loaded.
     pub loaded: Vec<Object>,
-    /// The middles of their bounding boxes, object space.
+    /// The middle of each object's bounding box, object space.
     pub middles: Vec<DVec3>,
-    /// Index of the one that is moved by numbers, new ones after those of the scene.
+    /// Index of the object that is edited in the settings; added objects come after those of the scene.
     pub edited: usize,
-    /// What the next run will be.
+    /// The next run.
     pub draft: RunRequest,
-    /// What it was when the scene was opened.
+    /// The run that the scene was opened with.
     pub opened: RunRequest,
-    /// Of each light of the draft its index among those that the scene was opened with; `None`: it was added.
+    /// For each light of the draft its index among those that the scene was opened with; `None`: it was added.
     pub lights_opened: Vec<Option<usize>>,
-    /// The settings of techniques used before, to come back to.
+    /// The last settings of each technique, used when it is chosen again.
     pub choices: BTreeMap<Technique, Choice>,
     /// Why the draft can't be run.
     pub problem: Option<String>,
 }
 
 impl OpenScene {
-    /// What it is known by: what opened it, or its name.
+    /// Returns the scene's key: the source that opens it, or its name.
     fn key(&self) -> String {
         self.source.clone().unwrap_or_else(|| self.name.clone())
     }
 
-    /// The light that the scene was opened with which is this one of the draft now.
+    /// Returns the light, as it was when the scene was opened, that is the draft's light of this index.
     pub fn light_opened(&self, index: usize) -> Option<&Light> {
         self.opened.lights.get(self.lights_opened.get(index).copied()??)
     }
 
-    /// The object of an index as the draft has it.
+    /// Returns the object of an index with the draft's changes.
     pub fn object(&self, index: usize) -> Option<Object> {
         let changes = &self.draft.objects;
         match self.loaded.get(index) {
@@ -61,21 +61,21 @@ impl OpenScene {
         }
     }
 
-    /// How many objects it has, those that were added among them.
+    /// Returns how many objects it has, including those that were added.
     pub fn object_count(&self) -> usize {
         self.loaded.len() + self.draft.objects.added.len()
     }
 
-    /// The middle of an object of the draft's, object space.
+    /// Returns the middle of an object of the draft, object space.
     pub fn middle_of(&self, index: usize, object: &Object) -> DVec3 {
         self.middles.get(index).copied().unwrap_or_else(|| middle(&object.mesh))
     }
 
-    /// Puts an object at a pose.
+    /// Sets an object's pose.
     pub fn place(&mut self, index: usize, pose: Pose) {
         let (changes, count) = (&mut self.draft.objects, self.loaded.len());
         match self.loaded.get(index) {
-            // Where it was loaded: not moved.
+            // At its loaded pose it counts as not moved.
             Some(object) if object.pose == pose => drop(changes.moved.remove(&index)),
             Some(_) => drop(changes.moved.insert(index, pose)),
             None => changes.added.get_mut(index - count).into_iter().for_each(|object| object.pose = pose),
@@ -105,13 +105,13 @@ impl OpenScene {
 }
 
 impl Model {
-    /// Another scene is open; `None` for a capture folder, which can't be run again.
+    /// Opens another scene; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
         let before = self.scene.take();
         let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
         let known = before.as_ref().filter(|before| Some(before.key()) == key).map(|before| &before.lights_opened);
         if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
-            // Of one that was changed, or is loaded again, the numbers would be another scene's.
+            // A report of a scene that was changed, or is loaded again, would have another scene's numbers.
             if before.is_as_opened() && Some(before.key()) != key {
                 self.reports.insert(before.key(), (question.clone(), Arc::clone(report)));
             } else {
@@ -142,7 +142,7 @@ impl Model {
             edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
-            // One that is loaded again is run as it was, and held against what its file has now.
+            // A scene that is loaded again is run with the same changes, and compared with what its file contains now.
             opened: RunRequest {
                 lights: scene.lights.clone(),
                 off: BTreeSet::new(),
@@ -156,7 +156,7 @@ impl Model {
         if let Some((before, scene)) = before.as_ref().zip(self.scene.as_ref())
             && before.key() == scene.key()
         {
-            // One that is loaded again may be another one by now; so are its objects' indexes.
+            // A scene that is loaded again may be another one by now, with other object indices.
             self.reports.remove(&scene.key());
             if before.objects != scene.objects {
                 self.undo = Default::default();
@@ -168,7 +168,7 @@ impl Model {
         self.note_for_undo();
     }
 
-    /// Chooses a technique, with the settings it had when it was last chosen, and runs it.
+    /// Chooses a technique, with the settings that it had when it was last chosen, and runs it.
     pub fn choose_technique(&mut self, technique: Technique, actions: &mut Vec<Action>) {
         let Some(scene) = &mut self.scene else { return };
         if scene.draft.choice.technique() != technique {
@@ -177,7 +177,7 @@ impl Model {
         }
     }
 
-    /// Makes shadows as `choice` says, and runs it.
+    /// Sets the technique and its settings, and runs the scene.
     pub fn choose(&mut self, choice: Choice, actions: &mut Vec<Action>) {
         let Some(scene) = &mut self.scene else { return };
         scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
@@ -185,7 +185,7 @@ impl Model {
         self.run_draft(actions);
     }
 
-    /// Runs the scene as another draft says.
+    /// Replaces the draft, and runs it.
     pub fn replace_draft(&mut self, draft: RunRequest, actions: &mut Vec<Action>) {
         let Some(scene) = &mut self.scene else { return };
         scene.lights_opened = lights_opened(&draft.lights, &scene.opened.lights, Some(&scene.lights_opened));
@@ -193,7 +193,7 @@ impl Model {
         self.run_draft(actions);
     }
 
-    /// Asks for a run of the draft, or notes why it can't be run.
+    /// Asks for a run of the draft, or stores why it can't be run.
     pub fn run_draft(&mut self, actions: &mut Vec<Action>) {
         if let Some(scene) = &mut self.scene {
             scene.problem = scene.draft.check().err();
@@ -205,7 +205,7 @@ impl Model {
         }
     }
 
-    /// How the scene is run now is a step that can be taken back.
+    /// Adds the present run to the undo history.
     fn note_for_undo(&mut self) {
         if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
             self.undo.note(undo::RunState {
@@ -216,13 +216,13 @@ impl Model {
         }
     }
 
-    /// Takes the last change back.
+    /// Undoes the last change.
     pub fn take_back(&mut self, actions: &mut Vec<Action>) {
         let before = self.undo.undo();
         self.restore(before, actions);
     }
 
-    /// Makes it again.
+    /// Redoes the change that was undone last.
     pub fn make_again(&mut self, actions: &mut Vec<Action>) {
         let after = self.undo.redo();
         self.restore(after, actions);
@@ -245,7 +245,7 @@ impl Model {
         }
     }
 
-    /// Runs the scene that was opened by taking a change back as it was run then.
+    /// Runs the scene that undo or redo opened, with the settings of that time.
     pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
         let is_open =
             |state: &mut undo::RunState| self.scene.as_ref().is_some_and(|scene| scene.source == state.source);
@@ -259,14 +259,14 @@ impl Model {
         }
     }
 
-    /// No change is waited for any longer that would open another scene.
+    /// Cancels a pending undo or redo that has to open another scene first.
     pub fn stop_restoring(&mut self) {
         self.restoring = None;
     }
 }
 
-/// As in [`OpenScene::lights_opened`], of a scene that is opened to be run with these lights.
-/// `before` is what was known of the same scene's, where it is loaded again and run with what was added or deleted.
+/// Returns [`OpenScene::lights_opened`] of a scene that is opened to be run with the lights of `draft`. `before` is the
+/// value for the same scene where it is loaded again and run with lights added or deleted.
 fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&[Option<usize>]>) -> Vec<Option<usize>> {
     let in_order = || (0..draft.len()).map(Some).collect();
     match before.filter(|known| known.len() == draft.len()) {
@@ -298,7 +298,7 @@ mod tests {
         let known = [Some(1), Some(2), None];
         assert_eq!(lights_opened(&draft, &lights, Some(&known)), known);
         assert_eq!(lights_opened(&draft, &lights[..2], Some(&known)), [Some(1), None, None], "its file has fewer now");
-        // Moved, of a scene that nothing is known of.
+        // Moved lights, in a scene without an earlier value.
         assert_eq!(lights_opened(&draft, &lights, None), [Some(0), Some(1), Some(2)]);
         assert_eq!(lights_opened(&draft[..1], &lights, None), [None]);
     }

@@ -1,5 +1,5 @@
-//! What is selected: step and draw, pixel, triangle. A capture need not hold the state after each draw: selecting a draw
-//! without one asks for those of its pass; until they come the picture stays as it was.
+//! What is selected: step and draw, pixel, triangle. A capture need not contain the state after each draw: selecting a
+//! draw without one asks for those of its pass; until they come the picture stays as it was.
 
 use super::Model;
 use crate::ask::{DrawsOf, QuestionKind, Reply};
@@ -10,19 +10,19 @@ use crate::reading::shown::{PictureKind, TexelZoom};
 use crate::reading::steps;
 use std::sync::Arc;
 
-/// Seconds a step is shown while playing.
+/// How long a step is shown while playing, seconds.
 const SECONDS_A_STEP: f64 = 0.8;
-/// Screen pixels that a region is to take where the picture goes to it.
+/// Screen pixels that a region should take after the picture has gone to it.
 const GO_TO_PIXELS: f32 = 240.0;
-/// Screen pixels a texel at most where the picture goes to a region.
+/// Screen pixels for each texel, at most, after the picture has gone to a region.
 const MOST_GO_TO_ZOOM: f32 = 12.0;
 
-/// A place under the pointer.
+/// The texel under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hover {
-    /// Which of the shown images.
+    /// Index of the image among the shown ones.
     pub image: usize,
-    /// Its texel.
+    /// The texel: column and row.
     pub at: [u32; 2],
 }
 
@@ -36,9 +36,9 @@ pub struct Selection {
     pub step: usize,
     /// Index of the draw of that step; `None`: the step as a whole.
     pub draw: Option<usize>,
-    /// What is shown while the state after the selected draw is not there.
+    /// The point of the frame that is shown while the state after the selected draw is not known.
     stays: CapturePoint,
-    /// Its row has to be scrolled to.
+    /// The list of passes has to scroll to the selected row.
     pub wants_scroll: bool,
     /// While playing: the time of the next step, in egui's seconds.
     pub playing: Option<f64>,
@@ -46,9 +46,9 @@ pub struct Selection {
     pub pick: Option<[u32; 2]>,
     /// The picked texel of the map that the picture panel shows.
     pub map_pick: Option<[u32; 2]>,
-    /// What the pointer is over.
+    /// The texel under the pointer.
     pub hover: Option<Hover>,
-    /// The triangle of the picked pixel's history.
+    /// The selected triangle of the picked pixel's history.
     pub triangle: Option<TriangleKey>,
     /// Pixels that read the texel which the Shadow map tab marks.
     pub readers: Arc<Vec<[u32; 2]>>,
@@ -57,7 +57,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The pick of the picture that is shown: of the map, or of the frame.
+    /// The pick in the picture that is shown: a texel of the map, or a pixel of the frame.
     pub fn pick_of(&mut self, kind: PictureKind) -> &mut Option<[u32; 2]> {
         if kind == PictureKind::Map { &mut self.map_pick } else { &mut self.pick }
     }
@@ -67,7 +67,7 @@ impl Selection {
         self.triangle = key(event);
     }
 
-    /// Is the event that of the selected triangle?
+    /// Does the event belong to the selected triangle?
     pub fn has_event(&self, event: &PixelEvent) -> bool {
         self.triangle.is_some() && key(event) == self.triangle
     }
@@ -78,12 +78,12 @@ fn key(event: &PixelEvent) -> Option<TriangleKey> {
 }
 
 impl Model {
-    /// How many steps make the frame.
+    /// How many numbered steps the frame has.
     pub fn steps(&self) -> usize {
         self.frame.capture.as_ref().map_or(0, |capture| steps::count(capture))
     }
 
-    /// The steps of the frame before and after the selected one.
+    /// The numbered steps before and after the selected one.
     pub fn neighbours(&self) -> [Option<usize>; 2] {
         let of = |find: fn(&Capture, usize) -> Option<usize>| find(self.frame.capture.as_ref()?, self.selection.step);
         [of(steps::previous), of(steps::next)]
@@ -94,14 +94,14 @@ impl Model {
         CapturePoint { step: self.selection.step, draw: self.selection.draw }
     }
 
-    /// What is shown: what is selected, or what was shown before while that is not known.
+    /// The point of the frame that is shown: the selected one, or the one shown before while that is not known.
     pub fn moment(&self) -> CapturePoint {
         let selected = self.selected();
         let is_known = self.frame.capture.as_ref().is_none_or(|capture| selected.is_known(capture));
         if is_known { selected } else { self.selection.stays }
     }
 
-    /// Another capture takes the place of `before`: what is selected stays where it means the same.
+    /// Adapts the selection to a capture that replaces `before`: what is selected stays where it means the same.
     pub(super) fn select_in(&mut self, before: Option<&Capture>, now: &Capture) {
         let at = self.selected();
         let [width, height] = now.size;
@@ -134,7 +134,7 @@ impl Model {
         self.view.follow(&capture, self.selection.step);
     }
 
-    /// Selects a moment; without a draw of that number, the step.
+    /// Selects a point of the frame; where its step has no draw of that number, the step.
     pub fn select(&mut self, at: CapturePoint) {
         let stays = self.moment();
         self.select_step(at.step);
@@ -145,7 +145,7 @@ impl Model {
         self.selection.playing = None;
     }
 
-    /// Goes `by` steps on, or back where negative; masks are passed over.
+    /// Goes forward by `by` steps, or back where it is negative; masks are passed over.
     pub fn step_by(&mut self, by: isize) {
         for _ in 0..by.unsigned_abs() {
             let [before, after] = self.neighbours();
@@ -154,7 +154,7 @@ impl Model {
         }
     }
 
-    /// Goes `by` draws on through the whole frame, or back where negative.
+    /// Goes forward by `by` draws through the whole frame, or back where it is negative.
     pub fn draw_by(&mut self, by: isize) {
         let Some(capture) = self.frame.capture.clone() else { return };
         let mut at = self.selected();
@@ -167,7 +167,7 @@ impl Model {
         }
     }
 
-    /// Wants the states after the draws of the selected step, where one of them is looked at and not known.
+    /// Asks for the states after the draws of the selected step, where one of them is shown and not known.
     pub fn want_draws(&self) -> Reply<StepDraws> {
         let is_missing = self.frame.capture.as_ref().is_some_and(|capture| !self.selected().is_known(capture));
         if is_missing || self.lacks_draw_before() {
@@ -187,7 +187,7 @@ impl Model {
         }
     }
 
-    /// Goes on if it is time to; seconds until the next step while playing.
+    /// Goes to the next step when it is time to; returns the seconds until the one after it while playing.
     pub fn play(&mut self, now: f64) -> Option<f64> {
         if now >= self.selection.playing? {
             self.step_by(1);
@@ -218,8 +218,8 @@ impl Model {
     }
 }
 
-/// The step of `now` that means what step `index` of `before` meant: the last stays the last,
-/// a pass of the same name and light is the same. Where none is, the last: the whole frame.
+/// Returns the step of `now` that means what step `index` of `before` meant: the last stays the last; else the pass of
+/// the same name and light; else the last, which shows the whole frame.
 pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     let last = now.steps.len().saturating_sub(1);
     let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
@@ -230,7 +230,7 @@ pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     now.steps.iter().position(is_same).unwrap_or(last)
 }
 
-/// A pick moved within a picture of this size; without one, from its middle.
+/// Returns a pick moved within a picture of this size; without a pick, starts from its middle.
 pub fn moved(pick: Option<[u32; 2]>, by: [i32; 2], size: [u32; 2]) -> [u32; 2] {
     let from = pick.unwrap_or(size.map(|side| side / 2));
     [0, 1].map(|axis| from[axis].saturating_add_signed(by[axis]).min(size[axis].saturating_sub(1)))

@@ -1,45 +1,45 @@
 //! Undo and redo: what was run, in which scene, step by step.
 //!
-//! A step is a whole [`RunRequest`] with what it belongs to, so that nothing can be undone in part.
-//! What is changed while a button is held (a dragged number, a dragged light) is one step, and the
-//! running time of an animation is none.
+//! A step is a whole [`RunRequest`] with what it belongs to, so that nothing can be undone in part. All changes while a
+//! mouse button is down (a dragged number, a dragged light) are one step; the advancing time of an animation is not a
+//! step.
 
 use crate::ask::RunRequest;
 
-/// Steps that are kept.
+/// How many steps are stored.
 const MOST: usize = 200;
 
 /// How a scene was run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunState {
-    /// What opened the scene: a built-in name or a path; `None` where it can't be opened again by name.
+    /// The source that opens the scene: a built-in name or a path; `None` where it can't be opened again by name.
     pub source: Option<String>,
-    /// How it was run.
+    /// The run.
     pub request: RunRequest,
-    /// Which of its lights are those that the scene was opened with, by index.
+    /// For each light its index among those that the scene was opened with; `None`: it was added.
     pub lights_opened: Vec<Option<usize>>,
 }
 
-/// What can be undone and redone.
+/// The steps that can be undone and redone.
 #[derive(Debug, Default)]
 pub struct UndoHistory {
     past: Vec<RunState>,
     now: Option<RunState>,
     future: Vec<RunState>,
-    /// A button is held, or one walks: what changes now belongs to one step.
+    /// A mouse button is down, or the user walks: all changes belong to one step.
     is_paused: bool,
-    /// The step under way has begun.
+    /// The present step has begun.
     has_begun: bool,
 }
 
 impl UndoHistory {
-    /// Tells whether what changes from now on belongs to one step.
+    /// Sets whether all changes from now on belong to one step.
     pub fn hold(&mut self, is_paused: bool) {
         self.has_begun &= is_paused;
         self.is_paused = is_paused;
     }
 
-    /// The scene is run like this now.
+    /// Records how the scene is run now.
     pub fn note(&mut self, state: RunState) {
         let Some(before) = self.now.replace(state.clone()) else { return };
         if before == state {
@@ -71,14 +71,14 @@ impl UndoHistory {
         !self.future.is_empty()
     }
 
-    /// Goes a step back: how it was.
+    /// Goes one step back; returns the state to restore.
     pub fn undo(&mut self) -> Option<RunState> {
         let before = self.past.pop()?;
         self.future.extend(self.now.replace(before.clone()));
         Some(before)
     }
 
-    /// Goes a step forth again: how it is after it.
+    /// Goes one step forward again; returns the state to restore.
     pub fn redo(&mut self) -> Option<RunState> {
         let after = self.future.pop()?;
         self.past.extend(self.now.replace(after.clone()));

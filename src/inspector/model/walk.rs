@@ -1,5 +1,5 @@
-//! Walking through the scene: whether one does, how fast, and what is not shown yet of it. What keys and mouse do then is in
-//! `shell/walk.rs`.
+//! Walking through the scene: whether the user walks, how fast, and which input no frame shows yet. What keys and mouse
+//! do then is in `shell/walk.rs`.
 
 use super::Model;
 use crate::inspector::action::PanelKind;
@@ -8,20 +8,20 @@ use egui::{Context, CursorGrab, Vec2, ViewportCommand};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Metres a second at first.
+/// Initial speed, metres a second.
 const SPEED: f64 = 2.0;
 
-/// How one walks.
+/// The state of walking.
 #[derive(Debug)]
 pub struct WalkState {
     is_on: bool,
-    /// Walls stop.
+    /// Walls stop the walker.
     pub collides: bool,
-    /// Metres a second.
+    /// Speed, metres a second.
     pub speed: f64,
     /// Why the last key did nothing.
     pub nothing_because: Option<String>,
-    /// One weighs something; `None`: one floats at the height of the eye.
+    /// Gravity's state; `None`: the walker floats at the height of the eye.
     pub weight: Option<WalkGravity>,
     /// egui's time of the last step, seconds.
     pub last: Option<f64>,
@@ -29,16 +29,16 @@ pub struct WalkState {
     pub rotation: Vec2,
 }
 
-/// How one stands who weighs something.
+/// The state of a walker with gravity.
 #[derive(Debug, Default)]
 pub struct WalkGravity {
-    /// `None` until the walls are known.
+    /// Where the walker stands or falls; `None` until the walls are known.
     pub standing: Option<Footing>,
-    /// The walls that this is so in: others may leave nothing under the feet.
+    /// The walls for which that was computed: with others there may be no ground under the feet.
     pub within: Option<Arc<Walls>>,
     /// Where the feet stood last.
     pub stood_at: Option<DVec3>,
-    /// Where the eye was when this began.
+    /// Where the eye was when gravity was switched on.
     pub began_at: Option<DVec3>,
 }
 
@@ -57,7 +57,7 @@ impl Default for WalkState {
 }
 
 impl WalkGravity {
-    /// On the ground, and nothing has changed about it.
+    /// Is the walker on the ground, with the same walls as before?
     pub fn is_at_rest(&self, walls: &Arc<Walls>) -> bool {
         let is_same = self.within.as_ref().is_some_and(|within| Arc::ptr_eq(within, walls));
         is_same && self.standing.is_some_and(|standing| standing.is_on_ground)
@@ -65,7 +65,7 @@ impl WalkGravity {
 }
 
 impl WalkState {
-    /// Does one walk?
+    /// Is the user walking?
     pub fn is_on(&self) -> bool {
         self.is_on
     }
@@ -87,7 +87,7 @@ impl Model {
         hold_pointer(ctx, true);
     }
 
-    /// Stops to walk.
+    /// Stops walking.
     pub fn stop_walking(&mut self, ctx: &Context) {
         if std::mem::take(&mut self.walk.is_on) {
             hold_pointer(ctx, false);

@@ -1,4 +1,4 @@
-//! The Bench tab: the stencil test by itself. One pixel, one state, and fragments pushed through it one by one.
+//! The Bench tab: the stencil test by itself. One pixel, one state, and fragments sent through it one by one.
 
 use crate::history::operation_name;
 use crate::inspector::look::theme;
@@ -19,7 +19,7 @@ const OPERATIONS: [StencilOperation; 8] = [
     StencilOperation::DecrementWrap,
 ];
 
-/// Which operation of a face.
+/// Selects one of a face's operations.
 type FaceOperation = fn(&mut StencilFace) -> &mut StencilOperation;
 
 /// Draws the tab.
@@ -40,7 +40,7 @@ pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     });
 }
 
-/// The state of the selected draw, to try it out.
+/// Draws a button that copies the state of the selected draw, to try it out.
 fn take_over(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     let plan = model.frame.plan.clone();
     let pass = plan.as_ref().and_then(|plan| plan.passes.get(model.selection.step));
@@ -73,7 +73,7 @@ fn pixel(ui: &mut Ui, own: &mut TestBench) {
 fn state(ui: &mut Ui, state: &mut RasterState) {
     theme::heading(ui, "The draw's tests");
     let mut masks = state.face(true).1;
-    // The names of the rows, and the rest for two columns.
+    // The first column has the names of the rows, the rest of the width is for two columns.
     let width = ((ui.available_width() - 84.0) / 2.0 - 8.0).clamp(60.0, 150.0);
     Grid::new("bench faces").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
         for title in ["", "front faces", "back faces"] {
@@ -128,7 +128,7 @@ fn push(ui: &mut Ui, own: &mut TestBench) {
     });
 }
 
-/// The newest on top.
+/// Draws the list of tested fragments, the newest on top.
 fn pushed(ui: &mut Ui, own: &TestBench) {
     for TestedDraw { number, words } in own.pushed.iter().rev() {
         ui.add(Label::new(theme::note(format!("{number}. {words}"))).wrap());

@@ -33,7 +33,7 @@ pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
             history: history.as_deref(),
             map: map.as_ref(),
         };
-        // Counting a picture is not free: it is done once for each step and pixel.
+        // Counting a picture takes time: it is done once for each step and pixel.
         let facts = own.of(model.frame.number, &known);
         for fact in facts.iter() {
             theme::card(ui).show(ui, |ui| {
@@ -70,15 +70,15 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
     }
 }
 
-/// The tab: the facts that were told last, with what they were told of.
+/// The state of the tab: the facts that were computed last, with their inputs.
 #[derive(Debug, Default)]
 pub struct ExplainPanel {
     of: Option<ExplainKey>,
     facts: std::rc::Rc<Vec<crate::reading::explain_facts::ExplainFact>>,
 }
 
-/// Facts change with these: frame, step, pixel, of which pixel the history is, whether there is a truth, and under which
-/// light a texel is known.
+/// The inputs of the facts: frame, step, pixel, pixel of the history, whether there is a truth, and the light under
+/// which a texel is known.
 type ExplainKey = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, (bool, Option<usize>));
 
 impl ExplainPanel {
@@ -103,7 +103,7 @@ impl ExplainPanel {
     }
 }
 
-/// The tours, the chosen technique's first.
+/// Draws the list of tours, the chosen technique's first.
 fn tours(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "Guided tours");
     ui.add(

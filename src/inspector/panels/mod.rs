@@ -1,5 +1,5 @@
-//! The tabs, one file or folder each: what it remembers, and a function that draws it of that and of the model. A new one
-//! is a file here, a field and an arm below, and its name among [`PanelKind`]s.
+//! The tabs, one file or folder each: a struct with its state, and a function that draws the tab from that and the
+//! model. A new one is a file here, a field and an arm below, and its name among [`PanelKind`]s.
 
 pub mod bench;
 pub mod diagnosis;
@@ -29,12 +29,12 @@ use scene::SceneView;
 use shadow_map::ShadowMapPanel;
 use stress::StressPanel;
 
-/// What each tab remembers.
+/// The state of each tab.
 #[derive(Debug, Default)]
 pub struct Panels {
     /// The frame, step by step.
     pub passes: PassesPanel,
-    /// The selected buffer.
+    /// The selected picture.
     pub picture: PicturePanel,
     scene: SceneView,
     /// A light's map, linked with the picture.
@@ -49,7 +49,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// What was made of what is shown no more goes, of hidden tabs too.
+    /// Drops what was computed for a frame that is no longer shown, also in hidden tabs.
     pub fn follow(&mut self, model: &Model) {
         self.picture.follow(model.frame.number);
         self.scene.follow(model.scenes_opened);

@@ -1,5 +1,5 @@
-//! The State tab: the whole state of the selected draw, in a sentence, in three APIs' words, and
-//! the matrices with the names of their spaces. What an API has unless told otherwise is pale, and says so.
+//! The State tab: the whole state of the selected draw, in a sentence, in the terms of three APIs, and the matrices
+//! with the names of their spaces. Values that are an API's defaults are pale, and say so.
 
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -9,10 +9,10 @@ use crate::reading::format;
 use crate::reading::steps;
 use egui::{Label, Ui};
 
-/// The tab.
+/// The state of the tab.
 #[derive(Debug, Default)]
 pub struct RasterStatePanel {
-    /// In whose words it tells.
+    /// The API in whose terms the state is shown.
     api: RasterApi,
 }
 
@@ -44,7 +44,7 @@ pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
     });
 }
 
-/// What the pass draws into, and what that holds at the start.
+/// Draws the pass's attachments, and what they contain at its start.
 fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
     let name = |id: crate::plan::AttachmentId| plan.attachments.get(id.0).map_or("?", |attachment| &attachment.name);
     let kept = || "kept".to_owned();
@@ -95,7 +95,7 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         for line in &lines {
-            // Said in words too: paler alone would be told by colour.
+            // Said in words too: paler alone would convey it only by colour.
             let text = if is_default(line) {
                 theme::number(format!("{line} // default")).color(theme::of(ui).faint)
             } else {
@@ -113,7 +113,7 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
     }
 }
 
-/// From world to clip space, each matrix by the names of its spaces.
+/// Draws the matrices from world to clip space, each with the names of its spaces.
 fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: &crate::capture::Capture) {
     let Some(view) = plan.views.get(pass.view.0) else { return };
     theme::heading(ui, "Matrices");
@@ -145,7 +145,7 @@ fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: 
     }
 }
 
-/// Four rows of four, from the columns.
+/// Draws a matrix as four rows of four; `columns` has its columns in order.
 fn matrix(ui: &mut Ui, name: &str, columns: &[f32; 16]) {
     ui.label(theme::note(name));
     let rows: Vec<String> = (0..4)
@@ -155,7 +155,7 @@ fn matrix(ui: &mut Ui, name: &str, columns: &[f32; 16]) {
     ui.add_space(4.0);
 }
 
-/// Of a capture folder only the plan's text is known: the part about the pass.
+/// In a capture folder only the plan's text is known: draws its part about the pass.
 fn from_text(ui: &mut Ui, text: &str, step: usize) {
     let start = format!("pass {step}: ");
     let lines: Vec<&str> = text

@@ -29,40 +29,40 @@ use std::sync::{Arc, Weak};
 /// Width of the column beside the map, points.
 const COLUMN: f32 = 232.0;
 
-/// What the tab remembers.
+/// The state of the tab.
 #[derive(Debug, Default)]
 pub struct ShadowMapPanel {
     view: PictureView,
     /// The picked texel of the shown face.
     pick: Option<[u32; 2]>,
-    /// Whose map.
+    /// Index of the light whose map is shown.
     light: usize,
     marked: Option<MarkedTexel>,
-    /// What the pointer is over in the small picture.
+    /// The pixel under the pointer in the small picture.
     over_pixel: Option<[u32; 2]>,
-    /// Nobody has chosen the face that is shown.
+    /// The user has not chosen the face that is shown.
     is_any_face: bool,
-    /// The frame that the pointer was over.
+    /// Number of the frame in which the pointer was over it.
     frame: u64,
 }
 
-/// The marked texel.
+/// The marked texel, with the pixels that read it.
 #[derive(Debug)]
 struct MarkedTexel {
     texel: MapTexel,
-    /// Whose pixels they are.
+    /// The readers from which the pixels were found.
     of: Weak<MapReaders>,
-    /// Those that read it.
+    /// The pixels that read the texel.
     pixels: Arc<Vec<[u32; 2]>>,
 }
 
 impl ShadowMapPanel {
-    /// Which texel each pixel reads, of the shown frame and light, where the tab was shown.
+    /// Returns which texel each pixel reads, for the shown frame and light, where the tab was shown.
     pub fn readers(&self, model: &Model) -> Option<Arc<MapReaders>> {
         model.answers.of(ReadersOf { light: self.light }).ready
     }
 
-    /// The pixels that read a texel, found once.
+    /// Returns the pixels that read a texel, found once and cached.
     fn pixels(&mut self, readers: &Arc<MapReaders>, texel: MapTexel) -> Arc<Vec<[u32; 2]>> {
         let is_it =
             |marked: &&MarkedTexel| marked.texel == texel && std::ptr::eq(marked.of.as_ptr(), Arc::as_ptr(readers));
@@ -83,7 +83,7 @@ impl ShadowMapPanel {
 }
 
 impl ShadowMapPanel {
-    /// The tab is hidden: pixels stay marked only where a texel is picked.
+    /// Adapts to the tab being hidden: pixels stay marked only where a texel is picked.
     pub fn hide(&self, model: &mut Model) {
         model.selection.map_light = None;
         if self.pick.is_none() {
@@ -171,25 +171,25 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     model.selection.readers = pixels;
 }
 
-/// What is linked with what in this frame.
+/// The links between map and picture in this frame.
 struct TexelLinks<'a> {
     readers: Option<&'a MapReaders>,
-    /// They are being found.
+    /// The readers are being computed.
     is_waited_for: bool,
     /// The texel that the picked pixel reads.
     of_pick: Option<MapTexel>,
-    /// The texel that is told about.
+    /// The texel whose values are shown.
     texel: Option<MapTexel>,
-    /// The pixel under the pointer, or else the picked one, where it is what led to that texel.
+    /// The pixel under the pointer, or else the picked one, if it is the one that reads that texel.
     pixel: Option<[u32; 2]>,
-    /// What it covers of the map, texels.
+    /// The pixel's footprint in the map, texels.
     footprint: Option<[DVec2; 4]>,
     /// The pixels that read the texel.
     pixels: &'a [[u32; 2]],
 }
 
 impl TexelLinks<'_> {
-    /// A pixel on whose surface the texel is measured: of many the middle one in reading order.
+    /// Returns the pixel on whose surface the texel is measured: the middle one of all readers in reading order.
     fn on_surface(&self) -> Option<[u32; 2]> {
         self.pixel.or_else(|| self.pixels.get(self.pixels.len() / 2).copied())
     }
@@ -200,7 +200,7 @@ fn empty(ui: &mut Ui, rect: Rect, text: &str) {
     ui.put(place, egui::Label::new(theme::note(text)).wrap());
 }
 
-/// The map, and the column beside it where there is room.
+/// Splits a rectangle into the map, and the column beside it where there is space.
 fn split(rect: Rect) -> [Rect; 2] {
     let column = COLUMN.min(rect.width() * 0.4);
     let x = rect.right() - column;
@@ -257,7 +257,7 @@ fn show_texel(own: &mut ShadowMapPanel, texel: MapTexel) {
     own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
 }
 
-/// Draws the shown face; the texel under the pointer.
+/// Draws the shown face; returns the texel under the pointer.
 fn face(
     ui: &mut Ui,
     own: &mut ShadowMapPanel,
@@ -283,7 +283,7 @@ fn face(
     over
 }
 
-/// A quadrilateral over a picture, light on dark; `corners` are in its texels.
+/// Draws a quadrilateral over a picture, light on dark; `corners` are in its texels.
 fn quadrilateral(painter: &Painter, placement: Placement, corners: [DVec2; 4], color: Color32) {
     let place = |at: DVec2| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale;
     let points: Vec<Pos2> = corners.into_iter().map(place).filter(|at| at.is_finite()).collect();
@@ -293,7 +293,7 @@ fn quadrilateral(painter: &Painter, placement: Placement, corners: [DVec2; 4], c
     }
 }
 
-/// The texel that a pixel reads: a box, light on dark.
+/// Draws a box, light on dark, around the texel that a pixel reads.
 fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
     let texel = placement.rect_of(at);
     let texel = Rect::from_center_size(texel.center(), texel.size().max(vec2(9.0, 9.0)));
@@ -303,7 +303,7 @@ fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
     }
 }
 
-/// The frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
+/// Draws the frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
 fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, capture: &Capture, links: &TexelLinks) {
     let [width, height] = capture.size.map(|side| side as f32);
     let scale = (ui.available_width() / width.max(1.0)).min(240.0 / height.max(1.0));
@@ -331,7 +331,7 @@ fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, captu
     let over = response.hover_pos().and_then(|at| placement.texel(at));
     if over != own.over_pixel {
         own.over_pixel = over;
-        // The map was drawn before it was known.
+        // The map was drawn before this was known.
         ui.ctx().request_repaint();
     }
     if let Some(at) = over.filter(|_| response.clicked()) {
@@ -340,7 +340,7 @@ fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, captu
     }
 }
 
-/// What the texel covers of the surface, in texels of the picture.
+/// Returns what the texel covers of the surface, in texels of the picture.
 fn texel_in_picture(capture: &Capture, links: &TexelLinks) -> Option<[DVec2; 4]> {
     let corners = links.readers?.texel_on_surface(links.texel?, links.on_surface()?)?;
     let [a, b, c, d] = corners.map(|corner| pick_ray::texel_of(capture, corner.extend(1.0)).map(DVec2::from_array));
@@ -400,7 +400,7 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Texel
     }
 }
 
-/// What is known of a texel, and how far each bias moves the surface there.
+/// Draws what is known of a texel, and how far each bias moves the surface there.
 fn values(
     capture: &Capture,
     light: usize,

@@ -1,7 +1,7 @@
-//! The Stress tab: every case with its lesson, what each technique did in it, and the scene of any
-//! value to open.
+//! The Stress tab: every case with its lesson, the results of each technique in it, and its scene at any value, to be
+//! opened.
 //!
-//! It shows data and asks for it; running is the app's.
+//! It shows data and asks for it; the app runs the cases.
 
 use crate::ask::{QuestionKind, Reply, StressOf};
 use crate::inspector::action::Action;
@@ -16,19 +16,19 @@ use std::sync::Arc;
 const LIST_WIDTH: f32 = 232.0;
 /// Height of a row of the list and of the table, points.
 const ROW: f32 = 24.0;
-/// Values that are offered to be opened; of more, these many spread evenly.
+/// How many values are offered to be opened; where there are more, so many spread evenly.
 const MOST_VALUES: usize = 12;
-/// Columns of the table: where what was found and the verdict begin, points from its left.
+/// Where the table's columns with findings and verdict begin, points from its left.
 const COLUMNS: [f32; 2] = [196.0, 330.0];
 
-/// The tab.
+/// The state of the tab.
 #[derive(Debug, Default)]
 pub struct StressPanel {
     /// Index of the selected case.
     selected: usize,
 }
 
-/// The worst verdict of a case; `None` where it was not run.
+/// Returns the worst verdict of a case; `None` where it was not run.
 fn verdict(rows: &StressRows, case: &StressCase) -> Option<StressVerdict> {
     rows.of(case).map(|summary| summary.verdict).max()
 }
@@ -48,7 +48,7 @@ pub fn ui(ui: &mut Ui, own: &mut StressPanel, model: &mut Model, actions: &mut V
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(LIST_WIDTH, size.y), Layout::top_down(Align::Min), |ui| {
             let scroll = ScrollArea::vertical().id_salt("stress cases").auto_shrink([false, false]);
-            // All of them, that the keyboard reaches those out of sight.
+            // All rows are drawn, so that the keyboard reaches those that are scrolled out of view.
             scroll.show(ui, |ui| {
                 for (index, case) in all.iter().enumerate() {
                     list_row(ui, own, &rows, case, index);
@@ -62,7 +62,7 @@ pub fn ui(ui: &mut Ui, own: &mut StressPanel, model: &mut Model, actions: &mut V
     });
 }
 
-/// What can be run, and how far it is.
+/// Draws the buttons that run cases, and the progress.
 fn top_line(
     ui: &mut Ui,
     model: &mut Model,
@@ -110,7 +110,7 @@ fn top_line(
     ui.add_space(4.0);
 }
 
-/// A sign and a word for a verdict.
+/// Returns a sign and a word for a verdict.
 fn mark(ui: &Ui, verdict: Option<StressVerdict>) -> (&'static str, egui::Color32) {
     match verdict {
         None => ("", theme::of(ui).faint),
@@ -142,7 +142,7 @@ fn list_row(ui: &mut Ui, own: &mut StressPanel, rows: &StressRows, case: &Stress
     response.on_hover_text(case.lesson);
 }
 
-/// The selected case: its lesson, its values, and who did what.
+/// Draws the selected case: its lesson, its values, and the results of each technique.
 fn detail(ui: &mut Ui, rows: &StressRows, case: &'static StressCase, actions: &mut Vec<Action>) {
     theme::heading(ui, case.name);
     ui.add(egui::Label::new(theme::note(case.lesson).color(theme::of(ui).text)).wrap());
@@ -176,7 +176,7 @@ fn detail(ui: &mut Ui, rows: &StressRows, case: &'static StressCase, actions: &m
     }
 }
 
-/// The values, or some of them, the ends included.
+/// Returns the values, or some of them, the ends included.
 fn offered(values: &[f64]) -> Vec<f64> {
     if values.len() <= MOST_VALUES {
         return values.to_vec();
@@ -185,7 +185,7 @@ fn offered(values: &[f64]) -> Vec<f64> {
     (0..MOST_VALUES).filter_map(|index| values.get(index * last / (MOST_VALUES - 1)).copied()).collect()
 }
 
-/// A technique; a click opens the case where it is unexpected, else where it breaks, or at its last value.
+/// Draws a technique's row; a click opens the case where it is unexpected, else where it breaks, or at its last value.
 fn table_row(ui: &mut Ui, case: &'static StressCase, summary: &StressSummary, actions: &mut Vec<Action>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let (found, verdict, expected) = (summary.found_text(), summary.verdict_text(), summary.expected.name());

@@ -1,26 +1,27 @@
-//! What a docking may come to: every panel once, in a group of tabs, large enough to be used.
+//! The rules for a docked layout: every panel occurs once, in a group of tabs, large enough to be used.
 //!
-//! egui's tiles allow more. A tile that is dropped between others gets one share of the room, where theirs are hundreds
-//! of points: it is a line. A panel that is dropped into the half of a group splits the panel on top of it, and a tab
-//! called `Horizontal` holds both. So a drop is settled here: a split is one of the whole group, what is new gets as much
-//! room as the others have on average, and a drop for which there is no room joins the group under the pointer.
+//! egui's tiles allow more. A tile that is dropped between others gets one share of the space, where theirs are
+//! hundreds of points: it is as thin as a line. A panel that is dropped into the half of a group splits the panel on
+//! top of it, and a tab called `Horizontal` contains both. So each drop is corrected here: a split is one of the whole
+//! group, what is new gets as much space as the others have on average, and a drop for which there is no space joins
+//! the group under the pointer.
 
 use crate::inspector::action::PanelKind;
 use egui::{Pos2, Vec2, vec2};
 use egui_tiles::{Container, LinearDir, Shares, SimplificationOptions, Tile, TileId, Tiles, Tree};
 use std::collections::BTreeSet;
 
-/// The least that a group takes, its tabs included, points.
+/// The least size of a group, with its tabs, points.
 const LEAST: Vec2 = vec2(120.0, 96.0);
-/// Between two tiles.
+/// Gap between two tiles, points.
 const GAP: f32 = 1.0;
 
-/// Every panel is in tabs, and nothing else is.
+/// Returns the options by which every panel is in tabs, and nothing else is.
 pub fn options() -> SimplificationOptions {
     SimplificationOptions { all_panes_must_have_tabs: true, flatten_tabs_in_tabs: true, ..Default::default() }
 }
 
-/// Where a tile is to be dropped, and what was there before.
+/// A drag of a tile, with where it would be dropped and the layout before.
 #[derive(Debug)]
 pub struct TileDrag {
     tile: TileId,
@@ -29,13 +30,13 @@ pub struct TileDrag {
 }
 
 impl TileDrag {
-    /// The one that is under way.
+    /// Returns the drag that is under way, if there is one.
     pub fn under_way(tree: &Tree<PanelKind>, ui: &egui::Ui) -> Option<TileDrag> {
         let tile = tree.dragged_id(ui)?;
         Some(TileDrag { tile, before: tree.clone(), pointer: ui.input(|input| input.pointer.interact_pos()) })
     }
 
-    /// Settles it once the tile was dropped, in a window of this size.
+    /// Corrects the layout after the tile was dropped, in a window of this size.
     pub fn settle(self, tree: &mut Tree<PanelKind>, size: Vec2) {
         fix(tree, self.pointer);
         let least = |tree: &Tree<PanelKind>| tree.root.map_or(Vec2::ZERO, |root| least(&tree.tiles, root));
@@ -53,7 +54,7 @@ impl TileDrag {
     }
 }
 
-/// Is every panel there once?
+/// Is every panel in the layout exactly once?
 pub fn is_whole(tree: &Tree<PanelKind>) -> bool {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
@@ -61,8 +62,8 @@ pub fn is_whole(tree: &Tree<PanelKind>) -> bool {
     is_tree && panels == PanelKind::ALL
 }
 
-/// Adds panels that are not there, as in a layout that a program before them stored: to the tabs that tell about a pixel,
-/// or to the first.
+/// Adds missing panels, as in a layout that an older version stored: to the tabs about the picked pixel, or to the
+/// first tabs.
 pub fn complete(tree: &mut Tree<PanelKind>) {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
@@ -82,7 +83,7 @@ pub fn complete(tree: &mut Tree<PanelKind>) {
     }
 }
 
-/// Gathers the panels below a tile; false where a tile is missing or stands twice.
+/// Collects the panels below a tile; false where a tile is missing or occurs twice.
 fn visit(tiles: &Tiles<PanelKind>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<PanelKind>) -> bool {
     if !seen.insert(tile.0) {
         return false;
@@ -97,7 +98,7 @@ fn visit(tiles: &Tiles<PanelKind>, tile: TileId, seen: &mut BTreeSet<u64>, panel
     }
 }
 
-/// Takes groups out of tabs, and gives what is new its share. Panels that shared the tabs with a group join that of its
+/// Takes groups out of tabs, and gives new tiles their share. Panels that shared the tabs with a group join that of its
 /// groups which is at `pointer`, or else its first.
 pub fn fix(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
     share_fairly(tree);
@@ -114,7 +115,7 @@ pub fn fix(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
             let active = active.filter(|active| *active != split);
             active.into_iter().for_each(|active| inner.set_active(active));
         }
-        // The split stands where the tabs were.
+        // The split replaces the tabs.
         let parent = tree.tiles.parent_of(tabs).and_then(|parent| tree.tiles.get_mut(parent));
         let place = match parent {
             Some(Tile::Container(parent)) => parent.replace_child(tabs, split),
@@ -129,7 +130,7 @@ pub fn fix(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
     share_fairly(tree);
 }
 
-/// Tabs with a group among them, and that group.
+/// Finds tabs with a group among them, and that group.
 fn split_in_tabs(tiles: &Tiles<PanelKind>) -> Option<(TileId, TileId)> {
     let mut found: Vec<(TileId, TileId)> = Vec::new();
     for (id, tile) in tiles.iter() {
@@ -137,7 +138,7 @@ fn split_in_tabs(tiles: &Tiles<PanelKind>) -> Option<(TileId, TileId)> {
         let is_split = |child: &&TileId| matches!(tiles.get(**child), Some(Tile::Container(_)));
         found.extend(tabs.children.iter().find(is_split).map(|child| (*id, *child)));
     }
-    // Tiles come in no order.
+    // Tiles are iterated in no fixed order.
     found.into_iter().min_by_key(|(id, _)| id.0)
 }
 
@@ -152,27 +153,27 @@ fn groups_below(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec<TileId> {
     }
 }
 
-/// The group of tabs at a place, of those that are meant.
+/// The group of tabs at a position, among those for which `is_meant` is true.
 fn group_at(tiles: &Tiles<PanelKind>, at: Pos2, is_meant: &dyn Fn(TileId) -> bool) -> Option<TileId> {
     let is_group = |id: &TileId| matches!(tiles.get(*id), Some(Tile::Container(Container::Tabs(_))));
     let is_there = |id: &TileId| tiles.rect(*id).is_some_and(|rect| rect.contains(at));
     tiles.tile_ids().filter(|id| is_meant(*id) && is_group(id) && is_there(id)).min_by_key(|id| id.0)
 }
 
-/// What has no share yet gets as much as the others have on average.
+/// Gives tiles without a share as much as the others have on average.
 fn share_fairly(tree: &mut Tree<PanelKind>) {
     for tile in tree.tiles.tiles_mut() {
         let Tile::Container(Container::Linear(linear)) = tile else { continue };
         let known = |id: &TileId| linear.shares.iter().find(|(of, _)| *of == id).map(|(_, share)| *share);
         let shares: Vec<f32> = linear.children.iter().filter_map(known).collect();
         let new: Vec<TileId> = linear.children.iter().copied().filter(|id| known(id).is_none()).collect();
-        // Where none has one they are alike.
+        // Where no tile has one, all are equal.
         let average = if shares.is_empty() { 1.0 } else { shares.iter().sum::<f32>() / shares.len() as f32 };
         new.into_iter().for_each(|id| linear.shares.set_share(id, average));
     }
 }
 
-/// What a tile takes at least.
+/// The least size of a tile.
 fn least(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec2 {
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(tile) else { return LEAST };
     let gaps = GAP * linear.children.len().saturating_sub(1) as f32;
@@ -183,8 +184,8 @@ fn least(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec2 {
     }
 }
 
-/// Gives every group at least what it needs, where a window of this size has that. What was there before, to be put
-/// back once the tiles are drawn: in a larger window the shares are as they were.
+/// Gives every group at least its least size, where a window of this size allows it. Returns the shares before, to be
+/// restored once the tiles are drawn: in a larger window the shares are as they were.
 pub fn fit(tree: &mut Tree<PanelKind>, size: Vec2) -> Vec<(TileId, Shares)> {
     let mut before = Vec::new();
     if let Some(root) = tree.root {
@@ -193,7 +194,7 @@ pub fn fit(tree: &mut Tree<PanelKind>, size: Vec2) -> Vec<(TileId, Shares)> {
     before
 }
 
-/// Puts shares back that were changed for one window.
+/// Restores shares that were changed for one window size.
 pub fn restore_waiting(tree: &mut Tree<PanelKind>, shares: Vec<(TileId, Shares)>) {
     for (id, before) in shares {
         if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(id) {
@@ -221,7 +222,8 @@ fn fit_tile(tiles: &mut Tiles<PanelKind>, tile: TileId, size: Vec2, before: &mut
     }
 }
 
-/// Lengths as they are wished for, but none below what is needed; where there is no room for that, in the same ratio.
+/// Returns the wished lengths, but none below what is needed; where the space is too small for that, the needed lengths
+/// scaled down in the same ratio.
 fn lengths(wished: &[f32], needed: &[f32], space: f32) -> Vec<f32> {
     let all: f32 = needed.iter().sum();
     if all >= space {

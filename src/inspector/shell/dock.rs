@@ -21,18 +21,18 @@ const LEFT_WIDTH: f32 = 264.0;
 const RIGHT_WIDTH: f32 = 332.0;
 /// From this width on the scene is beside the picture, points: the picture is as large as in a window of usual width.
 const WIDE: f32 = 2200.0;
-/// What a side panel may take of the window at most.
+/// The largest share of the window's width for a side panel.
 const SIDE_SHARE: f32 = 0.26;
 /// Height of the report in points, without and with something to show.
 const EMPTY_REPORT_HEIGHT: f32 = 88.0;
 const REPORT_HEIGHT: f32 = 312.0;
-/// What the report may take of the window at most.
+/// The largest share of the window's height for the report.
 const REPORT_SHARE: f32 = 0.42;
 
-/// A layout as stored: egui's own form of it.
+/// A stored layout, in egui's own format.
 pub type StoredLayout = serde_json::Value;
 
-/// The panels and where they are.
+/// The docked panels and their layout.
 #[derive(Debug)]
 pub struct Dock {
     tree: Tree<PanelKind>,
@@ -50,12 +50,12 @@ pub struct Dock {
 }
 
 impl Dock {
-    /// As first shown.
+    /// Returns the initial layout.
     pub fn new() -> Dock {
         Dock::first(false)
     }
 
-    /// As first shown in a window that is wide, so that the scene has room beside the picture, or is not.
+    /// Returns the initial layout of a window that is wide, with the scene beside the picture, or of one that is not.
     fn first(is_wide: bool) -> Dock {
         let mut tiles = Tiles::default();
         let sides = [PanelKind::Passes, PanelKind::Settings].map(|panel| tiles.insert_pane(panel));
@@ -78,12 +78,12 @@ impl Dock {
         Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false, is_wide, shown: Vec::new() }
     }
 
-    /// Where the panels are; `None` while they are where they were at first.
+    /// Returns the layout; `None` while it is the initial one.
     pub fn layout(&self) -> Option<StoredLayout> {
         self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
     }
 
-    /// Puts the panels where they were. A layout that is not one of these panels is not taken.
+    /// Restores a stored layout. One that does not consist of these panels is ignored.
     pub fn restore(&mut self, layout: StoredLayout) {
         let Ok(mut tree) = serde_json::from_value::<Tree<PanelKind>>(layout) else { return };
         arrangement::complete(&mut tree);
@@ -94,7 +94,7 @@ impl Dock {
         }
     }
 
-    /// Draws all panels into what is left of the window.
+    /// Draws all panels into the rest of the window.
     pub fn ui(&mut self, ui: &mut Ui, panels: &mut Panels, model: &mut Model, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
             let is_wide = ui.available_width() >= WIDE;
@@ -121,7 +121,7 @@ impl Dock {
         if !has_map {
             panels.shadow_map.hide(model);
         }
-        // A panel knows whether it scrolls, and so its width, a frame after it is shown.
+        // A panel knows whether it scrolls, and so its width, one frame after it is first shown.
         if self.shown != shown {
             self.shown = shown;
             ui.ctx().request_repaint();

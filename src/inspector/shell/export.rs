@@ -1,6 +1,6 @@
 //! Export: the shown picture, its data, the capture, the scene, or the report, into a file.
 //!
-//! The panel asks for a place; the app writes. A place that is taken is asked about once more.
+//! The dialog asks for a path; the app writes. Before an existing file is replaced it asks once more.
 
 use crate::ask::{FilmOf, FilmSubject, ReportOf, RunRequest};
 use crate::capture::{Capture, Image};
@@ -18,21 +18,21 @@ use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
 use std::sync::Arc;
 
-/// Asks where to.
+/// The dialog that asks for the path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportDialog {
     /// What is exported.
     pub kind: ExportKind,
-    /// The path field.
+    /// The text of the path field.
     pub path: String,
-    /// The path that was found taken: pressing again replaces it.
+    /// The path at which a file was found: pressing again replaces it.
     pub taken: Option<String>,
-    /// Why the last try failed, with the mend.
+    /// Why the last try failed, and how to fix it.
     pub error: Option<String>,
 }
 
 impl ExportDialog {
-    /// With a name that says what it is; none where there is nothing of this kind.
+    /// Opens the dialog with a name that describes the content; `None` where there is nothing of this kind.
     pub fn new(kind: ExportKind, model: &Model) -> Option<ExportDialog> {
         if is_film(kind) && model.answers.asked::<FilmOf>().is_some() {
             return None;
@@ -46,7 +46,7 @@ impl ExportDialog {
         Some(ExportDialog { kind, path, taken: None, error: None })
     }
 
-    /// What is made of the capture or the open scene.
+    /// Returns a file name for an export of the capture or of the open scene.
     fn name_of_shown(kind: ExportKind, model: &Model) -> Option<String> {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
@@ -57,7 +57,7 @@ impl ExportDialog {
         let stem = format!("{}-{}", capture.scene, capture.technique);
         Some(match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
-            // Nothing lies over layers side by side.
+            // Layers shown side by side have no overlays.
             ExportKind::AsShown if model.shown(capture)?.images.len() > 1 => return None,
             ExportKind::AsShown => format!("{stem}-{}-as-shown.png", title()?),
             ExportKind::Data => format!("{stem}-{}.npy", model.shown(capture)?.title),
@@ -71,34 +71,34 @@ impl ExportDialog {
     }
 }
 
-/// What is to be written.
+/// The data to be written.
 #[derive(Debug, Clone)]
 pub enum ExportData {
-    /// Pixels.
+    /// A finished picture.
     Picture(Picture),
-    /// Pixels, once it is finished.
+    /// A picture whose triangles are still to be drawn.
     AsShown(Box<PictureDrawing>),
     /// One picture, or all layers of a map.
     Data(Vec<Arc<Image>>),
-    /// All of it.
+    /// The whole capture, as a folder.
     Capture(Arc<Capture>),
-    /// All of it, for a browser.
+    /// The whole capture, as a page for a browser.
     Page(Arc<Capture>),
-    /// To be made, and written as it is made.
+    /// An animation, computed while it is written.
     Film(FilmSubject),
-    /// The scene as this runs it.
+    /// The scene with its present settings.
     Scene(Box<RunRequest>),
-    /// What was measured.
+    /// The measured report.
     Report(Box<Report>),
 }
 
-/// The scene as it is set, where it can be run so.
+/// Returns the run of the present settings, where it is possible.
 fn runnable(model: &Model) -> Option<RunRequest> {
     let scene = model.scene.as_ref()?;
     scene.problem.is_none().then(|| scene.draft.clone())
 }
 
-/// What `kind` means now; none where there is nothing of it.
+/// Returns the data of a `kind` of export now; `None` where there is none.
 pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Option<ExportData> {
     if kind == ExportKind::Report {
         return measured(model).cloned().map(|report| ExportData::Report(Box::new(report)));
@@ -139,19 +139,19 @@ fn is_film(kind: ExportKind) -> bool {
     matches!(kind, ExportKind::Steps | ExportKind::LightRound)
 }
 
-/// The light that goes round: the shown one; `None` where there is none that could.
+/// The light that moves round the scene: the shown one; `None` where no light can.
 fn selected_light(model: &Model) -> Option<usize> {
     let last = model.scene.as_ref()?.draft.lights.len().checked_sub(1)?;
     Some(model.view.light.min(last))
 }
 
-/// What was measured; `None` while that is nothing, or not yet all.
+/// The measured report; `None` until it is complete.
 fn measured(model: &Model) -> Option<&Report> {
     let (_, measured) = model.answers.last::<ReportOf>().filter(|_| model.answers.asked::<ReportOf>().is_none())?;
     Some(&measured.report).filter(|report| !report.rows.is_empty())
 }
 
-/// Pictures in a row, their tops level.
+/// Lays pictures in a row, their tops aligned.
 fn side_by_side(pictures: &[Picture]) -> Picture {
     let width = pictures.iter().map(|picture| picture.size()[0]).sum();
     let height = pictures.iter().map(|picture| picture.size()[1]).max().unwrap_or(0);
@@ -164,7 +164,7 @@ fn side_by_side(pictures: &[Picture]) -> Picture {
     all
 }
 
-/// The menu's entries.
+/// Draws the menu's entries.
 pub fn menu(ui: &mut Ui, model: &mut Model) {
     for kind in ExportKind::ALL {
         let dialog = ExportDialog::new(kind, model);
@@ -189,13 +189,13 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws the dialog while it is open; `own` is what is typed into it.
+/// Draws the dialog while it is open; `own` is its state.
 pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(DialogKind::Export(kind)) = model.dialog else {
         *own = None;
         return;
     };
-    // What is not there can't be exported.
+    // Where there is nothing to export, the dialog closes.
     let Some(mut dialog) = own.take().or_else(|| ExportDialog::new(kind, model)) else {
         model.dialog = None;
         return;

@@ -18,7 +18,7 @@ pub fn ui(ctx: &Context, model: &mut Model) {
     let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        // At once as high as it will be: an area grows by a little a frame otherwise, and its buttons slide away.
+        // At its full height at once: an area otherwise grows by a little a frame, and its buttons slide away.
         let most = (ctx.content_rect().height() - 140.0).max(80.0);
         let scroll = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
         scroll.show(ui, contents);
@@ -62,7 +62,7 @@ fn section(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &
         ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT - 4.0;
         for (keys, does) in rows {
             ui.horizontal(|ui| {
-                // The columns of all sections are in line.
+                // Aligns the columns of all sections.
                 ui.set_min_width(KEYS_WIDTH);
                 ui.label(theme::number(keys).color(theme::of(ui).text));
             });

@@ -1,9 +1,8 @@
-//! The keys: one table, that handling and help both read.
+//! The keys: one table, which both handling and help read.
 //!
-//! The stepping keys always step: whatever has the focus, but for a text field and for what is itself moved by
-//! arrows, as a handle or a slider is. Keys are consumed before widgets see them. What the mouse does on the
-//! picture and the keys of walking are handled where they act; their words are here, so that the help window
-//! lists all.
+//! The stepping keys always step, whatever has the focus, except a text field and widgets that arrows move themselves,
+//! as a handle or a slider. Keys are consumed before widgets see them. What the mouse does on the picture and the keys
+//! of walking are handled where they act; their descriptions are here, so that the help window lists all.
 
 use crate::inspector::action::{Action, DialogKind, ExportKind};
 use crate::inspector::canvas;
@@ -15,17 +14,17 @@ use egui::{Context, EventFilter, Id, Key, Modifiers};
 /// What a key does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyCommand {
-    /// One pass back.
+    /// Goes one pass back.
     PreviousPass,
-    /// One pass on.
+    /// Goes one pass forward.
     NextPass,
-    /// One draw back.
+    /// Goes one draw back.
     PreviousDraw,
-    /// One draw on.
+    /// Goes one draw forward.
     NextDraw,
-    /// To the first pass.
+    /// Goes to the first pass.
     FirstPass,
-    /// To the last pass.
+    /// Goes to the last pass.
     LastPass,
     /// Steps through the frame, or stops.
     Play,
@@ -35,23 +34,23 @@ pub enum KeyCommand {
     Find,
     /// Opens the dialog that opens scenes.
     Open,
-    /// Takes the last change back.
+    /// Undoes the last change.
     Undo,
-    /// Makes it again.
+    /// Redoes the change that was undone last.
     Redo,
     /// Opens the dialog that saves the shown picture.
     Export,
-    /// The list of keys.
+    /// Opens the list of keys.
     Help,
     /// Runs the scene's animation, or stops it.
     Animate,
-    /// The animation, one step on.
+    /// Advances the animation by one step.
     AnimateStep,
-    /// Dark or light.
+    /// Switches between the dark and the light theme.
     Theme,
-    /// Before the step, or after it.
+    /// Switches between the state before the step and the state after it.
     Before,
-    /// What the step changed, or what it left.
+    /// Switches between what the step changed and what it left.
     Diff,
     /// Opens the menu of overlays.
     Overlays,
@@ -59,33 +58,33 @@ pub enum KeyCommand {
     Flip,
     /// Moves the pick by so many pixels right and down.
     MovePick(i32, i32),
-    /// No pixel is picked any longer.
+    /// Removes the pick.
     Unpick,
 }
 
-/// Where a key acts.
+/// The focus in which a key acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyScope {
-    /// Wherever the focus is, but for a text field.
+    /// Any focus but a text field.
     Anywhere,
-    /// As those, but for what is moved by arrows itself.
+    /// Any focus but a text field and a widget that arrows move itself.
     Steps,
-    /// Wherever the focus is, but for a text field and an open menu.
+    /// Any focus but a text field and an open menu.
     Picture,
-    /// While the picture or nothing has the focus: a focused button is pressed by it, or left.
+    /// The picture has the focus, or nothing: a focused button reacts to the key itself.
     Free,
 }
 
-/// A key and what it does.
+/// A key and its command.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyBinding {
-    /// Held with it.
+    /// The modifier keys that have to be pressed with it.
     pub modifiers: Modifiers,
     /// The key.
     pub key: Key,
-    /// Where it acts.
+    /// The focus in which it acts.
     pub scope: KeyScope,
-    /// What it does.
+    /// Its command.
     pub command: KeyCommand,
     /// The key in words.
     pub keys: &'static str,
@@ -107,12 +106,12 @@ const fn binding(
 const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 const FAR: Modifiers = REDO;
 
-/// Told among what one does on the picture, all at once.
+/// Help describes it among the actions on the picture, all in one line.
 const fn move_pick(modifiers: Modifiers, key: Key, [right, down]: [i32; 2]) -> KeyBinding {
     binding(modifiers, key, KeyScope::Steps, KeyCommand::MovePick(right, down), "", "")
 }
 
-/// All of them. Of two with the same key the one with more modifiers stands first.
+/// All keys. Of two entries with the same key the one with more modifiers comes first.
 pub const BINDINGS: [KeyBinding; 33] = [
     move_pick(FAR, Key::ArrowLeft, [-10, 0]),
     move_pick(FAR, Key::ArrowRight, [10, 0]),
@@ -177,7 +176,7 @@ pub const BINDINGS: [KeyBinding; 33] = [
     binding(Modifiers::NONE, Key::Questionmark, KeyScope::Picture, KeyCommand::Help, "?", "this help"),
 ];
 
-/// What is done on the picture by the mouse, and to the pick by keys: key, what it does.
+/// The actions of the mouse on the picture, and of keys on the pick: key, description.
 pub const PICTURE: [(&str, &str); 6] = [
     ("Right click, right drag", "pick a pixel: its history is told beside"),
     ("Wheel", "zoom at the pointer"),
@@ -187,7 +186,7 @@ pub const PICTURE: [(&str, &str); 6] = [
     ("Tab, Shift-Tab", "from widget to widget; Enter or Space presses it"),
 ];
 
-/// What had the focus in the frame before. Escape takes the focus away before any key is looked at.
+/// What had the focus in the previous frame. Escape takes the focus away before any key is looked at.
 #[derive(Debug, Default)]
 pub struct FocusBefore {
     widget: Option<Id>,
@@ -215,7 +214,7 @@ pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &
         if !acts {
             continue;
         }
-        // Several presses may come in one frame.
+        // A key may be pressed several times in one frame.
         let presses = ctx.input_mut(|input| input.count_and_consume_key(binding.modifiers, binding.key));
         if presses > 0 {
             act(ctx, model, binding.command, presses, actions);
@@ -223,7 +222,7 @@ pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &
     }
 }
 
-/// What has the focus at the end of a frame. Arrows do not take it away from a widget: they step.
+/// Returns what has the focus at the end of a frame. Keeps arrow keys from moving it to another widget, as they step.
 pub fn remember(ctx: &Context) -> FocusBefore {
     let widget = ctx.memory(egui::Memory::focused);
     let is_typing = ctx.text_edit_focused();
@@ -234,12 +233,12 @@ pub fn remember(ctx: &Context) -> FocusBefore {
     FocusBefore { widget, is_typing }
 }
 
-/// A text field has these keys for its own text.
+/// Is it a key that a text field uses to edit its text?
 fn edits_text(command: KeyCommand) -> bool {
     matches!(command, KeyCommand::Undo | KeyCommand::Redo)
 }
 
-/// Does what a key says.
+/// Carries out a command.
 pub fn act(ctx: &Context, model: &mut Model, command: KeyCommand, presses: usize, actions: &mut Vec<Action>) {
     let by = presses as isize;
     match command {
@@ -276,7 +275,7 @@ pub fn act(ctx: &Context, model: &mut Model, command: KeyCommand, presses: usize
     }
 }
 
-/// There and back between a phase and after.
+/// Switches between a phase and [`StepPhase::After`].
 fn toggle_phase(model: &mut Model, phase: StepPhase) {
     model.modes.phase = if model.modes.phase == phase { StepPhase::After } else { phase };
 }

@@ -1,11 +1,11 @@
-//! Errors as bars under the top bar: text with its mend, until dismissed.
+//! Errors as bars under the top bar: text with how to fix it, until dismissed.
 
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::{CornerRadius, Margin, RichText, Stroke, Ui};
 
-/// Errors take so much of the window's height at most; more are scrolled to.
+/// The largest share of the window's height for errors; more are scrolled to.
 const MOST_HEIGHT: f32 = 0.25;
 
 /// Draws the offer to load a changed file again, and a bar for each error.
@@ -24,7 +24,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         let most = ui.ctx().content_rect().height() * MOST_HEIGHT;
         let mut dismissed = None;
         egui::ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
-            // The last one first: it is of what was done just now.
+            // The last one first: it belongs to the latest action.
             for (index, error) in model.activity.errors.iter().enumerate().rev() {
                 if bar(ui, error) {
                     dismissed = Some(index);
@@ -57,7 +57,7 @@ fn reload(ui: &mut Ui, model: &mut Model, file: &str, actions: &mut Vec<Action>)
     });
 }
 
-/// One error; true when it is dismissed.
+/// Draws one error; returns true when it is dismissed.
 fn bar(ui: &mut Ui, error: &str) -> bool {
     let frame = egui::Frame::new()
         .stroke(Stroke::new(1.0, theme::of(ui).error))

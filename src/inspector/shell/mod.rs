@@ -1,4 +1,4 @@
-//! What stands around the tabs: bars, dialogs, keys, walking and tours.
+//! Everything around the tabs: bars, dialogs, keys, walking and tours.
 
 pub mod arrangement;
 pub mod dock;

@@ -6,35 +6,35 @@ use crate::inspector::model::Model;
 use egui::{Context, Id, Key, RichText, Ui, vec2};
 use std::path::Path;
 
-/// Files that were opened before and are listed.
+/// How many recent files are listed.
 const MOST_RECENT: usize = 4;
 
 /// A built-in scene, or a frame of another program, in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneEntry {
-    /// What opens it.
+    /// The name or path that opens it.
     pub name: String,
     /// What it shows, in a sentence.
     pub lesson: String,
 }
 
-/// What the dialog offers, and the path that is typed into it.
+/// The entries of the dialog, and the path that is typed into it.
 #[derive(Debug, Default)]
 pub struct OpenDialog {
-    /// Built-in ones.
+    /// Built-in scenes.
     scenes: Vec<SceneEntry>,
-    /// Of other programs.
+    /// Frames of other programs.
     pub frames: Vec<SceneEntry>,
     path: String,
 }
 
 impl OpenDialog {
-    /// Offers these.
+    /// Returns a dialog with these scenes.
     pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
     }
 
-    /// Is it one of those that are listed?
+    /// Is the source one of those that are listed?
     fn names(&self, source: &str) -> bool {
         self.scenes.iter().chain(&self.frames).any(|entry| entry.name == source)
     }
@@ -85,7 +85,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenRepl
         }
     }
     ui.add_space(if files.is_empty() { 0.0 } else { 8.0 });
-    // What is under the lists stays in sight.
+    // So that what is under the lists stays visible.
     let others = ui.min_rect().height() + 320.0;
     let height = (ui.ctx().content_rect().height() - others).clamp(60.0, 400.0);
     let lists = [("A built-in scene", &dialog.scenes, height), ("A frame of another program", &dialog.frames, 120.0)];
@@ -129,7 +129,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenRepl
     answer
 }
 
-/// A scene's name and lesson; true when it is chosen.
+/// Draws a scene's name and lesson; returns true when it is chosen.
 fn scene_row(ui: &mut Ui, name: &str, lesson: &str) -> bool {
     let text = RichText::new(name).color(theme::of(ui).text);
     ui.horizontal(|ui| {

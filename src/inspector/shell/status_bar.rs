@@ -1,4 +1,4 @@
-//! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
+//! The bar at the bottom: the picture's facts, the texel under the pointer, the cost of a frame.
 
 use crate::ask::{FilmOf, QuestionKind, TimingOf};
 use crate::capture::Capture;
@@ -70,7 +70,7 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
     }
 }
 
-/// Right to left: adapter, frame time, bytes, and what is being done.
+/// Draws from right to left: adapter, frame time, bytes, and the running job.
 fn costs(ui: &mut Ui, model: &mut Model) {
     if let Some(capture) = &model.frame.capture {
         let adapter = &capture.adapter;
@@ -96,7 +96,7 @@ fn costs(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// How far an animation is that is being written; it can be stopped.
+/// Draws the progress of an animation that is being written; it can be stopped.
 fn film(ui: &mut Ui, model: &mut Model) {
     let Some(progress) = model.answers.under_way::<FilmOf>().running else { return };
     if ui.small_button("Cancel").on_hover_text("Stop writing the animation; nothing of it is left").clicked() {
@@ -108,8 +108,8 @@ fn film(ui: &mut Ui, model: &mut Model) {
     spinner(ui);
 }
 
-/// A turning arc. It moves a few times a second only: on a software GPU every frame that is
-/// drawn here is taken from the work that it stands for.
+/// Draws a rotating arc. It moves a few times a second only: on a software GPU every frame that is drawn here takes
+/// time from the work that it stands for.
 fn spinner(ui: &mut Ui) {
     const TURN_SECONDS: f64 = 1.2;
     const FRAMES: f64 = 12.0;

@@ -11,9 +11,9 @@ use crate::technique::Technique;
 use egui::containers::menu::MenuButton;
 use egui::{Margin, RichText, Ui, vec2};
 
-/// Room for a button a technique, and the tools to their right, points.
+/// From this width on there is space for a button for each technique, and the tools to their right, points.
 const WIDE: f32 = 930.0;
-/// Width of what is open: whatever that is called, the techniques stay where they are.
+/// Width of the name of what is open, points: it is fixed so that the techniques do not move.
 const NAME_WIDTH: f32 = 112.0;
 
 /// Draws the bar.
@@ -34,7 +34,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     });
 }
 
-/// What is open, and what was: a menu.
+/// Draws the name of what is open, with a menu of what was.
 fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     let Some(name) = open_name(model) else { return };
     let text = RichText::new(&name).color(theme::of(ui).text);
@@ -58,7 +58,7 @@ fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     place.inner.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
 }
 
-/// Undo, redo, export, theme, help.
+/// Draws the buttons for undo, redo, export, theme, help.
 fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
     if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
@@ -70,7 +70,7 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
     let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
     menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
-    // "Light" alone would be one of the scene's.
+    // "Light" alone could be taken for one of the scene's lights.
     let other = match model.theme.other() {
         ThemeChoice::Dark => "dark",
         ThemeChoice::Light => "light",
@@ -89,10 +89,10 @@ fn open_name(model: &Model) -> Option<String> {
     of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} ({what})", capture.scene)))
 }
 
-/// A button a technique, joined into one.
+/// Draws one button for each technique, joined.
 fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else {
-        // A capture folder: its technique is a fact, not a choice.
+        // A capture folder: its technique can't be changed.
         match (&model.frame.capture, model.origin()) {
             (_, Some(_)) => {
                 ui.label(theme::note("drawn by another program: its technique can't be changed"));
@@ -130,7 +130,7 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
-/// The settings of a technique that are not its own: `casters light-facing`.
+/// The settings of a technique that differ from its defaults: `casters light-facing`.
 fn changes(scene: &OpenScene, technique: Technique) -> String {
     let choice = if scene.draft.choice.technique() == technique {
         Some(&scene.draft.choice)

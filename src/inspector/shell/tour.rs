@@ -1,9 +1,8 @@
-//! Guided tours: stops that drive the panels and say what is seen.
+//! Guided tours: stops that drive the panels and explain what is seen.
 //!
-//! A stop first asks for its technique or scene, and waits for the capture; then it goes to its step,
-//! picture, pixel and tab. Between stops the user may do what they like: the next stop finds its place
-//! again. A stop whose frame can't be made says why, and offers to try again or to go on without it. The
-//! stops are in `tours.rs`.
+//! A stop first asks for its technique or scene, and waits for the capture; then it goes to its step, picture, pixel
+//! and tab. Between stops the user may do what they like: the next stop finds its place again. A stop whose frame can't
+//! be made says why, and offers to try again or to go on without it. The stops are in `tours.rs`.
 
 use crate::accuracy::Finding;
 use crate::capture::Capture;
@@ -19,20 +18,20 @@ use egui::{Label, Margin, RichText, Ui};
 const LIT: u8 = 0;
 const SHADOW: u8 = 1;
 
-/// The tour that one is on, if any.
+/// The tour that is running, if any.
 #[derive(Debug, Default)]
 pub struct Tours {
     at: Option<TourState>,
 }
 
-/// Where one is.
+/// The tour, the stop, and its state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TourState {
     tour: usize,
     stop: usize,
-    /// What the stop wants is not done yet.
+    /// The stop's moves have not been carried out yet.
     is_pending: bool,
-    /// What failed while the stop's frame was waited for, with the mend.
+    /// What failed while the stop's frame was waited for, and how to fix it.
     error: Option<String>,
 }
 
@@ -65,14 +64,14 @@ impl Tours {
         run_technique(model, found.stops[stop].technique(found), actions);
     }
 
-    /// Something failed: the stop that waits tells it.
+    /// Stores an error for the stop that is waiting, which shows it.
     pub fn note_error(&mut self, error: &str) {
         if let Some(tour) = self.at.as_mut().filter(|tour| tour.is_pending) {
             tour.error = Some(error.to_owned());
         }
     }
 
-    /// Why the stop has no frame, and will get none by itself; `None` while one may come.
+    /// Returns why the stop has no frame, and gets none without the user's help; `None` while one may come.
     fn trouble(&self, model: &Model) -> Option<String> {
         let at = self
             .at
@@ -82,7 +81,7 @@ impl Tours {
         Some(at.error.clone().or(problem).unwrap_or_else(|| "the run ended without a picture".to_owned()))
     }
 
-    /// Does what the stop wants, as soon as its capture is there.
+    /// Carries out the stop's moves, as soon as its capture is there.
     pub fn go_on(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
         let Some(at) = self.at.clone().filter(|tour| tour.is_pending && !model.activity.is_waiting) else { return };
         let Some(tour) = TOURS.get(at.tour) else { return };
@@ -90,7 +89,7 @@ impl Tours {
         let stop = &tour.stops[at.stop];
         let technique = stop.technique(tour);
         let Some(scene) = &model.scene else {
-            // A capture folder: there is nothing to run. The stop is told all the same, unless its scene failed.
+            // A capture folder: there is nothing to run. The stop is shown all the same, unless its scene failed.
             if at.error.is_none() {
                 self.at = Some(TourState { is_pending: false, ..at });
             }
@@ -124,7 +123,7 @@ fn scene_to_open(model: &Model, tour: &Tour, stop: usize) -> Option<&'static str
     (!is_open).then_some(scene)
 }
 
-/// Chooses a technique; one that is chosen already, and has no frame, is tried again.
+/// Chooses a technique; where it is chosen already, and has no frame, runs it again.
 fn run_technique(model: &mut Model, technique: Technique, actions: &mut Vec<Action>) {
     let is_chosen = model.scene.as_ref().is_some_and(|scene| scene.draft.choice.technique() == technique);
     let is_of = |capture: &Capture| {
@@ -192,7 +191,7 @@ fn nearest_to_middle(image: &crate::capture::Image, is_it: impl Fn(u8) -> bool) 
     found.min_by_key(|(x, y)| far(*x, *y)).map(|(x, y)| [x as u32, y as u32])
 }
 
-/// The stop, over the status bar, while one is on a tour.
+/// Draws the stop, over the status bar, while a tour is running.
 pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Action>) {
     if let Some(tour) = model.requests.tour.take() {
         own.start(model, tour, actions);
@@ -216,7 +215,7 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     }
 }
 
-/// Text and buttons; where to go, `Some(None)` to end.
+/// Draws text and buttons; returns the stop to go to, `Some(None)` to end.
 fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<Option<usize>> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();

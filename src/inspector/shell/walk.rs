@@ -1,9 +1,9 @@
 //! Walking: the mouse looks, W S A D move, and other keys change what is seen, until Escape.
 //!
-//! Only while one walks these keys act, and no others do. The pointer is hidden and held in the window.
-//! A new frame is asked for when the last one is shown, so nothing queues up: a slow technique moves in
-//! larger steps, not later. Walls are asked for whenever objects are switched off, move or are loaded anew;
-//! until they come the walls before count. With gravity (G) one falls also while no key is held, until one stands.
+//! These keys act only while the user walks, and no others do then. The pointer is hidden and confined to the window. A
+//! new frame is asked for when the last one is shown, so nothing queues up: a slow technique moves in larger steps, not
+//! later. Walls are asked for whenever objects are switched off, move or are loaded again; until they come the previous
+//! walls are used. With gravity (G) the walker falls also while no key is pressed, until they stand.
 
 use crate::ask::{RunRequest, WallsOf};
 use crate::inspector::action::{Action, Overlay};
@@ -17,23 +17,23 @@ use egui::{Context, Event, FocusDirection, Key, Vec2};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// Degrees that a point of mouse movement turns.
+/// Degrees of rotation for each point of mouse movement.
 const TURN: f64 = 0.12;
-/// One looks up and down so far at most, degrees.
+/// The largest pitch up and down, degrees.
 const MOST_PITCH: f64 = 88.0;
-/// What a press of < or > makes of the speed, and its limits, metres a second.
+/// The factor by which a press of < or > changes the speed, and the speed's limits, metres a second.
 const FASTER: f64 = 1.5;
 const SPEED_LIMITS: [f64; 2] = [0.02, 500.0];
-/// A pause in drawing is no jump: a step lasts so long at most, seconds.
+/// A step lasts at most so long, seconds, so that a pause in drawing is no jump.
 const LONGEST: f64 = 0.25;
-/// Half the width of who walks, metres, and what of the near plane's distance it is at least.
+/// Half the walker's width, metres, and its least multiple of the near plane's distance.
 const RADIUS: f64 = 0.25;
 const RADIUS_OF_NEAR: f64 = 1.5;
-/// An eye that is farther from where it was left was set elsewhere, metres.
+/// An eye farther than this from where the walker left it was set by something else, metres.
 const SAME_PLACE: f64 = 1e-6;
-/// Sizes of shadow maps.
+/// The sizes of shadow maps that a key goes through.
 const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
-/// What P goes through.
+/// The techniques that P goes through.
 const TECHNIQUES: [Technique; 6] = [
     Technique::None,
     Technique::Planar,
@@ -43,41 +43,41 @@ const TECHNIQUES: [Technique; 6] = [
     Technique::ShadowMap,
 ];
 
-/// What a key does while one walks.
+/// What a key does while the user walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WalkCommand {
-    /// While it is held, one walks this way: ahead, and to the right.
+    /// Walks in this direction while it is pressed: ahead, and to the right.
     Go(i8, i8),
-    /// The next technique.
+    /// Chooses the next technique.
     Technique,
-    /// Walls stop, or do not.
+    /// Switches collision with walls on or off.
     Collision,
-    /// One falls, and stands on what is below, or floats.
+    /// Switches gravity on or off: with it the walker falls, and stands on what is below; else they float.
     Gravity,
-    /// Slower.
+    /// Walks slower.
     Slower,
-    /// Faster.
+    /// Walks faster.
     Faster,
-    /// The next thing over the picture that makes shadows.
+    /// Shows the next overlay of shadow geometry over the picture.
     Overlay,
-    /// The next size of the map or the textures.
+    /// Chooses the next size of the map or the textures.
     MapSize,
-    /// The lamp swings, or stops.
+    /// Makes the lamp swing, or stops it.
     Swing,
-    /// Ends it.
+    /// Ends walking.
     Leave,
 }
 
-/// A key, and what it does while one walks.
+/// A key, and what it does while the user walks.
 #[derive(Debug, Clone, Copy)]
 pub struct WalkKey {
     /// The key.
     pub key: Key,
-    /// In words.
+    /// The key in words.
     pub keys: &'static str,
-    /// What it does.
+    /// Its command.
     pub command: WalkCommand,
-    /// In words.
+    /// What it does, in words.
     pub does: &'static str,
 }
 
@@ -85,7 +85,7 @@ const fn key(key: Key, keys: &'static str, command: WalkCommand, does: &'static 
     WalkKey { key, keys, command, does }
 }
 
-/// All of them: handling and help both read this.
+/// All keys; both handling and help read them here.
 pub const KEYS: [WalkKey; 13] = [
     key(Key::W, "W", WalkCommand::Go(1, 0), "walk ahead"),
     key(Key::S, "S", WalkCommand::Go(-1, 0), "walk back"),
@@ -102,7 +102,7 @@ pub const KEYS: [WalkKey; 13] = [
     key(Key::Escape, "Esc", WalkCommand::Leave, "stop walking, free the pointer"),
 ];
 
-/// Acts on keys and mouse of this frame while one walks; true then, and no other keys are to act.
+/// Acts on keys and mouse of this frame while the user walks; returns true then, and no other keys are to act.
 pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bool {
     if !model.walk.is_on() {
         return begins(ctx, model);
@@ -117,7 +117,7 @@ pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bo
     let typed = |text: &str| ctx.input(|input| input.events.contains(&Event::Text(text.to_owned())));
     for walk_key in &KEYS {
         let presses = ctx.input_mut(|input| input.count_and_consume_key(egui::Modifiers::NONE, walk_key.key));
-        // Where < and > have a key of their own, or are typed with other ones.
+        // Keyboards have a key for < and > each, or type them with other keys.
         let is_typed = match walk_key.command {
             WalkCommand::Slower | WalkCommand::Faster => typed(walk_key.keys),
             _ => false,
@@ -129,7 +129,7 @@ pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bo
     if !model.walk.is_on() {
         return true;
     }
-    // Nor does it go from widget to widget.
+    // Nor does Tab go from widget to widget.
     if ctx.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab)) {
         ctx.memory_mut(|memory| memory.move_focus(FocusDirection::None));
     }
@@ -137,8 +137,8 @@ pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bo
     true
 }
 
-/// Tab while the pointer is over the picture; else it goes from widget to widget, on from the picture too,
-/// so that who has no pointer does not get stuck there.
+/// Does Tab begin walking? It does while the pointer is over the picture; else it goes from widget to widget, on from
+/// the picture too, so that a user without a pointer does not get stuck there.
 fn begins(ctx: &Context, model: &mut Model) -> bool {
     let is_free = model.dialog.is_none() && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
     let focus = ctx.memory(egui::Memory::focused);
@@ -157,12 +157,12 @@ fn begins(ctx: &Context, model: &mut Model) -> bool {
 
 fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec<Action>) {
     let [slowest, fastest] = SPEED_LIMITS;
-    // Keys of walking are held: what was said stays to be read.
+    // While the keys of walking are pressed, the last message stays, so that it can be read.
     if !matches!(command, WalkCommand::Go(..)) {
         model.walk.nothing_because = None;
     }
     match command {
-        // As long as it is held: see `step`.
+        // It acts as long as it is pressed: see `step`.
         WalkCommand::Go(..) => {}
         WalkCommand::Technique => {
             let now = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
@@ -186,7 +186,7 @@ fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec
     }
 }
 
-/// Over the picture: silhouettes, then volumes, then the shadow alone, then nothing.
+/// Goes through the overlays of the picture: silhouettes, then volumes, then the shadow alone, then none.
 fn next_overlay(model: &mut Model) {
     let kind_now = model.kind();
     let on = &mut model.modes.overlays;
@@ -218,7 +218,7 @@ fn next_size(model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
-/// Turns and moves the camera by what was asked since the last step, once that one is shown.
+/// Rotates and moves the camera by the input since the last step, once that step's frame is shown.
 fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     let is_down = |key| ctx.input(|input| input.key_down(key));
     let goes: DVec3 = KEYS.iter().filter(|key| is_down(key.key)).map(|key| way(key.command)).sum();
@@ -258,14 +258,14 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &mut model.scene else { return };
     scene.draft.camera.target += eye - before.eye;
     scene.draft.camera.eye = eye;
-    // A running animation asks for the frame with its own moment.
+    // A running animation asks for the frame, at its own time.
     if scene.draft.camera != before && !model.animation.is_running {
         model.run_draft(actions);
     }
 }
 
-/// Where the eye of a body is that weighs something, and has gone by a way in some seconds. Who falls beyond all that there is
-/// is put back to where they stood last; who stood nowhere floats again.
+/// Returns the eye of a walker with gravity after moving by `by` in `seconds`. One who falls beyond the whole scene is
+/// set back to where they stood last; one who has stood nowhere floats again.
 fn fallen(
     model: &mut Model,
     eye: DVec3,
@@ -273,7 +273,7 @@ fn fallen(
     (walls, body): (&Arc<Walls>, &WalkerBody),
 ) -> DVec3 {
     let Some(weight) = &mut model.walk.weight else { return eye };
-    // A camera that was set elsewhere begins anew.
+    // A camera that was set by something else starts again from the ground below it.
     let known = weight.standing.filter(|standing| body.eye_of(standing.feet).distance(eye) < SAME_PLACE);
     let began_at = *weight.began_at.get_or_insert(eye);
     let from = known.unwrap_or_else(|| body.under(eye, walls));
@@ -301,7 +301,7 @@ fn fallen(
     }
 }
 
-/// The walls of what is to be run; until they are known, those before.
+/// The walls of the scene to be run; until they are known, the previous ones.
 fn walls(model: &Model) -> Option<Arc<Walls>> {
     let scene = model.scene.as_ref().filter(|_| model.walk.collides || model.walk.weight.is_some())?;
     let time = if scene.animated { scene.draft.time } else { 0.0 };
@@ -316,7 +316,7 @@ fn way(command: WalkCommand) -> DVec3 {
     }
 }
 
-/// Turns a camera about its eye; up is the world's.
+/// Rotates a camera about its eye; up is the world's.
 fn turn(camera: &mut Camera, by: Vec2) {
     let ahead = camera.target - camera.eye;
     let Some(direction) = ahead.try_normalize() else { return };
@@ -330,7 +330,8 @@ fn turn(camera: &mut Camera, by: Vec2) {
     camera.target = camera.eye + rotation;
 }
 
-/// A way of the keys in the world, of length 1: over the ground, or along the view where one flies.
+/// The direction of the pressed keys in the world, of length 1: over the ground, or along the view where the walker
+/// flies.
 fn direction(camera: &Camera, goes: DVec3, flies: bool) -> DVec3 {
     let ahead = (camera.target - camera.eye).normalize_or_zero();
     let flat = DVec3::new(ahead.x, 0.0, ahead.z).normalize_or(DVec3::NEG_Z);

@@ -1,8 +1,8 @@
-//! Do any two drawn triangles have the same three corners? Then both are visible at one depth, and a light must be kept
-//! from being added twice.
+//! Whether any two drawn triangles have the same three corners: then both are visible at one depth, and a light must
+//! not be added twice.
 //!
-//! Whether a mesh has two of its own is found out once a place. Of different objects, all triangles of small ones are held
-//! against each other; those of large ones only where the boxes around two objects meet.
+//! Whether a mesh has two such triangles of its own is found out once for each pose. Between objects, all triangles of
+//! small ones are compared; those of large ones only where the boxes around two objects intersect.
 
 use super::FrameObject;
 use crate::geometry::{Caster, GeometryCache};
@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 use std::hash::BuildHasher;
 
-/// Objects of more triangles are looked at pair by pair.
+/// Objects with more triangles are compared pair by pair.
 const MOST_OF_SMALL: usize = 256;
 
-/// How often each triangle may be looked at in pairs of objects; where they are more, all are held against each other.
+/// How often each triangle may be compared in pairs of objects; where that would be more, all are compared at once.
 const MOST_LOOKS: usize = 4;
 
 /// A triangle's corners, in an order that does not depend on where it begins or which way it runs.
@@ -23,7 +23,7 @@ type CornersKey = [[u64; 3]; 3];
 
 type CornersKeys = HashSet<CornersKey, RandomState>;
 
-/// Of all drawn triangles.
+/// Returns whether two of all drawn triangles coincide.
 pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> bool {
     let drawn: Vec<&FrameObject> = placed.iter().filter(|placed| placed.surface.is_some()).collect();
     let is_small = |placed: &FrameObject| placed.object.mesh.triangles().len() <= MOST_OF_SMALL;
@@ -64,14 +64,14 @@ pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> boo
     })
 }
 
-/// Adds an object's triangles; is one of them there already?
+/// Adds an object's triangles to the keys, and returns whether one of them was there already.
 fn has_doubles(placed: &FrameObject, keys: &mut CornersKeys) -> bool {
     let triangles = placed.object.mesh.triangles();
     keys.reserve(triangles.len());
     triangles.iter().any(|corners| !keys.insert(key(placed, corners)))
 }
 
-/// Have two triangles of an object the same hash? Takes a tenth of the memory.
+/// Returns whether two triangles of an object have the same hash. This takes a tenth of the memory of the keys.
 fn may_have_doubles(placed: &FrameObject) -> bool {
     let state = RandomState::default();
     let hash = |corners: &[u32; 3]| state.hash_one(key(placed, corners));

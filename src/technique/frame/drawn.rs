@@ -14,7 +14,7 @@ pub struct SurfaceDrawing {
 }
 
 impl SurfaceDrawing {
-    /// Writes "lit" everywhere, or what a later layer says.
+    /// Writes "lit" everywhere.
     pub fn lit() -> SurfaceDrawing {
         SurfaceDrawing::label(LIT.into())
     }
@@ -34,7 +34,7 @@ impl SurfaceDrawing {
         SurfaceDrawing { program: Program::Label(Visibility::Everywhere), raster, label }
     }
 
-    /// Only where the masked stencil equals `reference`.
+    /// Draws only where the masked stencil equals `reference`.
     pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> SurfaceDrawing {
         let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
         self.raster = self.raster.with_stencil(equal, reference);

@@ -16,7 +16,7 @@ use wgpu::TextureFormat;
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
 
 impl FrameBuilder<'_> {
-    /// Light added everywhere, or only once to each pixel where surfaces coincide.
+    /// Adds the light everywhere, and only once at each pixel where surfaces coincide.
     pub fn light_everywhere(&self) -> SurfaceDrawing {
         let once = SurfaceDrawing::light_once_where_zero(0xff);
         if self.has_stencil {
@@ -26,24 +26,24 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// The same, as far as it arrives.
+    /// Adds the light as far as it arrives: the shader asks `how`.
     pub fn light_by(&self, how: Visibility) -> SurfaceDrawing {
         SurfaceDrawing { program: Program::Light(how), ..self.light_everywhere() }
     }
 
-    /// Darkens what is visible by one layer of a light's map.
+    /// Multiplies what is visible by what one layer of a light's map lets through.
     pub fn darken_through(&self) -> SurfaceDrawing {
         let raster = RasterState::visible_surface(ColorWrite::Multiply);
         SurfaceDrawing { program: Program::Through, raster, label: LIT.into() }
     }
 
-    /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
+    /// Adds a pass of a light that writes the stencil alone, over the camera's depth. The first such pass of a light
     /// clears what the light before has left.
     pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         self.stencil_pass_from(0, light, name, purpose, draws);
     }
 
-    /// The same, where the first one of a light begins with another number than zero.
+    /// Adds a stencil pass; the first one of a light clears the stencil to `start`.
     pub fn stencil_pass_from(&mut self, start: u8, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let is_untouched = self.stencil_of.is_none();
         let is_cleared = start != 0 || (is_untouched && !self.common.allows(Decision::Clear));
@@ -57,8 +57,8 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// A timed pass of a light, seen by the camera. The first one of a light clears what another has left
-    /// in the stencil.
+    /// Adds a timed pass of a light, seen by the camera. The first one of a light clears what another has left in the
+    /// stencil.
     fn push_pass(&mut self, light: LightId, name: &str, purpose: &str, color: Option<ColorTarget>, draws: Vec<Draw>) {
         let depth_stencil = self.depth_stencil_of(light);
         self.stencil_of = Some(light);
@@ -77,7 +77,7 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// The picture, as it is.
+    /// The picture as a target that is not cleared.
     fn stored_color(&self) -> ColorTarget {
         ColorTarget { attachment: self.color, layer: 0, clear: None }
     }
@@ -94,7 +94,8 @@ impl FrameBuilder<'_> {
         self.plan.lights[light.0].count = Some(count);
     }
 
-    /// A pass of a light that adds to its count, over the camera's depth. The first clears it to `start`.
+    /// Adds a pass of a light that adds to its float count, over the camera's depth. The first one clears the count to
+    /// `start`.
     pub fn count_pass(&mut self, start: u32, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let Some(attachment) = self.plan.lights[light.0].count else { return };
         let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
@@ -103,9 +104,9 @@ impl FrameBuilder<'_> {
         self.push_pass(light, name, purpose, Some(target), draws);
     }
 
-    /// Depth of all surfaces, and their colour under ambient light.
+    /// Adds the pass that draws the depth of all surfaces, and their colour under ambient light.
     pub fn ambient_pass(&mut self) {
-        // Depth that is clamped lets through what lies between eye and near plane.
+        // Clamped depth lets through what lies between eye and near plane.
         let from_near = self.common.depth.clamps();
         let drawn = SurfaceDrawing {
             program: Program::Ambient { from_near },
@@ -135,8 +136,8 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// Adds a light's diffuse and highlight to the surfaces already visible; `shadowed` says how on
-    /// objects that receive shadows. The others are lit as if nothing stood between.
+    /// Adds the pass that adds a light's diffuse light and highlight to the visible surfaces; `shadowed` says how on
+    /// objects that receive shadows. Others are lit as if nothing were between.
     pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &SurfaceDrawing) {
         let unshadowed = SurfaceDrawing {
             program: Program::Light(Visibility::Everywhere),
@@ -151,24 +152,24 @@ impl FrameBuilder<'_> {
         self.push_pass(light, "light", purpose, Some(self.stored_color()), draws);
     }
 
-    /// The mask and light passes of a light that arrives as far as `how` says.
+    /// Adds the mask and light passes of a light that arrives as far as `how` says.
     pub fn mask_and_light_passes(&mut self, light: LightId, how: Visibility, purpose: &str) {
         self.mask_pass(light, &[SurfaceDrawing::lit_by(how)]);
         self.light_pass(light, purpose, &self.light_by(how));
     }
 
-    /// Blends draws over the picture, and tests depth and stencil without changing them.
+    /// Adds a pass that blends draws over the picture, and tests depth and stencil without changing them.
     pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         self.push_pass(light, name, purpose, Some(self.stored_color()), draws);
     }
 
-    /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in
+    /// Adds the pass that writes the light's labels, later layers over earlier ones. Triangles and draws run in
     /// reverse, so that of surfaces at one depth the first drawn decides here too.
     pub fn mask_pass(&mut self, light: LightId, layers: &[SurfaceDrawing]) {
         self.mask_pass_with(light, layers, Vec::new());
     }
 
-    /// The same, and after the surfaces `over` them.
+    /// Adds a mask pass whose surfaces are followed by the draws `over` them.
     pub fn mask_pass_with(&mut self, light: LightId, layers: &[SurfaceDrawing], over: Vec<Draw>) {
         let mut draws = Vec::new();
         let unshadowed = SurfaceDrawing::lit();
@@ -203,7 +204,8 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// What is visible and receives, darkened by one layer of the light's map; but the layer's own pieces.
+    /// Returns draws that darken what is visible and receives by one layer of the light's map, except for the layer's
+    /// own pieces.
     pub fn draws_through(&self, layer: usize) -> Vec<Draw> {
         let drawn = self.darken_through();
         let mut draws = self.surface_draws(|object| object.receives.then_some(&drawn));
@@ -212,7 +214,8 @@ impl FrameBuilder<'_> {
         draws
     }
 
-    /// One draw a piece of every visible object, as `look` says for the object.
+    /// Returns one draw for each piece of every visible object, drawn as `look` says for the object; none where it says
+    /// `None`.
     fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d SurfaceDrawing>) -> Vec<Draw> {
         self.draws_of(&self.pieces, look)
     }
@@ -245,16 +248,16 @@ impl FrameBuilder<'_> {
         pieces.iter().filter_map(draw).collect()
     }
 
-    /// The picture's depth-stencil target for a pass of `light`: what another light has left in the
-    /// stencil is cleared.
+    /// Returns the picture's depth-stencil target for a pass of `light`: what another light has left in the stencil is
+    /// cleared.
     fn depth_stencil_of(&self, light: LightId) -> DepthStencilTarget {
         let is_of_another = self.stencil_of.is_some_and(|other| other != light);
         let clear_stencil = (self.has_stencil && is_of_another).then_some(0);
         DepthStencilTarget { attachment: self.depth_stencil, layer: 0, clear_depth: None, clear_stencil }
     }
 
-    /// From here on, passes of a lamp whose light ends somewhere are cut to the pixels that it can reach.
-    /// `true` for the lights that reach none.
+    /// Limits later passes of each lamp with a range to the pixels that it can reach. Returns, for each light, whether
+    /// it reaches none.
     pub fn cut_to_ranges(&mut self) -> Vec<bool> {
         let scene = self.job.scene;
         let mut misses = vec![false; scene.lights.len()];
@@ -282,7 +285,7 @@ impl FrameBuilder<'_> {
     }
 }
 
-/// [`DrawConstants::checks_from`]: small wherever the eye is, so that single precision holds it.
+/// Returns [`DrawConstants::checks_from`]: small wherever the eye is, so that single precision is exact enough.
 fn checks_from(eye: DVec3, checks: f32) -> [f32; 2] {
     let pair = f64::from(checks) * 2.0;
     if pair > 0.0 { [eye.x, eye.z].map(|at| at.rem_euclid(pair) as f32) } else { [0.0; 2] }

@@ -1,4 +1,4 @@
-//! Places a frame: objects in world space, lights, the camera, and the pictures that passes draw into.
+//! Places a frame's contents: objects in world space, lights, the camera, and the pictures that passes draw into.
 
 use super::{FrameBuilder, FrameObject, SurfacePiece};
 use crate::geometry::{ViewVolume, relative};
@@ -9,9 +9,9 @@ use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec3, DVec4};
 use wgpu::TextureFormat;
 
-/// Beyond it, products of single-precision coordinates overflow.
+/// Beyond this distance, metres, products of single-precision coordinates overflow.
 const MOST_DISTANCE: f64 = 1e18;
-/// Room behind the farthest surface for a far plane that the scene does not give.
+/// Factor by which a far plane that the scene does not give lies behind the farthest surface.
 const FAR_MARGIN: f64 = 1.01;
 
 impl FrameBuilder<'_> {
@@ -91,13 +91,13 @@ impl FrameBuilder<'_> {
         Ok(())
     }
 
-    /// What a file of this name holds and nothing here shows.
+    /// Records what a file of this name contains and nothing here shows.
     fn name_not_taken(&mut self, decision: Decision, name: &str, list: &[Unsupported]) {
         let named = |one: &Unsupported| LeftOut::named(decision, &one.what, name, one.because.as_str());
         self.plan.left_out.extend(list.iter().map(named));
     }
 
-    /// One piece a group of the object that is placed next.
+    /// Returns one piece for each group of the object that is placed next.
     fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<SurfacePiece> {
         let (shading, index) = (self.common.shading, self.placed.len());
         let piece = |group: &MeshGroup| SurfacePiece {
@@ -118,9 +118,8 @@ impl FrameBuilder<'_> {
         object.mesh.groups().iter().map(piece).collect()
     }
 
-    /// How depth is stored, as the settings say. Without a far plane of its own, the camera's is put
-    /// behind the farthest surface; so is the end of a parallel camera's depth where a mapping has no far plane,
-    /// behind all that is drawn or casts within the view's sides.
+    /// Returns how depth is stored, as the settings say. Where the camera has no far plane, one is placed behind the
+    /// farthest surface; a parallel camera's depth ends behind all that is drawn or casts within the view's sides.
     pub(super) fn depth_curve(&self) -> DepthCurve {
         let camera = &self.job.scene.camera;
         let ahead = (camera.target - camera.eye).normalize_or_zero();
@@ -139,7 +138,7 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// What is drawn or casts, and lies within the sides of the view or in front of it.
+    /// Returns the objects that are drawn or cast, and lie within the sides of the view or in front of it.
     fn in_view(&self) -> impl Iterator<Item = &FrameObject<'_>> {
         let [width, height] = self.job.size.map(f64::from);
         let view = ViewVolume::new(&self.job.scene.camera, width / height);

@@ -29,7 +29,7 @@ const DEPTH_NAMES: [&str; 5] = {
     let [a, b, c, d, e] = DepthMapping::ALL;
     [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
-// Two to the power of −22.
+// Two to the power of −22 by default.
 const EPSILON: NumberSetting = number(
     "epsilon",
     [0.0, 0.1],
@@ -123,11 +123,11 @@ const OCCLUSION: WordSetting<bool> = words(
         sources: &[cited::BITTNER],
     },
 );
-/// Those that decide how bright a lit surface is.
+/// Keys of the settings that decide how bright a lit surface is.
 pub(in crate::technique) const SHADING_KEYS: [&str; 2] = [DIFFUSE.spec.key, SHADING.spec.key];
 const SPECS: [SettingSpec; 6] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec];
 
-/// A technique's settings: those that every technique has, and its `own`.
+/// Returns the settings that every technique has, followed by a technique's `own`.
 pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
     own: [SettingSpec; OWN],
 ) -> [SettingSpec; ALL] {
@@ -141,20 +141,20 @@ pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
     all
 }
 
-/// What every technique is told, as types.
+/// The settings that every technique has, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommonSettings {
     /// How distance becomes depth.
     pub depth: DepthMapping,
     /// By how much `standard-infinite-epsilon` pulls infinity in.
     pub epsilon: f64,
-    /// Diffuse light wraps round the edge that Lambert's ends at.
+    /// Diffuse light wraps round the edge at which Lambert's ends.
     pub wraps_diffuse: bool,
-    /// How all surfaces are shaded; `None` for each as its material says.
+    /// How all surfaces are shaded; `None`: each as its material says.
     pub shading: Option<Shading>,
-    /// A frame before the frame asks what shows.
+    /// An earlier frame finds out what shows, by occlusion queries.
     pub asks_what_shows: bool,
-    /// By decision that may be forbidden: it is not.
+    /// For each decision that may be forbidden, whether it is allowed.
     allowed: [bool; Decision::NAMES.len()],
 }
 
@@ -175,14 +175,14 @@ impl CommonSettings {
         }
     }
 
-    /// Why a setting does nothing as the others are; `None` where it does something.
+    /// Returns why a setting does nothing while the others are as they are; `None` where it does something.
     pub(in crate::technique) fn without_effect(values: &SettingMap, key: &str) -> Option<&'static str> {
         let is_off = key == EPSILON.spec.key && DEPTH.read(values) != DepthMapping::StandardInfiniteEpsilon;
         is_off.then_some("No effect: only depth = standard-infinite-epsilon pulls infinity in")
     }
 
-    /// May it be left out? Depth that is not reversed and infinite cuts volumes off, or lets surfaces tie that
-    /// are apart: what hides nothing elsewhere may decide a pixel there.
+    /// Returns whether something may be left out by this decision. Depth that is not reversed and infinite cuts volumes
+    /// off, or gives surfaces equal depths that are apart: what hides nothing elsewhere may decide a pixel there.
     pub fn allows(&self, decision: Decision) -> bool {
         use Decision::{Clear, Light, MapFaces, Scissor, Stencil};
         let asks_no_depth = matches!(decision, Light | Stencil | Clear | MapFaces | Scissor);

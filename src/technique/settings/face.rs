@@ -1,7 +1,7 @@
-//! A setting's face: its key, what it may be, and what each value becomes.
+//! The interface of a setting: its key, its possible values, and what each value becomes.
 //!
-//! A setting is a constant of the technique that has it: [`WordSetting`], [`NumberSetting`] or [`NumberOrWordSetting`]. Its values are
-//! written once, each word beside what it stands for, so that nothing else compares words.
+//! A setting is a constant of the technique that has it: [`WordSetting`], [`NumberSetting`] or [`NumberOrWordSetting`].
+//! Its values are written once, each word beside what it stands for, so that nothing else compares words.
 
 use super::super::lesson::Lesson;
 use std::collections::BTreeMap;
@@ -9,22 +9,22 @@ use std::collections::BTreeMap;
 /// Key and value of settings, as on the command line, in files and in a capture.
 pub type SettingMap = BTreeMap<String, String>;
 
-/// One setting of a technique.
+/// The description of one setting of a technique.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SettingSpec {
-    /// As in `--set KEY=VALUE`.
+    /// The key, as in `--set KEY=VALUE`.
     pub key: &'static str,
-    /// What it may be.
+    /// The values that are allowed.
     pub values: SettingValues,
-    /// What it is unless set.
+    /// The value unless another is set.
     pub default: &'static str,
     /// What it does, in a few words.
     pub meaning: &'static str,
-    /// What it teaches.
+    /// What it teaches a learner.
     pub lesson: Lesson,
 }
 
-/// What a setting may be.
+/// The kinds of values that a setting may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SettingValues {
     /// One of these words.
@@ -51,7 +51,8 @@ pub enum SettingValues {
 }
 
 impl SettingSpec {
-    /// What is set, or the default: also where what is set is not offered, as a folder may tell anything.
+    /// Returns the value that is set, or the default; also the default where the value is not one of those allowed, as
+    /// a folder may contain anything.
     pub(in crate::technique) fn of(self, values: &SettingMap) -> &str {
         let set = values.get(self.key).map(String::as_str);
         set.filter(|value| self.values.check(value).is_ok()).unwrap_or(self.default)
@@ -64,7 +65,7 @@ pub(in crate::technique) struct WordSetting<T: 'static> {
     values: &'static [T],
 }
 
-/// Words with what each stands for.
+/// Makes a setting of words, each with what it stands for.
 pub(in crate::technique) const fn words<T>(
     key: &'static str,
     words: &'static [&'static str],
@@ -80,13 +81,13 @@ pub(in crate::technique) const fn words<T>(
 }
 
 impl<T: Copy + PartialEq> WordSetting<T> {
-    /// The word for a value.
+    /// Returns the word for a value.
     pub fn word(&self, value: T) -> &'static str {
         let SettingValues::OneOf(words) = self.spec.values else { return self.spec.default };
         words[self.values.iter().position(|one| *one == value).unwrap_or(0)]
     }
 
-    /// What is set stands for.
+    /// Returns what the value that is set stands for.
     pub fn read(&self, values: &SettingMap) -> T {
         let SettingValues::OneOf(words) = self.spec.values else { return self.values[0] };
         let set = self.spec.of(values);
@@ -99,7 +100,7 @@ pub(in crate::technique) struct NumberSetting {
     pub spec: SettingSpec,
 }
 
-/// A whole number.
+/// Makes a setting that is a whole number.
 pub(in crate::technique) const fn whole(
     key: &'static str,
     [low, high]: [i64; 2],
@@ -110,7 +111,7 @@ pub(in crate::technique) const fn whole(
     NumberSetting { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning, lesson } }
 }
 
-/// A number with or without a fraction.
+/// Makes a setting that is a number with or without a fraction.
 pub(in crate::technique) const fn number(
     key: &'static str,
     [low, high]: [f64; 2],
@@ -132,7 +133,7 @@ pub(in crate::technique) struct NumberOrWordSetting {
     pub spec: SettingSpec,
 }
 
-/// The word is the default.
+/// Makes such a setting, whose word is the default.
 pub(in crate::technique) const fn number_or(
     key: &'static str,
     words: &'static [&'static str; 1],
@@ -145,7 +146,7 @@ pub(in crate::technique) const fn number_or(
 }
 
 impl NumberOrWordSetting {
-    /// The number; `None` where the word is set.
+    /// Returns the number; `None` where the word is set.
     pub fn read(&self, values: &SettingMap) -> Option<f64> {
         let SettingValues::WordOr { prefix, .. } = self.spec.values else { return None };
         self.spec.of(values).strip_prefix(prefix)?.parse().ok()

@@ -7,7 +7,7 @@ use super::face::{
 };
 use wgpu::Face;
 
-/// The key of the texels along each side.
+/// The key of the setting for texels along each side.
 pub(in crate::technique) const SIZE: &str = "size";
 
 const fn size(default: &'static str, most: i64, meaning: &'static str) -> NumberSetting {
@@ -123,14 +123,14 @@ pub(super) const SHADOW_MAP: [SettingSpec; 14] = with_own([
     REDRAW.spec,
 ]);
 
-/// What shadow maps are told, as types.
+/// The settings of shadow maps, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapSettings {
     /// Texels along each side.
     pub size: u32,
     /// Steps of depth by which the map is pushed away from the light.
     pub bias_constant: i32,
-    /// The same in units of a triangle's depth slope across one texel.
+    /// Bias in units of a triangle's depth slope across one texel.
     pub bias_slope: f64,
     /// Texels by which a lookup is moved along the surface's normal.
     pub bias_normal: f64,
@@ -140,12 +140,12 @@ pub struct MapSettings {
     pub cull: Option<Face>,
     /// Texels that are compared and averaged along each side.
     pub filter_width: u32,
-    /// Maps stay from frame to frame while nothing that makes them changes.
+    /// Maps are cached from frame to frame while nothing that makes them changes.
     pub keeps: bool,
 }
 
 impl MapSettings {
-    /// As they are set: of a choice, or in a capture.
+    /// Reads the values that are set, in a choice or in a capture.
     pub fn read(values: &SettingMap) -> MapSettings {
         MapSettings {
             size: MAP_SIZE.read(values) as u32,
@@ -222,12 +222,12 @@ pub(super) const PLANAR_TEXTURE: [SettingSpec; 8] = with_own([TEXTURE_SIZE.spec,
 pub(super) const PROJECTIVE: [SettingSpec; 12] =
     with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
-/// What techniques are told that keep what light passes, as types.
+/// The settings of techniques that store in textures what casters let through, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureSettings {
     /// Texels along each side.
     pub size: u32,
-    /// Textures stay from frame to frame while nothing that makes them changes.
+    /// Textures are cached from frame to frame while nothing that makes them changes.
     pub keeps: bool,
     /// Silhouettes are read while lighting, and do not darken the lit picture one by one.
     pub is_single_pass: bool,
@@ -235,12 +235,12 @@ pub struct TextureSettings {
     pub projects_backwards: bool,
     /// The picture is as large as the caster's silhouette.
     pub fits: bool,
-    /// Beyond the picture its last texels go on, and no clear ring keeps them empty.
+    /// Beyond the picture its last texels go on, as no clear border separates them from it.
     pub repeats_edge: bool,
 }
 
 impl TextureSettings {
-    /// Of receivers' textures.
+    /// Reads the settings of receivers' textures.
     pub fn of_receivers(values: &SettingMap) -> TextureSettings {
         let (is_single_pass, projects_backwards) = (true, false);
         TextureSettings {
@@ -253,7 +253,7 @@ impl TextureSettings {
         }
     }
 
-    /// Of casters' silhouettes.
+    /// Reads the settings of casters' silhouettes.
     pub fn of_silhouettes(values: &SettingMap) -> TextureSettings {
         TextureSettings {
             size: SILHOUETTE_SIZE.read(values) as u32,

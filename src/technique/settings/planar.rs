@@ -84,25 +84,25 @@ const CACHE: WordSetting<bool> = words(
 pub(super) const SETTINGS: [SettingSpec; 11] =
     with_own([STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
 
-/// What planar shadows are told, as types.
+/// The settings of planar shadows, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarSettings {
-    /// Receivers are marked first.
+    /// Receivers are marked in the stencil first.
     pub marks: bool,
-    /// The stencil keeps pixels from being darkened twice.
+    /// The stencil prevents that a pixel is darkened twice.
     pub blends_once: bool,
-    /// What is kept of a caster.
+    /// Which part of a caster is flattened.
     pub clip: FlattenClip,
-    /// By which test a shadow wins over the surface it lies on.
+    /// The depth test of a shadow against the surface that it lies on.
     pub depth_compare: CompareFunction,
-    /// And by how much.
+    /// The depth offset of a shadow from that surface.
     pub depth_bias: DepthBiasState,
-    /// Flattened casters are kept between plans.
+    /// Flattened casters are cached between plans.
     pub keeps: bool,
 }
 
 impl PlanarSettings {
-    /// As they are set.
+    /// Reads the values that are set.
     pub fn read(values: &SettingMap) -> PlanarSettings {
         let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
         PlanarSettings {
@@ -115,7 +115,7 @@ impl PlanarSettings {
         }
     }
 
-    /// Why a setting does nothing as the others are.
+    /// Returns why a setting does nothing while the others are as they are.
     pub(in crate::technique) fn without_effect(&self, key: &str) -> Option<&'static str> {
         let is_off = key == BLEND.spec.key && !self.marks;
         is_off.then_some("No effect: without the stencil nothing keeps a pixel from being darkened twice")

@@ -27,7 +27,7 @@ const CASTERS: WordSetting<CasterRule> = words(
         sources: &[cited::ALDRIDGE, cited::KIM],
     },
 );
-// Farther, single precision loses the silhouette; nearer than not at all makes no sense.
+// Farther than this, single precision loses the silhouette; less than 0 makes no sense.
 const EXTRUSION: NumberOrWordSetting = number_or(
     "extrusion",
     &["infinite"],
@@ -210,18 +210,18 @@ const OWN: [SettingSpec; 13] = [
 
 /// In the order in which they are shown.
 pub(super) const Z_PASS: [SettingSpec; 19] = with_own(OWN);
-/// The same without the start: what counts from infinity, or asks at the near plane, has no other.
+/// The settings of z-pass without the start: a count that begins at infinity or at the near plane has no other.
 pub(super) const Z_FAIL: [SettingSpec; 18] = with_own({
     let [own @ .., _] = OWN;
     own
 });
-/// And without vertex shaders: at the near plane casting triangles are drawn, and the CPU knows them.
+/// Also without vertex shaders: casting triangles are drawn at the near plane, and the CPU has to know them.
 pub(super) const Z_PASS_PLUS: [SettingSpec; 17] = with_own({
     let [own @ .., _, _] = OWN;
     own
 });
 
-/// What a technique that counts volumes is told, as types.
+/// The settings of techniques that count volumes, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeSettings {
     /// Which triangles cast.
@@ -230,62 +230,63 @@ pub struct VolumeSettings {
     pub extrusion: Extrusion,
     /// Front and back faces in passes of their own.
     pub two_pass: bool,
-    /// What takes away comes before what adds, where they are passes of their own.
+    /// In passes of their own, faces that decrement come before those that increment.
     pub takes_away_first: bool,
-    /// What a face does to the stencil.
+    /// How a face changes the stencil.
     pub operations: CountOperations,
     /// The bits of the stencil that are counted in.
     pub bits: u8,
-    /// Of the caps that are needed, light caps and dark caps are drawn.
+    /// Whether light caps and dark caps are drawn, where they are needed.
     pub caps: [bool; 2],
     /// The count begins with the volumes around the eye.
     pub starts_at_eye: bool,
-    /// In a float target instead of the stencil.
+    /// Volumes are counted in a float target instead of the stencil.
     pub counts_in_float: bool,
     /// Light caps never pass the depth test, whatever is in front of them.
     pub light_caps_never_pass: bool,
-    /// How shared edges are found.
+    /// How shared edges are found for the silhouette.
     pub silhouette: SilhouetteBy,
     /// A vertex shader carries volumes away from the light.
     pub by_vertex_shader: bool,
 }
 
-/// What a volume's face does to the stencil.
+/// How a volume's face changes the stencil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CountOperations {
-    /// One up or down, round the ends.
+    /// It increments or decrements, and wraps at the ends.
     Wrapping,
-    /// One up or down, not beyond 0 and 255.
+    /// It increments or decrements, and stops at 0 and 255.
     Clamping,
-    /// One bit is turned over: it tells odd from even.
+    /// It inverts one bit, which distinguishes odd from even.
     Inverting,
 }
 
 /// Which triangles cast, or what decides it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CasterRule {
-    /// The same of every caster.
+    /// The same triangles of every caster.
     Always(Casters),
-    /// Those that face the light where that is proven to be enough, else all.
+    /// Those that face the light where that is proven to be enough, otherwise all.
     ByTopology,
 }
 
 impl VolumeSettings {
-    /// Are volumes closed and where they should be, and does every face count? Then a surface that none holds reads 0 of it.
+    /// Returns whether volumes are closed and in their place, and every face counts: then a surface that no volume
+    /// contains reads 0.
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
         let loses_steps = self.operations == CountOperations::Clamping && !self.counts_in_float;
         self.caps == [true; 2] && !self.light_caps_never_pass && !is_misplaced && !loses_steps
     }
 
-    /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
+    /// Returns the settings that `auto` decides itself: triangles cast by topology unless that is forbidden.
     pub fn of_auto(common: &CommonSettings) -> VolumeSettings {
         let by_topology = common.allows(Decision::AwayTriangles);
         let casters = if by_topology { CasterRule::ByTopology } else { CasterRule::Always(Casters::All) };
         VolumeSettings { casters, ..VolumeSettings::read(&SettingMap::new()) }
     }
 
-    /// As they are set.
+    /// Reads the values that are set.
     pub fn read(values: &SettingMap) -> VolumeSettings {
         VolumeSettings {
             casters: CASTERS.read(values),
@@ -307,12 +308,12 @@ impl VolumeSettings {
         }
     }
 
-    /// The bits that faces write and the light pass reads: parity is in one.
+    /// Returns the bits that faces write and the light pass reads: one bit for parity.
     pub fn mask(&self) -> u8 {
         if self.operations == CountOperations::Inverting { 1 } else { self.bits }
     }
 
-    /// Why a setting does nothing as the others are.
+    /// Returns why a setting does nothing while the others are as they are.
     pub(in crate::technique) fn without_effect(&self, key: &str) -> Option<&'static str> {
         let is = |spec: SettingSpec| key == spec.key;
         if is(FAR_VERTICES.spec) && self.extrusion == Extrusion::Infinite {
@@ -347,7 +348,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Key and value that count in floats.
+    /// Returns the key and value that count in floats.
     pub(in crate::technique) fn in_floats() -> [&'static str; 2] {
         [COUNTER.spec.key, COUNTER.word(true)]
     }

@@ -1,4 +1,4 @@
-//! Where volume faces count, and the raster state that makes them.
+//! On which side of surfaces volume faces count, and the raster state that counts them.
 
 use crate::geometry::Extrusion;
 use crate::plan::{ColorWrite, CountedSide, DrawPart, RasterState, StencilFace};
@@ -7,26 +7,25 @@ use crate::technique::settings::{CountOperations, VolumeSettings};
 use std::ops::Range;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
-/// How far sides that hug a drawn surface are drawn behind their place, in steps of depth. Depths of a
-/// side and of the surface round apart, and where the light grazes a surface, the side that its own
-/// edge throws runs behind it, nearer than that: what comes out in front leaves the surface's
-/// cap without its other half. Rounding grows with a triangle's largest depth, and so does the step of
-/// a depth bias; it has been seen to reach some forty steps on sides that are cut far outside the
-/// picture, so this makes errors rare, not impossible.
+/// How far sides that graze a drawn surface are drawn behind their place, in steps of depth. Depths of a side and of
+/// the surface round differently, and where the light grazes a surface, the side that its own edge casts runs behind
+/// it, nearer than that difference: what comes out in front leaves the surface's cap without its other half. Rounding
+/// grows with a triangle's largest depth, and so does the step of a depth bias; up to some forty steps have been seen
+/// on sides that are cut far outside the picture, so this makes errors rare, not impossible.
 ///
-/// No other side has it: a bias moves the edge of a shadow on whatever the light grazes, by so many
-/// steps over the tangent of the light's height.
+/// No other side has it: a bias moves the edge of a shadow on whatever the light grazes, by this many steps over the
+/// tangent of the light's height.
 const GRAZING_BIAS: i32 = -4;
 
-/// A run of a volume's triangles that counts.
+/// A range of a volume's triangles that counts, with how.
 #[derive(Debug, Clone)]
 pub struct CountedPart {
     pub part: DrawPart,
-    /// Its triangles face inwards: operations are swapped.
+    /// Its triangles face inwards: the operations of front and back faces are swapped.
     pub flipped: bool,
-    /// Sides that the surface they are thrown by is too near to.
+    /// Its sides graze the surface that casts them: they are drawn behind their place.
     pub grazes: bool,
-    /// What is added to its indices.
+    /// The number that is added to each index.
     pub base_vertex: u32,
     pub triangles: Range<usize>,
 }
@@ -37,7 +36,7 @@ impl CountedPart {
     }
 }
 
-/// Where a volume face counts.
+/// On which side of the visible surface a volume's faces count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CountingMode {
     /// In front of the surface.
@@ -48,7 +47,7 @@ pub enum CountingMode {
     Behind,
 }
 
-/// How a volume is counted, how far it reaches, and which caps that takes.
+/// How a volume is made and counted: the side that counts, how far it extends, and which caps it needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeSpec {
     pub counting: CountingMode,
@@ -58,7 +57,7 @@ pub struct VolumeSpec {
 }
 
 impl VolumeSpec {
-    /// Onto a plane no vertex shader carries it.
+    /// Returns whether the volume ends on a plane, to which no vertex shader can carry it.
     pub fn ends_on_plane(&self) -> bool {
         matches!(self.extrusion, Extrusion::Clamped(_))
     }
@@ -172,7 +171,7 @@ fn depth_bias(part: &CountedPart) -> DepthBiasState {
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
 
-/// What adds 1 and what takes 1 away.
+/// Returns the stencil operations that add 1 and subtract 1.
 pub fn operations(options: &VolumeSettings) -> (StencilOperation, StencilOperation) {
     match options.operations {
         CountOperations::Wrapping => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),

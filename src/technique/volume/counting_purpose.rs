@@ -4,35 +4,35 @@ use super::counting::{CountingMode, FaceSelection};
 use crate::plan::{CountBits, LightId};
 use crate::technique::settings::{CountOperations, VolumeSettings};
 
-/// What a count begins at, and for what.
+/// What a count begins at, and because of what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CountStart {
-    /// The volumes around the eye.
+    /// The number of volumes around the eye.
     Eye(u32),
-    /// The volumes that parallel lines of sight end in.
+    /// The number of volumes in which parallel view rays end.
     FarEnd(u32),
 }
 
-/// How a light's volumes are counted, to be told.
+/// What the sentence about a counting pass depends on.
 pub struct CountingPurpose<'a> {
-    /// `None` counts each volume in its own way.
+    /// How all volumes are counted; `None` where they are counted in different ways.
     pub by: Option<CountingMode>,
     pub light: LightId,
     pub options: &'a VolumeSettings,
-    /// What the count begins with, if anything.
+    /// What the count begins at, if that is not 0.
     pub start: Option<CountStart>,
     /// Volumes are only counted in front of the surface where neither the eye nor the near plane is in them.
     pub chooses_side: bool,
-    /// What [`CountStart::Eye`] is counted around.
+    /// The name of the place that [`CountStart::Eye`] is counted around.
     pub place: &'static str,
-    /// Lines of sight are parallel: they begin at the near plane, and no eye is where they meet.
+    /// View rays are parallel: they begin at the near plane, and meet in no eye.
     pub is_parallel: bool,
-    /// Light caps, dark caps: some would count and are not drawn.
+    /// Whether light caps and dark caps would count that are not drawn.
     pub lacks: [bool; 2],
 }
 
 impl CountingPurpose<'_> {
-    /// What a pass is for.
+    /// Returns what a pass is for, in sentences.
     pub fn purpose(&self, step: FaceSelection) -> String {
         let what = self.what();
         let is_inverting = self.options.operations == CountOperations::Inverting && !self.options.counts_in_float;
@@ -81,7 +81,7 @@ impl CountingPurpose<'_> {
         }
     }
 
-    /// What the count says in the end.
+    /// Says what is left when all has been counted.
     fn left(&self) -> String {
         let begins = self.begins();
         let what = match self.by {
@@ -94,7 +94,7 @@ impl CountingPurpose<'_> {
         format!("{begins}{what} the surface{}.", self.condition())
     }
 
-    /// The bits that its count is kept in; all, where that is a float.
+    /// Returns the bits that the count is stored in; all of them for a float.
     fn bits(&self) -> CountBits {
         if self.options.counts_in_float { CountBits::EIGHT } else { CountBits::of_mask(self.options.mask().into()) }
     }
@@ -115,7 +115,7 @@ impl CountingPurpose<'_> {
         }
     }
 
-    /// Where that is so.
+    /// Says on which condition that is so.
     fn condition(&self) -> String {
         let eye = match (self.by, self.start) {
             (Some(CountingMode::InFront), _) if self.chooses_side && self.is_parallel => {

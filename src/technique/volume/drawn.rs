@@ -1,4 +1,5 @@
-//! A caster's volume as a mesh and draws: sides, light cap and dark cap, each triangle run with its own operations.
+//! A caster's volume as a mesh and draws: sides, light cap and dark cap, each range of triangles with its own
+//! operations.
 
 use super::counting::{CountedPart, CountingMode, FaceSelection, VolumeSpec};
 use super::far_count::FarPoint;
@@ -12,58 +13,58 @@ use crate::technique::settings::VolumeSettings;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
-/// What a volume's far end takes where lines of sight are parallel.
+/// What replaces a volume's far end where view rays are parallel.
 #[derive(Debug, Clone, Copy)]
 pub struct ParallelFarEnd {
-    /// Casting triangles that the light's ray along the view meets: how many of its volumes hold that end.
+    /// Number of casting triangles that the light's ray along the view hits: so many volumes contain the far end.
     pub met: u32,
-    /// How far beside the light its far vertices are carried from, metres; of a directional one, radians off its way.
+    /// How far beside the light far vertices are carried from: metres, or radians for a directional light.
     pub beside: f64,
-    /// The light has a place.
+    /// The light is a point light.
     pub is_point: bool,
 }
 
-/// A caster's volume, ready to be drawn.
+/// A caster's volume with all that its draws are made from.
 pub struct VolumePlan {
-    /// Its caster's index among what is placed, and its name.
+    /// Index of its caster in [`FrameBuilder::placed`].
     pub object: usize,
     pub caster: String,
     pub counting: CountingMode,
     /// A body that is proven closed, of which one side casts.
     pub is_body: bool,
-    /// No surface is behind it: at each its count is 0.
+    /// No surface is behind the caster: the volume's count is 0 at each.
     pub darkens_nothing: bool,
     pub mesh: MeshId,
     pub casting: CastingTriangles,
-    /// Which of its parts count in the volume pass.
+    /// The parts that the volume pass counts.
     pub needed: Vec<CountedPart>,
-    /// Light cap and dark cap: it has one that would count, and it is not to be drawn.
+    /// Whether a light cap and a dark cap would count that the settings leave out.
     pub lacks_caps: [bool; 2],
-    /// How many of the count begin at the far end, where no dark cap is drawn for it.
+    /// What the count begins at because of it, where no dark cap is drawn for it.
     pub begins_with: u32,
 }
 
-/// The casting triangles of a volume.
+/// Which triangles of a volume's caster cast.
 #[derive(Debug, Clone)]
 pub enum CastingTriangles {
-    /// Runs of its mesh: those that face the light, and those that are turned.
+    /// Ranges of the volume's mesh: triangles that face the light, and flipped ones.
     Runs([Range<usize>; 2]),
-    /// Those of its caster, of which its vertex shader picks.
+    /// The triangles of the caster from which its vertex shader chooses.
     Picked(Casters),
 }
 
-/// A volume's mesh, and what of it counts.
+/// A volume's mesh, and which parts of it count.
 pub struct VolumeMesh {
     pub mesh: DrawMesh,
     pub casting: CastingTriangles,
     pub needed: Vec<CountedPart>,
-    /// How many of the count begin at the far end, where no dark cap is drawn for it.
+    /// What the count begins at because of it, where no dark cap is drawn for it.
     pub begins_with: u32,
-    /// What it does not need.
+    /// What of the volume is not needed, with the reasons.
     pub left_out: Vec<LeftOut>,
 }
 
-/// A volume that is asked for.
+/// The inputs of a volume: one caster under one light.
 #[derive(Debug, Clone, Copy)]
 pub struct CasterVolume<'a> {
     pub light: LightId,
@@ -71,13 +72,13 @@ pub struct CasterVolume<'a> {
     pub index: usize,
     /// Which of the caster's triangles cast.
     pub casters: Casters,
-    /// By triangle: another part of the caster holds its part in the umbra. Empty: none.
+    /// For each triangle, whether another part of the caster contains it in its umbra; empty where none is.
     pub hidden: &'a [bool],
     pub form: VolumeSpec,
 }
 
 impl VolumePlan {
-    /// The casting triangles themselves, where it is known which they are.
+    /// Returns the casting triangles as parts to be drawn; empty where a vertex shader chooses them.
     pub fn casting(&self) -> impl Iterator<Item = CountedPart> {
         let runs = match &self.casting {
             CastingTriangles::Runs([light_cap, flipped]) => vec![(false, light_cap), (true, flipped)],
@@ -88,7 +89,7 @@ impl VolumePlan {
         parts.filter(|part| !part.triangles.is_empty())
     }
 
-    /// The casting triangles in world space.
+    /// Returns the casting triangles in world space.
     pub fn casting_triangles(&self, frame: &FrameBuilder, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
         let placed = &frame.placed[self.object];
         let (corners, casters) = match &self.casting {
@@ -128,7 +129,7 @@ impl VolumePlan {
             (DrawPart::LightCap, true) => "turned light cap",
             (DrawPart::Caps, false) => "caps",
             (DrawPart::Caps, true) => "turned caps",
-            // What faces the light faces inwards at the far end.
+            // A triangle that faces the light faces inwards at the far end.
             (_, false) if part.base_vertex != 0 => "turned dark cap",
             (_, _) => "dark cap",
         };
@@ -147,10 +148,10 @@ impl VolumePlan {
     }
 }
 
-/// A volume that the CPU carries away from the light.
+/// Makes a volume whose far vertices the CPU carries away from the light.
 ///
 /// # Errors
-/// Why there is none.
+/// Returns what to record where the caster needs no volume.
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSettings) -> Result<VolumeMesh, LeftOut> {
     let (mesh, parts, far_end) = outlined(frame, of, options);
     let object = frame.placed[of.index].object;
@@ -162,7 +163,7 @@ pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSetting
         };
         return Err(LeftOut::new(Decision::NothingCasts, &object.name, because));
     }
-    // A bias of sides that hug it is a few steps, and rounding may be more.
+    // The bias of grazing sides is a few steps, and rounding may be more.
     if !parts.grazing_sides.is_empty() && !casters::can_darken(frame, of.index, of.light, DarkenedObjects::All) {
         let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
         return Err(LeftOut::new(Decision::Caster, &object.name, because));
@@ -173,7 +174,7 @@ pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSetting
     Ok(made)
 }
 
-/// The mesh of a volume, and which of its triangles are what.
+/// Returns the mesh of a volume, what its ranges of triangles are, and its far end where view rays are parallel.
 fn outlined(
     frame: &mut FrameBuilder,
     of: &CasterVolume,
@@ -193,7 +194,7 @@ fn outlined(
     let far_end = far_point.map(|far_point| {
         let corners = |run: Range<usize>| indices[run.start * 3..run.end * 3].chunks_exact(3);
         let place = |vertex: &u32| placed.world.get(*vertex as usize).copied();
-        // A side's triangle has two corners of the mesh, or one.
+        // A triangle of a side has two corners of the mesh, or one.
         let edge = |corners: &[u32]| {
             let mut near = corners.iter().filter_map(place);
             near.next().zip(near.next()).map(|(from, to)| [from, to])
@@ -215,7 +216,7 @@ fn outlined(
 }
 
 impl VolumeMesh {
-    /// Adds the parts that count in a form. What is left out is said, but of dark caps that are not drawn anyway.
+    /// Adds the parts that count. What is left out is recorded, except for dark caps that are not drawn anyway.
     fn add_parts(
         &mut self,
         form: VolumeSpec,
@@ -266,7 +267,7 @@ impl VolumeMesh {
 }
 
 impl ParallelFarEnd {
-    /// From where its sides lead, if not from the light itself.
+    /// Says from where the sides lead, where that is not the light itself.
     fn beside(self) -> String {
         match self.beside > 0.0 {
             true => {
@@ -280,7 +281,7 @@ impl ParallelFarEnd {
         }
     }
 
-    /// Why it has no dark cap.
+    /// Says why the volume has no dark cap.
     fn because(self) -> String {
         let beside = self.beside();
         format!(

@@ -1,13 +1,13 @@
 //! A caster's volume that a vertex shader carries away from the light (Brennan 2002).
 //!
-//! Its mesh holds what any light could need, and stays as it is while the light moves: every triangle, and at every
-//! edge a quad that is empty until the triangles beside it face different ways. What is proven closed is drawn as it
-//! is: triangles that face the light are its light cap, and the others, carried away, its dark cap. Of anything else
-//! each triangle is a prism of its own.
+//! Its mesh contains what any light could need, and stays as it is while the light moves: every triangle, and at every
+//! edge a quad that is empty until the triangles beside it face different ways. A mesh that is proven closed is drawn
+//! as it is: triangles that face the light are its light cap, and the others, carried away, its dark cap. Of anything
+//! else each triangle is a prism of its own.
 //!
-//! Which way a triangle faces is told in single precision: where the light grazes it, it may be told wrong. Its volume
-//! closes all the same, and the error is that of an edge beside its place. Sides that hug their surface are no run of
-//! their own here, so nothing keeps their depths apart from it.
+//! Facing is decided in single precision: where the light grazes a triangle, the decision may be wrong. Its volume is
+//! closed all the same, and the error is that of an edge beside its place. Sides that graze their surface are no range
+//! of their own here, so nothing separates their depths from it.
 
 use super::counting::CountedPart;
 use super::drawn::{CasterVolume, CastingTriangles, VolumeMesh};
@@ -17,13 +17,14 @@ use crate::scene::Scene;
 use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 
-/// Does a vertex shader carry volumes, if it is to?
+/// Returns whether a vertex shader carries volumes in this scene, as the settings ask.
 pub fn can_serve(options: &VolumeSettings, scene: &Scene) -> bool {
     let ends_in_a_point = scene.camera.is_parallel() && options.extrusion == Extrusion::Infinite;
     options.by_vertex_shader && !ends_in_a_point
 }
 
-/// The same for a light, with the reason where it was asked for and can't.
+/// Returns whether a vertex shader carries the volumes of a light, and what to record where the settings ask for it and
+/// it can't.
 pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) -> (bool, Option<LeftOut>) {
     let can = can_serve(options, frame.job.scene);
     let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
@@ -32,7 +33,7 @@ pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) ->
     (can, cannot.then(|| LeftOut::new(Decision::VertexExtrusion, light.name(), because)))
 }
 
-/// The volume of one caster.
+/// Makes the volume of one caster.
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume) -> VolumeMesh {
     let CasterVolume { light, index, casters, form, .. } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());

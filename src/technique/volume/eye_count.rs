@@ -1,4 +1,4 @@
-//! What z-pass begins with where it is told: the number of volumes around the eye, as the clear value.
+//! What z-pass begins with where the settings say so: the number of volumes around the eye, as the clear value.
 //!
 //! The eye is in the volume of every casting triangle that lies between it and the light (Everitt and Kilgard 2002,
 //! "Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering", on what came before z-fail).
@@ -10,15 +10,16 @@ use crate::plan::LightId;
 use crate::technique::frame::FrameBuilder;
 use glam::{DVec3, DVec4};
 
-/// How many of a light's volumes hold the eye, or where lines of sight are parallel the middle of the near plane; a
-/// volume's far end is not asked about.
+/// Returns how many of a light's volumes contain the eye, or, for a parallel projection, the middle of the near plane.
+/// Far ends of volumes are ignored.
 pub fn at(frame: &FrameBuilder, light: LightId, volumes: &[VolumePlan]) -> u32 {
     let (place, light) = (frame.job.scene.camera.counting_place(), frame.light_position(light));
     let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame, light));
     casting.filter(|corners| holds(*corners, light, place)).count() as u32
 }
 
-/// Is a point in the volume of a triangle: beyond it, seen from the light? On a side plane it is not.
+/// Returns whether a point is in the volume of a triangle: beyond it, seen from the light. A point on a side plane is
+/// not.
 fn holds(corners: [DVec3; 3], light: DVec4, point: DVec3) -> bool {
     let [of_light, of_point] = [light, point.extend(1.0)].map(|place| side_of_triangle(corners, place));
     let [a, b, c] = corners;

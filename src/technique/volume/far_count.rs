@@ -1,16 +1,16 @@
-//! What z-fail begins with where lines of sight are parallel: the number of volumes that they end in.
+//! What z-fail begins with for a parallel projection: the number of volumes in which view rays end.
 //!
-//! Z-fail counts from infinity back, and begins at zero because caps close volumes there. Parallel lines of sight all
-//! end in one point at infinity, their direction, so every pixel ends in the same volumes: those of the casting
-//! triangles that the light's own ray in that direction meets. A dark cap at infinity is a line in such a picture, as
-//! its corners have w = 0, and is not drawn; the count begins at the number of those triangles instead. A directional
-//! light's volumes go to another point at infinity, and hold none but that.
+//! Z-fail counts from infinity back, and begins at zero because caps close volumes there. Parallel view rays all end in
+//! one point at infinity, their direction, so every pixel ends in the same volumes: those of the casting triangles that
+//! the light's own ray in that direction hits. A dark cap at infinity is a line in such a picture, as its corners have
+//! w = 0, and is not drawn; the count begins at the number of those triangles instead. A directional light's volumes go
+//! to another point at infinity, and contain none but that.
 //!
-//! A silhouette's edge that the light's ray meets is seen end on: pixels on one side of its line end in its volume,
-//! and those on the other do not. Where single precision can't tell on which side of such an edge the ray goes, far
+//! A silhouette edge that the light's ray hits is seen end on: pixels on one side of its line end in its volume, and
+//! those on the other do not. Where single precision can't decide on which side of such an edge the ray goes, far
 //! vertices are carried from a little beside the light, by millionths of the distance to the edge, and the ray is
-//! followed from there: sides and count then say the same. The shadow's border moves by some millionths of the scene;
-//! where many edges are in doubt, by more, at most by a fiftieth of the distance to an edge.
+//! followed from there: sides and count then agree. The shadow's border moves by some millionths of the scene; where
+//! many edges are in doubt, by more, at most by a fiftieth of the distance to an edge.
 
 use crate::math::{Sign, side_of_triangle};
 use crate::scene::{Camera, Projection};
@@ -27,10 +27,10 @@ const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 /// After as many, far vertices are carried from the light itself.
 const MOST_TRIES: u32 = 40;
 
-/// Where parallel lines of sight end.
+/// The point at infinity where parallel view rays end.
 #[derive(Debug, Clone, Copy)]
 pub struct FarPoint {
-    /// World direction of all lines of sight.
+    /// World direction of all view rays.
     along: DVec3,
     /// World axes of the picture, to the right and up.
     across: [DVec3; 2],
@@ -38,7 +38,7 @@ pub struct FarPoint {
 }
 
 impl FarPoint {
-    /// Of a camera; `None` of a pinhole, whose lines of sight end in as many points.
+    /// Returns the far point of a camera; `None` for a perspective one, whose view rays end in as many points.
     pub fn of(camera: &Camera) -> Option<FarPoint> {
         let world_from_view = camera.world_from_view();
         let shear = camera.projection.shear();
@@ -49,17 +49,17 @@ impl FarPoint {
         })
     }
 
-    /// Where a direction leads in the picture, and how far ahead.
+    /// Returns where a direction leads in the picture, and how far ahead.
     fn seen(&self, direction: DVec3) -> (DVec2, f64) {
         let ahead = direction.dot(self.across[1].cross(self.across[0]));
         let [right, up] = self.across.map(|axis| axis.dot(direction));
         (DVec2::new(right, up) + self.shear * ahead, ahead)
     }
 
-    /// The light itself, or a homogeneous place beside it: none of these edges, world space, are seen end on from there
-    /// as far as single precision can tell.
+    /// Returns the light itself, or a homogeneous place beside it from which none of these edges, world space, is seen
+    /// end on as far as single precision can decide.
     pub fn settled(&self, light: DVec4, edges: &[[DVec3; 2]]) -> DVec4 {
-        // Of those that the ray may meet, the one that takes the widest step.
+        // The edge that takes the widest step, of those that the ray may hit.
         let widest = |light: DVec4| edges.iter().filter_map(|edge| self.doubt(light, *edge)).max_by(f64::total_cmp);
         let Some(doubt) = widest(light) else { return light };
         let beside = |index: u32| {
@@ -69,7 +69,7 @@ impl FarPoint {
         (0..MOST_TRIES).map(beside).find(|place| widest(*place).is_none()).unwrap_or(light)
     }
 
-    /// How far single precision may move the directions to an edge, where that may bring it to the ray.
+    /// Returns how far single precision may move the directions to an edge, where that may bring it to the ray.
     fn doubt(&self, light: DVec4, edge: [DVec3; 2]) -> Option<f64> {
         let [a, b] = edge.map(|corner| corner * light.w - light.truncate());
         let doubt = MARGIN * a.length().max(b.length()) * (1.0 + self.shear.length());
@@ -81,8 +81,8 @@ impl FarPoint {
         (nearest.length() <= doubt && ahead >= -doubt).then_some(doubt)
     }
 
-    /// How many of these triangles, world space, the ray of a homogeneous light in this direction meets. Exact; a ray
-    /// through an edge is taken to run a little beside it, so that it meets one of the two triangles there.
+    /// Returns how many of these triangles, world space, the ray of a homogeneous light in this direction hits. Exact;
+    /// a ray through an edge is taken to run a little beside it, so that it hits one of the two triangles there.
     pub fn count(&self, light: DVec4, casting: impl Iterator<Item = [DVec3; 3]>) -> u32 {
         // All rays of a directional light have its own direction.
         if light.w == 0.0 {

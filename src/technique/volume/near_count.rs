@@ -21,7 +21,7 @@ use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::{CountOperations, VolumeSettings};
 use wgpu::CompareFunction;
 
-/// Adds the light's view and the pass; none where nothing can count.
+/// Adds the light's view and the pass; adds none where nothing can count.
 pub fn pass(frame: &mut FrameBuilder, light: LightId, options: &VolumeSettings, volumes: &[VolumePlan]) {
     let name = light.name();
     let position = frame.light_position(light);

@@ -1,4 +1,4 @@
-//! Cases of stress: run, and opened as scenes.
+//! Stress cases: run, and opened as scenes.
 
 use super::*;
 
@@ -61,7 +61,7 @@ fn a_stress_case_is_opened_as_a_scene_with_the_technique_that_breaks() {
     let (technique, settings, size) = captured(&news);
     assert_eq!((technique.as_str(), size), ("z-fail", [64, 36]));
     assert_eq!(settings.get("counter").map(String::as_str), Some("float"));
-    // What it brought along does not stay.
+    // Its overrides do not stay.
     assert!(worker.order(Order::OpenCase { case: case("nested"), value: 1.0, entrant: None }));
     assert_eq!(captured(&news).0, "planar");
 }

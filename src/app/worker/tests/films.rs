@@ -1,4 +1,4 @@
-//! Films that the worker makes while it answers.
+//! Films that the worker writes while it answers.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn a_film_lets_pictures_and_pixels_come_between_and_is_whole_in_the_end() {
         News::Answered { ticket: 1, .. } => panic!("the pixel comes first"),
         _ => None,
     });
-    // Another scene is opened meanwhile: the film is of the one that it was asked of.
+    // Another scene is opened meanwhile: the film shows the one that was open when it was asked for.
     assert!(worker.order(Order::Open("tori".to_owned())));
     wait(&news, |news| match news {
         News::Captured { .. } => Some(()),
@@ -76,7 +76,7 @@ fn a_film_that_can_not_be_made_says_why_with_the_fix() {
     ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone() });
     let reason = answer::<FilmOf>(&news, 2).expect_err("on the axis");
     assert!(reason.contains("move it to a side"), "{reason}");
-    // Of a scene that is open no more.
+    // The question is about a scene that is no longer open.
     ask_of(&worker, [0, frame], 3, FilmOf { subject, path });
     let reason = answer::<FilmOf>(&news, 3).expect_err("another scene");
     assert!(reason.contains("export it again"), "{reason}");

@@ -1,5 +1,5 @@
-//! The selected region of the Diagnosis tab: its causes with evidence, mends and proofs; below them what is to be
-//! known of meshes and flags.
+//! The selected region of the Diagnosis tab: its causes with evidence, fixes and proofs; below them facts about meshes
+//! and flags.
 
 use super::fields::{AppliedFix, DiagnosisPanel};
 use crate::diagnosis::{CauseFound, Diagnosis, Fix, FixWithinTechnique, Proof, RegionFound};
@@ -9,7 +9,7 @@ use crate::inspector::model::Model;
 use crate::reading::format;
 use egui::{Button, Color32, Label, RichText, Ui};
 
-/// Draws it.
+/// Draws the details of the selected region.
 pub fn ui(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
@@ -44,7 +44,7 @@ pub fn ui(
     meshes_and_flags(ui, diagnosis);
 }
 
-/// While a mend is applied: the picture with it and without.
+/// While a fix is applied: draws buttons for the picture with it and without.
 fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(applied) = own.applied.clone() else { return };
     let is_after = model.scene.as_ref().is_some_and(|scene| scene.draft.choice == applied.after);
@@ -80,7 +80,7 @@ fn cause(
     if is_first {
         wrapped(ui, theme::note(found.cause.meaning()));
     }
-    // Who has chosen this technique is offered first what keeps it.
+    // A user of this technique is first offered a fix that does not change it.
     if let Some(FixWithinTechnique { fix, pixels_left }) = &found.staying {
         let left = format::counted(*pixels_left, "pixel");
         let words = format!("Stay with {}, {left} left", diagnosis.technique.name());
@@ -91,7 +91,7 @@ fn cause(
     }
 }
 
-/// Changes technique and settings as a mend says; what it changes in the scene is the user's to change.
+/// Draws a button that applies a fix to technique and settings; changes to the scene are left to the user.
 fn apply_button(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,

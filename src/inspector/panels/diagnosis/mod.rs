@@ -1,8 +1,8 @@
-//! The Diagnosis tab: where the frame is wrong, why, and what mends it.
+//! The Diagnosis tab: where the frame is wrong, why, and how to fix it.
 //!
-//! Regions are rows; a click goes to a pixel of one, to its history and to the step that decided it. The
-//! causes of the selected region, their mends and what they left are in `detail.rs`, what is wrong in another
-//! program's frame in `recorded.rs`. It shows data and asks for it; running is the app's.
+//! Regions are rows; a click goes to a pixel of one, to its history and to the step that decided it. The causes of the
+//! selected region, their fixes and the pixels still wrong with each are in `detail.rs`, faults of another program's
+//! frame in `recorded.rs`. The tab shows data and asks for it; the app runs what it asks for.
 
 pub mod detail;
 pub mod fields;
@@ -21,7 +21,7 @@ use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, Widg
 pub use fields::DiagnosisPanel;
 use std::sync::Arc;
 
-/// Width of the list of regions, points, and the most it may take of the panel.
+/// Width of the list of regions, points, and the largest share of the panel that it has.
 const LIST_WIDTH: f32 = 320.0;
 const LIST_SHARE: f32 = 0.5;
 /// Where the words of a region's row begin, and its height without its title, points.
@@ -57,7 +57,7 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
     });
 }
 
-/// What can be done, and how far it is.
+/// Draws the buttons, and the progress.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Option<&Diagnosis>) {
     let can_run = model.scene.is_some() && model.frame.capture.is_some();
     ui.horizontal(|ui| match reply.steps() {
@@ -82,7 +82,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
     });
 }
 
-/// What was found, in a sentence.
+/// Returns the findings in a sentence.
 fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
     match known {
         Some(diagnosis) => {
@@ -104,7 +104,7 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
     }
 }
 
-/// Is the diagnosis of what is shown now: the same technique and settings?
+/// Does the diagnosis belong to the technique and settings that are shown now?
 fn is_current(model: &Model, diagnosis: &Diagnosis) -> bool {
     model.scene.as_ref().is_some_and(|scene| {
         let choice = &scene.draft.choice;
@@ -136,7 +136,7 @@ fn region_row(
     let (title, because) = (region.title(), because(diagnosis, region));
     let pixels = format::counted(region.pixels, "pixel");
     let numbered = format!("{} · {title}", index + 1);
-    // The last words of a title tell rows apart: they go on in a second line.
+    // The last words of a title distinguish rows: they go on in a second line.
     let font = TextStyle::Body.resolve(ui.style());
     let width = (ui.available_width() - INDENT - 8.0).max(1.0);
     let lines = ui.painter().layout(numbered.clone(), font, theme::of(ui).text, width);
@@ -159,13 +159,13 @@ fn region_row(
     }
 }
 
-/// The most likely cause, and how sure it is.
+/// Returns the most likely cause, and how certain it is.
 fn because(diagnosis: &Diagnosis, region: &RegionFound) -> String {
     let none = || diagnosis.without_cause(region).to_owned();
     region.causes.first().map_or_else(none, |found| format!("{} ({})", found.cause, found.proof.name()))
 }
 
-/// As in the error picture.
+/// Returns the colour that this kind of region has in the error picture.
 fn color(kind: RegionKind) -> egui::Color32 {
     let finding = match kind {
         RegionKind::Wrong(finding) => finding,
@@ -184,8 +184,8 @@ fn go_to(model: &mut Model, region: &RegionFound) {
     model.go_to(region.at, (right - left).max(bottom - top) + 1);
 }
 
-/// The last pass of a light that draws into the picture before its labels are written: where its shadow was
-/// counted or drawn. Else where the labels are written.
+/// Returns the last pass of a light that draws into the picture before its labels are written: where its shadow was
+/// counted or drawn. Where there is none, the pass that writes the labels.
 fn deciding_step(capture: &Capture, light: usize) -> Option<usize> {
     let target = |index: usize| match &capture.steps.get(index)?.snapshot {
         Snapshot::Frame(frame) => Some(frame.target),

@@ -1,4 +1,4 @@
-//! What is wrong in another program's frame: a fault a paragraph, with its evidence and its proof.
+//! What is wrong in another program's frame: one paragraph for each fault, with its evidence and its proof.
 
 use crate::ask::{FaultsOf, QuestionKind};
 use crate::diagnosis::Proof;

@@ -14,22 +14,22 @@ use crate::reading::written::WrittenAspects;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
-/// Draws that are listed before the rest is folded away.
+/// How many draws are listed before the rest is folded away.
 const LISTED: usize = 16;
 /// Height of a draw, points.
 const HEIGHT: f32 = 24.0;
 /// Where a draw's thumbnail is, points from the row's corners.
 const THUMBNAIL: [f32; 2] = [12.0, 3.0];
-/// How wide it is.
+/// Width of the thumbnail, points.
 const THUMBNAIL_WIDTH: f32 = 32.0;
-/// Where a draw's swatch is.
+/// Where a draw's colour swatch is, points from the row's left.
 const INDENT: f32 = THUMBNAIL[0] + THUMBNAIL_WIDTH + 8.0;
 
-/// The draws of the selected step: part, name and triangles, and a thumbnail where the state after
-/// each is known. Many are folded away until all are wished for, or one of them is selected.
+/// Draws the list of draws of the selected step: part, name and triangles, and a thumbnail where the state after each
+/// is known. A long list is folded until it is opened, or one of its draws is selected.
 pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Capture>) {
     let draws = &capture.steps[model.selection.step].draws;
-    // One line less is folded away for the line that says so.
+    // When draws are folded, the line that says so replaces one of them.
     let short = if draws.len() <= LISTED { draws.len() } else { LISTED - 1 };
     if model.selection.draw.is_some_and(|draw| draw >= short) {
         own.all_draws = Some(model.selection.step);
@@ -56,7 +56,7 @@ pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &
     }
 }
 
-/// One draw: it can be selected, and says so while its state is being fetched.
+/// Draws the row of one draw, which can be selected, and shows when its state is being fetched.
 fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Reply<StepDraws>), index: usize) {
     let draw = &capture.steps[model.selection.step].draws[index];
     let is_selected = model.selection.draw == Some(index);
@@ -96,7 +96,7 @@ fn changes_nothing(draw: &DrawSummary) -> bool {
     draw.after.as_ref().is_some_and(DrawState::changes_nothing)
 }
 
-/// A thumbnail of what the draw changed, or that it changed nothing.
+/// Draws a thumbnail of what the draw changed, or a sign that it changed nothing.
 fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row: Rect) {
     let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
     let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
@@ -109,7 +109,7 @@ fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row
     }
 }
 
-/// The part's swatch, the draw's name, and at the right its mark and its triangles.
+/// Draws the part's swatch, the draw's name, and at the right its mark and its number of triangles.
 fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, (mark, right): (Option<&str>, &str), row: Rect) {
     let left = row.left() + INDENT;
     if let Some(color) = theme::of(ui).part(draw.part) {
@@ -134,7 +134,7 @@ fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, (mark, right): (O
     theme::line(ui, pos2(left, row.center().y - 7.0), width, &draw.name, TextStyle::Small, color);
 }
 
-/// Under a selected draw whose state is not there and does not come: why.
+/// Explains, under a selected draw, why its state is not known and does not come.
 fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws>) {
     if model.selected().is_known(capture) {
         return;
@@ -146,7 +146,7 @@ fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws
             (text.to_owned(), theme::of(ui).text)
         }
         Some(reason) => (format!("× The state after this draw is not known: {reason}"), theme::of(ui).error),
-        // The row says so, so that nothing moves when it comes.
+        // The row already shows this, so that nothing moves when the state comes.
         None => return,
     };
     ui.horizontal(|ui| {
@@ -156,7 +156,7 @@ fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws
     ui.add_space(4.0);
 }
 
-/// What the frame did without, faint, with the reason: absence is a lesson too.
+/// Draws what the frame left out, faint, with the reason: absence is a lesson too.
 pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
     if left_out.is_empty() {
         return;

@@ -1,19 +1,19 @@
-//! What the panel remembers.
+//! The state of the Passes tab.
 
 use crate::inspector::model::StepSearch;
 use std::collections::BTreeSet;
 
-/// The panel.
+/// The state of the panel.
 #[derive(Debug, Default)]
 pub struct PassesPanel {
     /// The search field, while it is open.
     pub search: Option<StepSearch>,
-    /// It has just been opened.
+    /// The search field has just been opened.
     pub search_wants_focus: bool,
-    /// The step of which all draws are listed, however many.
+    /// The step whose draws are all listed, however many.
     pub all_draws: Option<usize>,
-    /// Debug groups whose passes are hidden: the first of their passes, and how deep they are.
+    /// Debug groups whose passes are hidden: index of the first of their passes, and depth of the group.
     pub folded: BTreeSet<[usize; 2]>,
-    /// Which frame that is of, by how many scenes were opened.
+    /// The scene to which `folded` belongs, as the number of scenes opened.
     pub folded_of: u64,
 }

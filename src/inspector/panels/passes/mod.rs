@@ -18,7 +18,7 @@ pub use fields::PassesPanel;
 use std::sync::Arc;
 use thumbnail::{colored, paint_row_background, paint_thumbnail};
 
-/// What is said of a mask in its row.
+/// The words in a mask's row.
 const BESIDE: &str = "beside the frame";
 
 /// Draws the panel.
@@ -89,7 +89,7 @@ fn tree(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Cap
     }
 }
 
-/// What the passes below belong to; pressed it selects `last`, the last of them: the state after all.
+/// Draws a heading for the passes below; pressing it selects `last`, the last of them: the state after all.
 fn group_heading(ui: &mut Ui, model: &mut Model, capture: &Capture, light: Option<usize>, last: usize) {
     ui.add_space(8.0);
     let text = match light {
@@ -112,7 +112,7 @@ fn group_heading(ui: &mut Ui, model: &mut Model, capture: &Capture, light: Optio
     ui.add_space(2.0);
 }
 
-/// What kind of light is there; a place that is not known is zero.
+/// Returns the kind of a light; an unknown position is zero.
 fn kind_of(position: glam::DVec4) -> &'static str {
     match position.w {
         _ if position == glam::DVec4::ZERO => " · not found",
@@ -121,7 +121,7 @@ fn kind_of(position: glam::DVec4) -> &'static str {
     }
 }
 
-/// One pass: thumbnail of what it changed, number and name, what it drew, its time.
+/// Draws one pass: thumbnail of what it changed, number and name, what it drew, its time.
 fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize) {
     let step = &capture.steps[index];
     let is_selected = index == model.selection.step && model.selection.draw.is_none();
@@ -154,7 +154,7 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     );
     let left = thumbnail.right() + 8.0;
     let width = time_rect.left() - left - 4.0;
-    // Absence from the frame is seen: what stands beside it is dim.
+    // A step that is not part of the frame is dim.
     let is_beside = steps::is_beside(capture, index);
     let ink = if is_beside { theme::of(ui).dim } else { theme::of(ui).text };
     theme::line(ui, pos2(left, rect.top() + 6.0), width, &title, TextStyle::Body, ink);
@@ -169,7 +169,7 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     theme::line(ui, pos2(left, rect.top() + 23.0), width, &summary, TextStyle::Small, theme::of(ui).dim);
 }
 
-/// The crosshair of the pick, small: the pass did something to the picked pixel.
+/// Draws a small crosshair: the pass changed the picked pixel.
 fn pick_mark(ui: &Ui, at: egui::Pos2, step: &str) {
     let place = Rect::from_center_size(at, egui::Vec2::splat(12.0));
     let response = ui.interact(place, ui.scope_id().with(("pick mark", step)), Sense::hover());
@@ -202,7 +202,7 @@ fn summary(step: &Step) -> String {
     format!("{draws}{differing} · {}", format::counted(step.triangles(), "triangle"))
 }
 
-/// "Why this pass", at the panel's foot.
+/// Draws "Why this pass" at the panel's foot.
 fn purpose(ui: &mut Ui, step: &Step) {
     let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
     let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);

@@ -1,5 +1,5 @@
-//! What only the frames of other programs have: who drew them, their debug groups, and draws that make something else
-//! when they are computed anew.
+//! What only the frames of other programs have: the program, debug groups, and draws whose result differs from the
+//! stored one when they are run again.
 
 use super::fields::PassesPanel;
 use crate::capture::{DrawSummary, RecomputeDifference};
@@ -10,11 +10,11 @@ use crate::reading::format;
 use egui::{Label, Role, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
-/// How far a level of groups is set in, points, and how many levels are.
+/// Indent of each level of groups, points, and the largest number of levels.
 const INDENT: f32 = 12.0;
 const MOST_INDENTED: usize = 4;
 
-/// Who drew the frame, with what, and who wrote it down; what could not be read of it.
+/// Draws which program drew the frame, with which API, what recorded it, and what could not be read.
 pub fn origin(ui: &mut Ui, model: &Model) {
     let Some(origin) = model.origin() else { return };
     let program = origin.program.as_ref().map_or_else(String::new, |program| format!("{program} · "));
@@ -32,14 +32,14 @@ pub fn groups_of(plan: &FramePlan, pass: usize) -> &[String] {
     plan.passes.get(pass).and_then(|pass| pass.recorded.as_ref()).map_or(&[], |recorded| &recorded.groups)
 }
 
-/// The debug groups of a frame that has any.
+/// The debug groups of a frame, if it has any.
 #[derive(Debug)]
 pub struct DebugGroups {
     plan: Arc<FramePlan>,
 }
 
 impl DebugGroups {
-    /// Of the shown frame. The selected pass is in no group that hides its passes once it has to be seen.
+    /// Returns the groups of the shown frame. Groups that hide the selected pass are opened when it has to be visible.
     pub fn new(own: &mut PassesPanel, model: &Model) -> Option<DebugGroups> {
         let plan = model.frame.plan.clone()?;
         if (0..plan.passes.len()).all(|pass| groups_of(&plan, pass).is_empty()) {
@@ -58,14 +58,15 @@ impl DebugGroups {
         Some(groups)
     }
 
-    /// The first pass of the group that a pass is in on a level.
+    /// Returns the first pass of the group that contains a pass on a level.
     fn first(&self, pass: usize, level: usize) -> usize {
         let path = groups_of(&self.plan, pass).get(..=level);
         let is_in = |other: &usize| groups_of(&self.plan, *other).get(..=level) == path;
         (0..=pass).rev().take_while(is_in).last().unwrap_or(pass)
     }
 
-    /// Draws the groups that begin with a pass; how deep it is set in, or `None` where one of its groups hides it.
+    /// Draws the headings of groups that begin with a pass. Returns its indent in levels, or `None` where one of its
+    /// groups hides it.
     pub fn above(&self, ui: &mut Ui, own: &mut PassesPanel, pass: usize) -> Option<usize> {
         let path = groups_of(&self.plan, pass);
         for (level, name) in path.iter().enumerate() {
@@ -81,7 +82,7 @@ impl DebugGroups {
     }
 }
 
-/// A group: a click shows or hides its passes.
+/// Draws a group's heading: a click shows or hides its passes.
 fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
     let is_folded = own.folded.contains(&group);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::click());
@@ -100,20 +101,21 @@ fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
     }
 }
 
-/// Set in by so many levels of groups.
+/// Draws contents indented by so many levels of groups.
 pub fn indented(ui: &mut Ui, levels: usize, add: impl FnOnce(&mut Ui)) {
     let mut area = ui.available_rect_before_wrap();
     area.min.x = (area.min.x + INDENT * levels.min(MOST_INDENTED) as f32).min(area.max.x);
     ui.scope_builder(UiBuilder::new().max_rect(area), add);
 }
 
-/// At how many pixels a draw that is computed anew leaves something else than was stored; `None` where it does not.
+/// Returns at how many pixels the draw's result differs from the stored one when it is run again; `None` where it does
+/// not.
 pub fn mark(draw: &DrawSummary) -> Option<String> {
     let RecomputeDifference { depth, stencil, .. } = draw.differs.filter(|differs| !differs.is_nowhere())?;
     Some(format!("≠ {}", format::count(depth.max(stencil))))
 }
 
-/// What the mark means, and what the shader of a draw of the selected pass may do that is not known here.
+/// Explains the mark, and what the shader of a draw of the selected pass may do that is not known here.
 pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
     let mut words = String::new();
     if let Some(RecomputeDifference { depth, stencil, .. }) = draw.differs.filter(|differs| !differs.is_nowhere()) {

@@ -10,7 +10,7 @@ use crate::reading::written::{TexelContent, WrittenAspects};
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 use std::sync::Arc;
 
-/// The background of a row of the tree, and the marks of what is selected or has the focus.
+/// Draws the background of a row of the tree, and the marks of selection and focus.
 pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
     let painter = ui.painter();
     if is_selected {
@@ -25,7 +25,7 @@ pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: 
     }
 }
 
-/// What a step or a draw wrote, with its colouring.
+/// Returns the picture of what a step or a draw wrote, with its colouring.
 pub fn colored(model: &mut Model, written: Option<WrittenAspects>) -> Option<(Arc<Image>, Coloring)> {
     let WrittenAspects { image, content, .. } = written?;
     let coloring = match content {
@@ -42,7 +42,7 @@ pub fn colored(model: &mut Model, written: Option<WrittenAspects>) -> Option<(Ar
     Some((image, coloring))
 }
 
-/// A small picture in its frame; the frame alone where there is none.
+/// Draws a small picture in its frame; only the frame where there is none.
 pub fn paint_thumbnail(ui: &Ui, model: &mut Model, picture: Option<(Arc<Image>, Coloring)>, rect: Rect) {
     let painter = ui.painter();
     painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);

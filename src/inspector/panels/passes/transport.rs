@@ -1,4 +1,4 @@
-//! Step controls: back, forth, play, draw by draw, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
+//! Step controls: back, forward, play, draw by draw, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
 
 use super::fields::PassesPanel;
 use crate::capture::Capture;
@@ -46,7 +46,7 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     search(ui, own, model);
 }
 
-/// Back and forth through the draws of the whole frame, and which one is selected.
+/// Draws the buttons that go through the draws of the whole frame, and the number of the selected one.
 fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let at = model.selected();
     ui.horizontal(|ui| {
@@ -71,21 +71,21 @@ fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     });
 }
 
-/// Words in what is left of a row, cut short where that is little.
+/// Draws words in the rest of a row, cut short where it is narrow.
 fn at_the_right(ui: &mut Ui, words: String) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         ui.add(egui::Label::new(theme::note(words)).truncate());
     });
 }
 
-/// A sign that only the monospaced face has.
+/// Returns a symbol in the monospaced face, the only one that has it.
 fn symbol(text: &str) -> egui::RichText {
     theme::number(text)
 }
 
 fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     ui.spacing_mut().slider_width = ui.available_width();
-    // A mask lies between two of them.
+    // A mask lies between two numbered steps.
     let reached = steps::numbered(capture).take_while(|step| *step <= model.selection.step).count();
     let mut number = reached.max(1);
     let slider = egui::Slider::new(&mut number, 1..=steps::count(capture)).show_value(false).trailing_fill(true);
@@ -96,7 +96,7 @@ fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// The field of Ctrl-G or Ctrl-F while it is open: Enter goes, Escape closes.
+/// Draws the field of Ctrl-G or Ctrl-F while it is open: Enter goes to the pass, Escape closes.
 fn search(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     let Some(mut search) = own.search.take() else { return };
     let (text, name, hint) = match &mut search {
@@ -114,7 +114,7 @@ fn search(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     if field.lost_focus() && entered {
         go(model, &search);
     } else if !(field.lost_focus() && escaped) {
-        // A filter stays while it has words; an empty field that lost the focus goes.
+        // A filter stays while it has words; an empty field closes when it loses the focus.
         let stays = field.has_focus() || matches!(&search, StepSearch::Find(words) if !words.is_empty());
         own.search = (stays || field.gained_focus() || !field.lost_focus()).then_some(search);
     }
@@ -138,7 +138,7 @@ fn go(model: &mut Model, search: &StepSearch) {
     }
 }
 
-/// Do a pass or its draws contain all words?
+/// Do a pass and its draws contain all words?
 pub fn matches(step: &crate::capture::Step, words: &str) -> bool {
     let light = step.light.map_or_else(|| "scene".to_owned(), format::light);
     let draws = step.draws.iter().flat_map(|draw| [draw.name.as_str(), draw.part.name()]);

@@ -1,7 +1,7 @@
-//! The shown picture with what lies over it, for a file: overlays and the compared half, a pixel a texel.
+//! The shown picture with overlays and the compared half, for a file, one pixel for each texel.
 //!
-//! Pictures are laid over one another texel by texel. Lines, numbers and names are drawn by the code that draws them
-//! in the window, into a window of the picture's size that nobody sees; `look/triangles.rs` fills its triangles, which may take
+//! Pictures are laid over one another texel by texel. Lines, numbers and names are drawn by the code that draws them in
+//! the window, into an invisible window of the picture's size; `look/triangles.rs` fills its triangles, which may take
 //! a while and needs nothing of the window: [`PictureDrawing::finish`].
 
 use super::overlays;
@@ -20,7 +20,7 @@ use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
 
-/// Sides of a comparison have their names in pictures of this width on, pixels.
+/// The least width of a picture in which the sides of a comparison have their names, pixels.
 const NAMED_FROM: u32 = 480;
 
 /// A picture, and triangles that are yet to be drawn over it.
@@ -44,8 +44,8 @@ impl PictureDrawing {
     }
 }
 
-/// `shown`, which is one image, as it is drawn, but for the pick, handles, legends and cards. The divider stands over
-/// the texel over which it stands in the window.
+/// Returns `shown`, which is one image, as it is drawn, without the pick, handles, legends and cards. The divider is at
+/// the texel at which it is in the window.
 pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,
@@ -65,7 +65,7 @@ pub fn drawing(
         texture::lay_over(&mut picture, &sheet.image, sheet.coloring, columns);
     }
     let sides = compared.map(|compare| {
-        // In a small picture names would hide what they are of.
+        // In a small picture names would hide what they name.
         let is_named = size[0] >= NAMED_FROM;
         (compare, if is_named { compared_names(model, capture, &compare) } else { Default::default() })
     });
@@ -81,7 +81,7 @@ pub fn drawing(
     PictureDrawing { picture, triangles, letters }
 }
 
-/// What `paint` draws into a window of this size, a point a pixel, and the texture of its letters.
+/// Returns what `paint` draws into a window of this size, one point for each pixel, and the font texture.
 fn painted(rect: Rect, theme: egui::Theme, mut paint: impl FnMut(&mut Ui)) -> (Vec<ClippedPrimitive>, ColorImage) {
     let ctx = Context::default();
     theme::apply(&ctx);
@@ -89,7 +89,7 @@ fn painted(rect: Rect, theme: egui::Theme, mut paint: impl FnMut(&mut Ui)) -> (V
     let input = RawInput { screen_rect: Some(rect), ..RawInput::default() };
     let mut output = ctx.run_ui(input, |ui| paint(ui));
     let letters = triangles::letters(&output.textures_delta);
-    // They are drawn from this copy; egui takes dropping them for a bug otherwise.
+    // They are drawn from this copy; if they were dropped, egui would report a bug.
     output.textures_delta.clear();
     (ctx.tessellate(output.shapes, output.pixels_per_point), letters)
 }

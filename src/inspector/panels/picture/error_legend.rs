@@ -12,12 +12,12 @@ use crate::reading::shown::ShownPicture;
 use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Sense, Stroke, Ui};
 use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
 
-/// Width where there is room, points: three findings side by side.
+/// The legend's width where there is space, points: three findings side by side.
 pub const WIDTH: f32 = 320.0;
 /// Height of a line, and side of a swatch, points.
 const LINE: f32 = 18.0;
 const SWATCH: f32 = 12.0;
-/// What is wrong stands in the first row.
+/// The order of the findings: the wrong ones are in the first row.
 const ORDER: [Finding; 6] = [
     Finding::FalseShadow,
     Finding::MissingShadow,
@@ -68,7 +68,7 @@ pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPictur
     }
 }
 
-/// How much of what was compared is wrong, in a few words.
+/// Returns the share of compared pixels that is wrong, in a few words.
 fn share(error: &ErrorCounts) -> String {
     match (error.compared, error.wrong()) {
         (0, _) => "nothing compared".to_owned(),
@@ -77,7 +77,7 @@ fn share(error: &ErrorCounts) -> String {
     }
 }
 
-/// Swatch and name, as one widget so that rows break between findings; faint where no pixel has it.
+/// Draws swatch and name as one widget, so that rows break between findings; faint where no pixel has it.
 fn named(ui: &mut Ui, finding: Finding, pixels: u64) {
     let style = findings::style(finding);
     let ink = if pixels > 0 { theme::of(ui).text } else { theme::of(ui).dim };
@@ -91,7 +91,7 @@ fn named(ui: &mut Ui, finding: Finding, pixels: u64) {
     response.on_hover_text(format!("{}. {}", format::counted(pixels, "pixel"), style.meaning));
 }
 
-/// A line: swatch, number and name, how many.
+/// Draws a line: swatch, number and name, how many pixels.
 fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
     let style = findings::style(finding);
     let line = ui.horizontal(|ui| {
@@ -104,7 +104,7 @@ fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
     line.response.on_hover_text(style.meaning);
 }
 
-/// A swatch with the hatching of a finding.
+/// Draws a swatch with the hatching of a finding.
 pub fn hatched(ui: &mut Ui, style: FindingStyle) {
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
     paint(ui, rect, style);

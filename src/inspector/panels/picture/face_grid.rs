@@ -12,17 +12,16 @@ use crate::reading::layers::MapLayer;
 use crate::reading::shown::{FaceChoice, ShownPicture, TexelZoom};
 use egui::{Color32, CornerRadius, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 
-/// Room for a name above each picture, points.
+/// Height of the name above each picture, points.
 const CAPTION: f32 = 24.0;
-/// Between pictures, points.
+/// Gap between pictures, points.
 const GAP: f32 = 8.0;
-/// Smaller than this they are scrolled, points.
+/// The least side of a picture, points; below it the grid scrolls.
 const LEAST_SIDE: f32 = 88.0;
-/// Up to this size a small texture shows as much as a large one, screen pixels.
+/// A picture up to this size on the screen is drawn with a thumbnail texture, which shows as much, screen pixels.
 const SMALL: f32 = 112.0;
 
-/// Draws the layers of `shown`, named; a click shows one of them large. They leave room for the
-/// legend.
+/// Draws the layers of `shown`, named; a click shows one of them large. Leaves space for the legend.
 pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture, coloring: Coloring) {
     let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::space_beside(rect, shown), 0.0)).shrink(GAP);
     let (columns, side) = arrangement(area.size(), shown.images.len());
@@ -40,7 +39,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture, colo
     });
 }
 
-/// Columns and a picture's side, as large as all of them fit, but never tiny.
+/// Returns the number of columns and a picture's side, as large as all of them fit, but not below the least.
 fn arrangement(area: egui::Vec2, count: usize) -> (usize, f32) {
     let side_of = |columns: usize| {
         let rows = count.div_ceil(columns).max(1);
@@ -50,7 +49,7 @@ fn arrangement(area: egui::Vec2, count: usize) -> (usize, f32) {
     if side_of(columns) >= LEAST_SIDE {
         return (columns, side_of(columns));
     }
-    // Wide enough for a scroll bar beside them.
+    // Leaves space for a scroll bar.
     let columns = ((area.x / (LEAST_SIDE + GAP)) as usize).clamp(1, count.max(1));
     (columns, (area.x / columns as f32 - GAP).clamp(1.0, LEAST_SIDE * 1.5))
 }

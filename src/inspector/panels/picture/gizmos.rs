@@ -1,5 +1,5 @@
-//! Lights as handles over the picture: dragged in the plane parallel to it. One that is out of view has its handle at the
-//! border: where it would come in, or, of one behind the eye, on its side.
+//! Lights as handles over the picture: dragged in the plane parallel to it. One that is out of view has its handle at
+//! the border: where it would come in, or, if it is behind the eye, on its side.
 
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{HandleAnchor, HandleKind, arrows, grabbed, moved_light, place_of_light};
@@ -11,14 +11,14 @@ use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::DVec3;
 
-/// Side of what can be grabbed, points.
+/// Side of the area that can be grabbed, points.
 const GRAB: f32 = 20.0;
 /// How far a handle at the border is from it, points.
 const INSET: f32 = 18.0;
-/// How far before the eye the handle of a directional light is put, metres: any distance shows its direction.
+/// Distance from the eye to the handle of a directional light, metres: any distance shows its direction.
 const SUN: f64 = 10.0;
 
-/// The switch in the picture's toolbar.
+/// Draws the switch in the picture's toolbar.
 pub fn button(ui: &mut Ui, is_off: &mut bool, model: &Model) {
     if model.scene.is_some() {
         let word = theme::switch_word(ui, "Gizmos", !*is_off);
@@ -80,7 +80,7 @@ pub fn ui(
         if by == Vec2::ZERO {
             continue;
         }
-        // In the plane parallel to the picture, behind the eye as far as before it.
+        // In the plane parallel to the picture; a light behind the eye as if it were as far before it.
         let depth = (point - camera.eye).dot(ahead).abs().max(camera.near);
         let place = |x: f32, y: f32| pick_ray::ray_at(capture, [f64::from(x), f64::from(y)]).at(depth);
         let moved: DVec3 = place(by.x, by.y) - place(0.0, 0.0);
@@ -92,14 +92,14 @@ pub fn ui(
     }
 }
 
-/// A place outside a rectangle, from its middle in this direction.
+/// Returns a position outside a rectangle, in this direction from its middle.
 fn beyond(whole: Rect, way: [f64; 2]) -> Pos2 {
     let way = vec2(way[0] as f32, way[1] as f32);
     let sides = (whole.width() / 2.0 / way.x.abs()).min(whole.height() / 2.0 / way.y.abs());
     whole.center() + way * (sides + INSET)
 }
 
-/// A sun, dark under light so that it shows on any picture; of a light out of view, with an arrow the way it is.
+/// Draws a sun, light on dark so that it shows on any picture; for a light out of view with an arrow in its direction.
 fn sign(ui: &Ui, whole: Rect, at: Pos2, is_active: bool, outwards: Option<Vec2>) {
     let painter = ui.painter_at(whole);
     let colors = theme::of(ui);

@@ -20,12 +20,12 @@ use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, ve
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
-/// Stencil values that are listed one by one.
+/// How many stencil values are listed one by one.
 const MOST_VALUES: usize = 12;
-/// Counts that eight bits would take for zero, listed one by one.
+/// How many counts that eight bits would take for zero are listed one by one.
 const MOST_MISREAD: usize = 4;
 
-/// What the legend takes of a picture of this size, points.
+/// Returns the width that the legend needs over a picture of this size, points.
 pub fn space_beside(rect: Rect, shown: &ShownPicture) -> f32 {
     if fits(rect, shown.kind) { width(rect, shown.kind) + 12.0 } else { 0.0 }
 }
@@ -69,7 +69,7 @@ pub fn of_change(ui: &mut Ui, rect: Rect, change: &StepChange) {
     }
 }
 
-/// A card in the upper right corner of `rect`.
+/// Draws a card in the upper right corner of `rect`.
 fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
@@ -102,10 +102,10 @@ fn stencil(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     more_values(ui, &rest);
 }
 
-/// Values with how many pixels have each.
+/// Values, each with the number of pixels that have it.
 type ValueCounts<V> = Vec<(V, u64)>;
 
-/// As many values as are listed, those of the most pixels, and the rest; both in the order given.
+/// Returns the values with the most pixels, as many as are listed, and the others; both in the order given.
 fn most_frequent<V>(values: ValueCounts<V>, most: usize) -> (ValueCounts<V>, ValueCounts<V>) {
     let mut by_pixels: Vec<usize> = (0..values.len()).collect();
     by_pixels.sort_by_key(|index| std::cmp::Reverse(values[*index].1));
@@ -125,7 +125,7 @@ fn more_values<V>(ui: &mut Ui, rest: &[(V, u64)]) {
     }
 }
 
-/// Signed counts; those that eight bits would take for zero apart.
+/// Draws signed counts; those that eight bits would take for zero apart.
 fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let tally = model.textures.tally(&shown.images[0]);
     theme::heading(ui, &title(shown));
@@ -148,7 +148,7 @@ fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     }
 }
 
-/// What white, black and colours mean where a picture holds what light comes through.
+/// Explains what white, black and colours mean in a picture of the light that is let through.
 fn let_through(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let content = model.frame.capture.as_ref().and_then(|capture| MapContent::of_capture(capture));
     let arrives = content == Some(MapContent::Textures);
@@ -196,7 +196,7 @@ fn labels(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     }
 }
 
-/// The grey ramp with its ends and handles.
+/// Draws the grey ramp with its ends and handles.
 fn depth(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2]) {
     let is_raw = shown.measure == DepthMeasure::Raw;
     theme::heading(ui, if is_raw { "Depth as stored" } else { "Distance" });
@@ -232,7 +232,7 @@ fn depth(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2]) 
 
 fn handles(ui: &mut Ui, model: &mut Model, range: [f64; 2], full: [f64; 2]) {
     ui.spacing_mut().slider_width = ui.available_width();
-    // Where the user's range came from another picture, the handles still reach its ends.
+    // The user's range may have been set over another picture: the handles reach its ends too.
     let [mut low, mut high] = range;
     let limits = full[0].min(low)..=full[1].max(high);
     let slider = egui::RangeSlider::new(&mut low, &mut high, limits).show_value(false).smart_aim(false);

@@ -1,11 +1,11 @@
-//! What legends are made of: their title, lines and bars.
+//! The parts of legends: their title, lines and bars.
 
 use crate::inspector::look::theme;
 use crate::reading::format;
 use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, vec2};
 
-/// `Mask, light 1`.
+/// Returns the title: `Mask, light 1`.
 pub fn title(shown: &ShownPicture) -> String {
     let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
     let kind = match shown.kind {
@@ -17,12 +17,12 @@ pub fn title(shown: &ShownPicture) -> String {
     format!("{kind}, {of}")
 }
 
-/// A line of the legend: colour, value, how many.
+/// Draws a line of the legend: colour, value, number of pixels.
 pub fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
     entry_with(ui, name, pixels, |ui| theme::swatch(ui, color))
 }
 
-/// A line of a legend with its own swatch.
+/// Draws a line of a legend with its own swatch.
 pub fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)) -> egui::Response {
     let line = ui.horizontal(|ui| {
         swatch(ui);
@@ -34,7 +34,7 @@ pub fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut
     line.response
 }
 
-/// A bar under a line of the legend: its share of the largest.
+/// Draws a bar under a line of the legend: its share of the largest.
 pub fn bar(ui: &mut Ui, texels: u64, most: u64) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 3.0), Sense::hover());
     let share = texels as f32 / most.max(1) as f32;

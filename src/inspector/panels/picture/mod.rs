@@ -33,29 +33,29 @@ use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
 use overlays::Overlays;
 use std::sync::Arc;
 
-/// What is compared with has its place at the right end of the second row where so much is left there, points.
+/// Width of the choice of what to compare with, at the right end of the second row where there is so much space,
+/// points.
 const COMPARE_WIDTH: f32 = 232.0;
 
-/// The panel.
+/// The state of the panel.
 #[derive(Debug, Default)]
 pub struct PicturePanel {
-    /// What overlays draw.
+    /// The geometry of the overlays.
     overlays: Overlays,
-    /// What changed, made once.
+    /// The cached changes.
     changes: ChangeCache,
-    /// Lights are no handles.
+    /// The handles of lights are hidden.
     hides_gizmos: bool,
     /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
     seam: Option<f32>,
-    /// The legend of the error picture counts, and does not only say what colours mean.
+    /// The legend of the error picture shows counts, besides the meaning of colours.
     counts_findings: bool,
-    /// The frame that the caches are of.
+    /// Number of the frame to which the caches belong.
     frame: u64,
 }
 
 impl PicturePanel {
-    /// What was made of a frame that is shown no more goes.
-    /// What was made of the frame before goes with it.
+    /// Drops what was computed for a frame that is no longer shown.
     pub fn follow(&mut self, frame: u64) {
         if std::mem::replace(&mut self.frame, frame) != frame {
             self.changes.forget();
@@ -88,7 +88,7 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
     walking::banner(ui, model, rect);
 }
 
-/// One picture with what is over it: what changed, or what is compared.
+/// Draws one picture with what is over it: the change, or the comparison.
 fn single(
     ui: &mut Ui,
     own: &mut PicturePanel,
@@ -113,7 +113,7 @@ fn single(
     if shown.kind != PictureKind::Map {
         let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
         ui.painter_at(placement.rect().intersect(rect)).add(egui::Shape::mesh(mesh));
-        // Lines and marks must not hide it.
+        // Lines and marks must not hide the crosshair.
         if let Some(at) = model.selection.pick {
             canvas::crosshair(&ui.painter_at(rect), placement.rect_of(at));
         }
@@ -144,17 +144,18 @@ fn single(
     }
 }
 
-/// What lies over a picture.
+/// The layers over a picture.
 pub struct PictureLayers {
-    /// What the step changed.
+    /// The change that the step made.
     pub change: Option<StepChange>,
-    /// The pictures, in the order in which they lie.
+    /// The pictures, from bottom to top.
     pub sheets: Vec<PictureSheet>,
     /// The comparison, where there is something to compare with.
     pub compared: Option<Comparison>,
 }
 
-/// What lies over `shown` in `rect`: what changed, tints, and on one side of `compare`'s divider what is compared.
+/// Returns the layers over `shown` in `rect`: the change, tints, and on one side of `compare`'s divider the compared
+/// picture.
 pub fn layers(
     own: &mut PicturePanel,
     model: &mut Model,
@@ -188,7 +189,7 @@ pub fn layers(
     PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
 }
 
-/// What the sides of a comparison are called: the compared one, and the one that is shown.
+/// Returns the names of the sides of a comparison: of the compared picture, and of the shown one.
 pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
     let now = match compare.with {
         ComparedWith::Step(_) => model.moment().words(capture),
@@ -197,7 +198,7 @@ pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) ->
     [compare.with.words(capture), now]
 }
 
-/// What the selected step or draw changed, over the frame's colours in grey; `None` where that is not shown.
+/// Returns what the selected step or draw changed, over the frame's colours in grey; `None` where it is not shown.
 pub fn change_of(
     own: &mut PicturePanel,
     model: &Model,
@@ -209,13 +210,13 @@ pub fn change_of(
     }
     let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
     let change = own.changes.change([&before.images[0], &shown.images[0]], shown.measure)?;
-    // Of counts and depths it is the finished frame that shows where one is.
+    // Counts and depths are shown over the finished frame, in which the place is recognised.
     let at = if shown.kind == PictureKind::Color { model.moment() } else { capture.steps.len().checked_sub(1)?.into() };
     let colors = at.frame(capture)?.color.image.clone();
     Some((own.changes.ground(&colors), change))
 }
 
-/// There is no picture, and why.
+/// Says that there is no picture, and why.
 fn nothing(ui: &mut Ui, model: &Model, capture: &Capture, rect: Rect) {
     let text = match model.modes.phase {
         StepPhase::Before => model.shown_before(capture).err().map(NoStepBefore::sentence),
@@ -242,8 +243,8 @@ fn empty(ui: &mut Ui, model: &Model) {
     });
 }
 
-/// Two rows in every window, and what is always there first: nothing moves when tools of one kind of picture
-/// come and go, and the picture keeps its place.
+/// Draws two rows in every window, with the permanent tools first: nothing moves when tools for one kind of picture
+/// come and go, and the picture stays in its place.
 fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         let shown = model.shown(capture);
@@ -268,7 +269,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
     });
 }
 
-/// What goes with one kind of picture only.
+/// Draws the tools for one kind of picture.
 fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     match shown.map(|shown| shown.kind) {
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
@@ -288,8 +289,8 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// A button for what each step writes, and one for each kind of picture. One that this step has none of keeps its
-/// place, so that nothing moves from step to step.
+/// Draws a button for what each step writes, and one for each kind of picture. A kind that this step does not have has
+/// its button too, so that nothing moves from step to step.
 fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let available = available(capture, model.moment());
     let kinds: Vec<PictureKind> =
@@ -313,7 +314,7 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// Which light's mask or map, where there are several.
+/// Draws the choice of the light whose mask or map is shown, where there are several.
 fn lights(
     ui: &mut Ui,
     model: &mut Model,
@@ -334,7 +335,7 @@ fn lights(
     combo.response.accessible_name("Light of the picture");
 }
 
-/// Which layer of a map, or all.
+/// Draws the choice of the layer of a map, or all.
 fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let Some(light) = model.view.light_with(capture, |light| light.map.is_some()) else { return };
     let layers = layers::layers(capture, light);
@@ -358,7 +359,7 @@ fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// Names too long and too many for buttons.
+/// A list, for names that are too long and too many for buttons.
 fn layer_list(ui: &mut Ui, layers: &[layers::MapLayer], mut chosen: usize) -> Option<usize> {
     let before = chosen;
     let all = format!("All {}", layers.len());
@@ -388,7 +389,7 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// The zoom in per cent where it moves no button, then the buttons.
+/// Draws the zoom in per cent, where it moves no button, then the buttons.
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };

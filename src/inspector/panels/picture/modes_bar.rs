@@ -1,5 +1,5 @@
-//! The picture's second row of tools: what to draw over it and what to compare with; before, after, what
-//! changed; bits of the stencil.
+//! The picture's second row of tools: what to draw over it and what to compare with; before, after, the change; bits of
+//! the stencil.
 
 use super::overlays;
 use crate::capture::Capture;
@@ -15,7 +15,7 @@ use egui::{Button, Rect, Ui, UiBuilder, vec2};
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
 
-/// Draws the tools that go with `shown`: those that are always there first, so that they keep their place.
+/// Draws the tools for `shown`: the permanent ones first, so that they do not move.
 pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
     let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
@@ -29,7 +29,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
     }
 }
 
-/// They keep their place where a picture has no before and after.
+/// They stay in their place where a picture has no state before and after.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
     let is_enabled = kind.is_some_and(has_phases);
     let segment = |phase: StepPhase| {
@@ -64,14 +64,14 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// What is compared with, flush right; drawn while comparing.
+/// Draws the choice of what to compare with, flush right, while comparing.
 pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let Some(mut compare) = model.modes.compare else { return };
     at_right(ui, "compare with", |ui| compared_with(ui, model, capture, &mut compare));
     model.modes.compare = Some(compare);
 }
 
-/// What is compared with, and a button that swaps the sides.
+/// Draws what the picture is compared with, and a button that swaps the sides.
 fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Comparison) {
     ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
@@ -102,7 +102,7 @@ fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Co
     }
 }
 
-/// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.
+/// Draws in the upper left corner of `rect` how many texels differ, or why nothing is compared.
 pub fn compare_note(
     ui: &mut Ui,
     changes: &mut ChangeCache,

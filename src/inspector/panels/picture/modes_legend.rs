@@ -1,4 +1,4 @@
-//! Legends of what changed and of one bit, and the bars beside the others.
+//! Legends of changes and of one bit, and the bars beside the others.
 
 use super::legend_entry::{bar, entry};
 use crate::inspector::look::texture::DEPTH_BARS;
@@ -10,12 +10,12 @@ use crate::reading::format;
 use crate::reading::shown::ShownPicture;
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
 
-/// Changes of counts that are listed one by one.
+/// How many changes of counts are listed one by one.
 const MOST_LISTED: usize = 10;
 /// Height of a histogram of depths, points.
 const BARS_HEIGHT: f32 = 32.0;
 
-/// What changed, with how many texels.
+/// Draws the kinds of change, with how many texels have each.
 pub fn change(ui: &mut Ui, found: &StepChange) {
     theme::heading(ui, &format!("{} changed", format::counted(found.texels, "texel")));
     let [width, height] = found.image.size().map(u64::from);
@@ -56,7 +56,7 @@ pub fn change(ui: &mut Ui, found: &StepChange) {
         .on_hover_text("In grey: the picture's colours, dimmed");
 }
 
-/// The two inks of a bit, with how many texels have each.
+/// Draws the two colours of a bit, with how many texels have each.
 pub fn bit(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, bit: u8) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, &format!("Bit {bit} of the stencil"));
@@ -68,7 +68,7 @@ pub fn bit(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, bit: u8) {
     entry(ui, palette::BITS[0], "0 not set", all - set);
 }
 
-/// How many pixels had how many fragments.
+/// Draws how many pixels had how many fragments.
 pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, "Fragments a pixel");
@@ -86,7 +86,7 @@ pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     }
 }
 
-/// How often each depth of `full` occurs; what the grey ramp covers is lighter.
+/// Draws a histogram of depths over `full`; the part that the grey ramp covers is lighter.
 pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2], full: [f64; 2]) {
     let mut bars = [0_u64; DEPTH_BARS];
     for image in &shown.images {

@@ -1,6 +1,6 @@
 //! The selected triangle of a history, outlined in the picture.
 //!
-//! What of it is seen is found in [`projected`](crate::reading::projected).
+//! Its visible part is found in [`projected`](crate::reading::projected).
 
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
@@ -9,12 +9,12 @@ use crate::reading::projected::outline;
 use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
 
-/// Draws the outline over the picture in `rect`; maps have pixels of their own.
+/// Draws the outline over the picture in `rect`, unless it is a map, which has pixels of its own.
 pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     let Some(capture) = &model.frame.capture else { return };
     let Some(history) = model.history_of_frame().filter(|_| shown.kind != PictureKind::Map) else { return };
     let event = model.selected_in(&history).map(|index| &history.events[index]);
-    // From another place than the eye it has another outline.
+    // A triangle drawn from another place than the eye has another outline.
     let Some(triangle) = event.filter(|event| event.is_from_camera).and_then(|event| event.triangle()) else { return };
     let texels = outline(capture, triangle.corners);
     let points: Vec<Pos2> =
@@ -25,7 +25,7 @@ pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &ShownPicture, placement: P
     let painter = ui.painter_at(placement.rect().intersect(rect));
     let fill = theme::of(ui).selected.gamma_multiply(0.14);
     painter.add(Shape::convex_polygon(points.clone(), fill, Stroke::NONE));
-    // Dark under light, so that it shows on any picture.
+    // Light on dark, so that it shows on any picture.
     painter.add(Shape::closed_line(points.clone(), Stroke::new(4.0, Color32::from_black_alpha(150))));
     painter.add(Shape::closed_line(points, Stroke::new(1.5, theme::of(ui).selected)));
 }

@@ -1,5 +1,5 @@
-//! What is drawn over the picture, several at once: silhouettes, wireframes of volumes, how fragments
-//! fared in the tests, receivers, names of casters. Chosen in a menu, listed in a card with their colours.
+//! Overlays over the picture, several at once: silhouettes, wireframes of volumes, results of the tests on fragments,
+//! receivers, names of casters. Chosen in a menu, listed in a card with their colours.
 
 use crate::anatomy::Anatomy;
 use crate::ask::AnatomyOf;
@@ -25,18 +25,18 @@ use std::sync::Arc;
 
 /// Width of the card, points.
 const WIDTH: f32 = 176.0;
-/// How near to an edge the pointer has to be, points.
+/// How near to an edge the pointer has to be to show its number, points.
 const REACH: f32 = 5.0;
 /// Least width of the menu's button, points.
 const BUTTON_WIDTH: f32 = 84.0;
 
-/// What was made for the overlays of a frame.
+/// The cached geometry and pictures of a frame's overlays.
 #[derive(Debug, Default)]
 pub struct Overlays {
     made: Option<OverlayMeshes>,
 }
 
-/// What follows from an anatomy and a light.
+/// What is computed from an anatomy and a light.
 #[derive(Debug)]
 struct OverlayMeshes {
     anatomy: Arc<Anatomy>,
@@ -47,7 +47,7 @@ struct OverlayMeshes {
     objects: Option<SeenObjects>,
 }
 
-/// Which objects are seen where.
+/// Which object is seen at each pixel.
 #[derive(Debug)]
 struct SeenObjects {
     receivers: Arc<Image>,
@@ -88,7 +88,7 @@ impl Overlays {
     }
 }
 
-/// The menu, with a box and a swatch an overlay.
+/// Draws the menu, with a box and a swatch for each overlay.
 pub fn menu(ui: &mut Ui, model: &mut Model) {
     let count = model.modes.overlays.len();
     let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay · {count}") };
@@ -130,7 +130,7 @@ fn swatch_of(ui: &Ui, overlay: Overlay) -> egui::Color32 {
     }
 }
 
-/// Pictures over the shown one; asks for what they need.
+/// Returns the overlays that are pictures; asks for what they need.
 pub fn sheets(
     own: &mut Overlays,
     model: &Model,
@@ -162,7 +162,7 @@ pub fn sheets(
     sheets
 }
 
-/// Lines and names over the picture, and the card that lists what is on.
+/// Draws the overlays that are lines and names, and the card that lists all.
 pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     if model.modes.overlays.is_empty() || shown.kind == PictureKind::Map {
         return;
@@ -175,7 +175,7 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
     card(ui, own, model, rect);
 }
 
-/// Lines, their numbers and names, clipped to `seen`.
+/// Draws lines, their numbers and names, clipped to `seen`.
 pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement) {
     let painter = ui.painter_at(seen);
     let (theme, is_dark, pixels) = (theme::of(ui), ui.visuals().dark_mode, ui.pixels_per_point());
@@ -197,7 +197,7 @@ pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, pl
     }
 }
 
-/// Beside the pointer: how often the edge under it counts, where that is not once. Short edges have no number.
+/// Draws beside the pointer the multiplicity of the edge under it, where it is not 1. Short edges have no number.
 fn number_under(ui: &Ui, (own, on): (&Overlays, &BTreeSet<Overlay>), seen: Rect, placement: Placement, pointer: Pos2) {
     let made = own.made.as_ref().filter(|_| on.contains(&Overlay::Silhouettes));
     let Some((lines, _)) = made.and_then(|made| made.silhouettes.as_ref()) else { return };
@@ -214,7 +214,8 @@ fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
     painter.galley(place.min, galley, theme::of(ui).text);
 }
 
-/// In the lower right corner: what is on, in its colours. Its height is that of the frame before.
+/// Draws, in the lower right corner, a card that lists the overlays in their colours. Its height is that of the last
+/// frame.
 fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
     let id = ui.scope_id().with("overlay card height");
     let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
@@ -289,7 +290,7 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
     }
 }
 
-/// While the overdraw is wished for and not there: that it is counted, or why it can't be.
+/// Says, while the overdraw is chosen and not known, that it is being counted, or why it can't be.
 pub fn counting_note(ui: &mut Ui, model: &Model, rect: Rect) {
     let text = match (&model.scene, model.want_tests().failed) {
         (None, _) => "Opened from a folder: its fragments can't be counted. Open the scene instead.".to_owned(),

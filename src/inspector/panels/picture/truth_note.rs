@@ -1,5 +1,5 @@
-//! What stands over the picture while truth or error is wished for and not there: how far the
-//! tracing is, or why there is none.
+//! The note over the picture while truth or error is chosen and not known: how far the tracing is, or why there is
+//! none.
 
 use crate::ask::{QuestionKind, TruthOf};
 use crate::inspector::look::theme;
@@ -11,7 +11,7 @@ use egui::{Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 /// Width of the note, points.
 const WIDTH: f32 = 264.0;
 
-/// Draws the note into the upper left corner of `rect`; `shown` is what is shown meanwhile.
+/// Draws the note into the upper left corner of `rect`; `shown` is the picture that is shown meanwhile.
 pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture) {
     let is_known = model.frame.capture.as_ref().is_some_and(|capture| has_truth(capture));
     if !model.view.wants_truth() || is_known {
@@ -43,7 +43,7 @@ fn contents(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
         theme::heading(ui, "The truth was not traced.");
         ask_again(ui, model, "Trace it");
     } else {
-        // Where it is not asked for yet, it is before this frame ends.
+        // Where it has not been asked for yet, it will be before this frame ends.
         let (done, of) = reply.steps().unwrap_or_default();
         tracing(ui, model, shown, done as f32 / of.max(1) as f32);
     }

@@ -1,4 +1,4 @@
-//! The button that begins to walk, and what is said over the picture while one does.
+//! The button that begins walking, and the banner over the picture while the user walks.
 
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -7,7 +7,7 @@ use egui::{Rect, Ui, UiBuilder, vec2};
 /// Height of the banner over the picture, points.
 const BANNER_HEIGHT: f32 = 56.0;
 
-/// The button over the picture.
+/// Draws the button over the picture.
 pub fn button(ui: &mut Ui, model: &mut Model) {
     if model.origin().is_some() {
         return;
@@ -21,12 +21,12 @@ pub fn button(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// What of the picture is free for cards in its corners: while one walks, what is under the banner.
+/// Returns the part of the picture that is free for cards in its corners: while the user walks, below the banner.
 pub fn under_banner(model: &Model, rect: Rect) -> Rect {
     if model.walk.is_on() { rect.with_min_y((rect.top() + BANNER_HEIGHT + 8.0).min(rect.bottom())) } else { rect }
 }
 
-/// Says over the picture that one walks, how, and how it ends.
+/// Draws the banner, which says that the user is walking, how, and how it ends.
 pub fn banner(ui: &mut Ui, model: &Model, rect: Rect) {
     if !model.walk.is_on() {
         return;

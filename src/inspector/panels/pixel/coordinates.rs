@@ -8,10 +8,10 @@ use crate::reading::coordinates::{PixelCoordinates, Spherical, VertexCoordinates
 use crate::reading::format;
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
-/// Digits that a narrow panel has room for.
+/// Decimals that fit into a narrow panel.
 const DIGITS: u32 = 4;
 
-/// Folded until somebody asks.
+/// Draws the section, folded at first.
 pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -42,10 +42,10 @@ pub fn ui(
     });
 }
 
-/// Whose coordinates are shown: the point's, or a corner's.
+/// Draws the choice between the coordinates of the point and those of a corner.
 fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[VertexCoordinates]) {
     let Some(first) = vertices.first() else { return };
-    // Of another triangle than before, the point comes first.
+    // For another triangle than before, the point comes first.
     *corner = corner.filter(|index| vertices.iter().any(|vertex| vertex.index == *index));
     ui.horizontal_wrapped(|ui| {
         let mut option = |ui: &mut Ui, value, text: String, hover: String| {

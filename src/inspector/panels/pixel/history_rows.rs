@@ -1,4 +1,4 @@
-//! "History" in the Pixel panel: one row an event, in the order in which they happened.
+//! "History" in the Pixel panel: one row for each event, in the order in which they happened.
 
 use super::picked::{PickedHistory, PixelPanel};
 use super::row_budget::HistoryRows;
@@ -14,9 +14,9 @@ use crate::reading::history_row::{EventOutcome, HistoryCells, line, short, sign}
 use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use egui::{pos2, vec2};
 
-/// Contradictions that are listed.
+/// How many contradictions are listed.
 const MOST_WRONG: usize = 3;
-/// Where a history is not of what is picked.
+/// Opacity of a history that does not belong to the picked pixel.
 const GREYED: f32 = 0.4;
 
 /// Draws heading, rows and the selected event of the picked pixel. Returns where the rows end.
@@ -55,7 +55,7 @@ pub fn ui(
     drawn.inner
 }
 
-/// Title, how many events, and the switch; while another pixel's are waited for, that.
+/// Draws title, number of events, and the switch; while another pixel's history is waited for, a note.
 fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHistory, at: [u32; 2]) {
     ui.horizontal(|ui| {
         theme::heading(ui, "History");
@@ -85,7 +85,7 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
     });
 }
 
-/// A history that contradicts the GPU must not be believed.
+/// Draws a warning: a history that contradicts the GPU must not be believed.
 fn wrong(ui: &mut Ui, wrong: &[String]) {
     if wrong.is_empty() {
         return;
@@ -106,7 +106,7 @@ fn wrong(ui: &mut Ui, wrong: &[String]) {
     ui.add_space(4.0);
 }
 
-/// Indices of the events that are listed.
+/// Returns the indices of the events that are listed.
 fn shown(own: &PixelPanel, model: &Model, history: &PixelHistory) -> Vec<usize> {
     let is_shown = |event: &PixelEvent| !own.hides_idle || event.does_something() || model.selection.has_event(event);
     history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
@@ -130,7 +130,7 @@ fn table(
     head(ui, history.has_stencil);
     let height = row_height * shown.len().min(most) as f32;
     let area = egui::ScrollArea::vertical().id_salt("history rows").auto_shrink([false, true]);
-    // In the panel's own scroll area too it is not to shrink.
+    // It must not shrink inside the panel's own scroll area.
     let mut area = area.max_height(height).min_scrolled_height(height);
     let selected = || model.selected_in(history).and_then(|event| shown.iter().position(|one| *one == event));
     if let Some(place) = own.scrolls_to_selected.then(selected).flatten() {
@@ -146,7 +146,7 @@ fn table(
     ui.add_space(4.0);
 }
 
-/// Where the columns are.
+/// Positions of the columns.
 struct HistoryColumns {
     pass: f32,
     what: f32,
@@ -159,7 +159,7 @@ struct HistoryColumns {
 }
 
 impl HistoryColumns {
-    /// In a row; tests and operations of a stencil have columns only where there is one.
+    /// Returns the columns in a row; tests and operations of a stencil have columns only where there is one.
     fn of(row: Rect, has_stencil: bool) -> HistoryColumns {
         let change = row.right() - 6.0;
         let operation = change - 80.0;
@@ -243,7 +243,7 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
     response.on_hover_text(format!("{}, {}: {line}. Double-click to go there.", cells.pass, event.pass_name));
 }
 
-/// Of the menu of a row, and of the selected event.
+/// Text in the menu of a row, and for the selected event.
 const IN_SCENE: &str = "Show the triangle in the Scene tab";
 
 fn can_show_in_scene(model: &Model, event: &PixelEvent) -> bool {
@@ -256,7 +256,7 @@ fn show_in_scene(model: &mut Model, event: &PixelEvent) {
     model.requests.panels.push(PanelKind::Scene);
 }
 
-/// After the draw of an event; a clear comes before all draws of its step.
+/// Returns the point of the frame after the draw of an event; a clear comes before all draws of its step.
 fn moment_of(event: &PixelEvent) -> CapturePoint {
     CapturePoint { step: event.pass, draw: event.triangle().map(|one| one.draw) }
 }
@@ -277,7 +277,7 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
         let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
         painter.rect_filled(swatch, CornerRadius::same(2), color);
     }
-    // Of both words more has to be seen than the first.
+    // More than the first of both words has to be visible.
     let what = if cells.part == Some(DrawPart::PlanarShadow) { "flat" } else { cells.what.as_str() };
     theme::two_inks(ui, pos2(columns.what, middle), columns.what_width, [what, &cells.of], ink);
     painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
@@ -303,7 +303,7 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     painter.text(pos2(columns.change, middle), Align2::RIGHT_CENTER, &cells.change, number, color);
 }
 
-/// How a test went: a tick, a cross, a word or a dash, and its colour.
+/// Draws a test's result: a tick, a cross, a word or a dash, in its colour.
 fn test(ui: &Ui, at: Pos2, test: TestResult) {
     let painter = ui.painter();
     let mark = |points: &[(f32, f32)], color: Color32| {
@@ -323,7 +323,7 @@ fn test(ui: &Ui, at: Pos2, test: TestResult) {
     }
 }
 
-/// The selected event in full, and the way to its step.
+/// Draws the selected event in full, and a button that goes to its step.
 fn selected(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory) {
     let Some(event) = model.selected_in(history).and_then(|index| history.events.get(index)) else { return };
     theme::card(ui).show(ui, |ui| {

@@ -1,5 +1,5 @@
-//! The ladder: the view ray through the picked pixel from the eye (top) to infinity, with every face
-//! of a light's shadow volumes on it, what each added, and the count as it runs.
+//! The ladder: the view ray through the picked pixel from the eye (top) to infinity, with every face of a light's
+//! shadow volumes on it, what each added, and the running count.
 
 use super::picked::{PickedHistory, PixelPanel};
 use crate::capture::Capture;
@@ -16,15 +16,15 @@ use egui::{
 };
 use std::ops::Range;
 
-/// Room above the eye and below infinity, points.
+/// Space above the eye and below infinity, points.
 const MARGIN: f32 = 12.0;
-/// The least between eye and infinity, points: less can't be read, and the panel scrolls.
+/// The least height between eye and infinity, points: less can't be read, and the panel scrolls.
 const LEAST_HEIGHT: f32 = 120.0;
-/// Points that the running count moves for one, at most, and in all.
+/// How far the line of the running count moves to the right for one, at most, and in all, points.
 const COUNT_STEP: f32 = 10.0;
 const COUNT_WIDTH: f32 = 40.0;
 
-/// Folded rungs that a click opens: of more, the nearest.
+/// How many folded rungs a click opens at most, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
 /// Does this frame count volumes, so that there is a ladder?
@@ -32,7 +32,8 @@ pub fn is_shown(picked: &PickedHistory, capture: &Capture) -> bool {
     picked.history.is_some() && capture.counts_volumes()
 }
 
-/// Draws the ladder of `light` under the history, if it can be in `height` points; nothing where no volumes are counted.
+/// Draws the ladder of `light` under the history, within `height` points if possible; nothing where no volumes are
+/// counted.
 pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -72,7 +73,7 @@ pub fn ui(
     });
 }
 
-/// Which way it counts, and from what.
+/// Returns the direction of counting, and where it begins, in words.
 fn direction(ladder: &Ladder) -> String {
     let way = match (ladder.side, ladder.surface) {
         (CountedSide::Behind, Some(_)) => "Counted from infinity towards the surface",
@@ -99,7 +100,7 @@ fn direction(ladder: &Ladder) -> String {
     format!("{way}{start}. {counted} of {faces} count: {} in all{}.", signed(ladder.count), in_its_bits(ladder))
 }
 
-/// What the light pass reads where the bits of the stencil do not hold the count.
+/// Returns what the light pass reads where the bits of the stencil can't store the count.
 fn in_its_bits(ladder: &Ladder) -> String {
     match ladder.tested {
         VolumeCount::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => {
@@ -109,12 +110,12 @@ fn in_its_bits(ladder: &Ladder) -> String {
     }
 }
 
-/// A whole number with the sign that stencil values have.
+/// Returns a whole number with the same sign that stencil values have.
 fn signed(value: i32) -> String {
     if value < 0 { format!("−{}", value.unsigned_abs()) } else { value.to_string() }
 }
 
-/// What a face added: `+1`, or nothing.
+/// Returns what a face added: `+1`, or an empty text.
 fn added(value: i32) -> String {
     match value {
         0 => String::new(),
@@ -123,7 +124,7 @@ fn added(value: i32) -> String {
     }
 }
 
-/// Where the columns are in the ladder's rectangle.
+/// Positions of the columns in the ladder's rectangle.
 #[derive(Clone, Copy)]
 struct LadderColumns {
     ray: f32,
@@ -146,7 +147,7 @@ impl LadderColumns {
     }
 }
 
-/// The ladder itself, down to `bottom` if it can be.
+/// Draws the ladder itself, down to `bottom` if possible.
 fn drawn(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -169,7 +170,7 @@ fn drawn(
     let columns = LadderColumns::of(rect);
     let top = rect.top() + MARGIN;
     let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), line));
-    // Rungs first, as what is selected has a background.
+    // Rungs first, as the selected one has a background.
     for (mark, y) in &placed {
         match mark {
             LadderMark::Rung(index) => rung(ui, own, model, (capture, history), &ladder.rungs[*index], row(*y)),
@@ -196,7 +197,7 @@ fn drawn(
     paint_count(ui, columns, top, ladder, &stretches(ladder, &placed));
 }
 
-/// A rung as a widget: clicking it selects its triangle everywhere.
+/// Draws a rung as a widget: clicking it selects its triangle everywhere.
 fn rung(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -220,7 +221,7 @@ fn rung(
     response.on_hover_text(history_row::line(history, event, &capture.depth));
 }
 
-/// Folded rungs as a widget; those that a click opens.
+/// Draws folded rungs as a widget; returns those that a click opens.
 fn fold(ui: &mut Ui, ladder: &Ladder, rungs: Range<usize>, rect: Rect) -> Option<Range<usize>> {
     let response = ui.interact(rect, ui.scope_id().with(("fold", rungs.start)), Sense::click());
     let opened = rungs.start..rungs.end.min(rungs.start + OPENED_AT_ONCE);
@@ -234,7 +235,7 @@ fn fold(ui: &mut Ui, ladder: &Ladder, rungs: Range<usize>, rect: Rect) -> Option
     response.on_hover_text(hover).clicked().then_some(opened)
 }
 
-/// Rungs that are folded, in words: how many, and what they added.
+/// Describes folded rungs in words: how many, and what they added.
 fn folded(rungs: &[Rung]) -> String {
     let counting = rungs.iter().filter(|rung| rung.added != 0).count();
     let sum: i32 = rungs.iter().map(|rung| rung.added).sum();
@@ -245,7 +246,7 @@ fn folded(rungs: &[Rung]) -> String {
     }
 }
 
-/// A rung in words.
+/// Describes a rung in words.
 fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return String::new() };
     let (part, of) = named(one);
@@ -255,7 +256,7 @@ fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
     format!("rung: {part} of {of}, triangle {triangle}, {side}, at {distance}: {counted}, count {running}")
 }
 
-/// The line itself, from the eye to infinity.
+/// Draws the ray itself, from the eye to infinity.
 fn ray(ui: &Ui, columns: LadderColumns, top: f32, placed: &[PlacedMark]) {
     let [Some(first), Some(last)] = [placed.first(), placed.last()] else { return };
     let stroke = Stroke::new(1.5, theme::of(ui).faint);
@@ -295,7 +296,7 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     }
     let color = if rung.added > 0 { theme::of(ui).count_up } else { theme::of(ui).count_down };
     painter.text(pos2(columns.added, y), Align2::RIGHT_CENTER, added(rung.added), number.clone(), color);
-    // Up or down beside the sign.
+    // An arrow up or down beside the sign.
     let (tip, base) = if rung.added > 0 { (-3.5, 3.0) } else { (3.5, -3.0) };
     let x = columns.added - 24.0;
     let triangle = [vec2(0.0, tip), vec2(3.5, base), vec2(-3.5, base)].map(|corner| pos2(x, y) + corner);
@@ -303,7 +304,7 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::of(ui).text);
 }
 
-/// A distance in as few digits as a column has room for. A unit that is not known has a letter's room.
+/// Returns a distance in as few digits as fit into a column. An unknown unit takes the space of a letter.
 fn short(capture: &Capture, distance: f64) -> String {
     let unit = capture.depth.unit.letter();
     match distance {
@@ -325,7 +326,7 @@ fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
     painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, folded(rungs), font, theme::of(ui).dim);
 }
 
-/// Eye, near plane, surface, infinity.
+/// Draws the mark of eye, near plane, surface or infinity.
 fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: LadderMark, rect: Rect) {
     let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
@@ -359,7 +360,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
                 ladder.surface.map(|at| short(capture, at)).unwrap_or_default(),
                 theme::of(ui).text,
             );
-            // What the light pass asks about.
+            // The count that the light pass tests.
             let count = match ladder.tested {
                 VolumeCount::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => byte.to_string(),
                 _ => signed(ladder.count),
@@ -385,7 +386,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
     }
 }
 
-/// What the visible surface is of.
+/// Returns the name of the object with the visible surface.
 fn surface_name(history: &PixelHistory) -> Option<&str> {
     let wrote = history
         .triangles()
@@ -393,7 +394,7 @@ fn surface_name(history: &PixelHistory) -> Option<&str> {
     wrote.last().map(|(_, one)| one.draw_name.as_str())
 }
 
-/// The running count as a step line, further right where it is higher, with an arrow where it goes.
+/// Draws the running count as a step line, further right where it is higher, with an arrow at its end.
 fn paint_count(ui: &Ui, columns: LadderColumns, top: f32, ladder: &Ladder, stretches: &[CountStretch]) {
     let counts = || stretches.iter().map(|one| one.count).chain([0]);
     let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };

@@ -11,8 +11,9 @@ use crate::reading::map_decision::MapDecision;
 use crate::technique::MapSettings;
 use egui::Ui;
 
-/// Of the picked pixel, under the light in question; where the Shadow map tab is open, under the light that it shows.
-/// `None` where no map decided it, or that is not known yet: it is found once no other frame is waited for.
+/// Returns how the map decided the picked pixel, for the light in question, or, where the Shadow map tab is open, for
+/// the light that it shows. `None` where no map decided it, or that is not known yet: it is computed once no other
+/// frame is waited for.
 pub fn decision(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) -> Option<MapDecision> {
     let light = model.selection.map_light.unwrap_or(light);
     if capture.decided_by(light) != DecidedBy::Map || capture.origin.is_some() {
@@ -23,7 +24,7 @@ pub fn decision(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) ->
     MapDecision::of(capture, &*reply.ready?, light, at)
 }
 
-/// Texel, both depths and what follows, and the way to the texel itself.
+/// Draws the texel, both depths and what follows, and a button that goes to the texel.
 pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, decision: &MapDecision) {
     let MapSettings { bias_constant, bias_slope, bias_normal, .. } = MapSettings::read(&capture.settings);
     ui.label(theme::note(format!("Shadow map of {}", format::light(decision.light))));

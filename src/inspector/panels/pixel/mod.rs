@@ -1,4 +1,4 @@
-//! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
+//! The picked pixel: one sentence, then its values at the selected step, then its history.
 
 pub mod coordinates;
 pub mod history_rows;
@@ -32,7 +32,7 @@ use egui::{Color32, RichText, Ui};
 use picked::PickedHistory;
 pub use picked::PixelPanel;
 
-/// Height of a row of values where row_budget is short, points.
+/// Height of a row of values where vertical space is short, points.
 const TIGHT_ROW: f32 = 18.0;
 
 /// Draws the panel.
@@ -71,7 +71,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         ui.add_space(gap);
         let events = picked.history.as_ref().map_or(0, |history| history.events.len());
         let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::is_shown(&picked, &capture));
-        // The card of a selected event moves the ladder, and takes none of its row_budget: else its rungs would fold under
+        // The card of a selected event moves the ladder, and takes none of its height: else its rungs would fold under
         // the pointer.
         let end = history_rows::ui(ui, own, model, &picked, (&capture, at), rows);
         ui.add_space(gap);
@@ -79,12 +79,13 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     });
 }
 
-/// The tour to begin with: `auto` counts as z-pass does wherever it can, and that one tells what is counted.
+/// Returns the tour to begin with: `auto` counts as z-pass does wherever it can, and the tour of z-pass explains
+/// counting.
 fn first_tour(technique: Technique) -> Technique {
     if technique == Technique::Auto { Technique::ZPass } else { technique }
 }
 
-/// Nothing is picked: how to, and where who is new here may begin.
+/// Explains, while nothing is picked, how to pick, and where a new user may begin.
 fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
     let text = "Right-click a pixel of the picture, or drag with the right button: why it is dark or lit is told here. \
@@ -106,15 +107,15 @@ fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     });
 }
 
-/// The light that the sentence is about: the selected step's, or the first that is blocked.
+/// Returns the light that the sentence is about: the selected step's, or the first that is blocked.
 fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
     let of_step = capture.steps.get(model.selection.step).and_then(|step| step.light);
     let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
 }
 
-/// While the history of a pixel is on its way the last sentence stays, so that it does not change
-/// twice.
+/// Returns the sentence. While the history of a pixel is being computed the last sentence stays, so that it does not
+/// change twice.
 fn sentence(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -124,7 +125,7 @@ fn sentence(
     map: Option<&MapDecision>,
 ) {
     let light = light_in_question(model, capture, at);
-    // One that is wrong explains nothing.
+    // A history that contradicts the GPU explains nothing.
     let history = picked.history.as_ref().filter(|_| picked.is_of_pick && picked.wrong.is_empty());
     let is_waiting = !picked.is_of_pick && picked.failed.is_none() && model.can_ask();
     let last = own.sentence.take().filter(|_| is_waiting && !picked.is_late);
@@ -147,7 +148,7 @@ fn sentence(
     });
 }
 
-/// A name and a value, or two of them in a row where `is_tight`.
+/// Draws names and values, one in each row, or two where `is_tight`.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
     theme::heading(ui, &format!("After {}", model.moment().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
@@ -165,7 +166,7 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
     let has_count = model.moment().frame(capture).is_some() && model.counts_to_show(capture).is_some();
     let texel = model.selection.map_pick.filter(|_| model.kind() == Some(PictureKind::Map));
     if has_count || texel.is_some() {
-        // Some of these are long.
+        // Some of these values are long.
         grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {
             if has_count {
                 count_row(ui, model, capture, at);
@@ -177,7 +178,7 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
     }
 }
 
-/// Cells of a grid: names and values, so many pairs in a row.
+/// Cells of a grid: pairs of name and value, so many in a row.
 struct ValuePairs {
     in_row: usize,
     done: usize,
@@ -256,7 +257,7 @@ fn stencil_cells(ui: &mut Ui, pairs: &mut ValuePairs, stencil: u8) {
     }
 }
 
-/// The signed count of the light in question, where it is known after the step.
+/// Draws the signed count for the light in question, where it is known after the step.
 fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
     let Some((light, image)) = model.counts_to_show(capture) else { return };
     let Some(count) = image.count_at(at) else { return };
@@ -274,7 +275,7 @@ fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
     ui.end_row();
 }
 
-/// The picked texel of a picture of what light comes through.
+/// Draws the picked texel of a picture of the light that is let through.
 fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r, g, b, a]: [u8; 4]) {
     row(ui, what, layer);
     row(ui, "texel", &format!("{}, {}", texel[0], texel[1]));
@@ -290,7 +291,7 @@ fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r,
     ui.end_row();
 }
 
-/// The picked texel of the map that is shown.
+/// Draws the picked texel of the map that is shown.
 fn map_values(ui: &mut Ui, model: &Model, capture: &Capture, texel: [u32; 2]) {
     let Some(shown) = model.view.shown(capture, model.moment()).filter(|shown| shown.images.len() == 1) else { return };
     if let (Some(bytes), Some(layer)) = (shown.images[0].rgba_at(texel), shown.layers.first()) {
@@ -312,7 +313,7 @@ fn row(ui: &mut Ui, name: &str, value: &str) {
     ui.end_row();
 }
 
-/// Every light with its label in words; where the truth is known, beside it and with the finding.
+/// Draws every light with its label in words; where the truth is known, beside it and with the finding.
 fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
     theme::heading(ui, "Lights");
     if has_truth(capture) {
@@ -343,7 +344,7 @@ fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
     }
 }
 
-/// The technique's label beside the truth's, and below them what follows.
+/// Draws the technique's label beside the truth's, and below them what follows.
 fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note(format::light(index)));

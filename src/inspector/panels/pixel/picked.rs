@@ -1,4 +1,4 @@
-//! What the panel remembers, and what is told of the pick now.
+//! The state of the Pixel panel, and what is known of the pick now.
 
 use crate::history::{PixelHistory, Verdict};
 use crate::inspector::model::Model;
@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Weak};
 
-/// The panel.
+/// The state of the panel.
 #[derive(Debug, Default)]
 pub struct PixelPanel {
     /// Events that did nothing are hidden.
     pub hides_idle: bool,
-    /// Rungs of each light's ladder that were opened from a fold: of this history.
+    /// For each light, the ranges of its ladder's rungs that were opened from a fold, in this history.
     pub unfolded: BTreeMap<usize, Vec<Range<usize>>>,
-    /// The history that was told last.
+    /// The history that was shown last.
     shown: Weak<PixelHistory>,
     /// The history that was checked last, and where it contradicts the GPU, in words.
     checked: Weak<PixelHistory>,
@@ -23,27 +23,27 @@ pub struct PixelPanel {
     pub scrolls_to_selected: bool,
     /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
     pub corner: Option<u32>,
-    /// The sentence on top as it was last said with a history.
+    /// The sentence on top, as it last was with a history.
     pub sentence: Option<Verdict>,
 }
 
 /// What is known of the picked pixel's history in this frame of the window.
 #[derive(Debug)]
 pub struct PickedHistory {
-    /// Of the pixel; of the one before, or of the frame before, while that is on its way.
+    /// The history of the picked pixel; while that is being computed, of the pixel or the frame before.
     pub history: Option<Arc<PixelHistory>>,
-    /// It is of the picked pixel of the shown frame.
+    /// The history belongs to the picked pixel of the shown frame.
     pub is_of_pick: bool,
-    /// It is not, and has not been for a while.
+    /// It does not, and has not for a while.
     pub is_late: bool,
-    /// Why there is none.
+    /// Why there is no history.
     pub failed: Option<String>,
-    /// Where it contradicts the GPU, in words.
+    /// Where the history contradicts the GPU, in words.
     pub wrong: Vec<String>,
 }
 
 impl PixelPanel {
-    /// What is told of the pick now; of another history than before nothing is unfolded.
+    /// Returns what is known of the pick now. When the history is another one, all rungs are folded again.
     pub fn picked_history(&mut self, model: &Model) -> PickedHistory {
         let reply = model.want_history();
         let history = reply.latest().filter(|_| reply.failed.is_none()).cloned();

@@ -1,41 +1,41 @@
-//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values stand
-//! two in a row, rows are lower, and of a long history fewer are shown at once.
+//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values are
+//! shown two in a row, rows are lower, and fewer rows of a long history are shown at once.
 
-/// Below this height of the panel everything stands closer, points.
+/// Below this height of the panel everything is closer together, points.
 const TIGHT_BELOW: f32 = 1100.0;
-/// The least width in which two values stand in a row, points.
+/// The least width at which two values are shown in a row, points.
 const LEAST_WIDTH: f32 = 290.0;
-/// What the history takes beside its rows: title, head and gaps, points.
+/// The height of the history without its rows: title, head and gaps, points.
 const HISTORY_AROUND: f32 = 56.0;
-/// What a ladder wishes with its title, note and gaps, and the least, points.
+/// The height of a ladder with its title, note and gaps, the preferred and the least, points.
 const LADDER: f32 = 316.0;
 const LEAST_LADDER: f32 = 250.0;
-/// Rows that are shown before they scroll, and the fewest where room is short.
+/// How many rows are shown before they scroll: at most, and at least where space is short.
 const MOST_ROWS: usize = 12;
 const LEAST_ROWS: usize = 4;
 
-/// Rows of the history.
+/// The rows of the history.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HistoryRows {
-    /// Height of one, points.
+    /// Height of one row, points.
     pub height: f32,
-    /// So many are shown before they scroll.
+    /// How many are shown before they scroll.
     pub most: usize,
 }
 
 impl HistoryRows {
-    /// With room for all.
+    /// The rows where there is space for all.
     const ROOMY: HistoryRows = HistoryRows { height: 22.0, most: MOST_ROWS };
-    /// Height where room is short, points.
+    /// Height of a row where space is short, points.
     const LOW: f32 = 18.0;
 }
 
-/// Does everything stand closer in a panel of this size?
+/// Is a panel of this size so small that everything is closer together?
 pub fn is_tight(size: egui::Vec2) -> bool {
     size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
 }
 
-/// The rows of a history of `events`, where so many points are left for it and for the ladder below it.
+/// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder below it.
 pub fn rows(left: f32, events: usize, has_ladder: bool) -> HistoryRows {
     let all = events.min(MOST_ROWS);
     let [wished, least] = if has_ladder { [LADDER, LEAST_LADDER] } else { [0.0; 2] };

@@ -1,4 +1,4 @@
-//! How the picked pixel's values ran over the steps: what each pass changed here, and what it left.
+//! The picked pixel's values after each step: what each pass changed here, and what it left.
 
 use crate::capture::{Capture, FrameSnapshot, Snapshot};
 use crate::inspector::look::palette;
@@ -12,7 +12,7 @@ use crate::reading::layers::MapContent;
 use crate::reading::steps;
 use egui::{Color32, CornerRadius, RichText, Ui};
 
-/// Letters of a pass's name where it has the most room.
+/// Letters of a pass's name at most, in the widest column.
 const MOST_LETTERS: usize = 24;
 
 /// A value in the table, with the colour that stands for it.
@@ -44,7 +44,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     let runs: Vec<Option<RunValues>> = runs.collect();
     let has_count = runs.iter().flatten().any(|values| values.count.is_some());
     let has = [has_stencil, has_count];
-    // The columns beside it keep their place.
+    // So that the columns beside it do not move.
     let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
     let grid = egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]);
@@ -76,7 +76,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     }
 }
 
-/// Head of the columns. Where there are counts in floats too, the distance has no room: it is told above.
+/// Draws the head of the columns. Where there are counts in floats too, the distance does not fit: it is shown above.
 fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     let columns =
         [("pass", true), ("stencil", has_stencil), ("count", has_count), ("colour", true), ("distance", !has_count)];
@@ -86,7 +86,7 @@ fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     ui.end_row();
 }
 
-/// Number and name of a pass, shortened to so many letters; true when it is clicked.
+/// Draws number and name of a pass, shortened to so many letters; returns true when it is clicked.
 fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, longest: usize, is_selected: bool) -> bool {
     let name = &capture.steps[index].name;
     let color = if is_selected { theme::of(ui).text } else { theme::of(ui).dim };
@@ -133,7 +133,7 @@ fn row(ui: &mut Ui, now: &RunValues, before: Option<&RunValues>, [has_stencil, h
     }
 }
 
-/// A value with its colour; faint where the pass left it as it was at this pixel.
+/// Draws a value with its colour; faint where the pass did not change it at this pixel.
 fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>) {
     let Some(value) = now else {
         ui.label("");

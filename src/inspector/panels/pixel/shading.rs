@@ -1,4 +1,4 @@
-//! How the picked pixel's surface answers each light: the cosine, and the formula's terms.
+//! How each light shades the picked pixel's surface: the cosine, and the formula's terms.
 
 use super::picked::PickedHistory;
 use crate::capture::Capture;
@@ -8,7 +8,7 @@ use crate::reading::format;
 use crate::reading::shading::{SurfaceShading, TextureTerm, digits, three};
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
-/// Folded until somebody asks.
+/// Draws the section, folded at first.
 pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, picked: &PickedHistory) {
     let (Some(history), Some(plan)) = (&picked.history, &model.frame.plan) else { return };
     if capture.origin.is_some() || !picked.is_of_pick || !picked.wrong.is_empty() {

@@ -1,6 +1,6 @@
 //! The Report tab: what every technique costs on the open scene, and how often it is wrong.
 //!
-//! It shows data and asks for it; measuring is the app's.
+//! It shows data and asks for it; the app measures.
 
 pub mod plot;
 pub mod row;
@@ -24,17 +24,17 @@ const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 296.0..=480.0;
 /// Height of the plot above the table, points.
 const STACKED_PLOT_HEIGHT: f32 = 240.0;
 
-/// So many steps have to be done before it is said how long the rest takes.
+/// From so many finished steps on, the time that the rest takes is shown.
 const LEAST_STEPS: usize = 8;
 
-/// The tab: its plot, laid out once for each size.
+/// The state of the tab: its plot, laid out once for each size.
 #[derive(Debug, Default)]
 pub struct ReportPanel {
     plot: Option<(Weak<MeasuredReport>, PlotPage, Arc<Plot>)>,
 }
 
 impl ReportPanel {
-    /// The plot of a report on a page.
+    /// Returns the plot of a report on a page.
     fn plot(&mut self, measured: &Arc<MeasuredReport>, page: PlotPage) -> Arc<Plot> {
         match &self.plot {
             Some((of, laid_out, plot)) if std::ptr::eq(of.as_ptr(), Arc::as_ptr(measured)) && *laid_out == page => {
@@ -90,13 +90,13 @@ fn plot_of(
     actions: &mut Vec<Action>,
 ) {
     let width = f64::from(ui.available_width().floor());
-    // A little less than there is: a scroll bar would ask for another width.
+    // A little less than the space: a scroll bar would ask for another width.
     let height = Some(f64::from((height - 2.0).floor()));
     let page = PlotPage { width, height, most_columns: 4, compact: true };
     plot::ui(ui, model, (&measured.report, &own.plot(measured, page)), actions);
 }
 
-/// What can be done, and how far it is.
+/// Draws the buttons, and the progress.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measured: Option<&MeasuredReport>) {
     let can_run = model.scene.is_some();
     ui.horizontal(|ui| match &reply.running {
@@ -109,7 +109,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             let what = progress.item().and_then(|item| choices.get(item));
             let what = what.map_or_else(|| "the truth".to_owned(), Choice::short_name);
             let (done, of) = progress.steps();
-            // Before the first step it is known all the same: each is measured so often, and warmed up once.
+            // The total is known before the first step: each is measured `runs` times, and warmed up once.
             let to_do = model.answers.asked::<ReportOf>().map_or(0, |ask| ask.choices.len() * (ask.runs + 1));
             let of = if of == 0 { to_do } else { of };
             let share = done as f32 / of.max(1) as f32;
@@ -147,7 +147,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
     });
 }
 
-/// How long it takes from now on, as far as that follows from the time that it took up to here; empty where it does not.
+/// Returns how long the rest takes, as far as that follows from the time so far; empty where it does not.
 fn time_left(seconds: f64, done: usize, of: usize) -> String {
     if done < LEAST_STEPS || seconds <= 0.0 || done > of {
         return String::new();

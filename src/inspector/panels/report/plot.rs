@@ -14,9 +14,9 @@ use egui::{
     vec2,
 };
 
-/// What a mark takes under the pointer, points along a side.
+/// Side of the area in which the pointer is over a mark, points.
 const TARGET: f32 = 18.0;
-/// Radius of the ring around what is selected or pointed at.
+/// Radius of the ring around the selected or hovered mark.
 const RING: f32 = 9.0;
 
 /// Draws `plot` at the next free place and acts on its marks.
@@ -44,7 +44,7 @@ pub fn ui(ui: &mut Ui, model: &Model, (report, plot): (&Report, &Plot), actions:
     }
 }
 
-/// A row's mark: a button.
+/// Draws a row's mark, which is a button.
 fn mark(
     ui: &mut Ui,
     model: &Model,
@@ -76,7 +76,7 @@ pub fn key(ui: &Ui, at: Pos2, style: &TechniqueStyle, filled: bool) {
     PlotSheet { painter: ui.painter().clone(), corner: Pos2::ZERO, theme: theme::of(ui) }.mark(at, style, filled);
 }
 
-/// Where a layout is drawn.
+/// The place in which a layout is drawn.
 struct PlotSheet {
     painter: Painter,
     corner: Pos2,
@@ -100,7 +100,7 @@ impl PlotSheet {
             self.painter.line_segment(ends, Stroke::new(1.0, self.technique(spot.style)));
         }
         for text in &chart.labels {
-            // Parts the words from lines that they cover.
+            // Separates words from lines that they cover.
             let in_band = text.at[1] > chart.band.min[1];
             let words = text.rect();
             let behind = Rect::from_min_max(self.place(words.min), self.place(words.max)).shrink2(vec2(0.0, 1.5));
@@ -129,7 +129,7 @@ impl PlotSheet {
         let (at, color) = (self.place(text.at), self.ink(text.ink));
         self.painter.text(at, anchor, &text.text, font.clone(), color);
         if text.strong {
-            // As in `theme::heading`: the face has one weight.
+            // As in `theme::heading`: the font has one weight.
             self.painter.text(at + vec2(0.4, 0.0), anchor, &text.text, font, color);
         }
     }
@@ -142,7 +142,7 @@ impl PlotSheet {
         self.painter.add(Shape::closed_line(outline, Stroke::new(1.3, color)));
     }
 
-    /// A technique's hue: on light ground that of the printed report.
+    /// Returns a technique's hue: on a light background that of the printed report.
     fn technique(&self, style: &TechniqueStyle) -> Color32 {
         let [red, green, blue] = if *self.theme == theme::LIGHT { style.paper } else { style.screen };
         Color32::from_rgb(red, green, blue)
@@ -158,7 +158,7 @@ impl PlotSheet {
     }
 }
 
-/// A shape of which every corner is seen from its middle, as triangles: some are not convex.
+/// Returns a shape, of which every corner is visible from its middle, as triangles: some shapes are not convex.
 fn fan(middle: Pos2, outline: &[Pos2], color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     let corners = [middle].into_iter().chain(outline.iter().copied());
@@ -170,7 +170,7 @@ fn fan(middle: Pos2, outline: &[Pos2], color: Color32) -> Mesh {
     mesh
 }
 
-/// The middle of a row's sign in the table.
+/// Returns the middle of a row's sign in the table.
 pub fn sign_at(row: Rect) -> Pos2 {
     pos2(row.left() + 16.0, row.center().y)
 }

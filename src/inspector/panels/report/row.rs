@@ -1,10 +1,10 @@
-//! A row of the report and the frame that is shown.
+//! How a row of the report relates to the frame that is shown.
 
 use crate::inspector::action::Action;
 use crate::inspector::model::Model;
 use crate::report::ReportRow;
 
-/// Is the row what is shown now: same scene, technique and settings?
+/// Has the row the scene, technique and settings that are shown now?
 pub fn is_current(model: &Model, row: &ReportRow) -> bool {
     let (scene, technique, settings) = match (&model.scene, &model.frame.capture) {
         (Some(open), _) => {
@@ -18,7 +18,7 @@ pub fn is_current(model: &Model, row: &ReportRow) -> bool {
     row.scene == scene && row.technique == technique && has_settings()
 }
 
-/// Asks to render as a row was.
+/// Returns the action that renders with a row's technique and settings.
 pub fn open_row(row: &ReportRow) -> Action {
     Action::OpenReportRow { technique: row.technique.clone(), settings: row.settings.clone() }
 }

@@ -1,4 +1,4 @@
-//! The report's rows as a table: what the plot shows as places, in numbers. A row is a button.
+//! The report's rows as a table: the plot's positions as numbers. A row is a button.
 
 use super::{plot, row};
 use crate::inspector::action::Action;
@@ -10,16 +10,16 @@ use crate::report::plot::{style_of, text_width};
 use crate::report::{Report, ReportRow};
 use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-/// Widths of what stands before a name: its sign.
+/// Width of the sign before a name, points.
 const SIGN_WIDTH: f32 = 30.0;
-/// What names take at most, points.
+/// The largest width of the names, points.
 const WIDEST_NAME: f32 = 200.0;
 
 /// A column of numbers.
 struct TableColumn {
     heading: &'static str,
     width: f32,
-    /// Lower ones are given room first.
+    /// Columns with a lower rank are given space first.
     rank: usize,
     cell: fn(&ReportRow) -> String,
 }
@@ -39,7 +39,7 @@ const COLUMNS: [TableColumn; 7] = [
     TableColumn { heading: "MiB", width: 46.0, rank: 6, cell: |row| numbers::mebibytes(row.bytes) },
 ];
 
-/// Draws the table in the width that there is.
+/// Draws the table in the available width.
 pub fn ui(ui: &mut Ui, model: &Model, report: &Report, actions: &mut Vec<Action>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let columns = columns(&report.rows, ui.available_width());
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, model: &Model, report: &Report, actions: &mut Vec<Action>
     }
 }
 
-/// The columns that fit beside the names, the more important ones first; error and time always.
+/// Returns the columns that fit beside the names, the more important ones first; error and time always.
 fn columns(rows: &[ReportRow], width: f32) -> Vec<&'static TableColumn> {
     let name = |row: &ReportRow| text_width(&row.name(), f64::from(theme::TEXT_SIZE)) as f32;
     let names = SIGN_WIDTH + rows.iter().map(name).fold(0.0, f32::max).min(WIDEST_NAME);
@@ -75,7 +75,7 @@ fn headings(ui: &mut Ui, name: &str, columns: &[&'static TableColumn]) {
     }
 }
 
-/// Each column with the right end of its cell in a row.
+/// Returns each column with the right end of its cell in a row.
 fn places(columns: &[&'static TableColumn], row: Rect) -> impl Iterator<Item = (&'static TableColumn, Pos2)> {
     let mut right = row.right() - 6.0;
     columns.iter().copied().rev().map(move |column| {
@@ -108,7 +108,7 @@ fn table_row(ui: &mut Ui, model: &Model, row: &ReportRow, columns: &[&'static Ta
     response.on_hover_text(row.details());
 }
 
-/// Technique and label, cut where the numbers begin.
+/// Draws technique and label, cut where the numbers begin.
 fn name(ui: &Ui, rect: Rect, row: &ReportRow, columns: &[&'static TableColumn]) {
     let numbers: f32 = columns.iter().map(|column| column.width).sum();
     let width = (rect.width() - numbers - SIGN_WIDTH - 6.0).max(40.0);

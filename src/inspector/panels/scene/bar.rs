@@ -46,7 +46,7 @@ fn layouts(ui: &mut Ui, view: &mut SceneView) {
     }
 }
 
-/// What is shown, with its colours: each entry is a switch.
+/// Draws the legend: the kinds of geometry with their colours, each entry a switch.
 pub fn legend(
     ui: &mut Ui,
     view: &mut SceneView,
@@ -132,7 +132,7 @@ fn switch(ui: &mut Ui, on: &mut bool, mark: EntryMark, name: &str, hint: &str) {
     });
 }
 
-/// Of which light and caster.
+/// Draws the choice of light and caster.
 fn choosers(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     theme::heading(ui, "Shadows of");
     let lights = (0..anatomy.lights.len()).map(format::light_title).collect::<Vec<_>>();

@@ -1,8 +1,8 @@
-//! Lights, camera and, where that is wished, objects as handles: dragged in the plane parallel to the view, or along an
-//! axis.
+//! Lights, camera and, where they are switched on, objects as handles: dragged in the plane parallel to the view, or
+//! along an axis.
 //!
-//! Handles stand where the draft has things, so that they follow the hand before the next frame is
-//! there. What moves in the scene is shown at the draft's moment, and moved at its start.
+//! Handles are where the draft has things, so that they follow the pointer before the next frame is there. What moves
+//! in the scene is shown at the draft's time, and its position at the scene's start is changed.
 
 use super::lens::Lens;
 use super::stage::SceneStage;
@@ -18,13 +18,13 @@ use crate::scene::{Light, Object, Pose};
 use egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::{DMat3, DVec3};
 
-/// Side of what can be grabbed, points.
+/// Side of the area that can be grabbed, points.
 const GRAB: f32 = 18.0;
 /// Length of an axis, points.
 const AXIS: f64 = 44.0;
 const AXES: [(&str, DVec3); 3] = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
 
-/// Draws lights and camera into a view, with handles where they are wanted.
+/// Draws lights and camera into a view, with handles where they are switched on.
 pub fn ui(
     ui: &Ui,
     model: &mut Model,
@@ -56,7 +56,8 @@ pub fn ui(
     for grip in grips {
         let Some(at) = spot(scene, grip).filter(|at| rect.contains(*at)) else { continue };
         sign(ui, &painter, (grip, is_directional(&scene.draft, grip)), at, &here);
-        // The camera looks at the middle of a model: who wishes to move that is not to move what it looks at.
+        // The camera looks at the middle of a model: a user who wants to move the model must not move the target
+        // instead.
         let is_hidden = grip == HandleKind::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
         if view.gizmos && !is_hidden {
             changed |= handle(ui, view, scene, (grip, at), &here);
@@ -70,7 +71,7 @@ pub fn ui(
     }
 }
 
-/// Of another program's frame the found lights and the eye, which nobody can move.
+/// Draws the found lights and the eye of another program's frame, which can't be moved.
 fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &GizmoView) {
     let painter = ui.painter_at(here.rect);
     let lights = anatomy.lights.iter().enumerate().map(|(index, light)| {
@@ -90,7 +91,7 @@ fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
     widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, name, false, theme::of(ui));
 }
 
-/// For people.
+/// Returns the name of a handle, as shown.
 fn name_of(scene: &OpenScene, grip: HandleKind) -> String {
     let object = if let HandleKind::Object(index) = grip { scene.object(index) } else { None };
     object.map_or_else(|| grip.name(), |object| object.name)
@@ -100,7 +101,7 @@ fn is_directional(draft: &RunRequest, grip: HandleKind) -> bool {
     matches!(grip, HandleKind::Light(index) if draft.lights[index].is_directional())
 }
 
-/// Of the view that is drawn.
+/// The view that is drawn.
 struct GizmoView<'a> {
     pane: Pane,
     lens: &'a Lens,
@@ -108,7 +109,7 @@ struct GizmoView<'a> {
     anchor: HandleAnchor,
 }
 
-/// Where a thing is at the draft's moment, world space.
+/// Returns where a thing is at the draft's time, world space.
 fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DVec3> {
     let draft = &scene.draft;
     match grip {
@@ -140,20 +141,20 @@ fn move_by(scene: &mut OpenScene, grip: HandleKind, by: DVec3, anchor: HandleAnc
     }
 }
 
-/// An object's pose at the scene's start once it was moved at a moment.
+/// Returns an object's pose at the scene's start after it was moved by `by` at a time in seconds.
 fn moved_object(object: &Object, time: f64, by: DVec3) -> Pose {
     let pose = object.pose;
     let moved = |by: DVec3| Pose { translate: pose.translate + by, ..pose };
     if object.motion.is_still() {
         return moved(by);
     }
-    // Motions are rigid: what a step at the start comes to at the moment is a turned step.
+    // Motions are rigid: a translation at the start is a rotated translation at that time.
     let at = |by: DVec3| object.motion.apply(&moved(by), time).translate;
     let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| at(axis) - at(DVec3::ZERO));
     moved(DMat3::from_cols(x, y, z).transpose() * by)
 }
 
-/// What a thing looks like, whether it can be moved or not.
+/// Draws the sign of a thing, whether it can be moved or not.
 fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (HandleKind, bool), at: Pos2, here: &GizmoView) {
     let colors = theme::of(ui);
     match grip {
@@ -184,7 +185,7 @@ fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (HandleKind, bool), 
     }
 }
 
-/// The handle and, where it is the chosen one, its axes. True where it was moved.
+/// Draws the handle and, where it is the chosen one, its axes. Returns true where it was moved.
 fn handle(
     ui: &Ui,
     view: &mut SceneView,
@@ -223,7 +224,7 @@ fn handle(
         for (letter, axis) in AXES {
             let length = lens.moved(point, vec2(AXIS as f32, 0.0)).length();
             let Some([from, tip]) = lens.line([point, point + axis * length]) else { continue };
-            // Seen from its end it has no way to go.
+            // An axis seen from its end can't be dragged along.
             if (tip - from).length() < 8.0 {
                 continue;
             }
@@ -252,7 +253,7 @@ fn handle(
     by != DVec3::ZERO
 }
 
-/// The axis of the world that is nearest to a direction.
+/// Returns the world axis that is nearest to a direction.
 fn nearest_axis(direction: DVec3) -> DVec3 {
     let along = |axis: &&(&str, DVec3)| direction.dot(axis.1).abs();
     let nearest = AXES.iter().max_by(|a, b| along(a).total_cmp(&along(b)));

@@ -1,24 +1,25 @@
-//! From world space to a view's screen: perspective, orthographic, and oblique.
+//! From world space to a view's screen: perspective, orthographic, and oblique projections.
 //!
-//! View space has x to the right, y up and z towards the viewer; its origin is the point in the
-//! middle of the view. The oblique projections (cavalier, cabinet) draw depth at an angle, at full or
-//! half length, so that a front keeps its true shape.
+//! View space has x to the right, y up and z towards the viewer; its origin is the point in the middle of the view. The
+//! oblique projections (cavalier, cabinet) draw depth at an angle, at full or half length, so that a front has its true
+//! shape.
 
 use crate::viewport::ViewportCamera;
 use egui::{Pos2, Rect, Vec2, pos2};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-/// What of the distance to the middle lies before the near plane of a perspective view.
+/// Distance of a perspective view's near plane, as a share of the distance to the middle.
 const NEAR: f64 = 0.02;
-/// How much nearer than what they lie on shells are drawn: in parts of their distance, or of the view's height.
+/// How much nearer shells are drawn than the surfaces that they lie on: as a share of their distance, or of the view's
+/// height.
 const STEP: f64 = 3e-4;
-/// A view straight down keeps this much from the pole, degrees, so that up stays up.
+/// A view straight down has this pitch, degrees, so that up stays up.
 const MOST_PITCH: f64 = 89.9;
 
 named_enum! {
-    /// How depth is drawn.
+    /// The projection.
     pub enum LensProjection(
-        /// What one sees.
+        /// What it does.
         meaning
     ) {
         /// Farther is smaller.
@@ -39,27 +40,27 @@ impl LensProjection {
     }
 }
 
-/// Where a view looks from, and how.
+/// Where a view looks from, and its projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaneView {
     /// The point in the middle, world space.
     pub center: DVec3,
     /// Metres across the shorter side of the view, at the middle's distance.
     pub height: f64,
-    /// Turned about the upright axis, degrees; 0 looks along −z.
+    /// Rotation about the upright axis, degrees; 0 looks along −z.
     pub yaw: f64,
-    /// Looking down by so many degrees.
+    /// Angle by which it looks down, degrees.
     pub pitch: f64,
-    /// Across the shorter side of a perspective view, degrees.
+    /// Field of view across the shorter side, degrees, in perspective.
     pub fov_y: f64,
-    /// How depth is drawn.
+    /// The projection.
     pub projection: LensProjection,
-    /// At which angle, where it is oblique, degrees.
+    /// Angle of the depth axis in an oblique projection, degrees.
     pub oblique: f64,
 }
 
 impl PaneView {
-    /// Turns by angles in degrees.
+    /// Rotates by angles in degrees.
     pub fn orbit(&mut self, yaw: f64, pitch: f64) {
         self.yaw = (self.yaw + yaw).rem_euclid(360.0);
         self.pitch = (self.pitch + pitch).clamp(-MOST_PITCH, MOST_PITCH);
@@ -73,13 +74,13 @@ impl PaneView {
         }
     }
 
-    /// View space from world directions.
+    /// Rotation from world to view space.
     pub fn rotation(&self) -> DMat3 {
         let pitch = self.pitch.clamp(-90.0, 90.0).to_radians();
         DMat3::from_rotation_x(pitch) * DMat3::from_rotation_y(-self.yaw.to_radians())
     }
 
-    /// How far a perspective view's eye is from the middle, metres.
+    /// Distance from a perspective view's eye to the middle, metres.
     pub fn distance(&self) -> f64 {
         self.height / 2.0 / (self.fov_y.to_radians() / 2.0).tan()
     }
@@ -97,7 +98,7 @@ impl PaneView {
             center: self.center,
             middle: rect.center(),
             size: DVec2::new(f64::from(rect.width().max(1.0)), f64::from(rect.height().max(1.0))),
-            // A view that a small window leaves no room for still has a scale, so that dragging stays finite.
+            // A view for which a small window leaves no space still has a scale, so that dragging stays finite.
             scale: f64::from(rect.size().min_elem().max(1.0)) / self.height,
             shear: DVec2::new(cosine, sine) * length,
             eye: (self.projection == LensProjection::Perspective).then(|| self.distance()),
@@ -108,29 +109,29 @@ impl PaneView {
 /// A view in a rectangle of the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
-    /// View space from world directions.
+    /// Rotation from world to view space.
     pub rotation: DMat3,
     /// The point in the middle, world space.
     pub center: DVec3,
-    /// Where that is on the screen.
+    /// Position of that point on the screen.
     pub middle: Pos2,
     /// Width and height, points.
     pub size: DVec2,
-    /// Points a metre, at the middle's distance.
+    /// Points for each metre, at the middle's distance.
     pub scale: f64,
     /// How far right and up a metre of depth is drawn.
     pub shear: DVec2,
-    /// How far before the middle the eye is; `None` in parallel views.
+    /// Distance from the eye to the middle; `None` in parallel projections.
     pub eye: Option<f64>,
 }
 
 impl Lens {
-    /// View space from world space.
+    /// Returns the view-space position of a world-space point.
     pub fn view(&self, world: DVec3) -> DVec3 {
         self.rotation * (world - self.center)
     }
 
-    /// Where it is looked from, world space; the direction towards the viewer, with `w = 0`, in parallel views.
+    /// The eye, world space; in parallel projections the direction towards the viewer, with `w = 0`.
     pub fn viewer(&self) -> DVec4 {
         let world = self.rotation.transpose();
         match self.eye {
@@ -139,11 +140,12 @@ impl Lens {
         }
     }
 
-    /// What the GPU draws by: clip space, with reversed depth, of places relative to `origin`, all within `reach` of it.
+    /// Returns the camera for the GPU: clip space, with reversed depth, of points relative to `origin`, all within
+    /// `reach` of it.
     pub fn on_gpu(&self, origin: DVec3, reach: f64) -> ViewportCamera {
         let view = DMat4::from_mat3(self.rotation) * DMat4::from_translation(origin - self.center);
         let [x, y] = (2.0 * self.scale / self.size).to_array();
-        // Depth is linear in parallel views, and has room for all there is.
+        // Depth is linear in parallel projections, and its range covers all there is.
         let range = (reach + (origin - self.center).length()).max(1e-9);
         let (clip, step) = match self.eye {
             Some(eye) => {
@@ -171,7 +173,7 @@ impl Lens {
         self.eye.map_or(f64::INFINITY, |eye| eye * (1.0 - NEAR))
     }
 
-    /// Where a point of view space is on the screen; it is not nearer than [`Lens::near`].
+    /// Returns where a point of view space is on the screen; it must not be nearer than [`Lens::near`].
     pub fn project(&self, view: DVec3) -> Pos2 {
         let at = match self.eye {
             Some(eye) => view.truncate() * (eye / (eye - view.z)),
@@ -180,13 +182,13 @@ impl Lens {
         pos2(self.middle.x + (at.x * self.scale) as f32, self.middle.y - (at.y * self.scale) as f32)
     }
 
-    /// Where a point of the world is on the screen; `None` behind the eye.
+    /// Returns where a point of world space is on the screen; `None` behind the eye.
     pub fn place(&self, world: DVec3) -> Option<Pos2> {
         let view = self.view(world);
         (view.z <= self.near()).then(|| self.project(view))
     }
 
-    /// Both ends of a line on the screen, cut where it goes behind the eye.
+    /// Returns both ends of a line on the screen, clipped where it goes behind the eye.
     pub fn line(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {
         let [a, b] = ends.map(|end| self.view(end));
         let near = self.near();
@@ -200,14 +202,14 @@ impl Lens {
         Some([self.project(a), self.project(b)])
     }
 
-    /// The move in the plane parallel to the view that carries a point `at` by so much on the screen.
+    /// Returns the move in the plane parallel to the view that moves a point `at` by so much on the screen.
     pub fn moved(&self, at: DVec3, by: Vec2) -> DVec3 {
         let away = self.eye.map_or(1.0, |eye| ((eye - self.view(at).z) / eye).max(NEAR));
         let view = DVec3::new(f64::from(by.x), -f64::from(by.y), 0.0) / self.scale * away;
         self.rotation.transpose() * view
     }
 
-    /// The move along `axis`, of unit length, that carries a point `at` by about so much on the screen; none
+    /// Returns the move along `axis`, of unit length, that moves a point `at` by about so much on the screen; zero
     /// where the axis is seen from its end.
     pub fn moved_along(&self, at: DVec3, axis: DVec3, by: Vec2) -> DVec3 {
         let step = 8.0 / self.scale;

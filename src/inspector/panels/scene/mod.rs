@@ -1,4 +1,4 @@
-//! The Scene tab: a free second camera that sees the first one, with all that shadows are made of.
+//! The Scene tab: a free second camera that sees the first one, with all geometry of its shadows.
 //!
 //! ```text
 //! Anatomy ──► stage.rs (faces, lines; once a frame) ──► viewport.rs (on the window's GPU; once a view) ──► picture
@@ -7,7 +7,7 @@
 //! gizmos.rs   lights and camera as handles
 //! ```
 //!
-//! Without a renderer nothing is drawn but what lies on top, and all that can be pressed is there.
+//! Without a renderer only labels, rays and handles are drawn, and all widgets are there.
 
 mod bar;
 mod gizmos;
@@ -29,7 +29,7 @@ use egui::{CornerRadius, Rect, Ui, vec2};
 
 /// Width of the legend beside the views, points.
 const LEGEND_WIDTH: f32 = 164.0;
-/// Narrower than this the legend is left out.
+/// In a narrower panel the legend is left out, points.
 const LEAST_WIDTH: f32 = 420.0;
 
 /// Draws the panel.
@@ -81,7 +81,7 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
     }
 }
 
-/// Why there is nothing to see, and what to do.
+/// Returns why there is nothing to see, and what to do.
 fn missing(model: &Model) -> Option<[String; 2]> {
     let own = |words: [&str; 2]| Some(words.map(ToOwned::to_owned));
     match (&model.frame.capture, &model.scene, &model.activity.job) {

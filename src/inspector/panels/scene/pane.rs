@@ -1,4 +1,4 @@
-//! One view: mouse and keys turn, move and scale it; over the drawn stage lie words, rays and handles.
+//! One view: mouse and keys rotate, move and scale it; labels, rays and handles are drawn over the stage.
 
 use super::lens::{Lens, LensProjection};
 use super::stage::SceneStage;
@@ -16,15 +16,15 @@ use egui::{
 };
 use std::sync::Arc;
 
-/// Degrees that a point of dragging turns.
+/// Degrees of rotation for each point of dragging.
 const TURN: f64 = 0.4;
-/// Degrees that an arrow key turns, and how far it moves, in parts of the view's height.
+/// Degrees that an arrow key rotates, and how far it moves, as a share of the view's height.
 const KEY_TURN: f64 = 5.0;
 const KEY_MOVE: f32 = 0.05;
 /// How much one point of wheel movement scales, as a power of e.
 const WHEEL_ZOOM: f32 = 0.004;
 const KEY_ZOOM: f64 = 1.15;
-/// A multiplicity is written where its edge is so long on the screen, points.
+/// An edge's multiplicity is written where the edge is at least so long on the screen, points.
 const LEAST_EDGE: f32 = 44.0;
 
 /// Draws `pane` into a rectangle.
@@ -61,13 +61,13 @@ pub fn ui(
     title(ui, view, pane, rect);
 }
 
-/// The view's name, and its projection to choose.
+/// Draws the view's name, and the choice of its projection.
 fn title(ui: &mut Ui, view: &mut SceneView, pane: Pane, rect: Rect) {
     let strip = Rect::from_min_size(rect.min + vec2(6.0, 4.0), vec2((rect.width() - 12.0).max(1.0), theme::ROW_HEIGHT));
     ui.scope_builder(UiBuilder::new().max_rect(strip).id_salt(("view title", pane.name())), |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            // It has to be read over whatever is drawn below it.
+            // It has to be readable over whatever is drawn below it.
             let ground = egui::Frame::new().fill(theme::of(ui).background.gamma_multiply(0.8)).corner_radius(2);
             ground.inner_margin(egui::Margin::symmetric(4, 2)).show(ui, |ui| {
                 ui.label(egui::RichText::new(pane.name()).color(theme::of(ui).text));
@@ -140,7 +140,7 @@ fn navigate(ui: &Ui, view: &mut SceneView, pane: Pane, response: &Response) {
 fn labels(ui: &Ui, stage: &SceneStage, lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
-    // Words that would lie on others are left out.
+    // Labels that would overlap others are left out.
     let mut taken: Vec<Rect> = Vec::new();
     for label in &stage.labels {
         if let Some(ends) = label.of {

@@ -62,14 +62,14 @@ pub fn ui(
     }
 }
 
-/// Where the selected triangle is: the middle of what of it is drawn. `None` where none is selected.
+/// Returns the middle of the drawn part of the selected triangle. `None` where none is selected.
 pub fn middle_of_selected(model: &Model, stage: &SceneStage, anatomy: &Anatomy) -> Option<DVec3> {
     let corners = selected(model, model.frame.capture.as_ref()?, stage, anatomy)?;
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     middle.is_finite().then_some(middle)
 }
 
-/// Corners of what is drawn of the selected triangle: it may reach to infinity.
+/// Returns the corners of the drawn part of the selected triangle, which may reach to infinity.
 fn selected(model: &Model, capture: &Capture, stage: &SceneStage, anatomy: &Anatomy) -> Option<Vec<DVec3>> {
     let history = model.history_of_frame()?;
     let event = history.events.get(model.selected_in(&history)?).filter(|event| event.is_from_camera)?;

@@ -1,8 +1,9 @@
-//! What the views draw: faces, lines and words of an anatomy, made once an anatomy and choice of what is shown.
+//! The geometry of the views: faces, lines and labels of an anatomy, computed once for an anatomy and a choice of what
+//! is shown.
 //!
-//! Everything is relative to the stage's middle, so that single precision is enough. What a lamp throws to infinity
-//! is ended on a sphere about the lamp, which every ray from it meets once, so that volumes stay closed; what a
-//! directional light throws there goes to the GPU as it is, and fades on its way.
+//! Everything is relative to the stage's middle, so that single precision is enough. Where a lamp's volumes go to
+//! infinity they end on a sphere about the lamp, which every ray from it hits once, so that volumes stay closed; a
+//! directional light's volumes go to the GPU with their points at infinity, and fade with distance.
 
 use super::toggles::{SceneToggles, VolumeFilter};
 use crate::anatomy::{Anatomy, Frustum, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
@@ -15,82 +16,84 @@ use glam::{DVec3, DVec4, Vec3};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// An object holds others if it is so large, in parts of the whole.
+/// An object encloses others if it is at least so large, as a share of the whole.
 const ENCLOSES: f64 = 0.5;
-/// Triangles share a corner, and its shade, where their normals differ by less than this cosine's angle.
+/// Triangles share a corner, and its shade, where the angle between their normals has a larger cosine than this.
 const SMOOTH: f32 = 0.8;
-/// How far volumes go beyond what there is to see, in parts of its radius.
+/// How far volumes go beyond the visible scene, as a multiple of its radius.
 const BEYOND: f64 = 1.5;
-/// A view is widened by so much, in parts, to show lamps and camera.
+/// How much a view is widened, as a factor, to show lamps and camera.
 const NEAR_BY: f64 = 1.55;
-/// What materials are mixed with, in both themes.
+/// The grey that is mixed into materials, in both themes.
 const GREY: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
-/// A corner that is not there yet.
+/// Stands for a corner that has not been added.
 const NONE: u32 = u32::MAX;
-/// Frusta beyond so many are drawn fainter, and so are edges of finer meshes.
+/// With more frusta than this each is drawn fainter; the next number is the same for edges of meshes.
 const QUIET: f32 = 4.0;
 const QUIET_EDGES: f32 = 500.0;
-/// Multiplicities beyond one that are written beside their edges, at most.
+/// How many multiplicities other than one are written beside their edges.
 const MOST_NUMBERS: usize = 400;
-/// What the GPU is given at most, of all objects and volumes together: a window's buffers hold no more.
+/// The most vertices that the GPU is given, of all objects and volumes together: a window's buffers have no space for
+/// more.
 const MOST_VERTICES: usize = 7_000_000;
-/// The same: 240 MB of corners.
+/// The most triangles that the GPU is given: 240 MB of corners.
 const MOST_TRIANGLES: usize = 20_000_000;
 
-/// Words at a place.
+/// A text at a point.
 #[derive(Debug, Clone)]
 pub struct StageLabel {
-    /// World space.
+    /// Position in world space, metres.
     pub at: DVec3,
-    /// What is written.
+    /// The text.
     pub text: String,
-    /// The line that it is about, world space: it has to be long enough on the screen.
+    /// The line that it labels, world space: the label is drawn only where the line is long enough on the screen.
     pub of: Option<[DVec3; 2]>,
 }
 
-/// What the views draw.
+/// The geometry of the views.
 #[derive(Debug, Default)]
 pub struct SceneStage {
     /// World space; geometry is relative to it.
     pub middle: DVec3,
-    /// Half of what there is to see, metres.
+    /// Radius of the visible scene, metres.
     pub radius: f64,
-    /// The farthest that anything is from the middle, metres.
+    /// Largest distance of anything from the middle, metres.
     pub reach: f64,
     /// Faces and lines.
     pub geometry: Arc<ViewportGeometry>,
     /// Multiplicities and names.
     pub labels: Vec<StageLabel>,
-    /// Casters that hold everything, whose volumes are not shown unless they are chosen.
+    /// Casters that enclose everything, whose volumes are shown only when they are chosen.
     pub left_out: BTreeSet<String>,
-    /// There is more than the GPU is given, or it has places that are no numbers.
+    /// There is more geometry than the GPU is given, or some of its positions are not finite.
     pub is_cut: bool,
 }
 
-/// Which objects hold the others: rooms, walls, floors. They may be as large as they like, and must not
-/// hide what they hold.
+/// Returns for each object whether it encloses the others, as rooms, walls and floors do. These may be of any size, and
+/// must not hide what they enclose.
 pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
     let size =
         |points: &mut dyn Iterator<Item = DVec3>| bounds(points).map_or(0.0, |(low, high)| (high - low).length());
     let whole = size(&mut anatomy.objects.iter().flat_map(|object| object.positions.iter().copied()));
     let sizes = anatomy.objects.iter().map(|object| size(&mut object.positions.iter().copied()));
     let large: Vec<bool> = sizes.map(|size| size >= ENCLOSES * whole).collect();
-    // Where all are, none holds another.
+    // Where all are large, none encloses another.
     if large.contains(&false) { large } else { vec![false; large.len()] }
 }
 
-/// The middle and half of what there is to see: all objects but those that hold the others.
+/// Returns middle and radius of the visible scene: all objects but those that enclose the others.
 pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
     let casters = anatomy.objects.iter().zip(holders).filter(|(object, holds)| !**holds && is_seen(object));
     let camera = &anatomy.camera;
     match bounds(&mut casters.flat_map(|(object, _)| object.positions.iter().copied())) {
         Some((low, high)) if low != high => ((low + high) / 2.0, (high - low).length() / 2.0),
-        // An eye alone sees as far as its target.
+        // Without objects, the scene reaches as far from the eye as its target.
         _ => (camera.target, (camera.target - camera.eye).length().clamp(1e-3, 1e6) / 2.0),
     }
 }
 
-/// What a view shows at first: all that there is to see, and of lamps and camera those that are near it.
+/// Returns middle and radius of what a view shows at first: the visible scene, and lamps and camera where they are
+/// near.
 pub fn framed(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
     let (middle, radius) = sphere(anatomy, holders);
     let lamps = anatomy.lights.iter().filter(|light| light.position.w != 0.0);
@@ -115,7 +118,7 @@ fn is_seen(object: &PlacedObject) -> bool {
 }
 
 impl SceneStage {
-    /// Of `anatomy`, in the colours of `theme`.
+    /// Returns the stage of `anatomy`, in the colours of `theme`.
     pub fn new(anatomy: &Anatomy, shown: &SceneToggles, choice: VolumeFilter, theme: &Theme) -> SceneStage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
@@ -134,7 +137,7 @@ impl SceneStage {
             anatomy.objects.iter().filter(|object| is_seen(object)).for_each(|object| build.wireframe(object));
         }
         let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
-        // Through many shells as much is seen as through a few.
+        // With many shells each is more transparent, so that as much is seen through all as through a few.
         let strength = 1.0 / (volumes().count().max(1) as f32).sqrt();
         for volume in volumes() {
             if let Some(light) = anatomy.lights.get(volume.light) {
@@ -163,7 +166,8 @@ impl SceneStage {
         stage
     }
 
-    /// A corner of `light`'s volumes relative to the middle; at infinity with `w = 0` where the light is a direction.
+    /// Returns a corner of `light`'s volumes relative to the middle; at infinity, with `w = 0`, where the light is
+    /// directional.
     fn ended(&self, corner: DVec4, light: &PlacedLight) -> DVec4 {
         let place = match (corner.w == 0.0, light.position.w == 0.0) {
             (false, _) => corner.truncate() / corner.w,
@@ -177,7 +181,7 @@ impl SceneStage {
         (place - self.middle).extend(1.0)
     }
 
-    /// What is drawn of one triangle of `light`'s volumes, or of no light's: corners of a polygon, world space.
+    /// Returns the drawn part of one triangle of `light`'s volumes, or of none: corners of a polygon, world space.
     pub fn polygon(&self, corners: [DVec4; 3], light: Option<&PlacedLight>) -> Vec<DVec3> {
         let ended = light.map_or(corners.map(|corner| corner - (self.middle * corner.w).extend(0.0)), |light| {
             corners.map(|corner| self.ended(corner, light))
@@ -188,7 +192,7 @@ impl SceneStage {
                 polygon.push(self.middle + corner.truncate() / corner.w);
                 continue;
             }
-            // Sides run side by side: each is ended on its own.
+            // A directional light's sides are parallel: the corner at infinity becomes an end for each of its neighbours.
             for neighbour in [ended[(index + 2) % 3], ended[(index + 1) % 3]].iter().filter(|other| other.w != 0.0) {
                 polygon.push(self.middle + neighbour.truncate() / neighbour.w + corner.truncate() * BEYOND);
             }
@@ -197,7 +201,7 @@ impl SceneStage {
     }
 }
 
-/// A stage that is being made.
+/// Builds a stage.
 struct StageBuilder<'a> {
     stage: SceneStage,
     geometry: ViewportGeometry,
@@ -205,7 +209,8 @@ struct StageBuilder<'a> {
 }
 
 impl StageBuilder<'_> {
-    /// The triangles and edges of an object. One that holds others turns its front to `inside`, the picture's eye.
+    /// Adds the triangles and edges of an object. One that encloses others has its front towards `inside`, the
+    /// picture's eye.
     fn object(&mut self, object: &PlacedObject, inside: Option<DVec3>) {
         let triangles = object.mesh.triangles();
         let at = |corner: u32| object.positions[corner as usize];
@@ -253,14 +258,14 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Each edge of the triangles of an object once.
+    /// Adds each edge of the triangles of an object once.
     fn wireframe(&mut self, object: &PlacedObject) {
         let triangles = object.mesh.triangles();
         let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let mut edges: Vec<[u32; 2]> = sides.map(|[from, to]| [from.min(to), from.max(to)]).collect();
         edges.sort_unstable();
         edges.dedup();
-        // Of a fine mesh there are so many that they would be one surface.
+        // A fine mesh has so many that they would look like one surface.
         let strength = (QUIET_EDGES / edges.len().max(1) as f32).sqrt().clamp(0.35, 1.0);
         let ink = self.theme.text.gamma_multiply(0.8 * strength);
         self.stage.is_cut |= self.geometry.lines.len() + edges.len() > MOST_VERTICES;
@@ -269,22 +274,22 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// What is not seen in the picture is seen here as glass.
+    /// What is invisible in the picture is transparent here.
     fn material(&self, object: &PlacedObject) -> Color32 {
         let [red, green, blue] = object.color.map(|channel| (channel * 255.0).round() as u8);
         let color = coloring::linear([red, green, blue, 255]);
-        // Not so loud as the parts of volumes, and never as dark as the ground.
+        // Less saturated than the parts of volumes, and never as dark as the background.
         let color = mix(GREY, color, 0.6);
         if object.visible { color } else { color.gamma_multiply(0.25) }
     }
 
-    /// How many more triangles the GPU is given, of all kinds together.
+    /// Returns how many more triangles the GPU is given, of all kinds together.
     fn triangles_left(&self) -> usize {
         let ViewportGeometry { solids, holders, shells, .. } = &self.geometry;
         MOST_TRIANGLES.saturating_sub(solids.len() + holders.len() + shells.len())
     }
 
-    /// [`NONE`] where there is no more room.
+    /// Adds a corner; returns [`NONE`] where the limit is reached.
     fn vertex(&mut self, place: DVec3, normal: Vec3, color: Color32) -> u32 {
         self.corner((place - self.stage.middle).extend(1.0), normal, color)
     }
@@ -327,7 +332,7 @@ impl StageBuilder<'_> {
     }
 
     fn silhouette(&mut self, silhouette: &Silhouette, caster: &PlacedObject) {
-        // Of a fine mesh there are so many short edges that they would hide it.
+        // A fine mesh has so many short edges that they would hide it.
         let strength = (QUIET_EDGES / silhouette.edges.len().max(1) as f32).sqrt().clamp(0.35, 1.0);
         for edge in &silhouette.edges {
             let ends = [edge.edge.low, edge.edge.high].map(|end| caster.positions[end as usize]);
@@ -347,12 +352,12 @@ impl StageBuilder<'_> {
             ViewOf::Map { light, caster, .. } => choice.has_frustum(light, caster),
         };
         let shown = || anatomy.frusta.iter().filter(is_shown);
-        // Many are as loud as a few.
+        // So that many are as conspicuous as a few.
         let strength = (QUIET / shown().count().max(1) as f32).clamp(0.25, 1.0);
         for frustum in shown() {
             let (color, fill) = match frustum.of {
                 ViewOf::Camera => (self.theme.text.gamma_multiply(0.75), 0.25),
-                // What a texture or a silhouette is seen through lies on a surface, or there are many.
+                // The frustum of a texture or a silhouette lies on a surface, or there are many of them.
                 ViewOf::Map { caster, .. } if caster.is_some() || frustum.ends_at_light() => {
                     (self.theme.lit.gamma_multiply(0.75 * strength), 0.0)
                 }
@@ -390,7 +395,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Where something that starts at a place ends; what runs to infinity, beyond all there is to see.
+    /// Returns the end of a line from a point; for a line to infinity, a point beyond the visible scene.
     fn end(&self, start: DVec3, end: DVec4) -> DVec3 {
         let reach = (self.stage.middle - start).length() + self.stage.radius;
         if end.w == 0.0 { start + end.truncate().normalize_or_zero() * reach } else { end.truncate() / end.w }
@@ -426,7 +431,7 @@ impl StageBuilder<'_> {
     }
 }
 
-/// A colour between two, `share` of the way to the second.
+/// Returns a colour between two, `share` of the way to the second.
 pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
     from.lerp_to_gamma(to, share)
 }
@@ -472,7 +477,7 @@ mod tests {
                 .lines
                 .len()
         };
-        // Twelve of the box, and a diagonal on each of six sides.
+        // Twelve edges of the box, and a diagonal on each of six sides.
         assert_eq!([lines(true, false), lines(false, true), lines(true, true)], [0, 18, 18]);
     }
 

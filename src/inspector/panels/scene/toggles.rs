@@ -1,17 +1,17 @@
-//! What of a scene is shown.
+//! Which parts of a scene are shown.
 
-/// What is shown.
+/// Which kinds of geometry are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SceneToggles {
-    /// Objects.
+    /// The objects.
     pub objects: bool,
     /// All edges of objects' triangles.
     pub wireframe: bool,
-    /// Sides of volumes.
+    /// The sides of volumes.
     pub sides: bool,
-    /// Their caps near the light.
+    /// The volumes' caps near the light.
     pub light_caps: bool,
-    /// Their caps away from it.
+    /// The volumes' caps away from the light.
     pub dark_caps: bool,
     /// Silhouettes with multiplicities.
     pub silhouettes: bool,
@@ -42,7 +42,7 @@ impl Default for SceneToggles {
     }
 }
 
-/// Of which light and caster volumes and silhouettes are shown; `None`: of all.
+/// The light and the caster of which volumes and silhouettes are shown; `None`: of all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct VolumeFilter {
     /// Index of the light.
@@ -52,8 +52,8 @@ pub struct VolumeFilter {
 }
 
 impl VolumeFilter {
-    /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
-    /// where they are asked for by name.
+    /// Are the volume and silhouette of a light and caster shown? Those of objects that enclose everything are shown
+    /// only where they are chosen by name.
     pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
         let holds = holders.get(caster).is_some_and(|holds| *holds);
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)

@@ -1,4 +1,4 @@
-//! What the tab remembers: its views, what they show, and what was made for them.
+//! The state of the Scene tab: its views, what they show, and their geometry.
 
 use super::lens::{LensProjection, PaneView};
 use super::stage::{self, SceneStage};
@@ -10,19 +10,19 @@ use crate::scene::{self, Camera};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Height of a view of all, in radii of what it shows.
+/// Height of a view of the whole scene, as a multiple of its radius.
 const MARGIN: f64 = 2.1;
 
 named_enum! {
     /// One of the views, as laid out in rows.
     pub enum Pane {
-        /// From above.
+        /// Seen from above.
         Top = "Top",
-        /// Turned by hand.
+        /// Rotated by the user.
         Free = "Free",
-        /// Along −z.
+        /// Seen along −z.
         Front = "Front",
-        /// Along −x.
+        /// Seen along −x.
         Right = "Right",
     }
 }
@@ -42,18 +42,18 @@ impl Pane {
 /// Which views are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PaneLayout {
-    /// One.
+    /// One view.
     One(Pane),
-    /// All four.
+    /// All four views.
     Four,
 }
 
-/// What the Scene tab remembers.
+/// The state of the Scene tab.
 #[derive(Debug)]
 pub struct SceneView {
     pub layout: PaneLayout,
     pub views: [PaneView; 4],
-    /// The views show the whole scene of this name already.
+    /// The views already show the whole scene of this name.
     pub fitted: bool,
     pub shown: SceneToggles,
     pub choice: VolumeFilter,
@@ -63,9 +63,9 @@ pub struct SceneView {
     pub moves_objects: bool,
     /// The handle whose axes are shown.
     pub grip: Option<HandleKind>,
-    /// The history's selected triangle is to be in the middle.
+    /// The history's selected triangle is to be brought to the middle.
     pub wants_triangle: bool,
-    /// Which scene that is.
+    /// The scene of this state, as the number of scenes opened.
     scenes_opened: u64,
     built: Option<BuiltStage>,
 }
@@ -88,7 +88,7 @@ impl Default for SceneView {
     }
 }
 
-/// A stage and what it is of.
+/// A stage, with its inputs.
 #[derive(Debug)]
 struct BuiltStage {
     anatomy: Arc<Anatomy>,
@@ -99,7 +99,7 @@ struct BuiltStage {
 }
 
 impl SceneView {
-    /// Another scene is open: it is looked at as a whole.
+    /// Resets what belongs to a scene, when another one is open: it is shown as a whole.
     fn forget(&mut self) {
         self.fitted = false;
         self.choice = VolumeFilter::default();
@@ -107,7 +107,7 @@ impl SceneView {
         self.built = None;
     }
 
-    /// Forgets what belongs to another scene than the one that was opened last.
+    /// Resets what belongs to another scene than the one that was opened last.
     pub fn follow(&mut self, scenes_opened: u64) {
         if std::mem::replace(&mut self.scenes_opened, scenes_opened) != scenes_opened {
             self.forget();
@@ -124,7 +124,7 @@ impl SceneView {
         &mut self.views[index_of(pane)]
     }
 
-    /// Every view as first shown: all of the scene.
+    /// Sets every view to its initial state, which shows the whole scene.
     pub fn reset(&mut self, anatomy: &Anatomy) {
         let (middle, radius) = stage::framed(anatomy, &stage::holders(anatomy));
         for pane in Pane::ALL {
@@ -133,7 +133,7 @@ impl SceneView {
             view.center = middle;
             view.height = MARGIN * radius;
             if pane == Pane::Free {
-                // Over the camera's shoulder, so that one sees what it sees.
+                // Over the camera's shoulder, so that the user sees what it sees.
                 (view.yaw, view.pitch) = angles(&anatomy.camera);
                 view.orbit(-38.0, 0.0);
                 view.pitch = 24.0;
@@ -143,14 +143,14 @@ impl SceneView {
         self.fitted = true;
     }
 
-    /// The free view becomes the camera's; a camera that is rolled is seen upright.
+    /// Sets the free view to the camera's; a camera that is rolled is shown upright.
     pub fn see_from(&mut self, camera: &Camera) {
         let view = self.view_mut(Pane::Free);
         (view.yaw, view.pitch) = angles(camera);
         view.projection = match camera.projection {
             scene::Projection::Perspective => LensProjection::Perspective,
             scene::Projection::Orthographic { .. } => LensProjection::Orthographic,
-            // Of the two that a view has, the nearer.
+            // The nearer of the two oblique projections of a view.
             scene::Projection::Oblique { factor, .. } if factor > 0.75 => LensProjection::Cavalier,
             scene::Projection::Oblique { .. } => LensProjection::Cabinet,
         };
@@ -178,7 +178,7 @@ impl SceneView {
     }
 }
 
-/// Its place in a row of all.
+/// Its index in a row of all.
 pub fn index_of(pane: Pane) -> usize {
     Pane::ALL.iter().position(|one| *one == pane).unwrap_or_default()
 }

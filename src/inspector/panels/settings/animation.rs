@@ -5,7 +5,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::Ui;
 
-/// The controls: run or stop, a frame on, back to the start.
+/// Draws the controls: run or stop, one step, back to the start.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if !model.is_animated() {
         return;

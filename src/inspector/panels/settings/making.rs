@@ -1,4 +1,4 @@
-//! Making scenes: lights and objects are added, moved and deleted, and the eye turns to one of them.
+//! Editing scenes: lights and objects are added, moved and deleted, and the eye looks at one of them.
 //!
 //! All of it is part of how the scene is run, so that it can be undone, and is in the scene file that is exported.
 
@@ -10,14 +10,14 @@ use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Proje
 use egui::{CollapsingHeader, DragValue, Ui};
 use glam::DVec3;
 
-/// What is added is so large, in distances from the eye to its target.
+/// Size of an added object, as a share of the distance from the eye to its target.
 const SIZE: f64 = 0.2;
-/// What the eye is turned to fills so much of the picture's height.
+/// Share of the picture's height that an object has after the eye has turned to it.
 const FILLED: f64 = 0.6;
-/// Corners around what is round.
+/// Corners around a round shape.
 const AROUND: u32 = 32;
 
-/// Makes a shape.
+/// Returns the mesh of a shape.
 type ShapeMaker = fn() -> Result<Mesh, MeshError>;
 
 /// Shapes that can be added, a metre large, with their names.
@@ -29,7 +29,7 @@ const SHAPES: [(&str, Shading, ShapeMaker); 5] = [
     ("board", Shading::Flat, || shapes::quad([1.0; 2])),
 ];
 
-/// Draws the part of the panel; true when something changed.
+/// Draws this part of the panel; returns true when something changed.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     ui.add_space(8.0);
     let header = CollapsingHeader::new("Make: add, move, delete").id_salt("make");
@@ -41,11 +41,11 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     made.body_returned.unwrap_or(false)
 }
 
-/// Buttons that add: what is new stands where the eye looks, lights above it.
+/// Draws buttons that add: new objects are placed where the eye looks, lights above it.
 fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let camera = scene.draft.camera;
     let Camera { eye, target, .. } = camera;
-    // As far as a pinhole of 45 degrees is that shows as much.
+    // As far away as a perspective camera of 45 degrees that shows as much.
     let far = match camera.is_parallel() {
         true => camera.half_height() / 22.5_f64.to_radians().tan(),
         false => eye.distance(target),
@@ -79,14 +79,14 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     changed
 }
 
-/// To two digits, as one would type it.
+/// Returns a length with two digits, as a user would type it.
 fn rounded(length: f64) -> f64 {
     let digit = 10.0_f64.powf(length.log10().floor() - 1.0);
     let rounded = (length / digit).round() * digit;
     if rounded.is_normal() { rounded } else { 1.0 }
 }
 
-/// The name, or the name with the first number that no object has.
+/// Returns the name, or the name with the first number that no object has.
 fn unused(name: &str, scene: &OpenScene) -> String {
     let added = scene.draft.objects.added.iter().map(|object| &object.name);
     let taken: Vec<&String> = scene.objects.iter().chain(added).collect();
@@ -108,7 +108,7 @@ fn delete_lights(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     deleted.map(|index| scene.delete_light(index)).is_some()
 }
 
-/// One object, which is chosen: where it is, and what can be done with it.
+/// Draws the chosen object: its position, and what can be done with it.
 fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let all = 0..scene.object_count();
     let on: Vec<(usize, Object)> = all
@@ -147,7 +147,7 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     changed
 }
 
-/// One of the scene is switched off; one that was added here is gone, and those after it come nearer.
+/// Switches an object of the scene off; removes one that was added here, so that the indices after it change.
 fn delete(scene: &mut OpenScene, index: usize) {
     let (draft, count) = (&mut scene.draft, scene.loaded.len());
     if index < count {
@@ -176,7 +176,7 @@ fn pose_settings(ui: &mut Ui, pose: &mut Pose) -> bool {
                     let widget = DragValue::new(number).speed(speed).max_decimals(4).suffix(unit);
                     let response = ui.add(widget.update_while_editing(false));
                     changed |= response.accessible_name(format!("object {label} {axis}")).changed();
-                    // A drag goes over zero, which would flatten the object.
+                    // A drag may pass zero, which would flatten the object.
                     if label == "scale" && *number == 0.0 {
                         *number = before;
                     }
@@ -188,7 +188,7 @@ fn pose_settings(ui: &mut Ui, pose: &mut Pose) -> bool {
     changed
 }
 
-/// Turns the eye to an object, from where it looks now; false where it has no size.
+/// Makes the eye look at an object, from its present side; returns false where the object has no size.
 fn look_at(camera: &mut Camera, object: &Object) -> bool {
     let positions = object.world_positions();
     let Some(low) = positions.iter().copied().reduce(DVec3::min) else { return false };
@@ -203,7 +203,7 @@ fn look_at(camera: &mut Camera, object: &Object) -> bool {
     }
     camera.target = middle;
     camera.eye = middle + away * distance;
-    // The near plane does not cut it.
+    // So that the near plane does not cut it.
     camera.near = camera.near.min((distance - radius) * 0.5);
     true
 }

@@ -1,21 +1,21 @@
-//! How each object's mesh hangs together, in a line, and what that does to which technique.
+//! The topology of each object's mesh, in a line, and which techniques it affects and how.
 
 use crate::inspector::look::theme;
 use crate::reading::format;
 use crate::reading::meshes::{ObjectMesh, effects, is_whole, line};
 use egui::Ui;
 
-/// Objects that are listed one by one.
+/// How many objects are listed one by one.
 const MOST_OBJECTS: usize = 24;
 
-/// Draws the section; `None` while nobody has looked at the meshes yet.
+/// Draws the section; `None` until the meshes have been examined.
 pub fn ui(ui: &mut Ui, meshes: Option<&[ObjectMesh]>) {
     theme::heading(ui, "Meshes");
     let Some(meshes) = meshes else {
         ui.label(theme::note("They are looked at once the first frame is captured."));
         return;
     };
-    // What is worth knowing first.
+    // Meshes with findings come first.
     let (whole, other): (Vec<_>, Vec<_>) = meshes.iter().partition(|mesh| is_whole(&mesh.topology));
     let listed = other.iter().chain(&whole).take(MOST_OBJECTS);
     egui::Grid::new("meshes").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {

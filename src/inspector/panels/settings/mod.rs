@@ -76,7 +76,7 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     ui.add(egui::Label::new(theme::note(current.summary())).wrap());
 }
 
-/// The settings of the technique; true when one changed.
+/// Draws the settings of the technique; returns true when one changed.
 fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
@@ -103,7 +103,7 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     changed
 }
 
-/// What a setting does, and why it does nothing now.
+/// Returns what a setting does, and why it does nothing now.
 fn hover(spec: &SettingSpec, off: Option<&str>) -> String {
     let mut letters = spec.meaning.chars();
     let meaning: String =
@@ -111,13 +111,13 @@ fn hover(spec: &SettingSpec, off: Option<&str>) -> String {
     off.map_or_else(|| meaning.clone(), |reason| format!("{meaning}\n\n{reason}"))
 }
 
-/// The widget of one setting; its new value when it changed. It tells on hover why it is `off`.
+/// Draws the widget of one setting; returns its new value when it changed. On hover it says why it is `off`.
 fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, off: Option<&str>) -> Option<String> {
     let hover = hover(spec, off);
     let explained = |response: egui::Response| response.on_hover_text(&hover).on_disabled_hover_text(&hover);
     let current = choice.settings().get(spec.key).map_or(spec.default, String::as_str);
     match spec.values {
-        // Nothing to choose: a fact, not a widget.
+        // There is nothing to choose, so this is text, not a widget.
         SettingValues::OneOf([_] | []) => {
             explained(ui.label(theme::number(current).color(theme::of(ui).faint)));
             None
@@ -159,7 +159,7 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
     }
 }
 
-/// A menu of words to tick, all or none of them included.
+/// Draws a menu of words to tick, with all and none among the choices.
 fn some_of(
     ui: &mut Ui,
     name: &str,
@@ -193,7 +193,7 @@ fn some_of(
     chosen
 }
 
-/// A number that may be tiny: it moves by a part of itself, and a power of ten says how small it is.
+/// Sets up a number that may be tiny: dragging changes it in proportion, and a power of ten shows how small it is.
 fn any_size<'a>(widget: DragValue<'a>, current: &str) -> DragValue<'a> {
     let size = current.rsplit(':').next().and_then(|number| number.parse::<f64>().ok()).map_or(0.0, f64::abs);
     if size == 0.0 || size >= 1e-3 {
@@ -202,7 +202,7 @@ fn any_size<'a>(widget: DragValue<'a>, current: &str) -> DragValue<'a> {
     widget.speed(size * 0.02).update_while_editing(false).custom_formatter(|value, _| format!("{value:.1e}"))
 }
 
-/// One of several words: its widget, and the new word when it changed.
+/// Draws the widget for one of several words; returns the new word when it changed.
 fn choose(ui: &mut Ui, key: &str, words: &[&str], current: &str) -> (egui::Response, Option<String>) {
     let mut value = current.to_owned();
     let combo = egui::ComboBox::from_id_salt(key).selected_text(current);

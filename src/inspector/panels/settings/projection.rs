@@ -1,10 +1,10 @@
-//! The camera's projection: which, and the numbers that it has. What it has not is there all the same, with why.
+//! The camera's projection: its kind and its numbers. Numbers that it does not have are listed too, with the reason.
 
 use super::row::row;
 use crate::scene::{Camera, Projection};
 use egui::{DragValue, Ui};
 
-/// Rows of the camera's grid; true when one changed.
+/// Draws rows of the camera's grid; returns true when one changed.
 pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     let names = ("camera projection", "projection");
     let half_height = camera.half_height_at_target();
@@ -36,7 +36,7 @@ pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     changed
 }
 
-/// Half height, and angle and factor, where a projection has them.
+/// Returns half height, and angle and factor, where a projection has them.
 fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
     match projection {
         Projection::Perspective => (None, None),
@@ -47,7 +47,7 @@ fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
     }
 }
 
-/// Another kind shows the target as large as it is shown now.
+/// Draws the choice of kind. Another kind shows the target at the same size.
 fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64) -> bool {
     let before = projection.name();
     let (angle_degrees, factor) = (Projection::USUAL_ANGLE, Projection::CABINET);

@@ -1,9 +1,9 @@
-//! A setting of what is seen, in a row of its heading's grid.
+//! A row with one setting, in the grid under a heading.
 
 use crate::inspector::look::widgets;
 use egui::Ui;
 
-/// One setting in a row: the way back where it was changed, its name, its widget; true when it changes.
+/// Draws one setting in a row: a reset button where it was changed, its name, its widget. Returns true when it changes.
 pub fn row<T: PartialEq + Clone>(
     ui: &mut Ui,
     (name, label): (&str, &str),

@@ -1,5 +1,5 @@
-//! The settings of what is seen: lights and camera by number, the picture's size, the moment. Each is held against what
-//! it was when the scene was opened, and goes back to it.
+//! The settings of the scene: lights and camera by number, the picture's size, the time. Each is compared with its
+//! value when the scene was opened, and can be reset to it.
 
 use super::projection;
 use super::row::row;
@@ -13,7 +13,7 @@ use glam::DVec3;
 
 /// Largest side of a picture that the panel offers, pixels.
 const MOST_PIXELS: u32 = 8192;
-/// A far plane that is added is so many near planes away; it is at least so many, and at most so many metres.
+/// A far plane that is added is at so many near distances; at least, and at most, so many metres away.
 const FAR_OF_NEAR: f64 = 1000.0;
 const LEAST_FAR_OF_NEAR: f64 = 1.01;
 const MOST_FAR: f64 = 1e7;
@@ -23,7 +23,7 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut changed = false;
     for index in 0..scene.draft.lights.len() {
         ui.add_space(12.0);
-        // One that was added is as it is.
+        // A light that was added has its own values as initial ones.
         let before = scene.light_opened(index).unwrap_or(&scene.draft.lights[index]).clone();
         changed |= light_settings(ui, index, &mut scene.draft.lights[index], &before);
     }
@@ -37,12 +37,12 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     changed
 }
 
-/// The rows of a heading.
+/// Draws the rows under a heading.
 fn grid(ui: &mut Ui, name: impl egui::AsIdSalt, rows: impl FnOnce(&mut Ui) -> bool) -> bool {
     egui::Grid::new(name).num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, rows).inner
 }
 
-/// Which objects are there.
+/// Draws the choice of the objects that are in the scene.
 fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
     theme::heading(ui, "Objects");
     let mut changed = false;
@@ -80,7 +80,7 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
         });
         light.position = position.extend(light.position.w);
         changed |= row(ui, (&of("colour"), "colour"), &mut light.color, &before.color, |ui, color| {
-            // The widget rounds what it only shows.
+            // The widget rounds what it displays; only an edit may change the value.
             let mut edited = *color;
             let picker = ui.color_edit_button_rgb(&mut edited).accessible_name(of("colour"));
             // A pale colour is as light as a light panel.
@@ -101,8 +101,8 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
     })
 }
 
-/// Point or directional, by the light's homogeneous coordinate. The numbers stay: they are a place, or the way towards
-/// the light.
+/// Draws the choice of point or directional light, by its homogeneous coordinate. The numbers stay: they are a
+/// position, or the direction towards the light.
 fn light_kind(ui: &mut Ui, name: &str, w: &mut f64) -> bool {
     let before = *w;
     let combo = egui::ComboBox::from_id_salt(("kind", name));
@@ -138,7 +138,7 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     })
 }
 
-/// None, or how far away it is.
+/// Draws the choice of no far plane, or of its distance.
 fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
     ui.horizontal(|ui| {
         let mut is_there = far.is_some();
@@ -183,11 +183,11 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
     })
 }
 
-/// Three numbers in a row.
+/// Draws three numbers in a row.
 fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
     let mut changed = false;
     ui.horizontal(|ui| {
-        // Three long numbers have room beside their name.
+        // So that three long numbers fit beside their name.
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 4.0;
         for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {

@@ -1,7 +1,7 @@
-//! Which axis of a model is up. Many programs have z up, and what they write lies on its side here.
+//! Which axis of a model is up. Many programs have z up, and their models lie on their side here.
 //!
-//! Turning it is a change of the scene as others are. Floor, light and camera go where they would be had the file been
-//! opened so, each unless it was moved by hand, or opened elsewhere.
+//! Changing it is a change of the scene like any other. Floor, light and camera go where they would be had the file
+//! been opened so, each unless the user moved it, or it was elsewhere when the file was opened.
 
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::scene::OpenScene;
@@ -31,14 +31,14 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     true
 }
 
-/// With y up and with z up; it may have been opened either way.
+/// Returns the poses with y up and with z up; the model may have been opened either way.
 fn poses(model: &Object) -> [Pose; 2] {
     let upright = Pose::default();
     let y_up = if model.pose == upright.with_z_up() { upright } else { model.pose };
     [y_up, y_up.with_z_up()]
 }
 
-/// What is made for a model at a pose.
+/// The floor, light and camera for a model at a pose.
 struct ModelSurroundings {
     floor: Option<Pose>,
     light: DVec4,
@@ -60,8 +60,8 @@ impl ModelSurroundings {
     }
 }
 
-/// The model, which comes first, and of what is around it all that is where it was made, whichever axis was up then:
-/// what was put elsewhere stays.
+/// Moves the model, which comes first, and all of its surroundings that are where they were generated, whichever axis
+/// was up then: what was placed elsewhere stays.
 fn turn(scene: &mut OpenScene, pose: Pose) {
     let before = poses(&scene.loaded[0]).map(|pose| ModelSurroundings::at(pose, scene));
     let made = ModelSurroundings::at(pose, scene);

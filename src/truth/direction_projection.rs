@@ -1,11 +1,9 @@
-//! Charts: where the lines through a pencil's centre lie in two dimensions, and how far along.
+//! Directions from a ray origin in two dimensions: where its rays and the triangles they may hit lie.
 //!
-//! All lines of sight meet in the eye, and all lines of light in the light. Seen from there a
-//! line is a point and a triangle a patch, so that "which triangles may this line meet" is a
-//! question about boxes in the plane. A point's surroundings are charted on the six faces of a
-//! cube, laid out side by side; what a point sees from afar, through a window that fits it; a
-//! direction's, on one plane across it. The third coordinate grows with the distance from the
-//! centre.
+//! All view rays begin in the eye, and all light rays in the light. Seen from there a ray is a point and a triangle a
+//! patch, so that "which triangles may this ray hit" is a question about boxes in the plane. A point's surroundings are
+//! projected on the six faces of a cube, laid out side by side; what a point sees from afar, through a window that fits
+//! it; a direction's, on one plane across it. The third coordinate grows with the distance from the origin.
 //!
 //! Boxes are `f32`, rounded outwards: a box may be too large, never too small.
 
@@ -19,37 +17,36 @@ const VERY_FAR: f64 = 1e5;
 /// A line that leaves the window's axis by more than the angle with this cosine misses the scene,
 /// which lies within asin(1 / [`FAR`]) of it.
 const WINDOW_COSINE: f64 = 0.5;
-/// Room between the faces' charts, each of which spans −1 to 1.
+/// Distance between the middles of the faces, each of which spans −1 to 1.
 const FACE_SPACING: f64 = 4.0;
-/// More than what rounding moves a charted point by, as long as its triangle keeps
-/// [`NEAREST`] away from the centre.
+/// More than what rounding moves a projected point by, as long as its triangle is [`NEAREST`] away from the origin.
 const PADDING: f64 = 1e-7;
-/// The same for points in single precision.
+/// More than what rounding moves a point by that is projected in single precision.
 const COARSE_PADDING: f64 = 1e-6;
-/// A line that is farther along an axis crosses that face, or one whose triangles are found on this face too.
+/// A ray that is farther along an axis crosses that face, or one whose triangles are found on this face too.
 const FACE_SURE: f32 = 1.0 - 4.0 * f32::EPSILON;
-/// A triangle whose plane is nearer to the centre than this part of its size may lie anywhere.
+/// A triangle whose plane is nearer to the origin than this part of its size may be projected anywhere.
 pub const NEAREST: f64 = 1e-7;
 /// Faces reach this far over their borders: a line on a border is found on either face.
 const OVERLAP: f64 = 1e-5;
 
-/// A box on the chart, with its depth.
+/// A projected box with its range of depths.
 #[derive(Debug, Clone, Copy)]
 struct ProjectedBox {
     low: DVec3,
     high: DVec3,
 }
 
-/// Where a triangle or a bundle of lines is seen: a box for each face that it is on.
+/// Where a triangle or a packet of rays is seen: a rectangle for each cube face that it is on.
 pub type FaceRects = [Option<ProjectedRect>; 6];
 
-/// A chart of the lines through a centre.
+/// The projection of all directions from a ray origin.
 #[derive(Debug, Clone, Copy)]
 pub enum DirectionProjection {
     /// Around a point. `middle`: the distance that becomes depth ½.
     Cube { center: DVec3, middle: f64 },
-    /// From a point far off: two unit vectors across the axis, and the unit axis towards the
-    /// scene's middle, which is `distance` away; it reaches as far as `reach` around that.
+    /// From a distant point: two unit vectors across the axis, and the unit axis towards the scene's middle, which is
+    /// `distance` away; the scene reaches as far as `reach` around that.
     Window { center: DVec3, across: [DVec3; 2], axis: DVec3, distance: f64, reach: f64 },
     /// Across lines that are parallel, or nearly so, as their centre is `distance` away: two unit
     /// vectors across and the unit direction towards the centre; places are relative to `middle`
@@ -69,7 +66,7 @@ pub enum OriginRay {
 }
 
 impl DirectionProjection {
-    /// For the lines of sight of an eye that sees what lies within `reach` of `middle`.
+    /// Returns the projection for the view rays of an eye that sees what lies within `reach` of `middle`.
     pub fn of_eye(center: DVec4, middle: DVec3, reach: f64) -> DirectionProjection {
         match center.w == 0.0 {
             true => DirectionProjection::of_light(center, middle, reach),
@@ -87,7 +84,7 @@ impl DirectionProjection {
         DirectionProjection::Cube { center, middle: distance.max(reach) }
     }
 
-    /// For the lines of a light.
+    /// Returns the projection for the rays of a light.
     pub fn of_light(center: DVec4, middle: DVec3, reach: f64) -> DirectionProjection {
         let place = center.truncate();
         let distance = if center.w == 0.0 { f64::INFINITY } else { (place - middle).length() };
@@ -117,8 +114,8 @@ impl DirectionProjection {
         }
     }
 
-    /// Where a bundle of lines is seen.
-    pub fn bundle(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> FaceRects {
+    /// Returns where a packet of rays is seen.
+    pub fn packet(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> FaceRects {
         let is_endless = lines.clone().any(|line| !matches!(line, OriginRay::To(_)));
         let open = |span: ProjectedBox| span.of_lines(is_endless);
         let mut boxes = FaceRects::default();
@@ -148,9 +145,9 @@ impl DirectionProjection {
         boxes
     }
 
-    /// The same for lines that all cross one face of the cube, from single precision: the box of the points where they cross
-    /// the cube of half side 1 around the centre, and the largest coordinate of their ends. `None` where they don't,
-    /// or not clearly.
+    /// Returns where rays are seen that all cross one face of the cube, from single precision. `low` and `high` are the
+    /// box of the points where they cross the cube of half side 1 around the origin, `end` the largest coordinate of
+    /// their ends. `None` where they don't cross one face, or not clearly.
     pub fn on_one_face(&self, low: Vec3A, high: Vec3A, end: f32) -> Option<ProjectedRect> {
         let DirectionProjection::Cube { middle, .. } = self else { return None };
         let is_sure = |axis: &usize| low[*axis] > FACE_SURE || high[*axis] < -FACE_SURE;
@@ -162,7 +159,8 @@ impl DirectionProjection {
         Some(padded(flat(low).extend(0.0), flat(high).extend(depth(end)), face, COARSE_PADDING).of_lines(false))
     }
 
-    /// How deep points are whose largest coordinates, relative to the centre, are up to `end`; or more.
+    /// Returns the depth of points whose largest coordinates, relative to the origin, are up to `end`; it may be
+    /// larger.
     pub fn depth(&self, end: f64) -> f32 {
         match self {
             DirectionProjection::Cube { middle, .. } => above(end / (end + middle) + COARSE_PADDING),
@@ -178,7 +176,7 @@ impl DirectionProjection {
         }
     }
 
-    /// From the lines' centre to a corner; where the centre is at infinity, a lever that is the same for all.
+    /// Returns the vector from the ray origin to a corner; where the origin is at infinity, one vector for all.
     pub fn lever(&self, corner: DVec3) -> DVec3 {
         match self {
             DirectionProjection::Cube { center, .. } | DirectionProjection::Window { center, .. } => corner - center,
@@ -192,7 +190,7 @@ impl DirectionProjection {
         !matches!(self, DirectionProjection::Plane { .. })
     }
 
-    /// The box of points or lines on a chart that is one sheet.
+    /// Returns the box of points or rays in a projection that is one plane.
     fn on_sheet(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> ProjectedBox {
         match self {
             DirectionProjection::Cube { .. } => whole_face(0),
@@ -211,13 +209,13 @@ impl DirectionProjection {
                     let [x, y] = [u, v].map(|side| point.dot(*side) / along * (distance / reach));
                     DVec3::new(x, y, (along - distance) / reach)
                 };
-                // Points are rounded at their distance from the centre, and charted at the scene's size.
+                // Points are rounded at their distance from the origin, and projected at the scene's size.
                 bounds(lines.map(place), 0, PADDING + 64.0 * f64::EPSILON * distance / reach)
             }
         }
     }
 
-    /// A point on a face's chart, with its depth.
+    /// Projects a point on a face, with its depth.
     fn on_face(&self, face: usize, point: DVec3) -> DVec3 {
         self.projected(along_face(face, point))
     }
@@ -231,14 +229,14 @@ impl DirectionProjection {
         padded(a.min(b).min(c).extend(nearest), a.max(b).max(c).extend(nearest), face, PADDING)
     }
 
-    /// From a face's own coordinates, the third along its axis.
+    /// Projects a point from a face's own coordinates, the third along its axis.
     fn projected(&self, point: DVec3) -> DVec3 {
         let DirectionProjection::Cube { middle, .. } = self else { return point };
         let place: DVec2 = point.truncate() / point.z;
         place.extend(point.z / (point.z + middle))
     }
 
-    /// The part of a triangle within a face's pyramid (Sutherland and Hodgman 1974).
+    /// Returns the part of a triangle within the frustum of a face (Sutherland and Hodgman 1974).
     fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<ProjectedBox> {
         let mut polygon: Vec<DVec3> = corners.iter().map(|corner| along_face(face, *corner)).collect();
         for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
@@ -261,10 +259,10 @@ impl DirectionProjection {
     }
 }
 
-/// The box around charted points, at the place of their face.
-fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> ProjectedBox {
+/// Returns the box around projected points, at the place of their face.
+fn bounds(on_faces: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> ProjectedBox {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = charted.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
+    let (low, high) = on_faces.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
     padded(low, high, face, padding)
 }
 
