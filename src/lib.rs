@@ -5,10 +5,9 @@
 //!    └────► truth ──────────────────────────────────► accuracy ◄─────┴─► report, stress
 //! ```
 //!
-//! A frame is data: a technique turns a scene into a plan, one executor runs any plan and keeps
-//! colour, depth and stencil after every pass, and everything after that only reads. How right a
-//! frame is, [`accuracy`] tells: [`truth`] follows rays through the same scene and knows nothing of
-//! plans.
+//! A frame is data: a technique turns a scene into a plan, one executor runs any plan and captures
+//! colour, depth and stencil after every pass, and everything after that only reads. [`accuracy`] measures how
+//! right a frame is: [`truth`] follows rays through the same scene and knows nothing of plans.
 //!
 //! ```
 //! use stencilscope::scene::{OpenSpec, open};
@@ -19,7 +18,7 @@
 //! let request = CaptureRequest::new(Choice::new(Technique::ZFail), [320, 180]);
 //! let capture = Session::new(None)?.capture(&scene, &request)?;
 //!
-//! // Step 1 has counted the shadow volumes of the light: who is in shadow, and how deep?
+//! // Step 1 has counted the shadow volumes of the light: which pixels are in shadow, and in how many volumes?
 //! assert_eq!(capture.steps[1].name, "volumes");
 //! let counts = &capture.frame_at(1).and_then(|frame| frame.stencil.as_ref()).expect("a stencil").image;
 //! let shadowed: u64 = counts.histogram()[1..].iter().sum();
@@ -27,39 +26,46 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! The words are the field's: the [`glossary`] has them.
+//!
 //! # Where things are
 //!
 //! - **A technique**: one file in [`technique`]. z-fail is `technique/volume.rs`, whose `plan` adds the pass
 //!   `volumes`, with two-sided stencil operations from `technique/volume/counting.rs`. The module's page writes one
 //!   from outside the crate.
-//! - **A frame**: [`plan`] is what a GPU is told, `gpu/executor.rs` tells it, [`capture`] is what it left behind. The
-//!   capture never changes: what is learned later is the answer to a question ([`ask`]).
+//! - **A frame**: [`plan`] is what a GPU should do, `gpu/executor.rs` makes it do that, and [`capture`] is the result. A
+//!   capture never changes: what is computed later is the answer to a question ([`ask`]).
 //! - **A question**: an entry in the table of `ask/mod.rs`, an arm of [`Session::answer`](session::Session::answer), and
 //!   the panel that wants it.
 //! - **A dragged light**: a handle (`inspector/canvas/handles.rs`) changes the draft of the next run,
-//!   `Model::run_draft` (`inspector/model/scene.rs`) asks for it, `app/controller.rs` hands the order to the queue
+//!   `Model::run_draft` (`inspector/model/scene.rs`) asks for it, `app/controller.rs` passes the order to the queue
 //!   (`app/queue.rs`, where of waiting runs only the newest counts), `app/worker.rs` runs it, and
-//!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; older answers make way.
+//!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; answers about the frame before are dropped.
 //! - **A frame of another program**: `import/extract.py` takes it out of a RenderDoc capture, `import/read.rs` reads
-//!   that without trust, and what comes out is [`import::RawFrame`].
-//! - **A frame of a wgpu program**: `wrap/` hands every call of the program on, and keeps a list while a frame is recorded;
-//!   `record/replay.rs` does the list draw by draw. It comes out as [`import::RawFrame`], too.
-//! - **A picture on a surface**: `scene/obj/materials.rs` (`map_Kd`) and `scene/file/build.rs` (`texture`) read it,
-//!   `scene/picture.rs` decodes it and makes its pyramid, `technique/surfaces.rs` says where each corner lies in it,
-//!   `shaders/texture.wgsl` looks it up, and `reading/shading.rs` computes what that finds.
+//!   that without trust, and the result is an [`import::RawFrame`].
+//! - **A frame of a wgpu program**: `wrap/` forwards every call of the program, and writes a list while a frame is
+//!   recorded; `record/replay.rs` runs the list draw by draw. The result is an [`import::RawFrame`], too.
+//! - **A texture on a surface**: `scene/files/obj/materials.rs` (`map_Kd`) and `scene/files/file/build.rs` (`texture`)
+//!   read it, `scene/picture.rs` decodes it and computes its mip chain, `technique/surfaces.rs` computes each corner's
+//!   texture coordinates, `shaders/texture.wgsl` looks it up, and `reading/shading.rs` computes the same on the CPU.
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
-//!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
-//! - **A film**: [`film`] makes the pictures of an animated PNG, `picture/apng.rs` writes it as they come, for
-//!   `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, a picture a turn).
-//! - **A page**: [`page`] puts a frame and `assets/page/` into one HTML file; its modules of JavaScript are named after
-//!   what they mirror, so a change of `history/` or `plan/coverage.rs` is one of theirs (`tests/pages.rs` holds them equal).
-//! - **A docking**: `inspector/shell/arrangement.rs` says what it may come to.
-//! - **The Scene tab**: `inspector/panels/scene/stage.rs` makes faces and lines of a frame's [`anatomy`], and `viewport.rs`
-//!   draws them with a depth buffer on the GPU that draws the window, whichever device has made the frame.
+//!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. Its sentences about a frame come from [`reading`].
+//! - **An animation**: [`film`] renders the pictures of an animated PNG, `picture/apng.rs` writes each when it is done, for
+//!   `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, one picture at a time).
+//! - **A page**: [`page`] writes a frame and `assets/page/` into one HTML file; its modules of JavaScript are named after
+//!   those that they mirror, so a change of `history/` or `plan/coverage.rs` is one of theirs (`tests/pages.rs` checks that
+//!   both give equal results).
+//! - **A docking**: `inspector/shell/arrangement.rs` decides which arrangements of panels are possible.
+//! - **The Scene tab**: `inspector/panels/scene/stage.rs` draws a frame's [`anatomy`] as faces and lines, and `viewport.rs`
+//!   draws these with a depth buffer on the GPU that draws the window, whichever device has run the frame.
 //!
 //! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
+
+/// The words of this crate.
+#[doc = include_str!("../assets/glossary.md")]
+pub mod glossary {}
 
 #[macro_use]
 mod named;
@@ -109,5 +115,5 @@ pub mod viewport;
 #[cfg(feature = "record")]
 mod wrap;
 
-/// The vectors and matrices, and the raster states, that this crate's types are made of.
+/// The libraries whose vectors, matrices and raster states this crate's interface uses.
 pub use {glam, wgpu};

@@ -22,6 +22,7 @@ mod history;
 mod import;
 #[cfg(feature = "inspector")]
 mod inspector;
+mod language;
 mod layering;
 #[cfg(target_os = "linux")]
 mod memory;
