@@ -1,31 +1,30 @@
-//! A technique's labels held against the ground truth.
+//! A technique's labels compared with the ground truth.
 //!
-//! Compared are the pixels that the truth calls lit or in shadow. Where a technique says anything
-//! else it is wrong, unless no picture of that size could be certain: the truth itself changes
-//! within an eighth of a pixel, or another triangle is visible within 1/256, which rasterisers
-//! snap to. Only for disagreeing pixels are those extra rays cast.
+//! Compared are the pixels that are lit or in shadow in truth. A technique with any other label is wrong, unless no
+//! picture of that size could be certain: the truth itself changes within an eighth of a pixel, or another triangle is
+//! visible within 1/256, which rasterisers snap to. Only for disagreeing pixels are those extra rays cast.
 //!
-//! Labels say nothing of the background, nor of how dark a shadow is. So colours are compared too, at every
-//! pixel, with the picture of the same shading that is lit as the truth says ([`wrong_colors`]): that finds a
-//! shadow that hangs over its receiver's edge into the air, and one that is blended twice. It also counts what is
-//! meant to differ from hard shadows of opaque casters: soft edges, and light that translucent casters let through.
+//! Labels do not cover the background, nor how dark a shadow is. So colours are compared too, at every pixel, with the
+//! picture of the same shading that is lit by the truth's labels ([`wrong_colors`]): that finds a shadow that hangs
+//! over its receiver's edge into the air, and one that is blended twice. It also counts what is meant to differ from
+//! hard shadows of opaque casters: soft edges, and light that translucent casters let through.
 
 use crate::truth::{LIT, SHADOW, Tracer, Truth};
 use rayon::prelude::*;
 
 /// How far from a pixel's centre another label excuses a disagreement, in pixels.
 const LABEL_REACH: f64 = 1.0 / 8.0;
-/// The same for another visible triangle.
+/// How far from a pixel's centre another visible triangle excuses a disagreement, in pixels.
 const SURFACE_REACH: f64 = 1.0 / 256.0;
 
-/// By how many 8-bit steps (of sRGB, as stored) a channel may differ from the right picture's. Techniques that only decide
-/// where light arrives add the same numbers in the same order, and have the same bytes. One that dims what is there, as
-/// shadows that are blended over a lit surface do, multiplies a sum that was rounded to eight bits, half a step, and rounds
-/// again: where that is the right colour, its byte may be the next one, and no more.
+/// By how many 8-bit steps (of sRGB, as stored) a channel may differ from the right picture's. Techniques that only
+/// decide where light arrives add the same numbers in the same order, and have the same bytes. One that dims stored
+/// colours, as shadows that are blended over a lit surface do, multiplies a sum that was rounded to eight bits, half a
+/// step, and rounds again: where that is the right colour, its byte may be the next one, and no more.
 pub const COLOR_TOLERANCE: u8 = 1;
 
 named_enum! {
-    /// What a pixel of the error picture says.
+    /// How a pixel's label differs from the truth: the value of a pixel of the error picture.
     pub enum Finding {
         /// Truth and technique agree.
         Agrees = "agrees",
@@ -43,17 +42,17 @@ named_enum! {
 }
 
 impl Finding {
-    /// The finding of that number, as in an error picture.
+    /// Returns the finding of that number, as in an error picture.
     pub fn from_byte(byte: u8) -> Option<Finding> {
         Finding::ALL.get(usize::from(byte)).copied()
     }
 
-    /// Counts as wrong.
+    /// Returns whether it counts as wrong.
     pub fn is_wrong(self) -> bool {
         matches!(self, Finding::FalseShadow | Finding::MissingShadow | Finding::WrongSurface)
     }
 
-    /// Before any excuse.
+    /// Returns the finding without excuses.
     fn of(truth: u8, answer: u8) -> Finding {
         match (truth, answer) {
             (LIT | SHADOW, _) if truth == answer => Finding::Agrees,
@@ -65,29 +64,29 @@ impl Finding {
     }
 }
 
-/// How many pixels are how wrong. With several lights, sums over them.
+/// Numbers of pixels by finding. With several lights, sums over them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ErrorCounts {
-    /// The truth is lit or shadow.
+    /// Pixels that are lit or in shadow in truth.
     pub compared: u64,
-    /// Lit in truth.
+    /// Pixels that are lit in truth, and in shadow by the technique.
     pub false_shadow: u64,
-    /// In shadow in truth.
+    /// Pixels that are in shadow in truth, and lit by the technique.
     pub missing_shadow: u64,
-    /// Another surface, or none.
+    /// Pixels of another surface, or none.
     #[serde(default)]
     pub wrong_surface: u64,
-    /// Disagreements that are excused.
+    /// Pixels whose disagreement is excused.
     pub edge_band: u64,
 }
 
 impl ErrorCounts {
-    /// Pixels that are wrong and not excused.
+    /// The number of pixels that are wrong and not excused.
     pub fn wrong(&self) -> u64 {
         self.false_shadow + self.missing_shadow + self.wrong_surface
     }
 
-    /// Their share of those compared, 0 to 1; 0 where nothing was compared.
+    /// Returns the share of the compared pixels that are wrong, 0 to 1; 0 where nothing was compared.
     pub fn wrong_fraction(&self) -> f64 {
         if self.compared == 0 { 0.0 } else { self.wrong() as f64 / self.compared as f64 }
     }
@@ -121,9 +120,9 @@ impl std::iter::Sum for ErrorCounts {
 /// Wrong pixels of one kind that touch each other, corners included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct WrongRegion {
-    /// How many.
+    /// The number of pixels.
     pub pixels: u64,
-    /// Which kind.
+    /// Their finding.
     pub kind: Finding,
     /// First and last column and row: left, top, right, bottom.
     #[serde(rename = "box")]
@@ -132,19 +131,18 @@ pub struct WrongRegion {
     pub at: [u32; 2],
 }
 
-/// How a technique did for one light.
+/// A technique's accuracy for one light.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Accuracy {
-    /// Totals.
+    /// Numbers of pixels by finding.
     pub counts: ErrorCounts,
-    /// A [`Finding`] a pixel, row by row.
+    /// A [`Finding`] for each pixel, row by row.
     pub findings: Vec<u8>,
     /// The largest connected wrong region.
     pub worst: Option<WrongRegion>,
 }
 
-/// Holds a technique's labels of one light, given by rows, against the truth, which `tracer` has
-/// traced.
+/// Compares a technique's labels of one light, given by rows, with the truth that `tracer` has traced.
 ///
 /// # Panics
 /// If the rows are not of the truth's size, or there is no such light.
@@ -165,10 +163,10 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> 
     Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, truth.size), findings }
 }
 
-/// Counts the pixels whose colour is wrong: red, green or blue is more than [`COLOR_TOLERANCE`] apart from the right
+/// Counts the pixels whose colour is wrong: red, green or blue differs by more than [`COLOR_TOLERANCE`] from the right
 /// picture's, background included. Excused is what labels are excused for: pixels where no light's label is
-/// [wrong](Finding::is_wrong), and the truth of one changes so near. `findings` are those of each light that has labels,
-/// and pictures are given by rows of four bytes a pixel.
+/// [wrong](Finding::is_wrong), and the truth of one changes within those distances. `findings` are those of each light
+/// that has labels, and pictures are given by rows of four bytes a pixel.
 ///
 /// # Panics
 /// If rows or findings are not of the truth's size.
@@ -194,12 +192,12 @@ pub fn wrong_colors(tracer: &Tracer, truth: &Truth, findings: &[Vec<u8>], pictur
     (0..height).into_par_iter().map(of_row).sum()
 }
 
-/// Is a channel of light, the fourth is none, further apart than rounding may leave it?
+/// Returns whether one of the first three channels differs by more than rounding may leave; the fourth is no light.
 fn differ(one: [u8; 4], other: [u8; 4]) -> bool {
     (0..3).any(|channel| one[channel].abs_diff(other[channel]) > COLOR_TOLERANCE)
 }
 
-/// Could the truth be another one so near the pixel's centre that no rasteriser can be held to it?
+/// Returns whether the truth changes so near the pixel's centre that no rasteriser can be expected to agree with it.
 fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2]) -> bool {
     let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
     let labels = tracer.labels_at(light, around(center, LABEL_REACH));
@@ -210,13 +208,13 @@ fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2]) -> 
     tracer.visible_at(around(center, SURFACE_REACH)).iter().any(|other| *other != here)
 }
 
-/// The eight neighbours of a point in a grid of that spacing.
+/// Returns the eight neighbours of a point in a grid of that spacing.
 fn around([x, y]: [f64; 2], reach: f64) -> [[f64; 2]; 8] {
     let steps = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
     steps.map(|[dx, dy]| [x + f64::from(dx) * reach, y + f64::from(dy) * reach])
 }
 
-/// The largest set of wrong pixels of one kind that hang together.
+/// Returns the largest connected set of wrong pixels of one kind.
 fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<WrongRegion> {
     let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
     let mut left = findings.to_vec();
@@ -247,13 +245,13 @@ fn take_region(left: &mut [u8], start: usize, size: [u32; 2]) -> WrongRegion {
     region
 }
 
-/// Column and row of a pixel by its number.
+/// Returns column and row of a pixel by its number.
 pub(crate) fn place(index: usize, [width, _]: [u32; 2]) -> [u32; 2] {
     [(index % width as usize) as u32, (index / width as usize) as u32]
 }
 
-/// Takes the pixels that hang together with `start` and hold what it holds: each is handed to `taken` and
-/// then holds `none`. Pixels hang together that are at most `reach` columns and rows apart.
+/// Takes the pixels that are connected with `start` and have its value: each is passed to `taken` and then set to
+/// `none`. Pixels are connected that are at most `reach` columns and rows apart.
 pub(crate) fn take_connected<T: Copy + PartialEq>(
     left: &mut [T],
     none: T,

@@ -1,4 +1,5 @@
-//! Files that are there whole or not at all, files that another file names, and the way from one to another.
+//! Files that are written whole or not at all, reading of files that another file names, and relative paths between
+//! files.
 
 use std::fs::{File, FileType};
 use std::io::{self, ErrorKind, Read, Write};
@@ -8,25 +9,25 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// Nothing is there.
+    /// The file does not exist.
     #[error("there is no such file: check the path")]
     Missing,
-    /// Not for us.
+    /// Permission is denied.
     #[error("can't be read: allow reading it")]
     Denied,
-    /// A folder.
+    /// It is a folder.
     #[error("is a folder: name a file in it")]
     Folder,
-    /// Reading it could last for ever.
+    /// It is a device or a pipe, which reading could wait for without end; its kind in words.
     #[error("is a {0}: only plain files are read")]
     NoFile(&'static str),
-    /// Longer than what may be read.
+    /// It is longer than the limit.
     #[error("has more than {} MiB: give a smaller file", .most >> 20)]
     TooLarge {
-        /// Bytes.
+        /// The limit, bytes.
         most: u64,
     },
-    /// What the system says.
+    /// Reading failed with the system's error.
     #[error("can't be read: {0}; check the file")]
     Failed(io::Error),
 }
@@ -41,8 +42,8 @@ impl From<io::Error> for ReadError {
     }
 }
 
-/// Opens a plain file. One that another names may be anything: a device or a pipe, which opening could wait for, is
-/// refused before.
+/// Opens a plain file. A path that another file names may be anything: a device or a pipe, which opening could wait
+/// for, is refused before.
 pub fn open_plain(path: &Path) -> Result<File, ReadError> {
     let metadata = std::fs::metadata(path)?;
     if metadata.is_dir() {
@@ -54,7 +55,7 @@ pub fn open_plain(path: &Path) -> Result<File, ReadError> {
     Ok(File::open(path)?)
 }
 
-/// The bytes of a plain file of at most so many; what grows while it is read ends at the limit.
+/// Returns the bytes of a plain file of at most `most`; a file that grows while it is read is cut at the limit.
 pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     let file = open_plain(path)?;
     if file.metadata()?.len() > most {
@@ -81,28 +82,28 @@ fn kind(_: FileType) -> &'static str {
     "special file"
 }
 
-/// A file that is written beside its place, and is there once it is finished. One that never is leaves nothing, and what
-/// was there before stays.
+/// A file that is written beside its place, and moved there once it is finished. If it never is, nothing is left of it,
+/// and the file that was there before stays.
 #[derive(Debug)]
 pub struct WholeFile {
     file: File,
-    /// Where it is written; `None` where it is in its place already.
+    /// Path that it is written to; `None` where it is written to its place directly.
     beside: Option<PathBuf>,
     target: PathBuf,
 }
 
-/// How many were begun.
+/// The number of files that were begun.
 static BEGUN: AtomicU64 = AtomicU64::new(0);
 
 impl WholeFile {
-    /// Begins one.
+    /// Begins a file.
     pub fn create(path: &Path) -> io::Result<WholeFile> {
         // A link to a file stays a link: what it points to is replaced.
         let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
-        // A device or a pipe has no place to be renamed into.
+        // Nothing can be renamed to the path of a device or a pipe.
         let is_in_place = target.exists() && !target.is_file();
         let mut beside = target.clone().into_os_string();
-        // Two that write to one place at a time are two files until they are done.
+        // Two that are written to one place at a time are two files until they are finished.
         let number = BEGUN.fetch_add(1, Ordering::Relaxed);
         beside.push(format!(".new-{}-{number}", std::process::id()));
         let beside = (!is_in_place).then(|| PathBuf::from(beside));
@@ -113,13 +114,13 @@ impl WholeFile {
         Ok(WholeFile { file, beside, target })
     }
 
-    /// Writes into it. What was written has to be flushed before it is finished.
+    /// Returns a writer. It must be flushed before the file is finished.
     #[cfg(feature = "program")]
     pub fn writer(&self) -> io::Result<io::BufWriter<File>> {
         Ok(io::BufWriter::new(self.file.try_clone()?))
     }
 
-    /// Puts it in its place.
+    /// Moves the file to its place.
     pub fn finish(mut self) -> io::Result<()> {
         if let Some(beside) = &self.beside {
             std::fs::rename(beside, &self.target)?;
@@ -132,7 +133,7 @@ impl WholeFile {
 impl Drop for WholeFile {
     fn drop(&mut self) {
         if let Some(beside) = &self.beside {
-            // What failed is the error already.
+            // The first failure is the error that is returned.
             let _ = std::fs::remove_file(beside);
         }
     }
@@ -145,7 +146,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.finish()
 }
 
-/// The path of a file as another file beside it would name it: relative, where there is a way.
+/// Returns the path of a file as another file beside it would name it: relative, where that is possible.
 pub fn from_beside(file: &Path, other: &Path) -> String {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let both = folder.canonicalize().ok().zip(other.canonicalize().ok());
@@ -153,7 +154,7 @@ pub fn from_beside(file: &Path, other: &Path) -> String {
     way.unwrap_or_else(|| other.to_owned()).to_string_lossy().into_owned()
 }
 
-/// The way from a folder to a file, both from the root; `None` where there is none, as between two drives.
+/// Returns the relative path from a folder to a file, both absolute; `None` where there is none, as between two drives.
 fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
     let (folder, file): (Vec<Component>, Vec<Component>) = (folder.components().collect(), file.components().collect());
     let common = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();
@@ -168,7 +169,7 @@ fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
 mod tests {
     use super::*;
 
-    /// A film takes minutes: what is written to its place meanwhile is whole, and so is the film.
+    /// An animation takes minutes: a file that is written to its place meanwhile is whole, and so is the animation.
     #[test]
     fn two_that_write_to_one_place_do_not_meet() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -223,7 +224,7 @@ mod tests {
         assert!(refused(&place("socket")).starts_with("is a socket: "));
         let made = std::process::Command::new("mkfifo").arg(place("pipe")).status().expect("mkfifo");
         assert!(made.success() && refused(&place("pipe")).starts_with("is a pipe: "), "and nobody waits for a writer");
-        // Such files say that they are empty.
+        // Such files have a size of 0.
         assert!(matches!(read_plain(Path::new("/proc/self/maps"), 8), Err(ReadError::TooLarge { .. })));
     }
 

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// Values by key. One that was not asked for between two calls of [`LastUsed::next_plan`] is forgotten.
+/// Values by key. A value that was not used between two calls of [`LastUsed::next_plan`] is dropped.
 #[derive(Debug)]
 pub(crate) struct LastUsed<K, V> {
     cached: HashMap<K, Cached<V>>,
-    /// Of all of them together.
+    /// Sum of the weights of all values.
     weight: usize,
 }
 
@@ -25,25 +25,26 @@ impl<K, V> Default for LastUsed<K, V> {
 }
 
 impl<K: Eq + Hash, V: Clone> LastUsed<K, V> {
-    /// Forgets what was not asked for since the last call.
+    /// Drops values that were not used since the last call.
     pub fn next_plan(&mut self) {
         self.cached.retain(|_, cached| std::mem::take(&mut cached.is_used));
         self.weight = self.cached.values().map(|cached| cached.weight).sum();
     }
 
-    /// The value of a key, if it is cached.
+    /// Returns the value of a key, if it is cached.
     pub fn get(&mut self, key: &K) -> Option<V> {
         let cached = self.cached.get_mut(key)?;
         cached.is_used = true;
         Some(cached.value.clone())
     }
 
-    /// The value of a key, made by `make` if it is not cached.
+    /// Returns the value of a key, computed by `make` if it is not cached.
     pub fn get_or_make(&mut self, key: K, make: impl FnOnce() -> V) -> V {
         self.get_or_make_within(usize::MAX, key, || (make(), 0))
     }
 
-    /// The same; a value that is made comes with its weight, and is cached only while all together weigh at most `most`.
+    /// Returns the value of a key. A value that is computed comes with its weight, and is cached only while the weights
+    /// of all values sum to at most `most`.
     pub fn get_or_make_within(&mut self, most: usize, key: K, make: impl FnOnce() -> (V, usize)) -> V {
         if let Some(value) = self.get(&key) {
             return value;

@@ -30,17 +30,17 @@
 //!
 //! # Where things are
 //!
-//! - **A technique**: one file in [`technique`]. z-fail is `technique/volume.rs`, whose `plan` adds the pass
-//!   `volumes`, with two-sided stencil operations from `technique/volume/counting.rs`. The module's page writes one
-//!   from outside the crate.
-//! - **A frame**: [`plan`] is what a GPU should do, `gpu/executor.rs` makes it do that, and [`capture`] is the result. A
-//!   capture never changes: what is computed later is the answer to a question ([`ask`]).
-//! - **A question**: an entry in the table of `ask/mod.rs`, an arm of [`Session::answer`](session::Session::answer), and
-//!   the panel that wants it.
+//! - **A technique**: one file in [`technique`]. z-fail is `technique/volume.rs`, whose `plan` adds the pass `volumes`,
+//!   with two-sided stencil operations from `technique/volume/counting.rs`. The module's page writes one from outside
+//!   the crate.
+//! - **A frame**: [`plan`] is what a GPU should do, `gpu/executor.rs` makes it do that, and [`capture`] is the result.
+//!   A capture never changes: what is computed later is the answer to a question ([`ask`]).
+//! - **A question**: an entry in the table of `ask/mod.rs`, an arm of [`Session::answer`](session::Session::answer),
+//!   and the panel that wants it.
 //! - **A dragged light**: a handle (`inspector/canvas/handles.rs`) changes the draft of the next run,
 //!   `Model::run_draft` (`inspector/model/scene.rs`) asks for it, `app/controller.rs` passes the order to the queue
-//!   (`app/queue.rs`, where of waiting runs only the newest counts), `app/worker.rs` runs it, and
-//!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; answers about the frame before are dropped.
+//!   (`app/queue.rs`, where of waiting runs only the newest counts), `app/worker.rs` runs it, and `Model::set_capture`
+//!   (`inspector/model/frame.rs`) shows it; answers about the frame before are dropped.
 //! - **A frame of another program**: `import/extract.py` takes it out of a RenderDoc capture, `import/read.rs` reads
 //!   that without trust, and the result is an [`import::RawFrame`].
 //! - **A frame of a wgpu program**: `wrap/` forwards every call of the program, and writes a list while a frame is
@@ -49,15 +49,17 @@
 //!   read it, `scene/picture.rs` decodes it and computes its mip chain, `technique/surfaces.rs` computes each corner's
 //!   texture coordinates, `shaders/texture.wgsl` looks it up, and `reading/shading.rs` computes the same on the CPU.
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
-//!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. Its sentences about a frame come from [`reading`].
-//! - **An animation**: [`film`] renders the pictures of an animated PNG, `picture/apng.rs` writes each when it is done, for
-//!   `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, one picture at a time).
-//! - **A page**: [`page`] writes a frame and `assets/page/` into one HTML file; its modules of JavaScript are named after
-//!   those that they mirror, so a change of `history/` or `plan/coverage.rs` is one of theirs (`tests/pages.rs` checks that
-//!   both give equal results).
+//!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. Its sentences about a frame come from
+//!   [`reading`].
+//! - **An animation**: [`film`] renders the pictures of an animated PNG, `picture/apng.rs` writes each when it is done,
+//!   for `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, one picture at a time).
+//! - **A page**: [`page`] writes a frame and `assets/page/` into one HTML file; its modules of JavaScript are named
+//!   after those that they mirror, so a change of `history/` or `plan/coverage.rs` is one of theirs (`tests/pages.rs`
+//!   checks that both give equal results).
 //! - **A docking**: `inspector/shell/arrangement.rs` decides which arrangements of panels are possible.
-//! - **The Scene tab**: `inspector/panels/scene/stage.rs` draws a frame's [`anatomy`] as faces and lines, and `viewport.rs`
-//!   draws these with a depth buffer on the GPU that draws the window, whichever device has run the frame.
+//! - **The Scene tab**: `inspector/panels/scene/stage.rs` draws a frame's [`anatomy`] as faces and lines, and
+//!   `viewport.rs` draws these with a depth buffer on the GPU that draws the window, whichever device has run the
+//!   frame.
 //!
 //! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are

@@ -9,7 +9,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if let Some(line) = error.line() {
-                // Standard error may be closed; the exit code still tells.
+                // Standard error may be closed; the exit code still reports the error.
                 let _ = writeln!(std::io::stderr(), "stencilscope: {line}");
             }
             ExitCode::from(error.exit_code())
@@ -18,14 +18,14 @@ fn main() -> ExitCode {
 }
 
 /// Where there is no folder for a Wayland display, Mesa's device-select layer has libwayland look for one all the same,
-/// which complains on standard error each time that GPUs are listed. It sorts them, and we choose by ourselves, unless
-/// someone has told it or the driver which to take.
+/// which complains on standard error each time that GPUs are listed. The layer sorts them, and we choose by ourselves,
+/// so it is turned off, unless an environment variable of the layer or the driver is set.
 #[expect(unsafe_code, reason = "no other thread runs yet that could read the environment")]
 fn keep_mesa_quiet() {
     let is_set = |name| std::env::var_os(name).is_some();
     let is_chosen = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT", "DRI_PRIME"].into_iter().any(is_set);
     if cfg!(target_os = "linux") && !is_set("XDG_RUNTIME_DIR") && !is_chosen {
-        // Sound as the reason says: `main` calls this first.
+        // Sound for the reason above: `main` calls this first.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }

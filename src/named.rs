@@ -1,6 +1,6 @@
-//! Enums whose variants have a name on the command line, in files, in JSON or on a button, and other words.
+//! Enums whose variants have a name on the command line, in files, in JSON or on a button, and other texts.
 //!
-//! A variant is written once, with its words; the rest follows from that.
+//! A variant is written once, with its texts; the rest follows from that.
 
 /// Defines an enum with `ALL` in the order given, `name`, `from_name`, and serde by name. Functions that are named in
 /// brackets after the enum's own name return the texts in brackets after the variants' names, in the same order.
@@ -34,7 +34,7 @@ macro_rules! named_enum {
         }
 
         impl $Enum {
-            /// Every one, in order.
+            /// All variants, in order.
             pub const ALL: [$Enum; [$($name),+].len()] = [$($Enum::$Variant),+];
 
             /// Its name on the command line, in files and in JSON, or on its button.
@@ -44,7 +44,7 @@ macro_rules! named_enum {
                 }
             }
 
-            /// The one of that name.
+            /// Returns the variant of that name.
             pub fn from_name(name: &str) -> Option<$Enum> {
                 $Enum::ALL.into_iter().find(|one| one.name() == name)
             }

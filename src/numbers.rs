@@ -1,7 +1,7 @@
 //! Numbers as text, alike in tables, plots, stories and panels: thousands with a thin space, two
 //! digits of a share, lengths with their unit, and stencil counts with their sign.
 
-/// A count, its thousands apart by a thin space: `47 425`.
+/// Writes a count, its thousands separated by a thin space: `47 425`.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -14,26 +14,26 @@ pub fn count(value: u64) -> String {
     text
 }
 
-/// Would eight bits take a count for zero, though it is not?
+/// Returns whether a count is not 0 but reads as 0 in eight bits.
 pub fn reads_zero_in_eight_bits(count: f32) -> bool {
     count != 0.0 && (count.round() as i64).rem_euclid(256) == 0
 }
 
-/// A share of 1 in per cent with two digits, without the sign; exactly `0` only where it is.
+/// Writes a share of 1 in per cent with two digits, without the sign; exactly `0` only where it is.
 pub fn per_hundred(fraction: f64) -> String {
     let value = fraction * 100.0;
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".to_owned() } else { "–".to_owned() };
     }
     if value >= 99.0 {
-        // Never rounded up to all of them.
+        // Never rounded up to 100.
         return if fraction < 1.0 { format!("{:.2}", value.min(99.99)) } else { format!("{value:.0}") };
     }
     let decimals = (1.0 - value.log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{value:.decimals$}")
 }
 
-/// A share of 1 in per cent: `0.12 %`; exactly `0` only where it is.
+/// Writes a share of 1 in per cent: `0.12 %`; exactly `0` only where it is.
 pub fn percent(fraction: f64) -> String {
     match per_hundred(fraction) {
         zero if zero == "0" => zero,
@@ -41,7 +41,7 @@ pub fn percent(fraction: f64) -> String {
     }
 }
 
-/// Milliseconds without the unit, with two or three digits.
+/// Writes milliseconds without the unit, with two or three digits.
 pub fn milliseconds(value: f64) -> String {
     match value {
         _ if !value.is_finite() => "–".to_owned(),
@@ -53,23 +53,23 @@ pub fn milliseconds(value: f64) -> String {
     }
 }
 
-/// Bytes in MiB, without the unit.
+/// Writes bytes in MiB, without the unit.
 pub fn mebibytes(bytes: u64) -> String {
     let value = bytes as f64 / f64::from(1 << 20);
     if value < 100.0 { format!("{value:.1}") } else { count(value.round() as u64) }
 }
 
-/// A length in metres with about four digits; very small and very large ones with a power of ten.
+/// Writes a length in metres with about four digits; very small and very large ones with a power of ten.
 pub fn metres(value: f64) -> String {
     length(value, "m")
 }
 
-/// The same in another unit.
+/// Writes a length in another unit, with about four digits; very small and very large ones with a power of ten.
 pub fn length(value: f64, unit: &str) -> String {
     format!("{} {unit}", digits(value))
 }
 
-/// About four digits of a number.
+/// Writes about four digits of a number.
 pub fn digits(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
@@ -87,23 +87,23 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// Seven digits of a number that others are computed from.
+/// Writes seven digits of a number that others are computed from.
 pub fn precise(value: f64) -> String {
     let digits = format!("{value:.6e}").parse().unwrap_or(value);
     if digits != 0.0 && !(1e-6..1e9).contains(&f64::abs(digits)) { format!("{digits:e}") } else { digits.to_string() }
 }
 
-/// A stored depth in the fewest digits that read back as the same bits: neighbours differ.
+/// Writes a stored depth in the fewest digits that read back as the same bits: no two depths look equal.
 pub fn depth(value: f32) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:?}") }
 }
 
-/// The name of a light for people: lights count from 1.
+/// Returns the name of a light as it is shown: lights count from 1.
 pub fn light(index: usize) -> String {
     format!("light {}", index + 1)
 }
 
-/// A count that is kept in a float, with its sign; digits after the point only where it has some.
+/// Writes a count that is stored as a float, with its sign; digits after the point only where it has some.
 pub fn count_in_float(value: f32) -> String {
     if value.fract() != 0.0 || !value.is_finite() {
         return value.to_string().replace('-', "−");
@@ -112,7 +112,7 @@ pub fn count_in_float(value: f32) -> String {
     format!("{sign}{}", count(value.abs() as u64))
 }
 
-/// A stencil value as people read it: 255 is `−1 (255)`.
+/// Writes a stencil value as it is shown: 255 is `−1 (255)`.
 pub fn signed(value: u8) -> String {
     if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
 }

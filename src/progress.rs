@@ -1,16 +1,16 @@
-//! How far long work has come, and the wish to stop it; shared between threads.
+//! The progress of some work, and the request to cancel it; shared between threads.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Shared by who works and who watches; clones are the same progress.
+/// Shared by the thread that works and the one that watches; clones are the same progress.
 #[derive(Debug, Clone, Default)]
 pub struct Progress(Arc<Inner>);
 
 #[derive(Debug, Default)]
 struct Inner {
     done: AtomicUsize,
-    /// The index of what is worked on, and one more; 0: nothing of what was asked for.
+    /// One more than the index of the current item; 0: none of the requested items yet.
     item: AtomicUsize,
     of: AtomicUsize,
     cancelled: AtomicBool,
@@ -24,32 +24,32 @@ impl Progress {
         self.0.of.store(of, Ordering::Relaxed);
     }
 
-    /// One more step is done.
+    /// Counts one more step as done.
     pub fn advance(&self) {
         self.0.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Turns to one of the things that were asked for, by its index.
+    /// Sets the current item of those that were asked for, by its index.
     pub fn turn_to(&self, item: usize) {
         self.0.item.store(item + 1, Ordering::Relaxed);
     }
 
-    /// What was turned to last; `None` while what all of them need is made.
+    /// Index of the current item; `None` while common work for all of them is done.
     pub fn item(&self) -> Option<usize> {
         self.0.item.load(Ordering::Relaxed).checked_sub(1)
     }
 
-    /// Steps done, and how many there are.
+    /// Returns how many steps are done, and how many there are.
     pub fn steps(&self) -> (usize, usize) {
         (self.0.done.load(Ordering::Relaxed), self.0.of.load(Ordering::Relaxed))
     }
 
-    /// Asks the work to stop soon and give up its result.
+    /// Asks the work to stop soon and discard its result.
     pub fn cancel(&self) {
         self.0.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Was it asked to stop?
+    /// Returns whether it was asked to stop.
     pub fn is_cancelled(&self) -> bool {
         self.0.cancelled.load(Ordering::Relaxed)
     }

@@ -1,9 +1,9 @@
-//! Runs in parts: each row of a run is made by one of them, and merging puts the rows in their order again.
+//! Runs in parts: each row of a run is computed by one of them, and merging puts the rows in their order again.
 //!
 //! ```text
-//! --shard 1/3 ─► rows 0, 3, 6, … ─► JSON, with its Part ─┐
-//! --shard 2/3 ─► rows 1, 4, 7, … ─► JSON, with its Part ─┼─► merged ─► all rows, as of one run
-//! --shard 3/3 ─► rows 2, 5, 8, … ─► JSON, with its Part ─┘
+//! --shard 1/3 ─► rows 0, 3, 6, … ─► JSON, with its ShardPart ─┐
+//! --shard 2/3 ─► rows 1, 4, 7, … ─► JSON, with its ShardPart ─┼─► merged ─► all rows, as of one run
+//! --shard 3/3 ─► rows 2, 5, 8, … ─► JSON, with its ShardPart ─┘
 //! ```
 //!
 //! Which part has which rows depends on nothing but their order, so that a part that was killed can be run again alone.
@@ -20,7 +20,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Has this part that piece of the run, counted from 0?
+    /// Returns whether this part has the given piece of the run, counted from 0.
     pub fn has(self, piece: usize) -> bool {
         piece % self.of.max(1) as usize + 1 == self.part as usize
     }
@@ -45,80 +45,80 @@ impl FromStr for Shard {
     }
 }
 
-/// More than anybody has machines.
+/// The most parts of a run.
 const MOST: u32 = 1 << 16;
 
-/// What a file of results says of the run that it is a part of.
+/// What a file of results states about the run that it is a part of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardPart {
-    /// Which part.
+    /// Which part it is.
     #[serde(flatten)]
     pub shard: Shard,
-    /// Of each of its rows, the place among those of the whole run, from 0.
+    /// For each of its rows, the position among those of the whole run, from 0.
     pub places: Vec<usize>,
     /// The whole run: how it is measured, then the name of each row. The same in all of its parts.
     pub run: Vec<String>,
 }
 
 impl ShardPart {
-    /// The part of a run that a shard makes.
+    /// Returns the part of a run that a shard computes.
     pub fn new(shard: Shard, places: Vec<usize>, how: String, rows: impl IntoIterator<Item = String>) -> ShardPart {
         ShardPart { shard, places, run: std::iter::once(how).chain(rows).collect() }
     }
 }
 
-/// Why parts can't be put together.
+/// Why parts can't be merged.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
-    /// No file.
+    /// There is no file.
     #[error("there is nothing to merge: give the JSON file of each part")]
     Nothing,
-    /// A file that was not made with `--shard`.
+    /// A file was not made with `--shard`.
     #[error("`{name}` is no part of a run: make it with `--shard K/N`")]
     Whole {
-        /// The file.
+        /// Name of the file.
         name: String,
     },
-    /// Parts of different runs.
+    /// Two files are parts of different runs.
     #[error("`{name}` is of another run than `{first}`: make all parts with the same version, scenes and options")]
     OtherRun {
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// The first file.
+        /// Name of the first file.
         first: String,
     },
-    /// Parts of different machines, whose times can't be held against each other.
+    /// Two files were measured on different machines, whose times can't be compared.
     #[error("`{name}` was measured on {of_name}, and `{first}` on {of_first}: make all parts on equal machines")]
     OtherAdapter {
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// Its adapter.
+        /// Adapter of the file.
         of_name: String,
-        /// The first file.
+        /// Name of the first file.
         first: String,
-        /// Its adapter.
+        /// Adapter of the first file.
         of_first: String,
     },
-    /// A part that is there twice.
+    /// Two files are the same part.
     #[error("part {shard} is there twice, in `{first}` and in `{name}`: leave one of them out")]
     Twice {
         /// The part.
         shard: Shard,
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// The file before it.
+        /// Name of the file before it.
         first: String,
     },
-    /// Parts that are not there.
+    /// Parts are missing.
     #[error("{}: make {} with `--shard {}`", missing(shards), if shards.len() == 1 { "it" } else { "each" }, shards[0])]
     Missing {
-        /// All of them.
+        /// All missing parts.
         shards: Vec<Shard>,
     },
-    /// A file whose rows are not those that it should have.
+    /// The rows of a file are not those that it should have.
     #[error("`{name}` has not the rows of its part: make it again with `--shard {shard}`")]
     Damaged {
-        /// The file.
+        /// Name of the file.
         name: String,
         /// Its part.
         shard: Shard,
@@ -131,20 +131,20 @@ fn missing(shards: &[Shard]) -> String {
     format!("{parts} {} {are} missing", all.join(", "))
 }
 
-/// What one file holds.
+/// The content of a file of results.
 #[derive(Debug, Clone)]
 pub struct ResultsFile<R> {
-    /// The file, for messages.
+    /// Name of the file, for messages.
     pub name: String,
-    /// What it was measured on.
+    /// The adapter that it was measured on.
     pub adapter: String,
-    /// Which part it is; `None` of a whole run.
+    /// Which part it is; `None` for a whole run.
     pub part: Option<ShardPart>,
     /// Its rows.
     pub rows: Vec<R>,
 }
 
-/// The rows of all parts in the order of the whole run.
+/// Returns the rows of all parts in the order of the whole run.
 pub fn merged<R>(parts: Vec<ResultsFile<R>>) -> Result<Vec<R>, MergeError> {
     let mut first: Option<(String, String, ShardPart)> = None;
     let mut names: Vec<Option<String>> = Vec::new();

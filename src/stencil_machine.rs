@@ -1,60 +1,58 @@
 //! The depth and stencil tests of one fragment as a pure function.
 //!
-//! The stencil test comes first; if it fails, the fail operation runs and the fragment is gone.
-//! Then the depth test; if it fails, the depth-fail operation runs. Else the pass operation runs
-//! and depth is stored where writing is on. Comparisons see `(reference & read mask) ? (stored &
-//! read mask)`, operations change only the bits of the write mask (WebGPU, section 23.2.7,
-//! "Fragment processing"; OpenGL and Direct3D agree). A test holds it against the GPU.
+//! The stencil test comes first; if it fails, the fail operation runs and the fragment is discarded. Then the depth
+//! test; if it fails, the depth-fail operation runs. Else the pass operation runs and depth is stored where writing is
+//! on. Comparisons see `(reference & read mask) ? (stored & read mask)`, operations change only the bits of the write
+//! mask (WebGPU, section 23.2.7, "Fragment processing"; OpenGL and Direct3D agree). A test compares it with the GPU.
 
 use crate::plan::{FaceMasks, RasterState};
 use wgpu::{CompareFunction, StencilOperation};
 
-/// What a pixel holds.
+/// The stored depth and stencil of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthStencil {
-    /// As in the buffer.
+    /// Depth as stored in the buffer.
     pub depth: f32,
-    /// Eight bits.
+    /// Stencil of eight bits.
     pub stencil: u8,
 }
 
 /// A fragment that arrives at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IncomingFragment {
-    /// Bias included.
+    /// Its depth, bias included.
     pub depth: f32,
-    /// Of the front of its triangle.
+    /// True for a fragment of the front of its triangle.
     pub front_facing: bool,
 }
 
-/// What the tests did.
+/// The result of the tests.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TestOutcome {
-    /// Did the stencil test pass?
+    /// True where the stencil test passed.
     pub stencil_passed: bool,
-    /// Did the depth test pass? `None` where the stencil test failed before it.
+    /// Whether the depth test passed; `None` where the stencil test failed before it.
     pub depth_passed: Option<bool>,
     /// The operation that ran.
     pub operation: StencilOperation,
-    /// What the pixel holds now.
+    /// What the pixel stores now.
     pub after: DepthStencil,
 }
 
 impl TestOutcome {
-    /// Did the fragment reach the colour target?
+    /// Returns whether the fragment reaches the colour target.
     pub fn passed(&self) -> bool {
         self.depth_passed == Some(true)
     }
 }
 
-/// Does the stencil test of a face pass where `stored` is held?
+/// Returns whether the stencil test of a face passes where `stored` is the stored value.
 pub fn stencil_passes(state: &RasterState, front_facing: bool, stored: u8) -> bool {
     let (face, FaceMasks { reference, read, .. }) = state.face(front_facing);
     compare(face.compare, reference & read, stored & read)
 }
 
-/// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces make
-/// no fragments.
+/// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces have no fragments.
 pub fn test(state: &RasterState, fragment: IncomingFragment, stored: DepthStencil) -> TestOutcome {
     let (face, FaceMasks { reference, write, .. }) = state.face(fragment.front_facing);
     let stencil_passed = stencil_passes(state, fragment.front_facing, stored.stencil);
@@ -71,7 +69,7 @@ pub fn test(state: &RasterState, fragment: IncomingFragment, stored: DepthStenci
     TestOutcome { stencil_passed, depth_passed, operation, after: DepthStencil { depth, stencil } }
 }
 
-/// `new ? stored`, with the new value on the left, as all APIs have it.
+/// Returns `new ? stored`, with the new value on the left, as all APIs define it.
 fn compare<T: PartialOrd>(function: CompareFunction, new: T, stored: T) -> bool {
     match function {
         CompareFunction::Never => false,

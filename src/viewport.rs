@@ -1,8 +1,8 @@
 //! Faces and lines with a depth buffer, drawn by the GPU that draws the window: egui itself has no depth.
 //!
-//! A [`ViewportDrawing`] is a shape of egui's. Before egui's own pass it is drawn into a picture with a depth buffer of its
-//! own, solids first, then what one looks through, which needs no order as it writes no depth, then lines; in egui's pass
-//! that picture is laid into the window. Geometry goes to the GPU when it is another one, and a picture is drawn when
+//! A [`ViewportDrawing`] is a shape of egui's. Before egui's own pass it is drawn into a picture with a depth buffer of
+//! its own, solids first, then translucent shells, which need no order as they write no depth, then lines; in egui's
+//! pass that picture is drawn into the window. Geometry is uploaded when it changes, and a picture is drawn again when
 //! anything in it changed. All wgpu objects are of the window's device and live in its renderer.
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
@@ -14,12 +14,12 @@ use std::sync::Arc;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BufferUsages, TextureFormat, TextureUsages, VertexAttribute, vertex_attr_array};
 
-/// Of pictures, in egui's colours: gamma space.
+/// Format of pictures, in egui's colours: gamma space.
 const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 const DEPTH: TextureFormat = TextureFormat::Depth32Float;
-/// What a window without a surface has.
+/// Format of the pass's target in a window without a surface.
 const HEADLESS: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Samples a pixel: while a CPU draws what moves, and else.
+/// Samples a pixel: while a CPU draws a view that moves, and otherwise.
 const SAMPLES: [u32; 2] = [1, 4];
 /// Blending of premultiplied colours.
 const OVER: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
@@ -27,7 +27,7 @@ const OVER: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPH
 const CORNER: [VertexAttribute; 3] = vertex_attr_array![0 => Float32x4, 1 => Snorm16x4, 2 => Unorm8x4];
 const LINE: [VertexAttribute; 4] = vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Unorm8x4];
 
-/// A corner of faces.
+/// A vertex of faces.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct ViewportVertex {
@@ -38,8 +38,8 @@ pub struct ViewportVertex {
 }
 
 impl ViewportVertex {
-    /// At a homogeneous place; `w = 0`, at infinity, for shells only: its length says where they fade. `normal` is of
-    /// unit length, or zero where nothing is shaded.
+    /// Returns a vertex at a homogeneous position; `w = 0`, at infinity, for shells only: its length says where they
+    /// fade. `normal` is of unit length, or zero where nothing is shaded.
     pub fn new(at: DVec4, normal: Vec3, color: Color32) -> ViewportVertex {
         let whole = |value: f32| (value * f32::from(i16::MAX)) as i16;
         let normal = [whole(normal.x), whole(normal.y), whole(normal.z), 0];
@@ -51,74 +51,74 @@ impl ViewportVertex {
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct ViewportLine {
-    /// One end.
+    /// One end, relative to the geometry's origin.
     pub from: Vec3,
-    /// In points.
+    /// Width in points.
     pub width: f32,
     /// The other end.
     pub to: Vec3,
-    /// Its ink.
+    /// Its colour.
     pub color: Color32,
 }
 
-/// What is drawn. Triangles name vertices; fronts are counter-clockwise.
+/// The geometry of a drawing. Triangles are indices of vertices; fronts are counter-clockwise.
 #[derive(Debug, Default)]
 pub struct ViewportGeometry {
-    /// World space; everything is relative to it, so that single precision is enough.
+    /// World position that everything is relative to, so that single precision is enough.
     pub origin: DVec3,
     /// Corners of all triangles.
     pub vertices: Vec<ViewportVertex>,
-    /// They hide what is behind them.
+    /// Opaque triangles: they hide what is behind them.
     pub solids: Vec<[u32; 3]>,
-    /// The same from their front; from behind they are glass.
+    /// Triangles that are opaque from their front, and translucent from behind.
     pub holders: Vec<[u32; 3]>,
-    /// They hide nothing.
+    /// Translucent triangles: they hide nothing.
     pub shells: Vec<[u32; 3]>,
-    /// They lie on solids.
+    /// Lines, drawn on solids.
     pub lines: Vec<ViewportLine>,
 }
 
-/// From where geometry is seen.
+/// The camera of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ViewportCamera {
-    /// Clip space, with reversed depth, from the geometry's.
+    /// Clip space, with reversed depth, from the geometry's space.
     pub clip_from_stage: Mat4,
-    /// Where it is looked from; the direction towards the viewer, with `w = 0`, in parallel views.
+    /// Position of the viewer; the direction towards it, with `w = 0`, in parallel views.
     pub viewer: Vec4,
-    /// How much nearer shells are than what they lie on: in parts of the depth, and in depth.
+    /// How much nearer shells are drawn than what they lie on: as a part of the depth, and in depth.
     pub step: Vec2,
-    /// Of the picture, pixels; known once it is drawn.
+    /// Width and height of the picture, pixels; known once it is drawn.
     pub size: Vec2,
-    /// The same.
+    /// Pixels per point; known once it is drawn.
     pub pixels_per_point: f32,
-    /// Nothing.
+    /// Padding of the uniform buffer.
     pub unused: [f32; 3],
 }
 
 /// Geometry in a rectangle of the window.
 #[derive(Debug)]
 pub struct ViewportDrawing {
-    /// What is drawn.
+    /// The geometry.
     pub geometry: Arc<ViewportGeometry>,
-    /// From where.
+    /// The camera.
     pub view: ViewportCamera,
-    /// Where in the window, points.
+    /// Rectangle in the window, points.
     pub rect: Rect,
-    /// Which of the pictures that are kept.
+    /// Index of the cached picture that it is drawn into.
     pub slot: usize,
-    /// The hand turns it: on a CPU it is drawn without smooth borders until it rests.
+    /// True while it is dragged: on a CPU it is drawn without smooth borders until it rests.
     pub moves: bool,
 }
 
 impl ViewportDrawing {
-    /// For egui's painter.
+    /// Returns it as a shape for egui's painter.
     pub fn shape(self) -> Shape {
         Shape::Callback(Callback::new_paint_callback(self.rect, self))
     }
 }
 
-/// What is kept in the window's renderer.
+/// The resources that are cached in the window's renderer.
 pub struct Viewports {
     pipelines: [[wgpu::RenderPipeline; 5]; 2],
     window: wgpu::RenderPipeline,
@@ -136,24 +136,24 @@ struct Uploaded {
     lines: wgpu::Buffer,
 }
 
-/// A picture, and what it shows.
+/// A cached picture, and what it shows.
 pub struct DrawnPicture {
-    /// What is drawn.
+    /// The geometry that it shows.
     pub geometry: Arc<ViewportGeometry>,
-    /// From where.
+    /// The camera that it is seen from.
     pub view: ViewportCamera,
     /// Its reversed depth, of `samples` a pixel.
     pub depth: wgpu::Texture,
     /// Samples a pixel.
     pub samples: u32,
-    /// Where it is drawn, if that is not yet a sample a pixel.
+    /// Multisampled target that it is drawn into; `None` where it has one sample a pixel.
     sampled: Option<wgpu::TextureView>,
     resolved: wgpu::TextureView,
-    /// The same as the window's pass reads it.
+    /// The picture as the window's pass reads it.
     shown: wgpu::BindGroup,
 }
 
-/// Tells the renderer of a window what its pass writes to. Not needed where there is no surface.
+/// Registers the format that a window's pass writes to with its renderer. Not needed where there is no surface.
 pub fn install(gpu: &RenderState) {
     gpu.renderer.write().callback_resources.insert(Viewports::new(&gpu.device, gpu.target_format));
 }
@@ -187,7 +187,7 @@ impl CallbackTrait for ViewportDrawing {
 }
 
 impl Viewports {
-    /// The picture that was drawn last for [`ViewportDrawing::slot`].
+    /// Returns the picture that was drawn last for [`ViewportDrawing::slot`].
     pub fn picture(&self, slot: usize) -> Option<&DrawnPicture> {
         self.pictures.get(&slot)
     }
@@ -205,7 +205,7 @@ impl Viewports {
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &LINE,
         };
-        // What a pass writes to, and what of it.
+        // The format that a pass writes to, and the samples a pixel.
         let pipeline = |[vertex, fragment]: [&str; 2], buffer, cull_mode, (samples, format): (u32, TextureFormat)| {
             let is_solid = fragment == "fs_solid";
             let topology = match vertex {
@@ -267,7 +267,7 @@ impl Viewports {
         }
     }
 
-    /// Draws the picture of a drawing, unless it is there already.
+    /// Draws the picture of a drawing, unless it is cached already.
     fn draw(
         &mut self,
         what: &ViewportDrawing,

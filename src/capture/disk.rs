@@ -1,7 +1,7 @@
 //! A capture as a folder: `manifest.json`, NumPy arrays and PNG pictures.
 //!
-//! The folder is written beside its place and renamed into it, so it is there whole or not at
-//! all; a folder that it replaces is moved aside until then.
+//! The folder is written beside its place and renamed into it, so it is there whole or not at all; a folder that it
+//! replaces is moved aside until then.
 
 use super::manifest::{self, LightEntry, Manifest, MatricesEntry, PassEntry, StateFiles};
 use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
@@ -26,14 +26,14 @@ const MANIFEST: &str = "manifest.json";
 const PLAN: &str = "plan.txt";
 const SCENE: &str = "scene.toml";
 
-/// What a capture folder is written from.
+/// The data that a capture folder is written from.
 #[derive(Debug, Clone, Copy)]
 pub struct FolderContents<'a> {
-    /// What the frame left.
+    /// The captured attachments.
     pub capture: &'a Capture,
-    /// The frame, by which it can be run and asked about again.
+    /// The frame's plan, by which it can be run and examined again.
     pub plan: Option<&'a FramePlan>,
-    /// What it is of, at the moment that was captured.
+    /// The scene that the frame shows, in the state that was captured.
     pub scene: Option<&'a Scene>,
 }
 
@@ -43,33 +43,33 @@ impl<'a> From<&'a Capture> for FolderContents<'a> {
     }
 }
 
-/// All that a capture folder holds.
+/// Everything that a capture folder stores.
 #[derive(Debug, Clone)]
 pub struct WholeFrame {
-    /// What the frame left.
+    /// The captured attachments.
     pub capture: Capture,
-    /// The frame; `None` in folders of schema 1.
+    /// The frame's plan; `None` in folders of schema 1.
     pub plan: Option<FramePlan>,
-    /// What it is of; `None` in folders of schema 1, and of frames that another program drew.
+    /// The scene that the frame shows; `None` in folders of schema 1, and of frames that another program drew.
     pub scene: Option<Scene>,
 }
 
-/// Is there a capture folder at this path?
+/// Returns whether there is a capture folder at this path.
 pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
 }
 
-/// Where a capture folder holds its scene, if it does.
+/// The path of the scene's file in a capture folder, whether or not it is there.
 pub fn scene_file(folder: &Path) -> PathBuf {
     folder.join(SCENE)
 }
 
-/// Checks that [`write()`] may put a capture at this path, before any work is done for it.
+/// Checks that [`write()`] may write a capture to this path, before any work is done for it.
 pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> {
     let is_empty_folder = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
     let folder = folder.to_owned();
     if folder.file_name().is_none() {
-        // `.`, `..` or `/`: they have no name to be replaced by.
+        // `.`, `..` or `/`: they have no name that a new folder could be renamed to.
         Err(CaptureError::InTheWay { folder })
     } else if !folder.exists() || is_empty_folder {
         Ok(())
@@ -98,8 +98,8 @@ pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureErr
     }
 }
 
-/// Makes a folder whole or not at all: `fill` makes and fills it beside its place, where it is renamed to. One that
-/// it replaces is moved aside until then; whether it may be replaced is the caller's to know.
+/// Writes a folder whole or not at all: `fill` creates and fills it beside its place, to which it is then renamed. A
+/// folder that it replaces is moved aside until then; the caller decides whether it may be replaced.
 pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
@@ -110,21 +110,21 @@ pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, Capt
         Ok(filled)
     });
     result.map_err(|error| {
-        // What could not be finished is not left behind, nor are the folders made for it; what
-        // failed is the error already.
+        // An unfinished folder is not left behind, nor are its new parents; the first failure is the error that is
+        // returned.
         let _ = fs::remove_dir_all(&new);
         for ancestor in made {
             let _ = fs::remove_dir(ancestor);
         }
         match error {
-            // Named as asked for: the hidden name would only puzzle.
+            // The error names the path that was asked for: the hidden name would only puzzle.
             CaptureError::Write { source, .. } => CaptureError::Write { file: folder.to_owned(), source },
             other => other,
         }
     })
 }
 
-/// A hidden name in the same folder, so that renaming stays on one file system.
+/// Returns a hidden name in the same folder, so that renaming stays on one file system.
 fn beside(folder: &Path, which: &str) -> PathBuf {
     let name = folder.file_name().map_or("capture".into(), |name| name.to_string_lossy());
     folder.with_file_name(format!(".{name}.{which}-{}", std::process::id()))
@@ -138,7 +138,7 @@ fn swap_in(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureError> {
     }
     if let Err(source) = fs::rename(new, folder) {
         if replaces {
-            // Back to how it was; if even that fails, the old one is still beside its place.
+            // Restore the old folder; if even that fails, it is still beside its place.
             let _ = fs::rename(old, folder);
         }
         return Err(failed(source));
@@ -149,7 +149,7 @@ fn swap_in(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureError> {
     Ok(())
 }
 
-/// A name without a path, and not hidden: what a folder names lies in it.
+/// Returns whether a name has no path and is not hidden: the files that a folder names lie in it.
 fn is_plain(file: &str) -> bool {
     !file.contains(['/', '\\']) && !file.starts_with('.')
 }
@@ -211,12 +211,12 @@ fn write_step(
         triangles: step.triangles(),
         gpu_ms: step.gpu_ms,
         draw_list: step.draws.clone(),
-        // After the pass's own files, which the last draw names again.
+        // After the pass's own files, since the last draw names them again.
         draws_captured: draws::write(folder, &stem, step, capture, written)?,
     })
 }
 
-/// The light's map holds what a pass left in it.
+/// Names the file of a light's map for a pass that drew a face of it: the map stores what the pass left.
 fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
     let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
     if map.is_some_and(CapturedMap::holds_colors) {
@@ -226,7 +226,7 @@ fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
     }
 }
 
-/// Writes the picture's aspects, as far as no earlier file has them.
+/// Writes the picture's aspects that no earlier file has.
 fn frame_files(
     folder: &Path,
     stem: &str,
@@ -246,13 +246,12 @@ fn frame_files(
     Ok(StateFiles { color, depth, stencil, unchanged: Some(unchanged), ..StateFiles::default() })
 }
 
-/// The pictures that have a file. The capture holds all of them, so each is known by its place in
-/// memory.
+/// The pictures that have a file already. The capture owns all of them, so each is known by its address.
 #[derive(Default)]
 struct WrittenImages(BTreeMap<*const Image, String>);
 
 impl WrittenImages {
-    /// Writes a picture to `file` unless it has one; the file that it has.
+    /// Writes a picture to `file` unless it has a file already; returns the file that it has.
     fn write(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
         if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
             return Ok(earlier.clone());
@@ -317,7 +316,7 @@ fn textures_file(light: usize) -> String {
     format!("light{light}.textures.npy")
 }
 
-/// Letters, digits, `+` and `-` of a name; the rest becomes `-`.
+/// Returns the letters, digits, `+` and `-` of a name, and `-` for each other character.
 fn slug(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '+' || c == '-' { c } else { '-' }).collect()
 }

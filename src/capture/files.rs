@@ -12,10 +12,10 @@ use std::io::{self, BufReader, BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Texels along a side of the largest picture that is read: what a file claims is not trusted.
+/// Texels along a side of the largest picture that is read: the size in a file's header is not trusted.
 pub(super) const LARGEST: u32 = 1 << 15;
 
-/// Creates a file, lets `fill` write it, and makes sure that all of it arrived.
+/// Creates a file, lets `fill` write it, and makes sure that all of it was written.
 pub(super) fn write(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -27,7 +27,7 @@ pub(super) fn write(
     filled.map_err(|source| CaptureError::Write { file: path.to_owned(), source })
 }
 
-/// One picture: PNG for colour, NumPy for the rest.
+/// Writes one picture: PNG for colour, NumPy for the rest.
 pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError> {
     match image.format() {
         PixelFormat::Rgba8Srgb => write(path, |out| write_png(out, image)),
@@ -35,12 +35,12 @@ pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError
     }
 }
 
-/// One picture as a NumPy array, whatever its format.
+/// Writes one picture as a NumPy array, whatever its format.
 pub(super) fn write_array(path: &Path, image: &Image) -> Result<(), CaptureError> {
     write(path, |out| write_arrays(out, &[], [image], image))
 }
 
-/// Values as an array of rows of `columns`, or of one dimension where that is 1.
+/// Writes values as an array of rows of `columns`, or of one dimension where that is 1.
 pub(super) fn write_values<T: Element>(path: &Path, values: &[T], columns: u64) -> Result<(), CaptureError> {
     let shape = [values.len() as u64 / columns, columns];
     let shape = if columns == 1 { &shape[..1] } else { &shape[..] };
@@ -50,7 +50,7 @@ pub(super) fn write_values<T: Element>(path: &Path, values: &[T], columns: u64) 
     })
 }
 
-/// What [`write_values`] wrote.
+/// Reads an array that [`write_values`] wrote.
 pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T>, CaptureError> {
     let read = || {
         let (array, bytes) = open(path)?;
@@ -64,7 +64,7 @@ pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T
     read().map_err(|reason| broken(path, reason))
 }
 
-/// Pictures of one size and format as one array with a dimension more.
+/// Writes pictures of one size and format as one array with one more dimension.
 pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
     write(path, |out| {
         let first = layers.first().ok_or_else(|| io::Error::other("a map without faces"))?;
@@ -72,7 +72,7 @@ pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), Cap
     })
 }
 
-/// Pictures like `first` as one array, whose shape begins with `outer`.
+/// Writes pictures like `first` as one array, whose shape begins with `outer`.
 fn write_arrays<'a>(
     out: &mut impl Write,
     outer: &[u64],
@@ -106,7 +106,7 @@ fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
     Ok(())
 }
 
-/// One picture of the format that its place in the manifest asks for.
+/// Reads one picture, which must have the format that its place in the manifest asks for.
 pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, CaptureError> {
     let read = match format {
         PixelFormat::Rgba8Srgb => read_png(path),
@@ -117,7 +117,7 @@ pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, Capt
     one.ok_or_else(|| broken(path, "it is empty".to_owned()))
 }
 
-/// The faces of a shadow map, or the layers of a light's textures.
+/// Reads the faces of a shadow map, or the layers of a light's textures.
 pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
     let read = open(path).and_then(|(array, _)| match array.shape().len() {
         3 => read_floats(path, PixelFormat::Depth32F, 3),
@@ -126,10 +126,10 @@ pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
     read.map_err(|reason| broken(path, reason))
 }
 
-/// Bytes of the largest text.
+/// Bytes of the longest text that is read.
 const MOST_TEXT: u64 = 2 << 30;
 
-/// A text of a folder.
+/// Reads a text file of a folder.
 pub(super) fn read_text(path: &Path) -> Result<String, CaptureError> {
     let bytes = read_plain(path, MOST_TEXT).map_err(|error| broken(path, error.to_string()))?;
     String::from_utf8(bytes).map_err(|_| broken(path, "it is no text".to_owned()))
@@ -139,7 +139,7 @@ fn broken(path: &Path, reason: String) -> CaptureError {
     CaptureError::Read { file: path.to_owned(), reason }
 }
 
-/// An array, and the bytes of its file.
+/// Opens an array, and returns it with the bytes of its file.
 fn open(path: &Path) -> Result<(Array<BufReader<File>>, u64), String> {
     let file = open_plain(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_err(|error| error.to_string())?.len();

@@ -1,14 +1,14 @@
 //! A picture in memory: rows of texels, top row first, possibly padded.
 //!
-//! Rows may be longer than their texels need (a GPU copy pads them to 256 bytes), so that a
-//! mapped GPU buffer can be shown without copying it again. A picture that differs little from one
-//! that is held too can share its other rows ([`Image::sharing`]): of many in a row, each costs what
-//! it changed. Texels are read one at a time or by row; [`PartialEq`] compares texels, not padding.
+//! Rows may be longer than their texels need (a GPU copy pads them to 256 bytes), so that a mapped GPU buffer can be
+//! shown without copying it again. A picture that differs little from another in memory can share that one's rows
+//! ([`Image::sharing`]): in a sequence of pictures, each costs only the rows that changed. Texels are read one at a
+//! time or by row; [`PartialEq`] compares texels, not padding.
 
 use bytes::Bytes;
 use std::ops::Range;
 
-/// What one texel is.
+/// Format of one texel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PixelFormat {
     /// Four bytes: red, green, blue (sRGB), alpha.
@@ -24,7 +24,7 @@ pub enum PixelFormat {
 }
 
 impl PixelFormat {
-    /// Bytes of one texel.
+    /// Returns the bytes of one texel.
     pub fn texel_bytes(self) -> usize {
         match self {
             PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 | PixelFormat::Depth32F | PixelFormat::Count32F => 4,
@@ -33,12 +33,12 @@ impl PixelFormat {
     }
 }
 
-/// Rows that are shared together.
+/// Rows of a strip: rows are shared by whole strips.
 const STRIP_ROWS: u32 = 8;
-/// A picture shares its rows where no more than so many quarters of its strips differ.
+/// A picture shares rows with another where at most so many quarters of its strips differ.
 const MOST_CHANGED_QUARTERS: usize = 3;
 
-/// Texels of one format.
+/// A picture of texels of one format.
 #[derive(Clone)]
 pub struct Image {
     format: PixelFormat,
@@ -48,7 +48,7 @@ pub struct Image {
     strips: Vec<RowStrip>,
 }
 
-/// Some rows.
+/// Consecutive rows in one piece of memory.
 #[derive(Clone)]
 struct RowStrip {
     row_stride: usize,
@@ -61,7 +61,7 @@ impl RowStrip {
         &self.bytes[start..start + row_bytes]
     }
 
-    /// Some of its rows, in the same memory.
+    /// Returns some of its rows, in the same memory.
     fn part(&self, rows: Range<u32>, row_bytes: usize) -> RowStrip {
         let start = rows.start as usize * self.row_stride;
         let last = rows.end.saturating_sub(1) as usize * self.row_stride;
@@ -96,7 +96,7 @@ impl Image {
         Image::from_rows(format, size, size[0] as usize * format.texel_bytes(), bytes)
     }
 
-    /// The same texel everywhere: what a cleared attachment holds. One row is stored.
+    /// Returns a picture with the same texel everywhere, as a cleared attachment has. One row is stored.
     ///
     /// # Panics
     /// If `texel` has not the format's length.
@@ -106,9 +106,9 @@ impl Image {
         Image::of_one_strip(format, size, RowStrip { row_stride: 0, bytes: row.into() })
     }
 
-    /// The same picture, with its rows in the memory of `other` wherever it has them too, and a copy of the rest;
-    /// `None` where that is more than three quarters. Memory that it shares stays as a whole as long as one of the
-    /// two does.
+    /// Returns an equal picture that uses the memory of `other` for every strip of rows that is equal there, and a copy
+    /// of the rest; `None` where more than three quarters differ. The memory of `other` lives on as long as either
+    /// picture.
     pub fn sharing(&self, other: &Image) -> Option<Image> {
         if (self.format, self.size) != (other.format, other.size) {
             return None;
@@ -133,7 +133,7 @@ impl Image {
         Some(Image { format: self.format, size: self.size, strip_rows: STRIP_ROWS, strips })
     }
 
-    /// Rows of one strip.
+    /// Returns the rows of one strip.
     fn strip(&self, rows: Range<u32>) -> RowStrip {
         let index = rows.start / self.strip_rows;
         let first = index * self.strip_rows;
@@ -144,7 +144,7 @@ impl Image {
         self.size[0] as usize * self.format.texel_bytes()
     }
 
-    /// What one texel is.
+    /// Format of its texels.
     pub fn format(&self) -> PixelFormat {
         self.format
     }
@@ -154,7 +154,7 @@ impl Image {
         self.size
     }
 
-    /// Where its rows lie in memory, padding included: what several pictures share, they have at the same place.
+    /// The ranges of memory of its rows, padding included: pictures that share rows return equal ranges.
     pub fn memory(&self) -> impl Iterator<Item = Range<usize>> {
         let place = |strip: &RowStrip| {
             let start = strip.bytes.as_ptr() as usize;
@@ -163,7 +163,7 @@ impl Image {
         self.strips.iter().map(place)
     }
 
-    /// Bytes that it has and `other` has not.
+    /// Bytes of its memory that it does not share with `other`.
     pub fn bytes_beside(&self, other: Option<&Image>) -> u64 {
         let others: Vec<Range<usize>> = other.into_iter().flat_map(Image::memory).collect();
         covered(self.memory().chain(others.iter().cloned()).collect()) - covered(others)
@@ -178,7 +178,7 @@ impl Image {
         self.strips[(y / self.strip_rows) as usize].row(y % self.strip_rows, self.row_bytes())
     }
 
-    /// Of each so many by so many texels the one in their middle.
+    /// Returns a smaller picture of one texel for each square of `times` by `times` texels: the one in its middle.
     pub fn every(&self, times: u32) -> Image {
         let size = self.size.map(|side| side / times.max(1));
         let middle = |at: u32| at * times + times / 2;
@@ -192,7 +192,7 @@ impl Image {
         (0..self.size[1]).map(|y| self.row(y))
     }
 
-    /// The bytes of one texel; `None` outside the picture.
+    /// Returns the bytes of one texel; `None` outside the picture.
     pub fn texel(&self, [x, y]: [u32; 2]) -> Option<&[u8]> {
         if x >= self.size[0] || y >= self.size[1] {
             return None;
@@ -201,31 +201,31 @@ impl Image {
         self.row(y).get(x as usize * bytes..(x as usize + 1) * bytes)
     }
 
-    /// One byte texel; `None` outside the picture or for another format.
+    /// Returns one byte texel; `None` outside the picture or for another format.
     pub fn byte_at(&self, at: [u32; 2]) -> Option<u8> {
         (self.format == PixelFormat::U8).then(|| self.texel(at).map(|texel| texel[0])).flatten()
     }
 
-    /// One depth texel; `None` outside the picture or for another format.
+    /// Returns one depth texel; `None` outside the picture or for another format.
     pub fn depth_at(&self, at: [u32; 2]) -> Option<f32> {
         let texel = (self.format == PixelFormat::Depth32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
-    /// One count; `None` outside the picture or for another format.
+    /// Returns one count; `None` outside the picture or for another format.
     pub fn count_at(&self, at: [u32; 2]) -> Option<f32> {
         let texel = (self.format == PixelFormat::Count32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
-    /// One colour texel as bytes; `None` outside the picture or for another format.
+    /// Returns one colour texel as bytes; `None` outside the picture or for another format.
     pub fn rgba_at(&self, at: [u32; 2]) -> Option<[u8; 4]> {
         let is_color = matches!(self.format, PixelFormat::Rgba8Srgb | PixelFormat::Rgba8);
         let texel = is_color.then(|| self.texel(at)).flatten()?;
         texel.try_into().ok()
     }
 
-    /// How many texels of a byte picture have each value.
+    /// Returns how many texels of a byte picture have each value.
     pub fn histogram(&self) -> [u64; 256] {
         let mut counts = [0; 256];
         if self.format == PixelFormat::U8 {
@@ -235,7 +235,7 @@ impl Image {
     }
 }
 
-/// Bytes of memory, those of places that overlap once.
+/// Bytes that ranges of memory cover together; those of overlapping ranges count once.
 pub(super) fn covered(mut places: Vec<Range<usize>>) -> u64 {
     places.sort_unstable_by_key(|place| (place.start, place.end));
     let mut end = 0;

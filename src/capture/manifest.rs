@@ -11,9 +11,9 @@ use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The version of the folder's layout: 2 has the frame and the scene.
+/// The version of the folder's layout: from 2 on it has the frame and the scene.
 const SCHEMA: u32 = 2;
-/// Those that can be read.
+/// The versions that can be read.
 pub(super) const SCHEMAS: std::ops::RangeInclusive<u32> = 1..=SCHEMA;
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -26,14 +26,14 @@ pub(super) struct Manifest {
     pub size: [u32; 2],
     pub adapter: AdapterInfo,
     pub camera: Camera,
-    /// `depth = offset + scale / distance`; a folder without it was stored reversed and infinite.
+    /// `depth = offset + scale / distance`; folders without it were stored with reversed, infinite depth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth: Option<DepthCurve>,
     pub passes: Vec<PassEntry>,
     pub lights: Vec<LightEntry>,
     pub left_out: Vec<LeftOut>,
     pub timing: Timing,
-    /// Where it comes from, if another program drew it.
+    /// The program and recorder that the frame comes from, if another program drew it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
 }
@@ -52,7 +52,7 @@ pub(super) struct PassEntry {
     pub triangles: u64,
     pub gpu_ms: Option<f64>,
     pub draw_list: Vec<DrawSummary>,
-    /// One a draw, in order, where the state after each was captured.
+    /// The state after each draw, in order, where it was captured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub draws_captured: Option<Vec<DrawStateEntry>>,
 }
@@ -79,18 +79,18 @@ pub(super) struct StateFiles {
     /// Aspects that were not changed: they name an earlier file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unchanged: Option<Vec<String>>,
-    /// The labels that a mask pass writes.
+    /// File of the labels that a mask pass writes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub labels: Option<String>,
-    /// The counts that a volume pass adds up, where they are not in the stencil.
+    /// File of the counts that a volume pass adds up, where they are not in the stencil.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
-    /// Which face of the map it drew; without one, the file is that face alone.
+    /// The face of the map that it drew; without one, the file is that face alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_face: Option<usize>,
-    /// The same of textures that hold what light passes.
+    /// File of the textures of the light that passes, in place of a map of depths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub textures: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -105,25 +105,25 @@ pub(super) struct LightEntry {
     pub position: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub towards: Option<[f64; 3]>,
-    /// What decided where its shadow is; a folder without it is of an older version.
+    /// What decided where its shadow is; missing in folders of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decided_by: Option<DecidedBy>,
-    /// What its count counts.
+    /// What its count of shadow volumes counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count_of: Option<CountOf>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadow: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<String>,
-    /// Pixels whose count eight bits read as 0, though it is not.
+    /// Pixels whose count is not 0 but reads as 0 in eight bits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wrapped_pixels: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
-    /// What light passes of each receiver's texture or caster's silhouette: (layers, size, size, 4).
+    /// File of the light that passes each receiver's texture or caster's silhouette: (layers, size, size, 4).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub textures: Option<String>,
-    /// What each layer of the textures is of: a receiver or a caster.
+    /// Name of the receiver or caster of each layer of the textures.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -132,26 +132,26 @@ pub(super) struct LightEntry {
     pub truth: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorCounts>,
-    /// A finding a pixel, as numbered in `findings`.
+    /// File of findings, one byte a pixel, as numbered in `findings`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_picture: Option<String>,
-    /// What the error picture's numbers mean, in order.
+    /// Meaning of the error picture's numbers, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst_region: Option<WrongRegion>,
 }
 
-/// Row by row.
+/// Matrices, row by row.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct MatricesEntry {
     pub light_from_world: [[f64; 4]; 4],
-    /// One a face.
+    /// Clip space of each face from light space.
     pub clip_from_light: Vec<[[f64; 4]; 4]>,
 }
 
 impl Manifest {
-    /// Everything but passes and lights, whose files the writer names.
+    /// Returns the manifest of a capture without its passes and lights, whose files the writer names.
     pub fn new(capture: &Capture) -> Manifest {
         Manifest {
             schema: SCHEMA,
@@ -173,7 +173,7 @@ impl Manifest {
 }
 
 impl LightEntry {
-    /// A light without files.
+    /// Returns an entry of a light without files.
     pub fn new(index: usize, position: DVec4) -> LightEntry {
         let at = position.truncate().to_array();
         let (kind, position, towards) = if position == DVec4::ZERO {
@@ -186,7 +186,8 @@ impl LightEntry {
         LightEntry { index, kind: kind.to_owned(), position, towards, ..LightEntry::default() }
     }
 
-    /// What decided where its shadow is: as it says, or in a folder that does not, as technique and files tell.
+    /// Returns what decided where its shadow is: as the folder states it, or derived from technique and files in a
+    /// folder that does not.
     pub fn decided_by(&self, technique: &str) -> DecidedBy {
         let side = match technique {
             "z-pass" | "z-pass-plus" => Some(CountedSide::InFront),
@@ -206,7 +207,7 @@ impl LightEntry {
         })
     }
 
-    /// Homogeneous; zero where it is not known, `None` where neither form is given.
+    /// The homogeneous position; zero where it is not known, `None` where neither position nor direction is given.
     pub fn homogeneous(&self) -> Option<DVec4> {
         if self.kind == "unknown" {
             return Some(DVec4::ZERO);

@@ -1,9 +1,9 @@
-//! What a frame left behind: every attachment after every pass, as data.
+//! The result of a frame as data: every attachment after every pass.
 //!
-//! A capture stands alone: it can be written to a folder and read back ([`disk`]) without a
-//! plan, a scene or a GPU, and everything that looks at frames (inspector, tests, later history
-//! and reports) reads it. An aspect that a pass did not change is shared with the step before.
-//! Where it was asked for, the draws of a pass have the state after each too ([`DrawState`]).
+//! A capture stands alone: it can be written to a folder and read back ([`disk`]) without a plan, a scene or a GPU, and
+//! everything that examines frames (inspector, tests, history and reports) reads it. An aspect that a pass did not
+//! change is shared with the step before. Where it was asked for, the draws of a pass have the state after each too
+//! ([`DrawState`]).
 
 pub mod disk;
 mod error;
@@ -34,45 +34,45 @@ pub struct Capture {
     pub settings: BTreeMap<String, String>,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Where it ran.
+    /// The adapter that it ran on.
     pub adapter: AdapterInfo,
-    /// The camera it was seen by.
+    /// The camera of the frame.
     pub camera: crate::scene::Camera,
-    /// How the camera's depth buffer was stored.
+    /// How the camera's distance became stored depth.
     pub depth: crate::math::depth::DepthCurve,
-    /// One a pass, in order.
+    /// A step for each pass, in order.
     pub steps: Vec<Step>,
     /// Parallel to the scene's lights.
     pub lights: Vec<CapturedLight>,
-    /// What the scene did not need.
+    /// Work that the scene did not need.
     pub left_out: Vec<LeftOut>,
-    /// How long things took.
+    /// Times of the frame and of its capture.
     pub timing: Timing,
     /// The plan's stable text form; empty where it is not known.
     pub plan_text: String,
-    /// Where it comes from, if another program drew it.
+    /// The program and recorder that the frame comes from, if another program drew it.
     pub origin: Option<Origin>,
 }
 
-/// Where the frame of another program comes from.
+/// The program that drew a frame, and the recorder that wrote it down.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Origin {
     /// The program, where that is known.
     pub program: Option<String>,
-    /// Whose calls it made: `OpenGL`.
+    /// The graphics API that the program called: `OpenGL`.
     pub api: String,
-    /// How its depth was stored: `D24S8`.
+    /// Format of its depth buffer: `D24S8`.
     pub depth_format: String,
-    /// Who wrote it down: `RenderDoc 1.24`.
+    /// The program that recorded it: `RenderDoc 1.24`.
     pub recorder: String,
     /// What could not be read, in words.
     pub limits: Vec<String>,
 }
 
-/// The adapter that ran a capture.
+/// The adapter that ran a frame.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct AdapterInfo {
-    /// For example `llvmpipe (LLVM 15.0.6, 256 bits)`.
+    /// Name of the adapter, for example `llvmpipe (LLVM 15.0.6, 256 bits)`.
     pub name: String,
     /// Driver and version.
     pub driver: String,
@@ -81,7 +81,7 @@ pub struct AdapterInfo {
 }
 
 impl AdapterInfo {
-    /// In a sentence: `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe 22.3.6 (cpu)`.
+    /// Returns the adapter in words: `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe 22.3.6 (cpu)`.
     pub fn in_words(&self) -> String {
         let AdapterInfo { name, driver, kind } = self;
         format!("{name}, {driver} ({kind})")
@@ -93,15 +93,15 @@ impl AdapterInfo {
 pub struct Step {
     /// Short: `ambient`, `volumes`.
     pub name: String,
-    /// One sentence for the learner.
+    /// One sentence that explains the pass to a learner.
     pub purpose: String,
-    /// The light it belongs to.
+    /// Index of the light that it belongs to; `None` for the scene's own passes.
     pub light: Option<usize>,
-    /// What it drew, in order.
+    /// Its draws, in order.
     pub draws: Vec<DrawSummary>,
     /// GPU time in milliseconds; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
-    /// The state after it.
+    /// The attachments after it.
     pub snapshot: Snapshot,
 }
 
@@ -110,18 +110,18 @@ pub struct Step {
 pub struct DrawSummary {
     /// Short: `sides of bunny`.
     pub name: String,
-    /// The object it shows or whose shadow it makes.
+    /// The object that it shows, or whose shadow it draws.
     pub caster: Option<String>,
-    /// Which part of it.
+    /// Which part of the object or of its shadow it draws.
     #[serde(deserialize_with = "known_part")]
     pub part: DrawPart,
-    /// Triangles submitted.
+    /// Number of triangles submitted.
     pub triangles: u64,
     /// The state after it; `None` where only the state after its pass was captured.
     #[serde(skip)]
     pub after: Option<DrawState>,
-    /// Of another program's draw that was computed anew from what was there before it: where that made something else
-    /// than was stored; `None` where that was not asked.
+    /// For a draw of another program that was recomputed from the state before it: how the result differs from what was
+    /// stored; `None` where it was not recomputed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub differs: Option<RecomputeDifference>,
 }
@@ -131,38 +131,38 @@ fn known_part<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<DrawP
     <DrawPart as serde::Deserialize>::deserialize(deserializer).map_err(unknown)
 }
 
-/// Pixels where a draw that is computed anew leaves something else than was stored.
+/// Numbers of pixels where a recomputed draw leaves something else than was stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct RecomputeDifference {
-    /// Depths that are farther apart than rounding explains: sixteen steps of their format, or of 24 bits.
+    /// Pixels whose depths differ by more than rounding explains: sixteen steps of their format, or of 24 bits.
     pub depth: u64,
-    /// Stencil values.
+    /// Pixels whose stencil values differ.
     pub stencil: u64,
-    /// Depths that are another one, but no farther apart than that.
+    /// Pixels whose depths differ, by no more than rounding explains.
     pub rounded: u64,
 }
 
 /// The state after one draw of a pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawState {
-    /// As after a step. What the draw did not change is shared with the draw before it, or with
-    /// the step before where it is the first.
+    /// The attachments, as after a step. An aspect that the draw did not change is shared with the draw before it, or
+    /// with the step before for the first draw.
     pub snapshot: Snapshot,
-    /// What the pass draws into where that is not the picture: labels, a count, or the layer of a
-    /// map. The capture's light holds the last of them.
+    /// The pass's target where that is not the picture: labels, a count, or the layer of a map. The capture's light
+    /// stores the last of them.
     pub target: Option<Aspect>,
 }
 
-/// The state after a step: of the picture's three aspects, or of a shadow map.
+/// The state after a step: three aspects of the picture, or a shadow map.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Snapshot {
-    /// After a pass that draws into the picture or reads it (a mask pass).
+    /// After a pass that draws into the picture, or tests against its depth and stencil (a mask pass).
     Frame(FrameSnapshot),
     /// After a pass that draws one face of a light's shadow map.
     Map {
-        /// The light.
+        /// Index of the light.
         light: usize,
-        /// Which face was drawn.
+        /// Index of the face that was drawn.
         face: usize,
     },
 }
@@ -170,18 +170,18 @@ pub enum Snapshot {
 /// The picture's aspects after a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSnapshot {
-    /// sRGB, 8 bits a channel.
+    /// Colour in sRGB, 8 bits a channel.
     pub color: Aspect,
-    /// As stored in the buffer.
+    /// Depth as stored in the buffer.
     pub depth: Aspect,
-    /// One byte a pixel; `None` where the technique uses no stencil buffer.
+    /// Stencil, one byte a pixel; `None` where the technique uses no stencil buffer.
     pub stencil: Option<Aspect>,
     /// What the pass draws into.
     pub target: FrameTarget,
 }
 
 named_enum! {
-    /// What a pass that sees the picture's depth and stencil draws into.
+    /// What a pass that tests against the picture's depth and stencil draws into.
     #[derive(Default)]
     pub enum FrameTarget {
         /// The picture itself.
@@ -194,38 +194,38 @@ named_enum! {
     }
 }
 
-/// One aspect after a step.
+/// One aspect (colour, depth, stencil, labels or count) after a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aspect {
     /// Its texels; shared with the step before where unchanged.
     pub image: Arc<Image>,
-    /// This pass wrote nothing to it.
+    /// True where the pass wrote nothing to it.
     pub unchanged: bool,
 }
 
-/// What a capture knows of a light.
+/// The results of a frame for one light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedLight {
-    /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it. Zero: not known, in another
-    /// program's frame.
+    /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it. Zero where it is not known, in
+    /// another program's frame.
     pub position: glam::DVec4,
     /// What decided where its shadow is.
     pub decided_by: DecidedBy,
     /// What a count of its shadow volumes counts, where that is known.
     pub count_of: Option<CountOf>,
-    /// The technique's labels, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the light or
+    /// The technique's labels, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 faces away from the light or
     /// beyond its range.
     pub shadow: Option<Arc<Image>>,
     /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
     pub count: Option<Arc<Image>>,
-    /// Its shadow map, or the textures of what it lets through.
+    /// Its shadow map, or textures of the light that passes.
     pub map: Option<CapturedMap>,
     /// The ground truth, where it was asked for.
     pub truth: Option<CapturedTruth>,
 }
 
 impl CapturedMap {
-    /// Does it hold colours that light passes, and not depths?
+    /// Returns whether the map stores colours of light that passes, in place of depths.
     pub fn holds_colors(&self) -> bool {
         self.faces.first().is_some_and(|face| face.format() == PixelFormat::Rgba8)
     }
@@ -243,50 +243,50 @@ impl CapturedLight {
     }
 }
 
-/// The ground truth of a light, and how the technique differs from it.
+/// The ground truth of a light, and the technique's errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedTruth {
     /// The truth's labels, one byte a pixel.
     pub labels: Arc<Image>,
-    /// A [`Finding`](crate::accuracy::Finding) a pixel.
+    /// A [`Finding`](crate::accuracy::Finding) for each pixel.
     pub findings: Arc<Image>,
-    /// Totals of the findings.
+    /// Numbers of pixels by finding.
     pub error: ErrorCounts,
     /// The largest connected wrong region.
     pub worst: Option<WrongRegion>,
 }
 
-/// The ground truth of a frame: learned of a capture, and put beside it by [`Capture::with_truth`].
+/// The ground truth of a frame: computed for a capture, and added to it by [`Capture::with_truth`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameTruth {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Parallel to the capture's lights; `None` where the technique has no labels.
     pub lights: Vec<Option<CapturedTruth>>,
-    /// The signed count of each light's volumes, where the technique counts them in the stencil: eight bits read a count of
-    /// 256 as none, and the truth alone would not say why.
+    /// The signed count of each light's volumes, where the technique counts them in the stencil: eight bits read a
+    /// count of 256 as none, which the truth alone would not explain.
     pub counts: Vec<Option<Arc<Image>>>,
 }
 
-/// The states after the draws of a step: learned of a capture, and put beside it by [`Capture::with_draws`].
+/// The states after the draws of a step: captured later, and added to a capture by [`Capture::with_draws`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepDraws {
     /// Index of the step.
     pub step: usize,
-    /// After each of its draws.
+    /// The state after each of its draws; `None` where it is not known.
     pub states: Vec<Option<DrawState>>,
 }
 
-/// Bytes of a capture to which the draws of a step may be added without dropping those of others.
+/// Bytes that a capture may take with the draws of several steps; beyond, those of other steps are dropped.
 const MOST_DRAWS_BYTES: u64 = 1 << 27;
 
-/// What a light sees, after the whole frame.
+/// A light's shadow map or textures after the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedMap {
-    /// Depth as stored: one, or six in wgpu's order (+x −x +y −y +z −z). Or the colour that each
-    /// texture lets through.
+    /// Depth as stored: one face, or six in wgpu's order (+x −x +y −y +z −z). Or the colour that each texture lets
+    /// through.
     pub faces: Vec<Arc<Image>>,
-    /// What each texture is of, a receiver or a caster, as far as that is known; empty where it holds depth.
+    /// Name of the receiver or caster of each texture, as far as that is known; empty for a map of depths.
     pub layer_names: Vec<String>,
     /// Light space from world space.
     pub light_from_world: glam::DMat4,
@@ -294,12 +294,13 @@ pub struct CapturedMap {
     pub clip_from_light: Vec<glam::DMat4>,
 }
 
-/// Milliseconds; medians. What was not measured is `None`.
+/// Times in milliseconds; medians. `None` where a time was not measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Timing {
     /// A frame without snapshots and mask passes: recording, submitting, waiting for the GPU.
     pub frame_ms: Option<f64>,
-    /// The same frame with a snapshot after every pass, read back to memory; `None` too where they don't all fit at once.
+    /// The same frame with a snapshot after every pass, read back to memory; `None` too where the snapshots don't all
+    /// fit in memory at once.
     pub captured_ms: Option<f64>,
     /// Writing the folder.
     pub write_ms: Option<f64>,
@@ -308,7 +309,7 @@ pub struct Timing {
 }
 
 impl RecomputeDifference {
-    /// Is it as stored, but for rounding?
+    /// Returns whether the draw leaves what was stored, except for rounding.
     pub fn is_nowhere(self) -> bool {
         self.depth == 0 && self.stencil == 0
     }
@@ -320,13 +321,13 @@ impl Capture {
         self.lights.get(light).map_or(DecidedBy::Nothing, |light| light.decided_by)
     }
 
-    /// Are shadow volumes counted for any light?
+    /// Returns whether shadow volumes are counted for any light.
     pub fn counts_volumes(&self) -> bool {
         self.lights.iter().any(|light| light.decided_by.counts_volumes())
     }
 
-    /// The picture's aspects after step `index`; for a map pass, those of the nearest step
-    /// before it that has any.
+    /// Returns the picture's aspects after step `index`; for a map pass, those of the nearest step before it that has
+    /// any.
     pub fn frame_at(&self, index: usize) -> Option<&FrameSnapshot> {
         let upto = self.steps.get(..=index)?;
         upto.iter().rev().find_map(|step| match &step.snapshot {
@@ -342,12 +343,12 @@ impl Capture {
         Some(if all.all(|of| of == first) { first } else { CountOf::Mixed })
     }
 
-    /// Is the state after every draw of a step known? So it is of a step without draws.
+    /// Returns whether the state after every draw of a step is known. It is for a step without draws.
     pub fn holds_draws(&self, step: usize) -> bool {
         self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
     }
 
-    /// Bytes of all images: what they share counts once. It looks at every image: to be asked once for each capture.
+    /// Bytes of all images; shared memory counts once. It visits every image: call it once for each capture.
     pub fn bytes(&self) -> u64 {
         let mut seen = std::collections::BTreeSet::new();
         let mut places = Vec::new();
@@ -365,7 +366,7 @@ impl Capture {
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
     }
 
-    /// The capture with its truth.
+    /// Returns the capture with its truth added.
     pub fn with_truth(&self, truth: &FrameTruth) -> Capture {
         let mut capture = self.clone();
         for (light, truth) in capture.lights.iter_mut().zip(&truth.lights) {
@@ -377,8 +378,8 @@ impl Capture {
         capture
     }
 
-    /// The capture with the states after the draws of a step. Together they may take much memory: where it would hold
-    /// more than 128 MiB, those of other steps are dropped, and have to be asked for again.
+    /// Returns the capture with the states after the draws of a step added. They may take much memory: where the
+    /// capture would take more than 128 MiB, those of other steps are dropped, and have to be captured again.
     pub fn with_draws(&self, draws: &StepDraws) -> Capture {
         self.with_draws_in(draws, MOST_DRAWS_BYTES)
     }
@@ -427,19 +428,19 @@ impl DrawState {
         self.snapshot.aspects().chain(&self.target)
     }
 
-    /// Did the draw leave everything as it was?
+    /// Returns whether the draw changed nothing.
     pub fn changes_nothing(&self) -> bool {
         self.aspects().all(|aspect| aspect.unchanged)
     }
 }
 
 impl Step {
-    /// Triangles submitted.
+    /// The number of triangles submitted.
     pub fn triangles(&self) -> u64 {
         self.draws.iter().map(|draw| draw.triangles).sum()
     }
 
-    /// The one caster of all draws, if there is just one.
+    /// The caster of all draws, if they have one in common.
     pub fn caster(&self) -> Option<&str> {
         let first = self.draws.first()?.caster.as_deref()?;
         self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)

@@ -1,21 +1,21 @@
 //! NumPy's array files (`.npy`; NumPy Enhancement Proposal 1): little-endian numbers in C order.
 //!
-//! Of all that such a header may say, folders of ours have four kinds of numbers and a shape. That much is written and
-//! read here, in one piece instead of number by number; whatever else is refused by name.
+//! Of all that such a header may describe, our folders have four kinds of numbers and a shape. Only these are written
+//! and read here, in one piece instead of number by number; everything else is refused by name.
 
 use std::io::{self, Read, Write};
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
-/// Numbers begin at a multiple of this many bytes.
+/// The numbers begin at a multiple of this many bytes.
 const ALIGNMENT: usize = 64;
 /// Bytes of the longest header that is read, and dimensions of the deepest array.
 const LONGEST: usize = 4096;
 const MOST_DIMENSIONS: usize = 8;
 
-// Numbers are written as they lie in memory.
+// Numbers are written in their byte order in memory.
 const _: () = assert!(cfg!(target_endian = "little"));
 
-/// A number that arrays are made of.
+/// A type of number that arrays have.
 pub(super) trait Element: bytemuck::Pod {
     /// NumPy's name of it (`dtype.str`).
     const KIND: &'static str;
@@ -33,12 +33,12 @@ impl Element for f32 {
     const KIND: &'static str = "<f4";
 }
 
-/// Begins an array: its numbers follow, row by row.
+/// Writes the header of an array: its numbers follow, row by row.
 pub(super) fn write_header<T: Element>(out: &mut impl Write, shape: &[u64]) -> io::Result<()> {
     let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
     let words = format!("{{'descr': '{}', 'fortran_order': False, 'shape': ({sides}), }}", T::KIND);
     let begins = MAGIC.len() + 4;
-    // One byte more is the line's end.
+    // One byte more is the newline at the header's end.
     let length = (begins + words.len() + 1).next_multiple_of(ALIGNMENT) - begins;
     let length_bytes = u16::try_from(length).map_err(io::Error::other)?.to_le_bytes();
     out.write_all(MAGIC)?;
@@ -47,7 +47,7 @@ pub(super) fn write_header<T: Element>(out: &mut impl Write, shape: &[u64]) -> i
     writeln!(out, "{words:<width$}", width = length - 1)
 }
 
-/// What the header of an array says, and the file from its numbers on.
+/// The header of an array, and its file from the numbers on.
 #[derive(Debug)]
 pub(super) struct Array<R> {
     kind: String,
@@ -59,7 +59,7 @@ impl<R: Read> Array<R> {
     /// Reads the header.
     ///
     /// # Errors
-    /// It is no array, or one that no folder of ours has.
+    /// The file is no array, or one of a kind that our folders don't have.
     pub fn open(mut file: R) -> Result<Array<R>, String> {
         let cut = |error: io::Error| format!("no NumPy array ({error})");
         let mut start = [0; 8];
@@ -91,12 +91,12 @@ impl<R: Read> Array<R> {
         }
     }
 
-    /// How many numbers it has along each dimension, the slowest first.
+    /// The length of each dimension, the slowest first.
     pub fn shape(&self) -> &[u64] {
         &self.shape
     }
 
-    /// The numbers, of a file with so many bytes: a shape that claims more is refused before there is memory for it.
+    /// Reads the numbers of a file with so many bytes: a shape that claims more is refused before memory is allocated.
     ///
     /// # Errors
     /// They are of another kind, or cut off.
@@ -114,7 +114,7 @@ impl<R: Read> Array<R> {
     }
 }
 
-/// The keys of a header, as far as they were there.
+/// The keys of a header, `None` where one is missing.
 #[derive(Default)]
 struct Header {
     kind: Option<String>,
@@ -123,7 +123,7 @@ struct Header {
 }
 
 impl Header {
-    /// A Python dictionary of a string, a truth value and a tuple, in any order.
+    /// Parses a Python dictionary of a string, a truth value and a tuple, in any order.
     fn read(words: &str) -> Option<Header> {
         let mut header = Header::default();
         let mut rest = words.trim().strip_prefix('{')?.strip_suffix('}')?.trim_start();
@@ -158,7 +158,7 @@ impl Header {
     }
 }
 
-/// A quoted word, and what follows it.
+/// Parses a quoted word, and returns it with the text after it.
 fn quoted(words: &str) -> Option<(&str, &str)> {
     let quote = words.chars().next().filter(|quote| matches!(quote, '\'' | '"'))?;
     words[1..].split_once(quote)

@@ -29,27 +29,27 @@ named_enum! {
         NonManifold = "non-manifold",
         /// Neighbouring triangles of a caster disagree on which side is out, or all face inwards.
         InconsistentWinding = "inconsistent-winding",
-        /// Vertices at bit-equal positions are told apart.
+        /// Vertices at bit-equal positions count as different ones.
         SplitVertices = "split-vertices",
         /// Vertices lie within a millionth of the size of each other.
         NearVertices = "near-vertices",
-        /// The light is inside a caster whose light-facing triangles alone cast.
+        /// The light is inside a caster, and only its light-facing triangles cast.
         LightInside = "light-inside",
         /// A count stops at 255.
         Clamped = "clamped",
         /// A count of a multiple of 256 reads as none.
         Wrap256 = "wrap-256",
-        /// Fewer bits than eight are counted in, and a count of a multiple of what they hold reads as none.
+        /// The count has fewer bits than eight, and a multiple of the largest number that fits reads as none.
         FewBits = "few-bits",
-        /// One bit tells odd from even, and an even count reads as none.
+        /// One bit only distinguishes odd from even, and an even count reads as none.
         Parity = "parity",
-        /// A count stops at 0, as what takes away came before what adds.
+        /// A count stops at 0, since subtracting faces came before adding ones.
         OperationOrder = "operation-order",
         /// A light cap's depths are not those of the surface that it lies on.
         CapFighting = "cap-fighting",
         /// A flattened shadow darkens the same pixel more than once.
         DoubleBlend = "double-blend",
-        /// A flattened shadow and its receiver have the same depths, but for rounding.
+        /// A flattened shadow and its receiver have the same depths, except for rounding.
         ZFighting = "z-fighting",
         /// A flattened shadow is drawn beyond its receiver.
         OffReceiver = "off-receiver",
@@ -57,7 +57,7 @@ named_enum! {
         AntiShadow = "anti-shadow",
         /// What lies under the receiver's plane is flattened onto it.
         FalseShadow = "false-shadow",
-        /// A receiver is no plane that shadows are flattened onto.
+        /// A receiver is not a plane that shadows can be flattened onto.
         NotPlanar = "not-planar",
         /// A surface shadows itself, as texels of the map are coarser than its slope.
         Acne = "acne",
@@ -65,17 +65,17 @@ named_enum! {
         PeterPanning = "peter-panning",
         /// Texels are coarser than the shadow's outline.
         Aliasing = "aliasing",
-        /// Surfaces lie outside what the map shows.
+        /// Surfaces lie outside what the map covers.
         OutsideMap = "outside-map",
         /// A silhouette is projected behind the light too.
         ReverseProjection = "reverse-projection",
-        /// A silhouette falls on what lies between the light and its caster.
+        /// A silhouette falls on a surface between the light and its caster.
         Between = "between",
-        /// The last texels of a silhouette's picture go on beyond it.
+        /// The last texels of a silhouette's picture are repeated beyond it.
         EdgeSmear = "edge-smear",
         /// A silhouette is not projected onto its own caster.
         SelfShadow = "self-shadow",
-        /// Single precision cannot tell the two sides apart.
+        /// Single precision cannot distinguish the two sides.
         F32Limit = "f32-limit",
         /// Edges of the caster are shorter than a pixel, and corners of volumes snap to parts of one.
         SubpixelEdges = "subpixel-edges",
@@ -85,13 +85,13 @@ named_enum! {
         NotCasting = "not-casting",
         /// The scene says that an object is not drawn.
         Undrawn = "undrawn",
-        /// A vertex shader tells in single precision what faces the light, and where vertices are carried.
+        /// A vertex shader computes in single precision which triangles face the light, and where vertices are carried.
         CarriedInF32 = "carried-in-f32",
         /// One side of the volumes' faces is culled, though both count.
         FaceCulled = "face-culled",
         /// Volumes write depth, and hide each other.
         VolumesWriteDepth = "volumes-write-depth",
-        /// The stencil holds other values than 0 before the first volume is counted.
+        /// The stencil stores other values than 0 before the first volume is counted.
         StencilNotCleared = "stencil-not-cleared",
         /// The light's pass compares only some bits of the count.
         StencilMask = "stencil-mask",
@@ -101,7 +101,7 @@ named_enum! {
 }
 
 impl Cause {
-    /// What it is and what to do, for someone who meets it for the first time.
+    /// Returns what the cause is and what to do about it, for a reader who does not know it.
     pub fn meaning(self) -> &'static str {
         match self {
             Cause::EyeInVolume => {

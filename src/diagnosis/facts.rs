@@ -1,4 +1,4 @@
-//! What rules look at: the frame as it was given and run, its truth, and a few pixels closely.
+//! The data that rules examine: the frame as it was given and run, its truth, and a few pixels closely.
 
 use super::RegionKind;
 use super::cause::Cause;
@@ -15,49 +15,49 @@ use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
 use crate::truth::{OccluderHit, SeenSurface, Tracer};
 use std::collections::BTreeSet;
 
-/// One frame. Nothing here tells whether, or how, something was made wrong on purpose.
+/// One frame. It does not contain whether, or how, an error was injected.
 pub(crate) struct FrameFacts<'a> {
-    /// As the technique was given it.
+    /// The scene as the technique was given it.
     pub scene: &'a Scene,
-    /// As it was used.
+    /// The technique and settings that were used.
     pub choice: &'a Choice,
-    /// As it was run.
+    /// The plan that was run.
     pub plan: &'a FramePlan,
     pub capture: &'a Capture,
-    /// Of the scene as it should be.
+    /// Follows rays through the scene as it should be.
     pub tracer: &'a Tracer,
-    /// Parallel to the scene's objects.
+    /// Facts of the objects' meshes, parallel to the scene's objects.
     pub meshes: &'a [MeshFacts],
-    /// Which of its triangles cast: by light, parallel to the scene's objects.
+    /// Which triangles of each object cast: by light, parallel to the scene's objects.
     pub casting: &'a [Vec<Casters>],
 }
 
-/// A region with a close look at some of its pixels.
+/// A region with a few of its pixels examined closely.
 pub(crate) struct RegionSamples<'a> {
     pub region: &'a ConnectedRegion,
     pub samples: Vec<PixelSample>,
 }
 
-/// One pixel of a region.
+/// One pixel of a region, examined closely.
 pub(crate) struct PixelSample {
     pub pixel: [u32; 2],
     pub seen: Option<SeenSurface>,
-    /// What in truth lies between light and surface, the nearest to the surface first.
+    /// The occluders that rays find between light and surface, the nearest to the surface first.
     pub between: Vec<OccluderHit>,
-    /// `None` where the technique leaves no events that tell.
+    /// The pixel's fragments; `None` where the technique leaves none that explain its shadow.
     pub history: Option<PixelHistory>,
 }
 
-/// A cause that may be it.
+/// A cause that the evidence suggests.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SuspectedCause {
     pub cause: Cause,
     pub evidence: String,
-    /// In the order in which they are tried; none where nothing helps.
+    /// Fixes in the order in which they are tried; empty where nothing helps.
     pub fixes: Vec<Fix>,
-    /// How many samples show it.
+    /// The number of samples that show it.
     pub shown_by: usize,
-    /// How much it says about this very frame: larger before smaller.
+    /// How specific the evidence is to this very frame: larger is named before smaller.
     pub weight: usize,
 }
 
@@ -71,12 +71,12 @@ impl SuspectedCause {
 pub(crate) type CauseRule = fn(&FrameFacts, &RegionSamples) -> Option<SuspectedCause>;
 
 impl<'a> FrameFacts<'a> {
-    /// What a technique that counts volumes was told; `None` of another.
+    /// The settings of a technique that counts volumes; `None` for another.
     pub fn volumes(&self) -> Option<VolumeSettings> {
         self.choice.volumes()
     }
 
-    /// What shadow maps were told: their defaults for another technique.
+    /// The settings of shadow maps; their defaults for another technique.
     pub fn map(&self) -> MapSettings {
         MapSettings::read(self.choice.settings())
     }
@@ -90,7 +90,7 @@ impl<'a> FrameFacts<'a> {
         self.choice.technique()
     }
 
-    /// The object of that name as the technique was given it, with its index.
+    /// Returns the object of that name as the technique was given it, with its index.
     pub fn object(&self, name: &str) -> Option<(usize, &'a Object)> {
         self.scene.objects.iter().enumerate().find(|(_, object)| object.name == name)
     }
@@ -100,18 +100,18 @@ impl<'a> FrameFacts<'a> {
         self.plan.passes.iter().filter(move |pass| pass.timed && pass.light.is_some_and(|of| of.0 == light))
     }
 
-    /// The draws of a part of a light's shadows, as the camera sees them.
+    /// Returns the draws of a part of a light's shadows in passes of the camera's view.
     pub fn draws(&self, light: usize, part: DrawPart) -> impl Iterator<Item = &'a Draw> {
         let passes = self.passes(light).filter(move |pass| part == DrawPart::Map || pass.view.0 == 0);
         passes.flat_map(|pass| &pass.draws).filter(move |draw| draw.part.includes(part))
     }
 
-    /// Are volumes counted for a light?
+    /// Returns whether volumes are counted for a light.
     pub fn counts_volumes(&self, light: usize) -> bool {
         self.passes(light).any(|pass| pass.view.0 == 0 && pass.draws.iter().any(|draw| draw.part.is_of_volume()))
     }
 
-    /// Is a caster's volume counted behind the visible surface?
+    /// Returns whether a caster's volume is counted behind the visible surface.
     pub fn counts_behind(&self, light: usize, caster: &str) -> bool {
         let of_caster = |draw: &&Draw| draw.caster.as_deref() == Some(caster);
         let mut sides = self.draws(light, DrawPart::Side).filter(of_caster);
@@ -124,13 +124,13 @@ impl<'a> FrameFacts<'a> {
         })
     }
 
-    /// The test that lets through what is nearer.
+    /// The depth test that only nearer fragments pass.
     fn nearer(&self) -> wgpu::CompareFunction {
         let is_reversed = self.plan.depth.mapping.is_reversed();
         if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
     }
 
-    /// Does a triangle of a caster cast for a light, as settings and meshes decide?
+    /// Returns whether a triangle of a caster casts for a light, as settings and meshes decide.
     pub fn casts(&self, light: usize, met: &OccluderHit) -> bool {
         match self.casting[light][met.place.object] {
             Casters::LightFacing => met.faces_light,
@@ -139,18 +139,18 @@ impl<'a> FrameFacts<'a> {
         }
     }
 
-    /// Metres that a pixel is wide at a distance along the view's axis.
+    /// Returns the width of a pixel in metres at a distance along the view's axis.
     pub fn pixel_width(&self, depth: f64) -> f64 {
         2.0 * self.scene.camera.half_height_at(depth) / f64::from(self.plan.size[1])
     }
 
-    /// Radians of the view that a pixel's height is, at the least.
+    /// The least angle that a pixel's height takes in the view, radians.
     pub fn pixel_angle(&self) -> f64 {
         let [near, away] = [0.0, 1.0].map(|depth| self.pixel_width(depth));
         (away - near).max(1e-9)
     }
 
-    /// The names of the objects that rays have met, in order.
+    /// Returns the names of the objects that rays hit.
     pub fn names(&self, met: &[OccluderHit]) -> BTreeSet<String> {
         met.iter().map(|met| self.tracer.name(met.place).to_owned()).collect()
     }
@@ -173,7 +173,7 @@ impl RegionSamples<'_> {
         self.region.key.kind == RegionKind::TooDark
     }
 
-    /// How many samples show something, with what the first of them tells.
+    /// Returns how many samples show something, with what `look` returned for the first of them.
     pub fn shown<T>(&self, look: impl FnMut(&PixelSample) -> Option<T>) -> Option<(T, usize)> {
         let mut found: Vec<T> = self.samples.iter().filter_map(look).collect();
         let count = found.len();
@@ -182,12 +182,12 @@ impl RegionSamples<'_> {
 }
 
 impl PixelSample {
-    /// The middle of the pixel.
+    /// The pixel's centre.
     pub fn center(&self) -> [f64; 2] {
         self.pixel.map(|n| f64::from(n) + 0.5)
     }
 
-    /// What a caster's volume added to the count of a light here, as if no count had limits.
+    /// Returns what a caster's volume added to the count of a light here, as if no count had limits.
     pub fn counted(&self, light: usize, caster: &str) -> i32 {
         self.volume_events(light)
             .filter(|(_, one)| one.caster.as_deref() == Some(caster))
@@ -195,7 +195,7 @@ impl PixelSample {
             .sum()
     }
 
-    /// The faces of a light's volumes here.
+    /// Returns the fragments of a light's volumes here.
     pub fn volume_events(
         &self,
         light: usize,
@@ -204,8 +204,8 @@ impl PixelSample {
         all.filter(move |(event, _)| event.light == Some(light) && event.is_of_volume())
     }
 
-    /// Casters whose volume was counted otherwise than their triangles between light and surface say: name, as
-    /// counted, and as it should be.
+    /// Returns the casters whose volume was counted otherwise than their triangles between light and surface require:
+    /// name, as counted, and as it should be.
     pub fn miscounted(&self, facts: &FrameFacts, light: usize) -> Vec<(String, i32, i32)> {
         if self.history.is_none() || self.seen.is_none() {
             return Vec::new();
@@ -223,12 +223,12 @@ impl PixelSample {
     }
 }
 
-/// `3 volumes`.
+/// Writes a number with a noun: `3 volumes`.
 pub(crate) fn amount(count: u64, noun: &str) -> String {
     format!("{} {noun}{}", crate::numbers::count(count), if count == 1 { "" } else { "s" })
 }
 
-/// `box, ring and floor`.
+/// Writes a list: `box, ring and floor`.
 pub(crate) fn listed<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
     let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
     match names.split_last() {

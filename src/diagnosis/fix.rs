@@ -1,4 +1,4 @@
-//! What to change so that a cause is gone.
+//! Fixes: what to change so that a cause is gone.
 
 use crate::plan::{DrawPart, FramePlan};
 use crate::scene::{MeshError, Scene};
@@ -10,19 +10,20 @@ use std::sync::Arc;
 /// Changes of settings, scene and plan; empty where nothing helps.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Fix {
-    /// Another technique. Settings that it shares with the one before are kept.
+    /// Another technique. Settings that it shares with the one before stay as they are.
     pub technique: Option<Technique>,
     /// Settings, as in `--set`.
     pub settings: BTreeMap<String, String>,
     /// Changes of the scene.
     pub scene: Vec<SceneEdit>,
-    /// Changes of the plan: what no setting of ours could make wrong.
+    /// Changes of the plan, for errors that no setting of ours could cause.
     pub plan: Vec<PlanEdit>,
-    /// Draws a picture so many times as large along each side. An odd number: each pixel's middle stays one.
+    /// Draws a picture this many times as large along each side. An odd number, so that each pixel's centre stays the
+    /// centre of one.
     pub larger: Option<u32>,
 }
 
-/// Why a mend can't be made.
+/// Why a fix can't be applied.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FixError {
     /// The technique has no such setting or value.
@@ -31,9 +32,9 @@ pub enum FixError {
     /// A mesh can't be welded.
     #[error("{name}: {source}")]
     Mesh {
-        /// Of the object.
+        /// Name of the object.
         name: String,
-        /// Why.
+        /// The error of the mesh.
         source: MeshError,
     },
     /// The scene has no such object.
@@ -60,13 +61,13 @@ pub struct SceneEdit {
 named_enum! {
     /// What is changed in an object.
     pub enum ObjectChange {
-        /// Vertices at bit-equal positions become one.
+        /// Vertices at bit-equal positions are merged.
         Weld = "weld",
-        /// `receives = true`.
+        /// Sets `receives = true`.
         Receives = "receives",
-        /// `casts = true`.
+        /// Sets `casts = true`.
         Casts = "casts",
-        /// `visible = true`.
+        /// Sets `visible = true`.
         Visible = "visible",
     }
 }
@@ -86,7 +87,7 @@ named_enum! {
 }
 
 impl PlanEdit {
-    /// The part of a volume that it draws again.
+    /// Returns the part of a volume that it draws; `None` for the others.
     pub fn part(self) -> Option<DrawPart> {
         match self {
             PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(DrawPart::LightCap),
@@ -97,37 +98,37 @@ impl PlanEdit {
 }
 
 impl Fix {
-    /// Changes the technique.
+    /// Returns a fix that changes the technique.
     pub fn technique(technique: Technique) -> Fix {
         Fix { technique: Some(technique), ..Fix::default() }
     }
 
-    /// Changes one setting.
+    /// Returns a fix that changes one setting.
     pub fn setting(key: &str, value: &str) -> Fix {
         Fix { settings: BTreeMap::from([(key.to_owned(), value.to_owned())]), ..Fix::default() }
     }
 
-    /// Changes an object of the scene.
+    /// Returns a fix that changes an object of the scene.
     pub fn scene(object: usize, name: &str, change: ObjectChange) -> Fix {
         Fix { scene: vec![SceneEdit { object, name: name.to_owned(), change }], ..Fix::default() }
     }
 
-    /// Changes the plan.
+    /// Returns a fix that changes the plan.
     pub fn plan(edit: PlanEdit) -> Fix {
         Fix { plan: vec![edit], ..Fix::default() }
     }
 
-    /// Draws a larger picture.
+    /// Returns a fix that draws a larger picture.
     pub fn larger(times: u32) -> Fix {
         Fix { larger: Some(times), ..Fix::default() }
     }
 
-    /// Nothing is changed.
+    /// Returns whether it changes nothing.
     pub fn is_empty(&self) -> bool {
         *self == Fix::default()
     }
 
-    /// Both at once; where they differ on a setting, the other's holds.
+    /// Returns both fixes as one; where they differ on a setting, `other` decides.
     pub fn and(&self, other: &Fix) -> Fix {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
@@ -142,7 +143,7 @@ impl Fix {
         both
     }
 
-    /// Makes its changes of scene and settings. Settings that another technique shares are kept.
+    /// Applies its changes of scene and settings. Settings that another technique shares stay as they are.
     pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), FixError> {
         for SceneEdit { object, name, change } in &self.scene {
             let missing = || FixError::NoObject { object: *object, name: name.clone() };
@@ -161,13 +162,13 @@ impl Fix {
         self.choose(choice)
     }
 
-    /// Makes its changes of technique and settings alone.
+    /// Applies its changes of technique and settings alone.
     pub fn choose(&self, choice: &mut Choice) -> Result<(), FixError> {
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
             for spec in technique.settings() {
                 if let Some(value) = choice.settings().get(spec.key) {
-                    // A size means another thing to another technique, and may be one that it refuses.
+                    // A size has another meaning in another technique, which may refuse it.
                     if spec.key != "size" {
                         other.set(spec.key, value)?;
                     }
@@ -179,12 +180,12 @@ impl Fix {
         Ok(())
     }
 
-    /// The size of the picture that it draws.
+    /// Returns the size of the picture that it draws in place of `size`.
     pub fn size(&self, size: [u32; 2]) -> [u32; 2] {
         size.map(|side| side.saturating_mul(self.larger.unwrap_or(1)))
     }
 
-    /// Makes its changes of a plan; `fresh` is the technique's own plan of the same scene and settings.
+    /// Applies its changes to a plan; `fresh` is the technique's own plan of the same scene and settings.
     pub fn edit(&self, plan: &mut FramePlan, fresh: &FramePlan) {
         for edit in &self.plan {
             match edit {
@@ -200,18 +201,18 @@ impl Fix {
         }
     }
 
-    /// Does it change nothing but technique and settings, which the window can change?
+    /// Returns whether it changes nothing but technique and settings, which the window can change.
     pub fn is_a_choice(&self) -> bool {
         self.scene.is_empty() && self.plan.is_empty() && self.larger.is_none() && !self.is_empty()
     }
 
-    /// How much it changes: a setting less than an object, an object less than a technique.
+    /// Returns how much it changes: a setting less than an object, an object less than a technique.
     pub fn weight(&self) -> usize {
         let [technique, larger] = [self.technique.is_some(), self.larger.is_some()].map(usize::from);
         self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * technique + 20 * larger
     }
 
-    /// In words: `use z-fail`, `set casters = all`.
+    /// Returns the fix in words: `use z-fail`, `set casters = all`.
     pub fn describe(&self) -> String {
         let mut words = Vec::new();
         words.extend(self.technique.map(|technique| format!("use {}", technique.name())));
@@ -236,7 +237,7 @@ impl Fix {
     }
 }
 
-/// Adds the draws of a part that the plan does not have.
+/// Adds the draws of a part that the plan lacks.
 fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<DrawPart>) {
     for (pass, fresh) in plan.passes.iter_mut().zip(&fresh.passes) {
         let missing = fresh.draws.iter().filter(|draw| Some(draw.part) == part);

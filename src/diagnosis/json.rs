@@ -8,7 +8,8 @@ use serde_json::{Map, Value, json};
 const SCHEMA: u32 = 1;
 
 impl Diagnosis {
-    /// Machine-readable. `suited` tells how techniques do on this scene; empty where that was not measured.
+    /// Returns the diagnosis as JSON. `suited` is how well techniques do on this scene; empty where that was not
+    /// measured.
     pub fn to_json(&self, suited: &[TechniqueFit]) -> Result<String, serde_json::Error> {
         let suited = suited.iter().map(|one| {
             json!({
@@ -73,7 +74,7 @@ fn cause(found: &CauseFound) -> Value {
     })
 }
 
-/// Only what it changes, and the same in words.
+/// Returns what a fix changes, and the same in words.
 fn fix(fix: &Fix) -> Value {
     let mut table = Map::new();
     if let Some(technique) = fix.technique.map(Technique::name) {

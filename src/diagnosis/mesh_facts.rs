@@ -1,7 +1,7 @@
-//! What a mesh is like, as far as shadows care.
+//! The properties of a mesh that matter for shadows.
 //!
-//! Edges of one triangle are sorted into those that look open only because vertices are split (another
-//! such edge lies at the very same place, or a hair away) and those that are.
+//! Edges of one triangle are sorted into those that look open only because vertices are split (another such edge lies
+//! at the very same place, or within a millionth of the mesh's size) and those that are open.
 
 use super::cause::Cause;
 use super::{MeshDefect, MeshFinding};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 const NEAR: f64 = 1e-6;
 /// Triangles so many times longer than high are slivers.
 const SLIVER: f64 = 1000.0;
-/// Places that a finding tells.
+/// The most places that a finding lists.
 const MOST_PLACES: usize = 16;
 
 /// Facts of one object's mesh; places are in world space.
@@ -24,9 +24,9 @@ pub(crate) struct MeshFacts {
     pub name: String,
     /// Middles of edges of one triangle that no other edge lies along.
     pub open: Vec<DVec3>,
-    /// The same that lie along another, bit for bit.
+    /// Middles of edges of one triangle that another lies along, bit for bit.
     pub split: Vec<DVec3>,
-    /// The same that lie within a millionth of the size of another.
+    /// Middles of edges of one triangle that another lies within a millionth of the mesh's size of.
     pub near: Vec<DVec3>,
     pub non_manifold: (usize, Vec<DVec3>),
     pub inconsistent: (usize, Vec<DVec3>),
@@ -75,7 +75,8 @@ impl MeshFacts {
         }
     }
 
-    /// How often the mesh winds around a point light that it encloses; `None` where it has holes, or does not.
+    /// Returns how often the mesh winds around a point light that it encloses; `None` where it has holes, or does not
+    /// enclose it.
     pub fn winding_around(&self, light: DVec4) -> Option<i32> {
         let is_closed = self.open.is_empty() && self.non_manifold.0 == 0;
         let asks = light.w != 0.0 && is_closed && !self.triangles.is_empty();
@@ -84,7 +85,7 @@ impl MeshFacts {
             .filter(|winding| *winding != 0)
     }
 
-    /// What there is to tell of it before any pixel.
+    /// Returns what can be said about the mesh before any pixel is examined.
     pub fn findings(&self, lights: &[DVec4]) -> Vec<MeshFinding> {
         let mut found = Vec::new();
         let mut report = |kind: MeshDefect, count: usize, at: &[DVec3], effect: &str| {
@@ -162,7 +163,7 @@ impl MeshFacts {
     }
 }
 
-/// Middles of edges of one triangle, world space: open, split, near.
+/// Returns the middles of edges of one triangle in world space: open, split, near.
 fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3>; 3] {
     let positions = mesh.positions();
     let lone: Vec<[u32; 2]> = (0..edges.edges().len())
@@ -177,7 +178,7 @@ fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3
     for (index, edge) in lone.iter().enumerate() {
         cells.entry(cell(middle(*edge))).or_default().push(index);
     }
-    // The largest distance of ends, turned whichever way fits.
+    // The largest distance of ends, in whichever direction the edges match better.
     let apart = |[a, b]: [u32; 2], [c, d]: [u32; 2]| {
         let far = |p: u32, q: u32| positions[p as usize].distance(positions[q as usize]);
         far(a, c).max(far(b, d)).min(far(a, d).max(far(b, c)))
@@ -200,7 +201,7 @@ fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3
     sorted
 }
 
-/// Triangles whose corners another before them has.
+/// Returns the triangles whose corners another before them has.
 fn duplicates(mesh: &Mesh) -> Vec<usize> {
     let mut seen = BTreeMap::new();
     let mut found = Vec::new();

@@ -1,13 +1,13 @@
 //! Why shadows are wrong, and the proof.
 //!
 //! ```text
-//! truth, capture ─► wrong regions ─► rules ─► causes with evidence ─► mend, run again ─► proof
+//! truth, capture ─► wrong regions ─► rules ─► causes with evidence ─► fix, run again ─► proof
 //! ```
 //!
-//! Wrong pixels are grouped into connected regions. Every [`Cause`] has a rule that looks for its
-//! evidence in numbers: in the scene, in the plan as it was run, and in what the GPU left. What fits
-//! is mended, and the frame is run again (`Session::diagnose`): only what takes the wrong pixels away
-//! is called proven. No rule knows how a fault came to be.
+//! Wrong pixels are grouped into connected regions. Every [`Cause`] has a rule that looks for its evidence in numbers:
+//! in the scene, in the plan as it was run, and in what the GPU left. Each cause that fits is fixed, and the frame is
+//! run again (`Session::diagnose`): only what takes the wrong pixels away is called proven. No rule knows how a fault
+//! was caused.
 
 mod cause;
 pub(crate) mod facts;
@@ -46,23 +46,24 @@ pub struct Diagnosis {
     pub size: [u32; 2],
     /// Wrong pixels, summed over the lights.
     pub error: ErrorCounts,
-    /// What is to be known of the meshes, whether it shows here or not.
+    /// Defects of the meshes, whether they show in this frame or not.
     pub mesh_findings: Vec<MeshFinding>,
-    /// What the scene's own flags take away. The truth honours them: nothing of it is wrong.
+    /// Shadows and surfaces that the scene's own flags take away. The truth honours the flags, so none of these are
+    /// wrong pixels.
     pub flags: Vec<FlagFound>,
-    /// The largest first; at most [`Diagnosis::MOST_REGIONS`].
+    /// Wrong regions, the largest first; at most [`Diagnosis::MOST_REGIONS`].
     pub regions: Vec<RegionFound>,
     /// The regions that are smaller than those.
     pub rest: RemainingRegions,
-    /// What to do; `None` where nothing is wrong or nothing helps.
+    /// What to change; `None` where nothing is wrong or nothing helps.
     pub advice: Option<Advice>,
 }
 
 impl Diagnosis {
-    /// As many regions are told of.
+    /// The largest number of regions that are listed one by one.
     pub const MOST_REGIONS: usize = 12;
 
-    /// What is to be said of a region that no cause fits, in a few words.
+    /// Says why no cause was found for a region, in a few words.
     pub fn without_cause(&self, region: &RegionFound) -> &'static str {
         let is_missing = region.kind == RegionKind::Wrong(Finding::MissingShadow);
         match self.technique {
@@ -71,27 +72,27 @@ impl Diagnosis {
         }
     }
 
-    /// Is any pixel wrong, or darkened twice?
+    /// Returns whether any pixel is wrong, or darkened twice.
     pub fn is_bad(&self) -> bool {
         !self.regions.is_empty()
     }
 }
 
-/// Regions that are not told of one by one.
+/// Regions that are not listed one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RemainingRegions {
-    /// How many.
+    /// The number of regions.
     pub regions: usize,
-    /// Their wrong pixels.
+    /// The number of their wrong pixels.
     pub pixels: u64,
 }
 
-/// Wrong pixels that hang together: of one light, one kind, one caster and one receiver.
+/// Connected wrong pixels of one light, one kind, one caster and one receiver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionFound {
-    /// How many pixels.
+    /// The number of pixels.
     pub pixels: u64,
-    /// How they are wrong.
+    /// In what way they are wrong.
     pub kind: RegionKind,
     /// Index of the light.
     pub light: usize,
@@ -101,13 +102,13 @@ pub struct RegionFound {
     pub at: [u32; 2],
     /// Names of the objects whose shadow is missing, or which cast it falsely, as far as is known.
     pub casters: Vec<String>,
-    /// Names of the objects that are seen there.
+    /// Names of the objects that are visible there.
     pub receivers: Vec<String>,
-    /// The most likely first.
+    /// Causes, the most likely first.
     pub causes: Vec<CauseFound>,
 }
 
-/// How a region's pixels are wrong.
+/// In what way a region's pixels are wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RegionKind {
     /// Their labels differ from the truth's.
@@ -117,7 +118,7 @@ pub enum RegionKind {
 }
 
 impl RegionKind {
-    /// The name in JSON.
+    /// Its name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             RegionKind::Wrong(finding) => finding.name(),
@@ -129,34 +130,34 @@ impl RegionKind {
 /// A cause that fits a region.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseFound {
-    /// Which.
+    /// The cause.
     pub cause: Cause,
     /// What was measured, in a sentence without its stop.
     pub evidence: String,
     /// What to change; `None` where nothing helps.
     pub fix: Option<Fix>,
-    /// What running it again has shown.
+    /// What running the frame with the fix has shown.
     pub proof: Proof,
-    /// Wrong pixels of the region that the mend leaves, with those that it makes newly wrong in the
-    /// region's box; `None` where it was not run.
+    /// Wrong pixels of the region that the fix leaves, with those that it makes newly wrong in the region's bounding
+    /// box; `None` where it was not run.
     pub pixels_left: Option<u64>,
-    /// Where another technique mends it: what mends most of it without changing the technique.
+    /// Where the fix is another technique: what fixes most of it without changing the technique.
     pub staying: Option<FixWithinTechnique>,
-    /// Causes without whose mends, made at the same time, this one proves nothing; mostly none.
+    /// Causes without whose fixes, applied at the same time, this one proves nothing; mostly none.
     pub together_with: Vec<Cause>,
 }
 
-/// What to change who stays with a technique.
+/// What to change without changing the technique.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FixWithinTechnique {
     /// Changes of settings and scene.
     pub fix: Fix,
-    /// Wrong pixels that it leaves.
+    /// Number of wrong pixels that it leaves.
     pub pixels_left: u64,
 }
 
 named_enum! {
-    /// What a mend's run has shown of a cause.
+    /// What running the frame with a fix has shown about a cause.
     pub enum Proof {
         /// No pixel of the region is wrong any more.
         Proven = "proven",
@@ -164,43 +165,43 @@ named_enum! {
         Part = "part",
         /// None is right now.
         NotIt = "not it",
-        /// There is nothing to run.
+        /// No fix could be run.
         NotRun = "not run",
     }
 }
 
-/// Something about an object's mesh, before any pixel.
+/// A defect of an object's mesh, found before any pixel is examined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFinding {
     /// Name of the object.
     pub object: String,
-    /// What it is.
+    /// The defect.
     pub kind: MeshDefect,
-    /// How often.
+    /// How often it occurs.
     pub count: usize,
-    /// The first places, world space, metres.
+    /// The first places where it occurs, world space, metres.
     pub at: Vec<DVec3>,
     /// What it does to which technique, and what to do, in a sentence.
     pub effect: String,
 }
 
-/// What can be to be known of a mesh.
+/// A kind of defect of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MeshDefect {
     /// It breaks techniques in a known way.
     Cause(Cause),
     /// Triangles whose corners lie on a line.
     FlatTriangles,
-    /// Triangles that loading left out, as two of their corners were equal.
+    /// Triangles that loading left out, because two of their corners were equal.
     DroppedTriangles,
-    /// Triangles that are there twice.
+    /// Triangles with the same corners as another.
     DuplicateTriangles,
     /// Triangles a thousand times longer than high.
     Slivers,
 }
 
 impl MeshDefect {
-    /// The name in JSON and text.
+    /// Its name in JSON and text.
     pub fn name(self) -> &'static str {
         match self {
             MeshDefect::Cause(cause) => cause.name(),
@@ -221,35 +222,35 @@ pub struct FlagFound {
     pub cause: Cause,
     /// Pixels of the truth that would change if it were set, summed over the lights.
     pub pixels: u64,
-    /// One of them; `None` where there is none.
+    /// One of these pixels; `None` where there is none.
     pub at: Option<[u32; 2]>,
-    /// What sets it.
+    /// Sets the flag.
     pub fix: Fix,
 }
 
 /// What to do about the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// All that is to be changed, at once.
+    /// All changes, to be applied at once.
     pub fix: Fix,
     /// Wrong pixels that were left when it was run, summed over the lights.
     pub wrong_left: u64,
-    /// In a sentence.
+    /// The advice in a sentence.
     pub sentence: String,
-    /// Where another technique is advised: what to change who stays with this one.
+    /// Where another technique is advised: what to change without changing the technique.
     pub staying: Option<FixWithinTechnique>,
 }
 
 impl Advice {
-    /// To make these changes, which leave so many pixels wrong of those that are now.
+    /// Advises the changes of `fix`, which leave `wrong_left` pixels wrong of `wrong_now`.
     pub(crate) fn new(fix: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
         let outcome = outcome(wrong_left);
         let sentence = format!("To mend it, {fix}: {outcome}, of {} now.", numbers::count(wrong_now));
         Advice { fix: fix.clone(), wrong_left, sentence, staying: None }
     }
 
-    /// Where another technique is advised: what to change who stays with this one, and how many pixels that leaves
-    /// wrong.
+    /// Where another technique is advised, adds what to change without changing the technique, and how many pixels that
+    /// leaves wrong.
     pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Fix, u64)>) -> Advice {
         if let (Some(_), Some((fix, left))) = (self.fix.technique, staying) {
             self.sentence += &format!(" To stay with {}, {fix}: {}.", technique.name(), outcome(left));
@@ -259,7 +260,7 @@ impl Advice {
     }
 }
 
-/// How many pixels are wrong then.
+/// Says how many pixels are wrong then.
 fn outcome(wrong_left: u64) -> String {
     match wrong_left {
         0 => "then no pixel is wrong".to_owned(),

@@ -1,25 +1,25 @@
-//! What the run of a mend shows of a region, and which cause is named first.
+//! Decides what the run of a fix shows about a region, and which cause is named first.
 
 use super::facts::SuspectedCause;
 use super::fix::Fix;
 use super::regions::ConnectedRegion;
 use super::{Cause, CauseFound, FixWithinTechnique, Proof};
 
-/// Which pixels of one light are wrong in one run, by number; too dark counts as wrong.
+/// Which pixels are wrong in one run; pixels that are too dark count as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct WrongPixels {
-    /// By light.
+    /// For each light, whether each pixel is wrong.
     pub lights: Vec<Vec<bool>>,
 }
 
 impl WrongPixels {
-    /// How many, over all lights.
+    /// The number of wrong pixels over all lights.
     pub fn count(&self) -> u64 {
         self.lights.iter().flatten().filter(|wrong| **wrong).count() as u64
     }
 }
 
-/// What a run proves of a region, with the pixels that are left.
+/// Returns what a run proves about a region, with the number of pixels that are still wrong.
 pub(crate) fn judge(
     region: &ConnectedRegion,
     before: &WrongPixels,
@@ -37,7 +37,7 @@ pub(crate) fn judge(
     (proof, (still + new) as u64)
 }
 
-/// A suspicion with the best that its mends have shown.
+/// A suspected cause with the best result of its fixes.
 #[derive(Debug, Clone)]
 pub(crate) struct TriedCause {
     pub suspicion: SuspectedCause,
@@ -49,12 +49,12 @@ pub(crate) struct TriedCause {
 }
 
 impl TriedCause {
-    /// Smaller is named sooner.
+    /// Sort key: smaller is named sooner.
     fn rank(&self) -> (u8, u64, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>, usize, Cause) {
         let is_limit = self.suspicion.cause == Cause::F32Limit;
         let proof = match self.proof {
             Proof::Proven => 0,
-            // Nothing can prove it; but what takes only some pixels away is hardly it.
+            // Nothing can prove such a limit; but a fix that takes only some pixels away makes a cause unlikely.
             Proof::NotRun if is_limit => 1,
             Proof::Part => 2,
             Proof::NotIt => 3,
@@ -71,7 +71,7 @@ impl TriedCause {
     }
 }
 
-/// The most likely first.
+/// Sorts causes, the most likely first.
 pub(crate) fn ranked(mut tried: Vec<TriedCause>) -> Vec<CauseFound> {
     tried.sort_by_key(TriedCause::rank);
     let found = |tried: TriedCause| CauseFound {

@@ -19,13 +19,15 @@ use wgpu::StencilOperation as Operation;
 /// How a cause is looked for in another program's frame.
 struct FrameRule {
     cause: Cause,
-    /// What it is and what to do in the program's own terms, where those are not [`Cause::meaning`]'s.
+    /// What it is and what to do in the program's own terms, where [`Cause::meaning`] does not apply.
     meaning: Option<&'static str>,
-    /// Its evidence in numbers, and the plan with that one thing changed, for volumes of a light at this position.
+    /// Looks for evidence: returns it in numbers, with the plan with that one thing changed, for volumes of a light at
+    /// this position.
     look: fn(&CountingDraws, DVec4) -> Option<(String, FramePlan)>,
 }
 
-/// Every cause that states and volumes can show. No rule knows a program's scene or settings, so no other cause can be.
+/// The rules of every cause that states and volumes can show. No rule knows a program's scene or settings, so other
+/// causes can't be found.
 const RULES: [FrameRule; 10] = [
     FrameRule {
         cause: Cause::FarClip,
@@ -75,43 +77,43 @@ fn meaning(cause: Cause) -> &'static str {
     RULES.iter().find(|rule| rule.cause == cause).and_then(|rule| rule.meaning).unwrap_or(cause.meaning())
 }
 
-/// What may be wrong.
+/// A cause that a foreign frame's data suggests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSuspicion {
-    /// What it may be.
+    /// The suspected cause.
     pub cause: Cause,
-    /// What it is suspected from, in numbers.
+    /// The evidence, in numbers.
     pub evidence: String,
-    /// The frame without it.
+    /// The frame's plan without the cause.
     pub fixed: FramePlan,
 }
 
-/// A suspicion that was tried.
+/// A suspected cause whose changed plan was run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameCauseFound {
-    /// What it is.
+    /// The cause.
     pub cause: Cause,
     /// The light whose shadows it is about.
     pub light: LightId,
-    /// What it was suspected from.
+    /// The evidence, in numbers.
     pub evidence: String,
-    /// What its run has shown.
+    /// What the run has shown.
     pub proof: Proof,
-    /// Pixels of the light that are wrong without it.
+    /// Pixels of the light that are wrong without the cause.
     pub pixels_left: u64,
-    /// Faults that were taken away with it; empty where it was tried alone.
+    /// Causes that were removed together with it; empty where it was tried alone.
     pub together_with: Vec<Cause>,
 }
 
 impl FrameCauseFound {
-    /// Its names, its light and what its run has shown: `far-clip (light 1), part: 10 pixels left`.
+    /// Returns its names, its light and what its run has shown: `far-clip (light 1), part: 10 pixels left`.
     pub fn title(&self) -> String {
         let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
         let (name, light, proof) = (self.cause.name(), self.light.name(), self.proof.name());
         format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
     }
 
-    /// What it is and what to do; of all of them where it is several.
+    /// Returns what it is and what to do; of all causes where it was tried with others.
     pub fn meaning(&self) -> String {
         let all = std::iter::once(&self.cause).chain(&self.together_with);
         all.map(|cause| meaning(*cause)).collect::<Vec<_>>().join(" ")
@@ -121,27 +123,27 @@ impl FrameCauseFound {
 /// What is wrong in another program's frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameDiagnosis {
-    /// What the frame is called.
+    /// Name of the frame.
     pub scene: String,
-    /// Of each light: its pixels, and the largest wrong region.
+    /// For each light: the numbers of its pixels by finding, and the largest wrong region.
     pub lights: Vec<(ErrorCounts, Option<WrongRegion>)>,
-    /// The proven ones first.
+    /// Causes, the proven ones first.
     pub causes: Vec<FrameCauseFound>,
-    /// Wrong pixels where the frame is run again as it is: it should be as many.
+    /// Wrong pixels where the frame is run again unchanged: it should be as many.
     pub wrong_again: u64,
-    /// Surfaces at which no volume begins: they are taken to cast no shadow, which the frame can't say.
+    /// Names of surfaces at which no volume begins: they are taken to cast no shadow, which the frame can't confirm.
     pub silent: Vec<String>,
-    /// Casters that the picture does not show.
+    /// Names of casters that the picture does not show.
     pub unseen: Vec<String>,
 }
 
 impl FrameDiagnosis {
-    /// Wrong pixels of all lights.
+    /// The number of wrong pixels of all lights.
     pub fn wrong(&self) -> u64 {
         self.lights.iter().map(|(error, _)| error.wrong()).sum()
     }
 
-    /// For people.
+    /// Returns the diagnosis as text for people.
     pub fn to_text(&self) -> String {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
         let mut text = format!(
@@ -193,7 +195,7 @@ impl FrameDiagnosis {
         text
     }
 
-    /// For scripts: as `diagnose --json` of a scene, with one region a light.
+    /// Returns the diagnosis as JSON for scripts: as `diagnose --json` of a scene, with one region a light.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
         let cause = |found: &FrameCauseFound| {
@@ -234,12 +236,12 @@ impl FrameDiagnosis {
     }
 }
 
-/// What may be wrong with the shadows of a light at `position`, from states and volumes alone.
+/// Returns what may be wrong with the shadows of a light at `position`, from states and volumes alone.
 pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<FrameSuspicion> {
     RULES.iter().filter_map(|rule| suspicion(rule.cause, plan, light, position)).collect()
 }
 
-/// What speaks for a cause in a plan; `None` where nothing does.
+/// Returns the evidence for a cause in a plan; `None` where there is none.
 pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<FrameSuspicion> {
     let rule = RULES.iter().find(|rule| rule.cause == cause)?;
     let (evidence, fixed) = (rule.look)(&CountingDraws { plan, light }, position)?;
@@ -257,7 +259,7 @@ fn counts(operation: Operation) -> bool {
     matches!(operation, IncrementClamp | IncrementWrap | DecrementClamp | DecrementWrap)
 }
 
-/// Does a state count behind the surface, or in front of it?
+/// Returns whether a state counts behind the surface, and in front of it.
 fn sides(raster: &RasterState) -> [bool; 2] {
     let faces = [&raster.stencil.front, &raster.stencil.back];
     [faces.iter().any(|face| counts(face.depth_fail_op)), faces.iter().any(|face| counts(face.pass_op))]
@@ -275,7 +277,7 @@ impl CountingDraws<'_> {
             .filter(|(_, draw)| draw.part.is_of_volume())
     }
 
-    /// The plan with the states of the counting draws changed.
+    /// Returns the plan with the states of the counting draws changed.
     fn with_states(&self, change: impl Fn(&mut RasterState)) -> FramePlan {
         let mut plan = self.plan.clone();
         for pass in plan.passes.iter_mut().filter(|pass| pass.light == Some(self.light)) {
@@ -285,7 +287,7 @@ impl CountingDraws<'_> {
     }
 
     fn clipped(&self, is_far: bool) -> Option<(String, FramePlan)> {
-        // Counted behind the surface, what is cut at the far end is missed; counted in front of it, at the near end.
+        // Counted behind the surface, cuts at the far end lose faces; counted in front of it, those at the near end.
         let is_meant = |raster: &RasterState| sides(raster)[usize::from(!is_far)] && !raster.unclipped_depth;
         let is_reversed = self.plan.depth.mapping.is_reversed();
         let is_cut = |[_, _, z, w]: &[f32; 4]| if is_far != is_reversed { z > w } else { *z < 0.0 };
@@ -340,7 +342,7 @@ impl CountingDraws<'_> {
             raster.cull.is_some() && ops(&raster.stencil.front) && ops(&raster.stencil.back)
         };
         let culled = self.draws().filter(|(_, draw)| is_one_sided(&draw.raster)).count();
-        // What is drawn once for each side is whole.
+        // Volumes that are drawn once for each side are whole.
         let sides: Vec<_> = self.draws().filter_map(|(_, draw)| draw.raster.cull).collect();
         let is_whole = sides.contains(&wgpu::Face::Front) && sides.contains(&wgpu::Face::Back);
         if culled == 0 || is_whole {
@@ -458,7 +460,7 @@ impl CountingDraws<'_> {
         ))
     }
 
-    /// Closes what is open of the volumes that are counted behind the surface, taken together.
+    /// Closes the open edges of all volumes together that are counted behind the surface.
     fn open(&self) -> Option<(String, FramePlan)> {
         let draws = || self.draws().filter(|(_, draw)| sides(&draw.raster)[0]);
         let open = OpenEdges::of(self.plan, draws().map(|(_, draw)| draw));

@@ -4,7 +4,7 @@ use super::RegionKind;
 use super::cause::Cause;
 use crate::accuracy::{place, take_connected};
 
-/// Pixels that are so many columns and rows apart still hang together: speckle is one thing.
+/// Pixels at most this many columns and rows apart are connected: speckle is one region.
 const REACH: u32 = 3;
 
 /// What the pixels of a region have in common.
@@ -13,9 +13,9 @@ pub(crate) struct RegionKey {
     pub kind: RegionKind,
     /// Index of the object whose shadow is missing, in the truth's scene.
     pub caster: Option<usize>,
-    /// Index of the object that is seen.
+    /// Index of the object that is visible.
     pub receiver: Option<usize>,
-    /// What the pixel alone tells of the cause.
+    /// The cause that a single pixel suggests by itself.
     pub hint: Option<Cause>,
 }
 
@@ -24,13 +24,13 @@ pub(crate) struct RegionKey {
 pub(crate) struct ConnectedRegion {
     pub key: RegionKey,
     pub light: usize,
-    /// Numbers of its pixels, ascending.
+    /// Numbers of its pixels (row · width + column), ascending.
     pub pixels: Vec<usize>,
     /// First and last column and row.
     pub bounds: [u32; 4],
 }
 
-/// The regions of a light, one key a pixel and none where it is right.
+/// Finds the regions of a light. `keys` has one key a pixel, and `None` where it is right.
 pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2]) -> Vec<ConnectedRegion> {
     let mut regions = Vec::new();
     for start in 0..keys.len() {
@@ -50,7 +50,7 @@ pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2
 }
 
 impl ConnectedRegion {
-    /// Some of its pixels: the one farthest from its rim first, then others spread over it.
+    /// Returns some of its pixels: the one farthest from its border first, then others spread over it.
     pub fn samples(&self, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {
         let count = self.pixels.len();
         let inmost = self.inmost(size);
@@ -64,7 +64,7 @@ impl ConnectedRegion {
         samples.into_iter().map(|index| place(index, size)).collect()
     }
 
-    /// The pixel whose square of the region's own pixels is the largest.
+    /// Returns the number of the pixel at the centre of the largest square of the region's own pixels.
     fn inmost(&self, size: [u32; 2]) -> usize {
         let [left, top, right, bottom] = self.bounds;
         let [width, height] = [right - left + 3, bottom - top + 3].map(|n| n as usize);
@@ -72,7 +72,7 @@ impl ConnectedRegion {
             let [x, y] = place(index, size);
             (y - top + 1) as usize * width + (x - left + 1) as usize
         };
-        // Rings taken away one by one: what is left last is inmost.
+        // Erodes the region ring by ring: the last pixel is the inmost.
         let mut inside = vec![false; width * height];
         self.pixels.iter().for_each(|index| inside[local(*index)] = true);
         let mut left_over = self.pixels.clone();
@@ -91,7 +91,7 @@ impl ConnectedRegion {
         }
     }
 
-    /// Numbers of all pixels of its box.
+    /// The numbers of all pixels of its bounding box.
     pub fn boxed(&self, [width, _]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {
         let [left, top, right, bottom] = self.bounds;
         (top..=bottom).flat_map(move |y| (left..=right).map(move |x| y as usize * width as usize + x as usize))

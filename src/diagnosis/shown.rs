@@ -7,11 +7,11 @@ use crate::capture::Capture;
 use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 
-/// Frames and numbers.
+/// Colour of frames and numbers.
 const INK: Rgb = [0xd9, 0xdc, 0xe3];
-/// Behind numbers.
+/// Colour behind numbers.
 const PAPER: Rgb = colors::BACKGROUND;
-/// How bright the frame still is.
+/// Brightness of the captured picture under the marks.
 const GROUND: f32 = 0.45;
 /// Pixels from a region to its frame, and the frame's width.
 const GAP: u32 = 2;
@@ -20,7 +20,7 @@ const WIDTH: u32 = 1;
 const DOT: u32 = 2;
 
 impl Diagnosis {
-    /// Draws the regions over a capture that was held against the truth, numbered as in the text.
+    /// Draws the regions over a capture that was compared with the truth, numbered as in the text.
     pub fn shown(&self, capture: &Capture) -> Picture {
         let mut picture = wrong_pixels(capture);
         for (index, region) in self.regions.iter().enumerate() {
@@ -30,7 +30,7 @@ impl Diagnosis {
     }
 }
 
-/// The last picture of a capture in grey, with what is wrong in it in colour.
+/// Returns the last picture of a capture in grey, with its wrong pixels in colour.
 pub fn wrong_pixels(capture: &Capture) -> Picture {
     let mut picture = Picture::filled(capture.size, colors::NOTHING);
     let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
@@ -50,7 +50,7 @@ fn outline(picture: &mut Picture, region: &RegionFound, number: usize) {
     picture.frame(region.bounds, GAP, WIDTH, INK);
     let [left, top, ..] = region.bounds;
     let [width, height] = Picture::number_size(number, DOT);
-    // Above the frame's corner where there is room, else within it.
+    // Above the frame's corner where there is space, else within it.
     let [_, picture_height] = picture.size();
     let y = top.checked_sub(GAP + WIDTH + height).unwrap_or(top).min(picture_height.saturating_sub(height));
     let x = left.saturating_sub(GAP + WIDTH).min(picture.size()[0].saturating_sub(width));

@@ -3,7 +3,7 @@
 use super::{Diagnosis, Fix};
 use crate::technique::{Choice, Technique};
 
-/// How a technique did on a scene.
+/// How well a technique did on a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TechniqueFit {
     /// Technique and settings.
@@ -15,14 +15,14 @@ pub struct TechniqueFit {
 }
 
 impl TechniqueFit {
-    /// What is worth trying on any scene: every technique that makes shadows on the GPU as it is by default, and
+    /// Returns what is worth trying on any scene: every technique that makes shadows on the GPU with its defaults, and
     /// volumes that count in floats.
     pub fn candidates() -> Vec<Choice> {
         let plain = Technique::rivals().into_iter().map(Choice::new);
         plain.chain(Choice::new(Technique::ZFail).counting_in_floats()).collect()
     }
 
-    /// The technique with the settings that differ from its defaults: `z-fail counter=float`.
+    /// Returns the technique with the settings that differ from its defaults: `z-fail counter=float`.
     pub fn name(&self) -> String {
         let technique = self.choice.technique();
         let changed = technique.settings().iter().filter_map(|spec| {
@@ -32,7 +32,7 @@ impl TechniqueFit {
         changed.fold(technique.name().to_owned(), |name, setting| name + &setting)
     }
 
-    /// The fastest that has no wrong pixel: as it is by default where any is right so.
+    /// Returns the fastest that has no wrong pixel; one with default settings if there is any.
     pub fn best(suited: &[TechniqueFit]) -> Option<&TechniqueFit> {
         let is_plain = |one: &TechniqueFit| one.choice == Choice::new(one.choice.technique());
         let right = suited.iter().filter(|one| one.wrong == 0);
@@ -41,12 +41,12 @@ impl TechniqueFit {
 }
 
 impl Diagnosis {
-    /// What mends the scene for good, where anything is better than what was asked for: what is advised, or the fastest
-    /// technique without a wrong pixel.
+    /// Returns what fixes the scene for good, where anything is better than what was asked for: the advice, or the
+    /// fastest technique without a wrong pixel.
     pub fn fix_to_write(&self, suited: &[TechniqueFit]) -> Option<Fix> {
         let best = || {
             let choice = &TechniqueFit::best(suited)?.choice;
-            // All of them: what was set for another technique is to be kept in none.
+            // Write all of them: none of the settings of another technique may stay.
             let settings = choice.settings().clone();
             Some(Fix { technique: Some(choice.technique()), settings, ..Fix::default() })
         };
@@ -54,7 +54,7 @@ impl Diagnosis {
         if self.is_fixed() { advised } else { best().or(advised) }
     }
 
-    /// Does what it advises leave nothing wrong?
+    /// Returns whether its advice leaves no pixel wrong.
     pub fn is_fixed(&self) -> bool {
         self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
     }

@@ -1,4 +1,4 @@
-//! A diagnosis in words: where, who, why, what mends it and how sure that is; last what to do.
+//! A diagnosis in words: where, which objects, why, the fix and how sure that is; last what to do.
 //!
 //! Regions and lights count from 1, pixels from 0 as in `pixel --at`.
 
@@ -8,12 +8,12 @@ use crate::numbers;
 use crate::technique::Technique;
 use std::collections::BTreeSet;
 
-/// Places of a mesh finding that are told.
+/// The most places of a mesh finding that are listed.
 const MOST_PLACES: usize = 8;
 
 impl Diagnosis {
-    /// The whole diagnosis, for someone who meets these words for the first time. `suited` tells how techniques do
-    /// on this scene; empty where that was not measured.
+    /// Returns the whole diagnosis, for a reader who does not know its terms. `suited` is how well techniques do on
+    /// this scene; empty where that was not measured.
     pub fn to_text(&self, suited: &[TechniqueFit]) -> String {
         let mut out = self.heading();
         let mut explained = BTreeSet::new();
@@ -92,7 +92,7 @@ impl Diagnosis {
         out
     }
 
-    /// The last line.
+    /// Returns the last line: what to do.
     pub fn what_to_do(&self, suited: &[TechniqueFit]) -> String {
         if !self.is_bad() {
             return "nothing: the shadows are right".to_owned();
@@ -116,7 +116,7 @@ impl Diagnosis {
 }
 
 impl RegionFound {
-    /// What is wrong, where, and who is concerned: one line.
+    /// Says what is wrong, where, and with which objects, in one line.
     pub fn place(&self) -> String {
         let [left, top, right, bottom] = self.bounds;
         let [x, y] = self.at;
@@ -128,7 +128,7 @@ impl RegionFound {
         )
     }
 
-    /// What is wrong, and who is concerned: `missing shadow of bunny on floor`.
+    /// Says what is wrong with which objects: `missing shadow of bunny on floor`.
     pub fn title(&self) -> String {
         let casters = names(&self.casters);
         let on = names(&self.receivers).map_or_else(String::new, |receivers| format!(" on {receivers}"));
@@ -143,7 +143,7 @@ impl RegionFound {
 }
 
 impl Fix {
-    /// What of it can be said on a command line: `-t z-fail`, `--set bias-slope=2`.
+    /// Returns the part of it that can be written on a command line: `-t z-fail`, `--set bias-slope=2`.
     pub fn options(&self) -> Vec<String> {
         let technique = self.technique.map(|technique| format!("-t {}", technique.name()));
         let settings = self.settings.iter().map(|(key, value)| format!("--set {key}={value}"));
@@ -151,7 +151,7 @@ impl Fix {
     }
 }
 
-/// Do two regions have the same causes with the same mends and proofs?
+/// Returns whether two regions have the same causes with the same fixes and proofs.
 fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
     let said = |region: &RegionFound| -> Vec<(Cause, Option<Fix>, Proof)> {
         region.causes.iter().map(|found| (found.cause, found.fix.clone(), found.proof)).collect()
@@ -159,14 +159,14 @@ fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
     !one.causes.is_empty() && said(one) == said(other)
 }
 
-/// What was told of region number `like`, counted from 0, holds for this one.
+/// Says that region number `like`, counted from 0, has the same causes as this one.
 fn as_before(region: &RegionFound, like: usize) -> String {
     let first = region.causes.first();
     let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
     format!("   as {}{evidence}\n", like + 1)
 }
 
-/// What the mend is, and what running it has shown.
+/// Says what the fix is, and what running it has shown.
 fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
     let Some(fix) = fix else { return "no mend to run".to_owned() };
     let options = fix.options();

@@ -1,7 +1,7 @@
-//! Which passes of two frames are the same: equal names, in an order that both keep.
+//! Which passes of two frames correspond: those of equal names, in an order that is valid in both.
 //!
-//! The k-th of a name in one frame is paired with the k-th in the other. Of pairs that cross, the most
-//! are kept that do not (Schensted 1961, the longest increasing subsequence); the rest stand alone.
+//! The k-th of a name in one frame is paired with the k-th in the other. Of pairs that cross, the largest set that does
+//! not is taken (Schensted 1961, the longest increasing subsequence); the rest stay unpaired.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ pub(super) enum AlignedPair {
     Second(usize),
 }
 
-/// The common order of two lists: what only one has comes before the next that both have, the
-/// first list's before the second's.
+/// Returns the common order of two lists: elements of only one come before the next that both have, the first list's
+/// before the second's.
 pub(super) fn align<K: Ord>(a: &[K], b: &[K]) -> Vec<AlignedPair> {
     let mut pairs = Vec::new();
     let (mut next_a, mut next_b) = (0, 0);
@@ -34,7 +34,7 @@ pub(super) fn align<K: Ord>(a: &[K], b: &[K]) -> Vec<AlignedPair> {
     pairs
 }
 
-/// The k-th of a name with the k-th of it, in the first list's order.
+/// Pairs the k-th element of a name in one list with the k-th in the other, in the first list's order.
 fn paired<K: Ord>(a: &[K], b: &[K]) -> Vec<(usize, usize)> {
     let mut places: BTreeMap<&K, Vec<usize>> = BTreeMap::new();
     // Last first, so that the first is popped first.
@@ -43,7 +43,7 @@ fn paired<K: Ord>(a: &[K], b: &[K]) -> Vec<(usize, usize)> {
     a.iter().enumerate().filter_map(partner).collect()
 }
 
-/// The longest part of the pairs whose second numbers increase as the first do.
+/// Returns the longest part of the pairs whose second numbers increase as the first do.
 fn increasing(pairs: &[(usize, usize)]) -> Vec<(usize, usize)> {
     // `ends[n]`: the pair that ends the best run of n + 1 pairs so far; `before`: the pair before it.
     let (mut ends, mut before): (Vec<usize>, Vec<Option<usize>>) = (Vec::new(), Vec::new());

@@ -15,10 +15,10 @@ pub struct PixelDifference {
     pub region: DifferingRegion,
 }
 
-/// Differing texels that hang together.
+/// Differing texels that are connected, corners included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferingRegion {
-    /// How many.
+    /// The number of texels.
     pub pixels: u64,
     /// First and last column and row: left, top, right, bottom.
     pub bounds: [u32; 4],
@@ -29,16 +29,16 @@ pub struct DifferingRegion {
 /// One texel in both pictures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelDifference {
-    /// Column and row.
+    /// Column and row of the texel.
     pub at: [u32; 2],
-    /// In the first and in the second picture.
+    /// Its values in the first and in the second picture.
     pub values: [Texel; 2],
-    /// How far apart: of colours the channel that differs most, of bytes the shorter way round (255 is −1),
-    /// of floats their difference; 0 where they differ in bits alone, infinite where one is no number.
+    /// The distance of the values: of colours in the channel that differs most, of bytes the shorter way round (255 is
+    /// −1), of floats their difference; 0 where they differ in bits alone, infinite where one is NaN.
     pub by: f64,
 }
 
-/// What a texel holds.
+/// The value of a texel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Texel {
     /// Red, green, blue and alpha.
@@ -122,7 +122,7 @@ fn apart(values: [Texel; 2]) -> f64 {
         [Texel::Float(a), Texel::Float(b)] if a.is_nan() && b.is_nan() => 0.0,
         [Texel::Float(a), Texel::Float(b)] => {
             let by = (f64::from(a) - f64::from(b)).abs();
-            // Equal infinities are 0 apart, and what is no number is nowhere near one.
+            // Equal infinities are 0 apart, and NaN is infinitely far from every value.
             if a == b {
                 0.0
             } else if by.is_nan() {

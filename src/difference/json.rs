@@ -36,7 +36,7 @@ struct DifferenceDocument<'a> {
 }
 
 impl Difference {
-    /// Machine-readable, as the module's documentation has it.
+    /// Returns the difference as JSON, in the format that the module's documentation shows.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let [a, b] = self.sides.each_ref().map(frame);
         let place = |pass: &PassDifference| json!({"name": pass.name, "light": pass.light, "index": pass.index});
@@ -109,7 +109,7 @@ fn texel(aspect: AspectKind, TexelDifference { at, values, by }: &TexelDifferenc
     let value = |value: &Texel| match value {
         Texel::Byte(byte) => json!(byte),
         Texel::Color(channels) => json!(channels),
-        // No number is null.
+        // NaN is null.
         Texel::Float(number) => json!(number),
     };
     let bits = |value: &Texel| match value {

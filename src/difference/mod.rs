@@ -1,12 +1,12 @@
 //! What differs between two frames, pass by pass: from two [`Capture`]s, without a GPU.
 //!
-//! Passes are matched by name and light, in order. Of each pair every aspect is compared bit by bit: colour,
-//! depth, stencil, what the pass draws into elsewhere (labels, a count, a face of a map), and the states after
-//! its draws where both captures hold them. After the passes come the lights: final labels, and what no pass
-//! shows. What was asked for (technique, settings, plan, adapter) is told, but makes no difference of its own.
+//! Passes are matched by name and light, in order. Of each pair every aspect is compared bit by bit: colour, depth,
+//! stencil, what the pass draws into elsewhere (labels, a count, a face of a map), and the states after its draws where
+//! both captures have them. After the passes come the lights: final labels, and what no pass shows. What was asked for
+//! (technique, settings, plan, adapter) is reported, but makes no difference of its own.
 //!
-//! A count or a face of a map is kept as the frame left it, so a difference in it is told at the first
-//! pass that draws into it, even if a later one made it.
+//! A count or a face of a map is stored as the frame left it, so a difference in it is reported at the first pass that
+//! draws into it, even if a later one caused it.
 
 mod align;
 mod images;
@@ -27,12 +27,12 @@ use std::sync::Arc;
 /// Why two captures can't be compared.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DifferenceError {
-    /// Pixels have no partners.
+    /// The pictures have different sizes, so that pixels have no partners.
     #[error(
         "the pictures are {}x{} and {}x{} pixels: capture both with one --size", sizes[0][0], sizes[0][1], sizes[1][0], sizes[1][1]
     )]
     Sizes {
-        /// Width and height of each.
+        /// Width and height of each, pixels.
         sizes: [[u32; 2]; 2],
     },
 }
@@ -50,21 +50,21 @@ named_enum! {
 /// Two frames compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// Scene, technique and settings of each.
+    /// Scene, technique and settings of each frame.
     pub sides: [ComparedFrame; 2],
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// What was asked for differently; no difference by itself.
+    /// What was asked for differently; this makes no difference by itself.
     pub asked: Vec<DifferenceNote>,
-    /// What makes pixels mean something else: camera, lights, how depth is stored.
+    /// Differences that change the meaning of pixels: camera, lights, how depth is stored.
     pub conditions: Vec<DifferenceNote>,
     /// Passes in their common order.
     pub passes: Vec<PassDifference>,
-    /// Parallel to the lights that both have.
+    /// Differences of lights, parallel to the lights that both have.
     pub lights: Vec<LightDifference>,
 }
 
-/// What a frame was made of.
+/// Scene, technique and settings of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ComparedFrame {
     /// Name of the scene.
@@ -80,13 +80,13 @@ pub struct ComparedFrame {
 pub struct PassDifference {
     /// Short: `volumes`.
     pub name: String,
-    /// The light it belongs to.
+    /// Index of the light that it belongs to.
     pub light: Option<usize>,
-    /// Its index in each; at least one has it.
+    /// Its index in each frame; at least one has it.
     pub index: [Option<usize>; 2],
     /// Aspects that differ after it; empty where only one frame has it.
     pub aspects: Vec<AspectDifference>,
-    /// Draws after which something differs, where both captures hold the states after draws.
+    /// Draws after which something differs, where both captures have the states after draws.
     pub draws: Vec<DrawDifference>,
 }
 
@@ -104,18 +104,18 @@ pub struct DrawDifference {
 /// An aspect that differs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AspectDifference {
-    /// Which.
+    /// The aspect.
     pub aspect: AspectKind,
-    /// How.
+    /// How it differs.
     pub found: AspectChange,
-    /// Neither pass wrote to it: the difference is an earlier one's.
+    /// True where neither pass wrote to it: the difference is an earlier one's.
     pub carried: bool,
 }
 
 /// How an aspect differs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AspectChange {
-    /// In texels.
+    /// Texels differ.
     Pixels(PixelDifference),
     /// Only one frame has it.
     OnlyIn(ComparedSide),
@@ -123,7 +123,7 @@ pub enum AspectChange {
     Sizes([[u32; 2]; 2]),
 }
 
-/// What can differ after a pass, or of a light.
+/// What can differ after a pass, or for a light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AspectKind {
     /// The picture, sRGB.
@@ -136,22 +136,22 @@ pub enum AspectKind {
     Labels,
     /// A light's count, in floats.
     Count,
-    /// This face of a light's shadow map.
+    /// Face of a light's shadow map, by its index.
     Map(usize),
-    /// This layer of what a light lets through.
+    /// Layer of the textures of light that passes, by its index.
     Textures(usize),
-    /// A light's labels by the ground truth.
+    /// Ground truth of a light's labels.
     Truth,
-    /// Labels held against the truth.
+    /// Findings of labels compared with the truth.
     Findings,
 }
 
-/// What differs of a light at the end.
+/// What differs for a light at the end of the frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightDifference {
-    /// Which.
+    /// Index of the light.
     pub light: usize,
-    /// Pixels by their label in the first and in the second, where these differ.
+    /// Numbers of pixels by their label in the first and in the second frame, where these differ.
     pub labels: BTreeMap<[u8; 2], u64>,
     /// Its pictures that differ.
     pub aspects: Vec<AspectDifference>,
@@ -177,7 +177,7 @@ pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> 
     })
 }
 
-/// How many texels of two pictures differ, bit by bit; `None` where they are of other formats or sizes.
+/// Returns how many texels of two pictures differ, bit by bit; `None` where they are of other formats or sizes.
 pub fn differing_texels(a: &Image, b: &Image) -> Option<u64> {
     if (a.format(), a.size()) != (b.format(), b.size()) {
         return None;
@@ -191,17 +191,17 @@ pub fn differing_texels(a: &Image, b: &Image) -> Option<u64> {
 }
 
 impl Difference {
-    /// Is every pass and every pixel of both the same, seen and lit alike?
+    /// Returns whether every pass and every pixel of both is the same, and camera and lights too.
     pub fn is_none(&self) -> bool {
         self.conditions.is_empty() && self.first().is_none() && self.lights.iter().all(|light| light.aspects.is_empty())
     }
 
-    /// The first pass that differs, or that only one frame has.
+    /// Returns the first pass that differs, or that only one frame has.
     pub fn first(&self) -> Option<&PassDifference> {
         self.passes.iter().find(|pass| pass.differs())
     }
 
-    /// The first pass after which texels differ.
+    /// Returns the first pass after which texels differ.
     pub fn first_in_pixels(&self) -> Option<&PassDifference> {
         self.passes.iter().find(|pass| pass.states().flatten().any(|aspect| aspect.pixels().is_some()))
     }
@@ -215,12 +215,12 @@ impl ComparedFrame {
 }
 
 impl PassDifference {
-    /// Does anything after it differ, or has only one frame such a pass?
+    /// Returns whether anything after it differs, or only one frame has it.
     pub fn differs(&self) -> bool {
         self.only_in().is_some() || self.states().any(|aspects| !aspects.is_empty())
     }
 
-    /// The only frame that has it.
+    /// Returns the only frame that has it; `None` where both do.
     pub fn only_in(&self) -> Option<ComparedSide> {
         match self.index {
             [Some(_), None] => Some(ComparedSide::A),
@@ -229,14 +229,14 @@ impl PassDifference {
         }
     }
 
-    /// What differs after the pass, then after each draw.
+    /// Returns what differs after the pass, then after each draw.
     fn states(&self) -> impl Iterator<Item = &Vec<AspectDifference>> {
         std::iter::once(&self.aspects).chain(self.draws.iter().map(|draw| &draw.aspects))
     }
 }
 
 impl AspectDifference {
-    /// Where texels differ.
+    /// Returns where texels differ; `None` where the difference is another one.
     pub fn pixels(&self) -> Option<&PixelDifference> {
         match &self.found {
             AspectChange::Pixels(pixels) => Some(pixels),
@@ -246,7 +246,7 @@ impl AspectDifference {
 }
 
 impl AspectKind {
-    /// The name in JSON, without the face or layer.
+    /// Its name in JSON, without the face or layer.
     pub fn name(self) -> &'static str {
         match self {
             AspectKind::Color => "color",
@@ -261,12 +261,12 @@ impl AspectKind {
         }
     }
 
-    /// Can two values be nearer to each other than two others? Labels and findings can't.
+    /// Returns whether values have distances from each other. Labels and findings don't.
     pub fn has_distances(self) -> bool {
         !matches!(self, AspectKind::Labels | AspectKind::Truth | AspectKind::Findings)
     }
 
-    /// The face of a map, or the layer of textures.
+    /// Returns the face of a map, or the layer of textures.
     pub fn layer(self) -> Option<usize> {
         match self {
             AspectKind::Map(layer) | AspectKind::Textures(layer) => Some(layer),
@@ -278,7 +278,7 @@ impl AspectKind {
 /// The pictures of one state, each with whether it is an earlier one's.
 type ComparedState<'a> = BTreeMap<AspectKind, (&'a Arc<Image>, bool)>;
 
-/// Comparisons by the pictures' places in memory: what passes share is compared once.
+/// Comparisons by the pictures' addresses: pictures that passes share are compared once.
 #[derive(Default)]
 struct ImageComparisons(BTreeMap<[*const Image; 2], Option<AspectChange>>);
 
@@ -295,7 +295,7 @@ impl ImageComparisons {
         *self.0.entry([Arc::as_ptr(a), Arc::as_ptr(b)]).or_insert_with(compared)
     }
 
-    /// The aspects that differ between two states, in the order of their kinds.
+    /// Returns the aspects that differ between two states, in the order of their kinds.
     fn states(&mut self, a: &ComparedState, b: &ComparedState) -> Vec<AspectDifference> {
         let mut kinds: Vec<AspectKind> = a.keys().chain(b.keys()).copied().collect();
         kinds.sort_unstable();
@@ -341,7 +341,7 @@ fn pass(pictures: &mut ImageComparisons, [a, b]: [&Capture; 2], pair: AlignedPai
     }
 }
 
-/// Draws that both have, by name, caster and part.
+/// Compares draws that both have, by name, caster and part.
 fn draws(pictures: &mut ImageComparisons, a: &Step, b: &Step) -> Vec<DrawDifference> {
     let keys = |step: &Step| {
         step.draws.iter().map(|draw| (draw.name.clone(), draw.caster.clone(), draw.part)).collect::<Vec<_>>()
@@ -391,7 +391,7 @@ fn after_draw<'a>(step: &Step, after: &'a DrawState) -> ComparedState<'a> {
     state
 }
 
-/// The picture's aspects.
+/// Returns the picture's aspects.
 fn of_snapshot(snapshot: &Snapshot) -> ComparedState<'_> {
     let Snapshot::Frame(frame) = snapshot else { return ComparedState::new() };
     let stencil = frame.stencil.as_ref().map(|stencil| (AspectKind::Stencil, stencil));
@@ -399,12 +399,12 @@ fn of_snapshot(snapshot: &Snapshot) -> ComparedState<'_> {
     aspects.map(|(kind, aspect)| (kind, (&aspect.image, aspect.unchanged))).collect()
 }
 
-/// A layer of a map holds depths or colours.
+/// Returns the kind of a layer of a map, which has depths or colours.
 fn layer(image: &Image, index: usize) -> AspectKind {
     if image.format() == PixelFormat::Rgba8 { AspectKind::Textures(index) } else { AspectKind::Map(index) }
 }
 
-/// What differs of a light at the end of the frame.
+/// Compares a light at the end of the frame.
 fn of_light(pictures: &mut ImageComparisons, light: usize, a: &CapturedLight, b: &CapturedLight) -> LightDifference {
     let labels = match (&a.shadow, &b.shadow) {
         (Some(in_a), Some(in_b)) => changes(in_a, in_b),
@@ -426,7 +426,7 @@ fn at_the_end(light: &CapturedLight) -> ComparedState<'_> {
     state
 }
 
-/// How many pixels have which other label.
+/// Counts pixels by their labels in both pictures, where these differ.
 fn changes(a: &Image, b: &Image) -> BTreeMap<[u8; 2], u64> {
     let mut counts = BTreeMap::new();
     let pairs = a.rows().flatten().zip(b.rows().flatten());

@@ -1,31 +1,31 @@
-//! What two frames were asked for, and how they were seen and lit, where that differs.
+//! Notes on how two frames were requested, and on their cameras and lights, where these differ.
 
 use crate::capture::{Capture, CapturedLight};
 use crate::numbers;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
-/// Something besides pixels that is not alike in both frames.
+/// Something besides pixels that differs between two frames.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct DifferenceNote {
-    /// What: `technique`, `setting casters`, `camera's eye`.
+    /// What differs: `technique`, `setting casters`, `camera's eye`.
     pub what: String,
-    /// In the first frame.
+    /// Its value in the first frame.
     pub a: String,
-    /// In the second.
+    /// Its value in the second frame.
     pub b: String,
 }
 
-/// A value that is not there.
+/// Text for a missing value.
 const NONE: &str = "none";
 
-/// Scene, technique, settings, adapter and plan.
+/// Compares scene, technique, settings, adapter and plan.
 pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
     let mut notes = NoteList::default();
     notes.add("scene", &a.scene, &b.scene);
     notes.add("technique", &a.technique, &b.technique);
     let keys: BTreeSet<&String> = a.settings.keys().chain(b.settings.keys()).collect();
-    // Another technique has other settings; told is then only what both have.
+    // Another technique has other settings; only those that both have are reported then.
     let is_of_both = |key: &&String| a.settings.contains_key(*key) && b.settings.contains_key(*key);
     for key in keys.into_iter().filter(|key| a.technique == b.technique || is_of_both(key)) {
         let [in_a, in_b] = [a, b].map(|capture| capture.settings.get(key).map_or(NONE, String::as_str));
@@ -40,7 +40,7 @@ pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
     notes.0
 }
 
-/// Camera, depth mapping and lights.
+/// Compares camera, depth mapping and lights.
 pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
     let mut notes = NoteList::default();
     let far = |capture: &Capture| capture.camera.far.map_or_else(|| NONE.to_owned(), |far| far.to_string());
@@ -74,7 +74,7 @@ impl NoteList {
         }
     }
 
-    /// The first line in which two plans differ; nothing where one is not known.
+    /// Adds the first line in which two plans differ; nothing where one is not known.
     fn plans(&mut self, a: &str, b: &str) {
         if a.is_empty() || b.is_empty() {
             return;
@@ -98,7 +98,7 @@ fn light(position: DVec4) -> String {
     format!("{kind} {}", point(position.truncate()))
 }
 
-/// The matrices of a map, in the fewest digits that read back as the same bits.
+/// Writes the matrices of a map, in the fewest digits that read back as the same bits.
 fn matrices(light: &CapturedLight) -> Option<String> {
     let map = light.map.as_ref()?;
     let all = std::iter::once(&map.light_from_world).chain(&map.clip_from_light);

@@ -1,6 +1,6 @@
 //! A picture of the first pass whose pixels differ: A, B, and where they differ, side by side.
 //!
-//! In the third, A is dark and grey, and what differs is bright; a frame is around the largest region.
+//! In the third, A is dark and grey, and texels that differ are bright; a frame is around the largest region.
 
 use super::{AspectKind, Difference, PassDifference, after_draw, after_step};
 use crate::capture::{Capture, Image, PixelFormat};
@@ -8,30 +8,29 @@ use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 use std::sync::Arc;
 
-/// Pixels between two pictures, and around all.
+/// Gap between two pictures, and around all, pixels.
 const GAP: u32 = 8;
-/// What differs.
+/// Colour of texels that differ.
 const DIFFERS: Rgb = [0xff, 0x2b, 0xf2];
-/// The frame around the largest region.
+/// Colour of the frame around the largest region.
 const FRAME: Rgb = [0xd9, 0xdc, 0xe3];
 /// Pixels from the largest region to its frame, and the frame's width.
 const FRAME_GAP: u32 = 3;
 const FRAME_WIDTH: u32 = 2;
-/// How bright A still is where nothing differs.
+/// Brightness of A where nothing differs.
 const GROUND: f32 = 0.35;
 
-/// What the picture shows.
+/// A picture of a difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShownDifference {
     /// A, B, and where they differ.
     pub picture: Picture,
-    /// Of this aspect.
+    /// The aspect that is shown.
     pub aspect: AspectKind,
 }
 
 impl Difference {
-    /// Draws the first pass whose pixels differ, of the captures that were compared; `None` where no pixel
-    /// differs.
+    /// Draws the first pass whose pixels differ, of the captures that were compared; `None` where no pixel differs.
     pub fn shown(&self, a: &Capture, b: &Capture) -> Option<ShownDifference> {
         let of_pass = self.first_in_pixels().and_then(|pass| of_pass(pass, a, b));
         let (aspect, in_a, in_b) = of_pass.or_else(|| self.of_lights(a, b))?;
@@ -56,7 +55,7 @@ impl Difference {
         Some(ShownDifference { picture, aspect })
     }
 
-    /// What no pass shows: such as the truth.
+    /// Finds an aspect of a light that no pass shows, such as the truth.
     fn of_lights(&self, a: &Capture, b: &Capture) -> Option<AspectPair> {
         self.lights.iter().find_map(|light| {
             let aspect = light.aspects.iter().find(|aspect| aspect.pixels().is_some())?.aspect;
@@ -85,7 +84,7 @@ fn of_pass(pass: &PassDifference, a: &Capture, b: &Capture) -> Option<AspectPair
     })
 }
 
-/// An aspect in the colours of the window.
+/// Draws an aspect in the colours of the window.
 fn colored(aspect: AspectKind, image: &Image, range: [f32; 2]) -> Picture {
     let [width, height] = image.size();
     let mut picture = Picture::filled(image.size(), colors::NOTHING);
@@ -122,7 +121,7 @@ fn color(aspect: AspectKind, image: &Image, at: [u32; 2], [low, high]: [f32; 2])
     }
 }
 
-/// The smallest and largest finite depth of both pictures.
+/// Returns the smallest and largest finite depth of both pictures.
 fn range(images: &[&Arc<Image>]) -> [f32; 2] {
     let mut range = [f32::INFINITY, f32::NEG_INFINITY];
     for image in images.iter().filter(|image| image.format() == PixelFormat::Depth32F) {

@@ -8,7 +8,7 @@ use crate::numbers;
 use crate::truth::PixelLabel;
 
 impl Difference {
-    /// What differs, for people: passes and lights count from 1, pixels from 0 as in `pixel --at`.
+    /// Returns the difference as text: passes and lights count from 1, pixels from 0 as in `pixel --at`.
     pub fn to_text(&self) -> String {
         let mut out = String::new();
         self.asked.iter().chain(&self.conditions).for_each(|one| out += &note(one));
@@ -33,7 +33,7 @@ impl Difference {
         out
     }
 
-    /// Where the first difference is, in a few words: `pass 2, light 1: volumes`; `None` where there is none.
+    /// Says where the first difference is, in a few words: `pass 2, light 1: volumes`; `None` where there is none.
     pub fn first_place(&self) -> Option<String> {
         let of_light = |light: &LightDifference| {
             let aspect = light.aspects.first()?.aspect.title();
@@ -52,7 +52,7 @@ impl PassDifference {
 }
 
 impl AspectKind {
-    /// In words: layers count from 1.
+    /// Its name in words: layers count from 1.
     pub fn title(self) -> String {
         match self {
             AspectKind::Map(face) => format!("face {} of the map", face + 1),
@@ -65,7 +65,7 @@ impl AspectKind {
 }
 
 fn note(DifferenceNote { what, a, b }: &DifferenceNote) -> String {
-    /// A line stays a line.
+    /// The longest text that is printed on one line.
     const LONGEST: usize = 60;
     let short = |text: &str| match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &text[..end]),
@@ -74,7 +74,7 @@ fn note(DifferenceNote { what, a, b }: &DifferenceNote) -> String {
     format!("{what}: {} in A, {} in B\n", short(a), short(b))
 }
 
-/// `pass 2, light 1: volumes`; both numbers where they differ.
+/// Writes `pass 2, light 1: volumes`; both numbers where they differ.
 fn title(pass: &PassDifference) -> String {
     format!("pass {}, {}", number(pass), name(pass))
 }
@@ -132,7 +132,7 @@ fn pixel_count(pixels: u64) -> String {
     format!("{} {noun}", numbers::count(pixels))
 }
 
-/// `most at 160,120: 1 in A, 3 in B, 2 apart`; labels are other ones, no more or less.
+/// Writes `most at 160,120: 1 in A, 3 in B, 2 apart`; labels differ without a distance.
 fn texel(aspect: AspectKind, TexelDifference { at, values, by }: &TexelDifference) -> String {
     let [a, b] = values.map(|value| value_text(aspect, value));
     let by = match (aspect, values) {
@@ -162,7 +162,7 @@ fn value_text(aspect: AspectKind, value: Texel) -> String {
     }
 }
 
-/// One line a pass.
+/// Writes one line for a pass.
 fn row(pass: &PassDifference) -> String {
     let found = match pass.only_in() {
         Some(side) => format!("only in {}", side.name()),
@@ -192,7 +192,7 @@ fn summary(AspectDifference { aspect, found, carried }: &AspectDifference) -> St
     format!("{}: {found}{carried}", aspect.title())
 }
 
-/// The light's labels at the end, and what else differs of it.
+/// Writes the light's labels at the end, and what else differs for it.
 fn of_light(light: &LightDifference) -> String {
     if light.aspects.is_empty() {
         return String::new();
@@ -213,7 +213,7 @@ fn of_light(light: &LightDifference) -> String {
     out
 }
 
-/// All layers that only one has, as one.
+/// Writes all layers that only one frame has, as one.
 fn of_map(AspectDifference { aspect, found, .. }: &AspectDifference) -> String {
     match found {
         AspectChange::OnlyIn(side) => format!("{}: only in {}", aspect.name(), side.name()),

@@ -23,7 +23,7 @@ pub struct SilhouetteEdge {
 
 /// The one facing of each triangle: the exact sign of the light's side. Caps and edges both read
 /// it, so a volume can't open. Zero: edge-on, the triangle casts nothing. The plain way that
-/// [`super::Planes`] must agree with.
+/// [`super::CasterPlanes`] must agree with.
 pub fn facing(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> Vec<Sign> {
     triangles.iter().map(|corners| side_of_triangle(corners.map(|i| world[i as usize]), light)).collect()
 }

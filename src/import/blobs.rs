@@ -1,7 +1,7 @@
 //! `data.bin`: byte strings, each compressed, each read when it is asked for.
 //!
-//! No length is believed: each is held against the file and against what may be read in all before any memory is
-//! taken for it.
+//! No length is trusted: each is checked against the file and against the budget of bytes before any memory is
+//! allocated for it.
 
 use super::document::RenderDocBlob;
 use super::error::ImportError;
@@ -9,11 +9,11 @@ use flate2::read::ZlibDecoder;
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Bytes that may be read or made in all.
+/// Budget of bytes that may be read or computed in all.
 pub const MOST_BYTES: u64 = 8 << 30;
-/// Bytes of pieces that are kept for the next picture.
+/// Bytes of pieces that are cached for the next picture.
 const MOST_RECENT: u64 = 256 << 20;
-/// Bytes of a piece that is kept.
+/// Bytes of the largest piece that is cached.
 const LARGEST_PIECE: usize = 1 << 20;
 
 /// A file, or bytes in memory.
@@ -25,16 +25,16 @@ impl<T: Read + Seek> BlobSource for T {}
 pub struct BlobFile {
     file: Box<dyn BlobSource>,
     table: Vec<RenderDocBlob>,
-    /// Of each byte string.
+    /// Uncompressed length of each byte string.
     lengths: Vec<u64>,
     left: u64,
-    /// Pieces that were read lately: the next picture has most of them too.
+    /// Pieces that were read recently: most of them occur in the next picture too.
     recent: BTreeMap<usize, Vec<u8>>,
     recent_bytes: u64,
 }
 
 impl BlobFile {
-    /// Looks through the table.
+    /// Checks the table, and returns the file with it.
     pub fn new(file: impl Read + Seek + 'static, table: Vec<RenderDocBlob>) -> Result<Self, ImportError> {
         let broken = |what: String| ImportError::Folder(format!("data.bin: {what}"));
         let mut file = Box::new(file);
@@ -60,24 +60,27 @@ impl BlobFile {
         Ok(Self { file, table, lengths, left: MOST_BYTES, recent: BTreeMap::new(), recent_bytes: 0 })
     }
 
-    /// Takes `bytes` from what may still be made.
+    /// Takes `bytes` from the budget.
+    ///
+    /// # Errors
+    /// The budget has fewer left.
     pub fn reserve(&mut self, bytes: u64) -> Result<(), ImportError> {
         let too_large = || ImportError::TooLarge { what: format!("more than {} GiB", MOST_BYTES >> 30) };
         self.left = self.left.checked_sub(bytes).ok_or_else(too_large)?;
         Ok(())
     }
 
-    /// Gives back what was taken and is not kept.
+    /// Returns `bytes` to the budget that were reserved and are free again.
     pub fn give_back(&mut self, bytes: u64) {
         self.left = self.left.saturating_add(bytes).min(MOST_BYTES);
     }
 
-    /// How long a byte string says that it is.
+    /// Returns the length that the table states for a byte string.
     pub fn length(&self, index: usize) -> Result<u64, ImportError> {
         self.lengths.get(index).copied().ok_or_else(|| none_of(index))
     }
 
-    /// A byte string.
+    /// Reads a byte string.
     pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         self.reserve(self.length(index)?)?;
         let Some(RenderDocBlob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };
@@ -94,7 +97,7 @@ impl BlobFile {
         Ok(bytes)
     }
 
-    /// Keeps a piece for the next picture, if it is as small as pieces are.
+    /// Caches a piece for the next picture, if it is small enough.
     fn keep(&mut self, piece: usize, bytes: Vec<u8>) {
         if bytes.len() > LARGEST_PIECE {
             return;
@@ -107,7 +110,7 @@ impl BlobFile {
         self.recent.insert(piece, bytes);
     }
 
-    /// What is stored under a number.
+    /// Reads and decompresses the byte string of a number.
     fn unpacked(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         let Some(RenderDocBlob::Stored([at, packed, length])) = self.table.get(index) else {
             return Err(none_of(index));
@@ -116,7 +119,7 @@ impl BlobFile {
         let broken =
             |what: &dyn std::fmt::Display| ImportError::Folder(format!("data.bin: byte string {index}: {what}"));
         self.file.seek(SeekFrom::Start(at)).map_err(|error| broken(&error))?;
-        // The bytes are what takes memory, not the length that the table has.
+        // Memory grows with the bytes that come, not with the length that the table states.
         let mut bytes = Vec::new();
         let mut unpacked = ZlibDecoder::new(self.file.by_ref().take(packed)).take(length.saturating_add(1));
         unpacked.read_to_end(&mut bytes).map_err(|error| broken(&error))?;

@@ -1,13 +1,13 @@
-//! A recorded frame as a plan and a capture: what another program drew, in the words of our own frames.
+//! A recorded frame as a plan and a capture: another program's frame in the form of our own.
 //!
 //! ```text
 //! RawFrame ─ stage.rs     which targets are the picture, and which are depth maps
-//!          ─ states.rs    a draw's states as a raster state, its vertices as wgpu's clip space has them, its role
+//!          ─ states.rs    a draw's states as a raster state, its vertices in wgpu's clip space, its role
 //!          ─ passes.rs    runs of draws that do the same become passes, what was stored after each becomes steps
-//!          ─ eye.rs       how the eye sees: depth by distance, from the surfaces' vertices
+//!          ─ eye.rs       the eye's projection: depth by distance, from the surfaces' vertices
 //! ```
 //!
-//! Nothing is computed anew here: every picture is what was read back.
+//! Nothing is recomputed here: every picture is what was read back.
 
 mod eye;
 mod passes;
@@ -35,25 +35,25 @@ pub const RECORDED: &str = "recorded";
 /// The attachment of the picture's depth and stencil; those of depth maps follow.
 const DEPTH_STENCIL: AttachmentId = AttachmentId(0);
 
-/// The attachment of a depth map.
+/// Returns the attachment of a depth map.
 fn map_attachment(map: usize) -> AttachmentId {
     AttachmentId(DEPTH_STENCIL.0 + 1 + map)
 }
 
-/// Another program's frame in our words.
+/// Another program's frame in the form of our own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvertedFrame {
-    /// What was drawn.
+    /// The draws.
     pub plan: FramePlan,
-    /// What was stored.
+    /// The stored pictures.
     pub capture: Capture,
-    /// What it is of, where all of its lights were found.
+    /// The scene, where all of its lights were found.
     pub scene: Option<Scene>,
-    /// Where its lights are, as far as the draws tell.
+    /// The positions of its lights, where the draws determine them.
     pub lights: Vec<Option<FoundLight>>,
 }
 
-/// What was drawn and what was stored, called `name`.
+/// Converts a recorded frame to a plan and a capture with the name `name`.
 pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportError> {
     let stage = FollowedTargets::of(frame)?;
     let mut making = PassBuilder::new(frame, &stage);
@@ -72,7 +72,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
         technique: RECORDED.to_owned(),
         settings: BTreeMap::new(),
         size,
-        // Found from the draws below.
+        // Replaced below by the curve that fits the draws.
         depth: crate::math::depth::DepthMapping::StandardInfinite.curve(1.0, 0.0, 0.0),
         wraps_diffuse: false,
         attachments,
@@ -158,7 +158,8 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
     Ok(ConvertedFrame { plan, capture, scene, lights: found })
 }
 
-/// What each layer of a depth map holds in the end; nothing drawn is as far as can be.
+/// Returns what each layer of a depth map stores at the end; a layer that nothing is drawn into is at the largest
+/// distance.
 fn faces(frame: &RawFrame, stage: &FollowedTargets, making: &PassBuilder, map: usize) -> Vec<Arc<Image>> {
     let Attachment { size, layers, .. } =
         stage.attachment(frame, DrawTarget::Map(map, 0), AttachmentRole::Map(LightId(map)));
@@ -166,7 +167,7 @@ fn faces(frame: &RawFrame, stage: &FollowedTargets, making: &PassBuilder, map: u
     (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(|| clear.clone())).collect()
 }
 
-/// A light of which nothing is known yet but what decides where its shadow is.
+/// Returns a light of which only is known what decides where its shadow is.
 fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
     let of_light = plan.passes.iter().filter(|pass| pass.light == Some(light));
     let draws = of_light.flat_map(|pass: &Pass| &pass.draws);

@@ -1,8 +1,8 @@
-//! `frame.json`, as the script writes it: names and numbers, not yet looked at.
+//! `frame.json`, as the script writes it: names and numbers, not yet checked.
 
 use serde::Deserialize;
 
-/// The format that the script writes.
+/// The version of the format that the script writes.
 pub const FORMAT: u32 = 1;
 
 #[derive(Debug, Deserialize)]
@@ -18,13 +18,13 @@ pub struct RenderDocDocument {
     pub blobs: Vec<RenderDocBlob>,
 }
 
-/// A byte string.
+/// Where a byte string is stored.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 pub enum RenderDocBlob {
-    /// Offset in `data.bin`, compressed bytes there, bytes.
+    /// Offset in `data.bin`, number of compressed bytes there, number of bytes.
     Stored([u64; 3]),
-    /// Others, one after the other.
+    /// Other byte strings, one after the other.
     Joined { pieces: Vec<usize> },
 }
 
@@ -61,7 +61,7 @@ pub struct RenderDocEvent {
     pub depth: Option<RenderDocTarget>,
     pub color_after: Option<usize>,
     pub depth_after: Option<usize>,
-    /// Colour; depth or stencil.
+    /// Whether colour is cleared; whether depth or stencil is.
     pub clears: [bool; 2],
     pub draw: Option<RenderDocDraw>,
 }
@@ -90,7 +90,7 @@ pub struct RenderDocDraw {
     pub depth_range: [f32; 2],
     pub scissor: Option<[i64; 4]>,
     pub instances: Vec<RenderDocInstance>,
-    /// Why there are no instances.
+    /// Why there are no instances, in words.
     pub why: String,
     pub blend: Option<RenderDocBlend>,
     pub shader: Option<RenderDocShader>,

@@ -1,4 +1,4 @@
-//! What can go wrong on the way from a program or a RenderDoc capture to a frame.
+//! The errors on the way from a program or a RenderDoc capture to a frame.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ pub enum ImportError {
          anti-aliasing off; --list shows its states"
     )]
     Multisampled {
-        /// Samples of a pixel.
+        /// Number of samples a pixel.
         samples: u32,
     },
     /// Every draw is of a kind that is not followed.
@@ -25,9 +25,9 @@ pub enum ImportError {
         "`{python}` can't be started ({source}): install python3 and python3-renderdoc, or name an interpreter with --python"
     )]
     NoInterpreter {
-        /// Its name.
+        /// Name of the interpreter.
         python: String,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The interpreter has no module `renderdoc`.
@@ -36,23 +36,23 @@ pub enum ImportError {
          --python (Debian: --python /usr/bin/python3)"
     )]
     NoModule {
-        /// Its name.
+        /// Name of the interpreter.
         python: String,
     },
     /// There is no such file, or it can't be read.
     #[error("{}: {reason}; check the path", file.display())]
     NoFile {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// The reason, in words.
         reason: String,
     },
     /// The file is no capture, or not whole.
     #[error("{}: not a whole RenderDoc capture ({reason}); record the program again", file.display())]
     Corrupt {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// RenderDoc's words.
+        /// RenderDoc's message.
         reason: String,
     },
     /// The file is of another version of RenderDoc.
@@ -62,48 +62,48 @@ pub enum ImportError {
         file.display()
     )]
     Version {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// RenderDoc's words.
+        /// RenderDoc's message.
         reason: String,
     },
     /// RenderDoc can't replay the capture here.
     #[error("{}: can't be replayed here ({reason}); {fix}", file.display())]
     Replay {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// RenderDoc's words.
+        /// RenderDoc's message.
         reason: String,
-        /// What may help.
+        /// What may help, in words.
         fix: &'static str,
     },
     /// The capture is of an API that is not read.
     #[error("{}: {api} is not read; record a program that draws with Vulkan, OpenGL core or OpenGL ES", file.display())]
     Api {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// RenderDoc's name of it.
+        /// RenderDoc's name of the API.
         api: String,
     },
     /// The process took too long.
     #[error("RenderDoc had no result after {seconds} s, and was ended; give it more with --replay-seconds")]
     TooLong {
-        /// How long it had.
+        /// The limit of time, seconds.
         seconds: u64,
     },
     /// The process took too much memory.
     #[error("RenderDoc needed more than {gibibytes} GiB of memory, and was ended; give it more with --memory")]
     TooMuchMemory {
-        /// How much it had.
+        /// The limit of memory, GiB.
         gibibytes: u64,
     },
     /// The frame is too large to be read.
     #[error("the frame is too large ({what}); record a smaller picture, or a frame with fewer draws")]
     TooLarge {
-        /// What there is too much of.
+        /// What there is too much of, in words.
         what: String,
     },
-    /// The work was called off.
+    /// The work was cancelled.
     #[error("the import was called off")]
     Cancelled,
     /// The script, or RenderDoc in it, has failed.
@@ -115,72 +115,72 @@ pub enum ImportError {
     /// The script's process was ended by a signal: RenderDoc, its drivers, or somebody else.
     #[error("RenderDoc's part was ended by signal {signal}{and_said}; run it again, and report this if it stays")]
     Crashed {
-        /// Its number: 11 is SIGSEGV, 6 is SIGABRT, 9 is SIGKILL.
+        /// Number of the signal: 11 is SIGSEGV, 6 is SIGABRT, 9 is SIGKILL.
         signal: i32,
         /// The last line that it wrote, after a colon.
         and_said: String,
     },
-    /// What the script left does not hold together.
+    /// What the script wrote is inconsistent.
     #[error("what RenderDoc's part wrote can't be used ({0}): please report it")]
     Folder(String),
-    /// A file that has to be written can't be.
+    /// A file can't be written.
     #[error("{}: can't be written ({source}); choose a place with room that you may write to", file.display())]
     Write {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The program to record is not there.
+    /// The program to record does not exist or can't be started.
     #[error("`{program}` can't be run ({reason}): check the name, or give its path")]
     NoProgram {
-        /// Its name.
+        /// Name of the program.
         program: String,
-        /// Why.
+        /// The reason, in words.
         reason: String,
     },
     /// The program has ended before the frame.
     #[error("`{program}` ended{how} before frame {frame}{and_said}; {fix}")]
     Died {
-        /// Its name.
+        /// Name of the program.
         program: String,
-        /// ` with exit code 1`, ` by signal 11`, or nothing where RenderDoc has kept it.
+        /// ` with exit code 1`, ` by signal 11`, or nothing where RenderDoc does not report it.
         how: String,
-        /// The frame that was asked for.
+        /// Number of the frame that was asked for.
         frame: u32,
         /// `: ` and its last line, where it wrote one.
         and_said: String,
-        /// What may help.
+        /// What may help, in words.
         fix: &'static str,
     },
     /// The program runs, but the frame does not come.
     #[error("`{program}` had not shown frame {frame} after {seconds} s ({seen}); {fix}")]
     NeverPresented {
-        /// Its name.
+        /// Name of the program.
         program: String,
-        /// The frame that was asked for.
+        /// Number of the frame that was asked for.
         frame: u32,
-        /// How long it had.
+        /// The limit of time, seconds.
         seconds: u64,
-        /// What it had done until then.
+        /// What the program had done until then, in words.
         seen: String,
-        /// What may help.
+        /// What may help, in words.
         fix: &'static str,
     },
     /// RenderDoc can't record what the program draws with.
     #[error("`{program}` draws with {api}, which RenderDoc can't record ({reason}); have it use Vulkan or OpenGL core")]
     Unsupported {
-        /// Its name.
+        /// Name of the program.
         program: String,
-        /// RenderDoc's name of it.
+        /// RenderDoc's name of the API.
         api: String,
-        /// RenderDoc's words.
+        /// RenderDoc's message.
         reason: String,
     },
 }
 
 impl ImportError {
-    /// Is something not installed here that has to be?
+    /// Returns whether something that is needed is not installed here.
     pub fn is_missing_package(&self) -> bool {
         matches!(self, ImportError::NoInterpreter { .. } | ImportError::NoModule { .. })
     }

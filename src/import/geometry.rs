@@ -1,4 +1,5 @@
-//! The vertices of a draw, instance by instance: positions gathered, indices followed, triangles taken apart.
+//! The vertices of a draw, instance by instance: positions are gathered, indices followed, strips and fans split into
+//! triangles.
 
 use super::blobs::BlobFile;
 use super::document::RenderDocInstance;
@@ -10,19 +11,19 @@ use std::ops::Range;
 /// Bytes of a position.
 const POSITION: usize = 16;
 
-/// What a draw draws.
+/// The vertices and triangles of a draw.
 #[derive(Debug)]
 pub struct DrawGeometry {
     pub topology: RawTopology,
     pub positions: Vec<[f32; 4]>,
     pub triangles: Vec<[u32; 3]>,
-    /// The triangles of each instance.
+    /// The range of triangles of each instance.
     pub instances: Vec<Range<usize>>,
-    /// Corners of triangles that point to no vertex.
+    /// The number of triangles' corners that refer to no vertex.
     pub dropped: usize,
 }
 
-/// Reads all instances.
+/// Reads the geometry of all instances.
 pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<DrawGeometry, ImportError> {
     let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
     let mut all =
@@ -37,7 +38,7 @@ pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<Dra
         let count = u32::try_from(positions.len()).ok().filter(|count| first.checked_add(*count).is_some());
         let count = count.ok_or_else(too_many)?;
         let corners = corners(instance, count, blobs)?;
-        // A strip makes nearly a triangle a corner.
+        // A strip has nearly one triangle for each corner.
         blobs.reserve((positions.len() * POSITION + corners.len() * 20) as u64)?;
         let start = all.triangles.len();
         for triangle in unroll::triangles(topology, &corners) {
@@ -70,7 +71,7 @@ fn topology(name: &str) -> RawTopology {
     }
 }
 
-/// The first four floats of every `stride` bytes.
+/// Returns the first four floats of every `stride` bytes.
 fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
     let stride = usize::try_from(stride).ok().filter(|stride| *stride >= POSITION && stride % 4 == 0);
     let stride = stride.ok_or_else(|| ImportError::Folder("vertices lie closer than a position is long".to_owned()))?;
@@ -78,12 +79,12 @@ fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
         let mut floats = vertex.as_chunks::<4>().0.iter().map(|float| f32::from_le_bytes(*float));
         std::array::from_fn(|_| floats.next().unwrap_or(f32::NAN))
     };
-    // The last vertex need not be whole.
+    // The last vertex may lack bytes after its position.
     Ok(bytes.chunks(stride).filter(|vertex| vertex.len() >= POSITION).map(position).collect())
 }
 
-/// The corners in order, as indices of the instance's vertices; `None` where the primitive starts again. One that
-/// points to no vertex is `u32::MAX`.
+/// Returns the corners in order, as indices of the instance's vertices; `None` where the primitive restarts. One that
+/// refers to no vertex is `u32::MAX`.
 fn corners(instance: &RenderDocInstance, vertices: u32, blobs: &mut BlobFile) -> Result<Vec<Option<u32>>, ImportError> {
     let Some(indices) = instance.indices else { return Ok((0..vertices).map(Some).collect()) };
     let bytes = blobs.read(indices)?;

@@ -1,4 +1,4 @@
-//! A frame's events and states as a table, for whoever wants to see what was recorded.
+//! A frame's events and states as a table, for readers who want to see what was recorded.
 
 use super::raw::{RawCull, RawDraw, RawEvent, RawFormat, RawFrame, RawKind, RawStencilFace};
 use crate::plan::ShaderEffect;
@@ -6,7 +6,7 @@ use crate::plan::words::spelled;
 use std::fmt::Write;
 use wgpu::StencilOperation;
 
-/// A line an event: its number, what it does, how many triangles, its states, and where it draws.
+/// Returns a line for each event: its number, what it does, how many triangles, its states, and its targets.
 pub fn list(frame: &RawFrame) -> String {
     let program = frame.program.as_ref().map_or_else(String::new, |program| format!("{program}, "));
     let RawFrame { adapter, recorder, events, .. } = frame;
@@ -38,7 +38,7 @@ fn drawn(kind: &RawKind) -> Option<&RawDraw> {
 }
 
 fn row(frame: &RawFrame, event: &RawEvent) -> [String; 5] {
-    /// Letters of a call that are shown.
+    /// The most characters of a call's name that are shown.
     const SHOWN: usize = 48;
     let name: String = event.groups.iter().map(|group| format!("{group} / ")).chain([event.name.clone()]).collect();
     let name = name.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
@@ -86,7 +86,7 @@ fn states(draw: &RawDraw) -> String {
     words.join("; ")
 }
 
-/// Its test and what it does where; a mask only where it hides a bit.
+/// Returns the test and operations of a face; a mask only where it excludes a bit.
 fn face(RawStencilFace { face, masks }: &RawStencilFace) -> String {
     let mut text = format!("{} {}", spelled(face.compare, '-'), masks.reference);
     let masks = [("compares", masks.read), ("writes", masks.write)];

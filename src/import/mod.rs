@@ -5,9 +5,9 @@
 //! ```
 //!
 //! A capture is read by RenderDoc's own Python module, in a process of its own with a limit of time and memory: anybody
-//! may have made it. The scripts do as little as they can; what they leave in a folder is read here, without trust, and
-//! comes out as plain data: [`RawFrame`]. [`convert`] says it in the words of our own frames; what such a frame means is
-//! `recorded`'s to say.
+//! may have made it. The scripts do as little as they can; what they write to a folder is read here, without trust, and
+//! becomes plain data: [`RawFrame`]. [`convert`] expresses it in the form of our own frames; module `recorded`
+//! interprets such frames.
 
 mod blobs;
 mod convert;

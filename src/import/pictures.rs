@@ -1,20 +1,20 @@
-//! What a target holds, from RenderDoc's bytes: row 0 at the top, depth, stencil and colour apart.
+//! A target's content, from RenderDoc's bytes: row 0 at the top, with depth, stencil and colour separated.
 
 use super::raw::{RawContents, RawFormat};
 use crate::capture::{Image, PixelFormat};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How RenderDoc gives the bytes of an API.
+/// How an API's bytes are laid out by RenderDoc.
 #[derive(Debug, Clone, Copy)]
 pub struct TexelLayout {
-    /// Row 0 of the bytes is at the bottom (OpenGL).
+    /// True where row 0 of the bytes is at the bottom (OpenGL).
     pub bottom_row_first: bool,
-    /// Depth of 24 bits is above the stencil, not below it (OpenGL).
+    /// True where depth of 24 bits is above the stencil in a word, not below it (OpenGL).
     pub depth_above_stencil: bool,
 }
 
-/// A format by RenderDoc's name.
+/// Returns the format of RenderDoc's name.
 pub fn format(name: &str) -> RawFormat {
     match name {
         "D16" | "D16_UNORM" => RawFormat::D16,
@@ -35,7 +35,7 @@ pub fn format(name: &str) -> RawFormat {
     }
 }
 
-/// Bytes of a texel; `None` where the format is not read.
+/// Returns the bytes of a texel; `None` where the format is not read.
 pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     match format {
         RawFormat::S8 => Some(1),
@@ -47,7 +47,7 @@ pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     }
 }
 
-/// The pictures in the bytes of a target of that size; none where the format is not read.
+/// Returns the pictures in the bytes of a target of that size; empty where the format is not read.
 pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayout) -> RawContents {
     let Some(texel) = texel_bytes(format) else { return RawContents::default() };
     let rows = bytes.chunks_exact((size[0] as usize * texel).max(1));
@@ -116,7 +116,7 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayou
     }
 }
 
-/// Takes from `last` the rows that are equal there, and returns the bytes of the rest.
+/// Shares with `last` the rows that are equal there, and returns the bytes of the rest.
 pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
     let one = |new: &mut Option<Arc<Image>>, last: &Option<Arc<Image>>| {
         let Some(image) = new else { return 0 };
@@ -140,7 +140,7 @@ pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
         + one(&mut contents.color, &last.color)
 }
 
-/// Integers as the floats that a GPU reads them as: correctly rounded, so that each is another one.
+/// Converts integers to the floats that a GPU reads them as: correctly rounded, so that no two are equal.
 fn depths(format: &RawFormat, bits: impl Iterator<Item = u32>) -> Vec<u8> {
     let largest = format.largest_depth().unwrap_or(u32::MAX) as f32;
     quads(bits.map(|depth| (depth as f32 / largest).to_le_bytes()))
@@ -163,7 +163,7 @@ fn float(bits: u16, mantissa: u32) -> f32 {
     if bits >> mantissa & 0x20 == 0 { value } else { -value }
 }
 
-/// Linear colour as bytes of sRGB; NaN is black.
+/// Converts linear colour to bytes of sRGB; NaN is black.
 fn shown(color: [f32; 3], alpha: f32) -> [u8; 4] {
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
     let encoded = |value: f32| {
@@ -226,7 +226,7 @@ mod tests {
         assert_eq!(read(&format("R32_UINT"), &[0; 16], [2, 2], GL), RawContents::default());
     }
 
-    /// Of 64 rows the last eight are others: they alone take memory.
+    /// Of 64 rows the last eight differ: they alone take memory.
     #[test]
     fn rows_that_stay_are_shared_with_the_last_picture() {
         let bytes = |last: u8| [vec![1; 56 * 4], vec![last; 8 * 4]].concat();

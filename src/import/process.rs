@@ -1,7 +1,7 @@
 //! A script of ours in an interpreter, in a process of its own, with limits.
 //!
-//! Script and results are in a temporary folder. The script speaks by lines on its standard output (`progress DONE OF`,
-//! `error KIND WORDS`, `done WORDS`); of what comes on standard error only the last line is kept. The process leads a
+//! Script and results are in a temporary folder. The script reports in lines on its standard output (`progress DONE
+//! OF`, `error KIND WORDS`, `done WORDS`); of its standard error only the last line is stored. The process leads a
 //! group, so that it ends with all that it has started; should we be killed, the script sees its standard input end,
 //! removes the folder and ends its group itself.
 
@@ -17,17 +17,17 @@ use std::time::{Duration, Instant};
 
 /// Seconds that RenderDoc has to start a program and to write its capture.
 pub const GRACE: u64 = 30;
-/// How often limits are looked at.
+/// How often limits are checked.
 const TURN: Duration = Duration::from_millis(50);
-/// Bytes of a line that are kept.
+/// Bytes of a line that are stored.
 const LONGEST_LINE: usize = 2000;
 
-/// What a process may take.
+/// Limits of a process.
 #[derive(Debug, Clone, Copy)]
 pub struct ProcessLimits {
-    /// From its start to its result.
+    /// Time from its start to its result.
     pub time: Duration,
-    /// Bytes in memory, of the interpreter itself.
+    /// Memory in bytes, of the interpreter itself.
     pub memory: u64,
 }
 
@@ -37,20 +37,20 @@ pub enum ProcessEnd {
     TooLong,
     TooMuchMemory,
     Cancelled,
-    /// The script has said so: a kind, words, and the last line on standard error.
+    /// The script has reported the reason: a kind, words, and the last line on standard error.
     Said {
         kind: String,
         words: String,
         last: String,
     },
-    /// It has ended without a word but this last line, by a signal or by itself.
+    /// It has ended without a report, by a signal or by itself; this is its last line.
     Silent {
         last: String,
         signal: Option<i32>,
     },
 }
 
-/// A process that runs; it ends, and its folder goes, with this.
+/// A running process; dropping it ends the process and removes its folder.
 #[derive(Debug)]
 pub struct ReaderProcess {
     child: Child,
@@ -58,7 +58,7 @@ pub struct ReaderProcess {
     folder: tempfile::TempDir,
     lines: Receiver<String>,
     last: Arc<Mutex<String>>,
-    /// Ends with standard error.
+    /// Disconnects when standard error ends.
     errors: Receiver<()>,
     start: Instant,
     limits: ProcessLimits,
@@ -78,11 +78,11 @@ impl ReaderProcess {
         std::fs::write(&file, script).map_err(temporary)?;
         let mut command = Command::new(python);
         command.arg(&file).arg(folder.path()).args(arguments);
-        // What `main` may have set for this process alone.
+        // `main` may have set this for our process alone.
         if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
             command.env_remove("NODEVICE_SELECT");
         }
-        // RenderDoc's log goes with the folder.
+        // RenderDoc's log is removed with the folder.
         command.env("RENDERDOC_TEMP", folder.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         #[cfg(unix)]
@@ -91,7 +91,7 @@ impl ReaderProcess {
         let mut child = command.spawn().map_err(no_interpreter)?;
         let (send, lines) = sync_channel(64);
         if let Some(output) = child.stdout.take() {
-            // Nobody listens any more: the process is about to end.
+            // An error means that the receiver is gone: the process is about to end.
             std::thread::spawn(move || each_line(output, |line| send.send(line).is_ok()));
         }
         let last = Arc::new(Mutex::new(String::new()));
@@ -105,7 +105,7 @@ impl ReaderProcess {
         Ok(Self { child, has_ended: false, folder, lines, last, errors: closed, start: Instant::now(), limits })
     }
 
-    /// Where the script writes.
+    /// The folder that the script writes to.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
@@ -155,21 +155,21 @@ impl ReaderProcess {
         }
     }
 
-    /// The last line on standard error, once that has ended, or what is under way had time to come.
+    /// Returns the last line on standard error, waiting for its end or for a short time.
     fn last(&self) -> String {
         const PATIENCE: Duration = Duration::from_secs(2);
-        // Nothing is sent: it ends, or the time does.
+        // Nothing is sent: this waits for the disconnection or the timeout.
         let _ = self.errors.recv_timeout(PATIENCE);
         self.last.lock().map(|last| last.clone()).unwrap_or_default()
     }
 
-    /// The signal that has ended it, which is ours where nothing else had.
+    /// Ends the process, and returns the signal that ended it, which is ours where nothing else had.
     fn end(&mut self) -> Option<i32> {
         // Once the child is waited for, its number may be that of another process.
         if std::mem::replace(&mut self.has_ended, true) {
             return None;
         }
-        // What has ended already needs no more ending: errors say nothing new.
+        // A process that has already ended gives an error that means nothing.
         #[cfg(unix)]
         let _ = rustix::process::kill_process_group(
             rustix::process::Pid::from_child(&self.child),
@@ -190,7 +190,7 @@ impl Drop for ReaderProcess {
     }
 }
 
-/// Calls `take` with each line, cut where it is too long, until it says no.
+/// Calls `take` with each line, truncated where it is too long, until it returns false.
 fn each_line(mut input: impl Read, mut take: impl FnMut(String) -> bool) {
     let (mut buffer, mut line) = ([0; 4096], Vec::new());
     loop {
@@ -213,7 +213,7 @@ fn each_line(mut input: impl Read, mut take: impl FnMut(String) -> bool) {
 }
 
 fn keep(last: &Mutex<String>, line: String) -> bool {
-    /// Letters of it that an error shows.
+    /// The most characters of it that an error shows.
     const SHOWN: usize = 200;
     let line: String = line.trim().chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if let Ok(mut last) = last.lock()
@@ -224,7 +224,7 @@ fn keep(last: &Mutex<String>, line: String) -> bool {
     true
 }
 
-/// Steps done, and how many there are.
+/// Shows progress: steps done, and how many there are.
 fn show(numbers: &str, [shown, of]: &mut [usize; 2], progress: &Progress) {
     let mut numbers = numbers.split(' ').map(str::parse::<usize>);
     let (Some(Ok(done)), Some(Ok(all))) = (numbers.next(), numbers.next()) else { return };
@@ -238,7 +238,7 @@ fn show(numbers: &str, [shown, of]: &mut [usize; 2], progress: &Progress) {
     }
 }
 
-/// Bytes that a process has in memory, where the system tells.
+/// Returns the bytes that a process has in memory, where the system reports them.
 fn memory(process: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -1,8 +1,7 @@
-//! The folder that the script has written, as a frame.
+//! Reads the folder that the script has written as a frame.
 //!
-//! Nothing in it is believed: it comes from a capture that anybody may have made. Numbers are held against what is
-//! there before memory is taken for them, names against those that are known. Positions are taken as they are, NaN
-//! too.
+//! Nothing in it is trusted: it comes from a capture that anybody may have made. Numbers are checked against the files
+//! before memory is allocated for them, names against those that are known. Positions are taken as they are, NaN too.
 
 use super::blobs::BlobFile;
 use super::document::{self, FORMAT, RenderDocDocument};
@@ -19,22 +18,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Read, Seek};
 use std::path::Path;
 
-/// Bytes of `frame.json`.
+/// The most bytes of `frame.json`.
 const MOST_TEXT: u64 = 256 << 20;
-/// Texels along a side.
+/// The most texels along a side.
 const LARGEST: u32 = 1 << 14;
-/// Events of a frame.
+/// The most events of a frame.
 const MOST_EVENTS: usize = 100_000;
-/// Textures of a frame.
+/// The most textures of a frame.
 const MOST_TEXTURES: usize = 100_000;
 
-/// Reads the folder.
+/// Reads a frame from the folder.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
     let open = |name: &str| open_plain(&folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
     read_from(open("frame.json")?, open("data.bin")?)
 }
 
-/// Reads its two files.
+/// Reads a frame from the folder's two files.
 pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Result<RawFrame, ImportError> {
     let document = self::document(document)?;
     let api =
@@ -113,12 +112,12 @@ fn texture(one: &document::RenderDocTexture) -> Result<RawTexture, ImportError> 
 struct DocumentReader {
     api: RecordedApi,
     textures: Vec<RawTexture>,
-    /// Layers and levels of each.
+    /// Numbers of layers and mip levels of each texture.
     sizes: Vec<[u32; 2]>,
     blobs: BlobFile,
-    /// Pictures by byte string, format and size: those that are equal are one in memory.
+    /// Pictures by byte string, format and size: equal ones share memory.
     pictures: BTreeMap<(usize, usize, [u32; 2]), RawContents>,
-    /// The last pictures of each target: those of the next are mostly the same rows.
+    /// The last pictures of each target: most rows of the next are equal.
     last: BTreeMap<RawTarget, RawContents>,
     shaders: BTreeMap<(String, usize), RawFragment>,
     limits: BTreeSet<String>,
@@ -136,12 +135,12 @@ impl DocumentReader {
         self.api != RecordedApi::Vulkan
     }
 
-    /// Width and height of a target.
+    /// Returns width and height of a target.
     fn size(&self, target: RawTarget) -> [u32; 2] {
         self.textures[target.texture].size.map(|side| (side >> target.mip).max(1))
     }
 
-    /// The pictures of a target that are in a byte string.
+    /// Returns the pictures of a target that are in a byte string.
     fn contents(&mut self, target: RawTarget, blob: Option<usize>) -> Result<RawContents, ImportError> {
         let texture = &self.textures[target.texture];
         let name = &texture.name;
@@ -155,12 +154,13 @@ impl DocumentReader {
         };
         let [width, height] = self.size(target);
         let [found, expected] = [self.blobs.length(blob)?, u64::from(width) * u64::from(height) * texel as u64];
-        // RenderDoc leaves a byte a texel after Vulkan's depth of 24 bits with stencil: room for what it has put above.
+        // RenderDoc adds a byte a texel after Vulkan's depth of 24 bits with stencil: space for what it has stored
+        // above.
         let has_padding = texture.format == RawFormat::D24S8 && found == expected / 4 * 5;
         if found != expected && !has_padding {
             return Err(broken(format!("a picture of `{name}` has {found} bytes, not {expected}")));
         }
-        // The first texture of the format stands for it.
+        // The first texture of the format stands for all of them.
         let alike = self.textures.iter().position(|other| other.format == texture.format).unwrap_or(target.texture);
         if let Some(known) = self.pictures.get(&(blob, alike, [width, height])) {
             self.last.insert(target, known.clone());
@@ -168,14 +168,14 @@ impl DocumentReader {
         }
         let mut bytes = self.blobs.read(blob)?;
         bytes.truncate(usize::try_from(expected).unwrap_or(usize::MAX));
-        // What is made of it is at most as much again, and as much as depths.
+        // The decoded pictures take at most as much again, and as much as depths.
         self.blobs.reserve(found.saturating_mul(3))?;
         let layout = TexelLayout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
         let mut contents = pictures::read(&self.textures[target.texture].format, &bytes, [width, height], layout);
         let last = self.last.entry(target).or_default();
         let shared = pictures::share(&mut contents, last);
         last.clone_from(&contents);
-        // The bytes go, and what is as it was is there already.
+        // The bytes are freed, and rows that are shared take nothing.
         self.blobs.give_back(found.saturating_mul(4).saturating_sub(shared));
         self.pictures.insert((blob, alike, [width, height]), contents.clone());
         Ok(contents)
@@ -184,7 +184,7 @@ impl DocumentReader {
     fn event(&mut self, event: document::RenderDocEvent) -> Result<RawEvent, ImportError> {
         let targets = event.colors.iter().copied().flatten().map(|one| self.target(one));
         let color_targets: Vec<RawTarget> = targets.collect::<Result<_, _>>()?;
-        // What is read after an event is the target of output 0.
+        // The picture that is read after an event is the target of output 0.
         let first = event.colors.first().copied().flatten().map(|one| self.target(one)).transpose()?;
         let depth_target = event.depth.map(|one| self.target(one)).transpose()?;
         let color = first.map(|target| self.contents(target, event.color_after)).transpose()?.unwrap_or_default();
@@ -257,7 +257,7 @@ impl DocumentReader {
         })
     }
 
-    /// What the fragment shader may do; without one there is nothing that it could.
+    /// Returns the effects of the fragment shader; a draw without one has none.
     fn fragment(
         &mut self,
         shader: Option<&document::RenderDocShader>,
@@ -274,7 +274,7 @@ impl DocumentReader {
     }
 }
 
-/// A call that clears says in its name which of depth and stencil it means, or means both.
+/// A call that clears names depth, stencil or both.
 fn clear(name: &str, [color, depth_or_stencil]: [bool; 2]) -> RawKind {
     let [depth, stencil] = ["Depth", "Stencil"].map(|word| name.contains(word));
     let means_both = depth == stencil;

@@ -11,16 +11,16 @@ use std::time::Duration;
 const EXTRACT: &str = include_str!("extract.py");
 const LAUNCH: &str = include_str!("launch.py");
 
-/// How RenderDoc's module is reached, and what it may take.
+/// How RenderDoc's module is run, and its limits.
 #[derive(Debug, Clone)]
 pub struct RenderDocOptions {
     /// The interpreter that has the module `renderdoc`.
     pub python: String,
-    /// Seconds until its process is ended.
+    /// Seconds after which its process is ended.
     pub seconds: u64,
     /// Bytes of memory at which its process is ended.
     pub most_memory: u64,
-    /// Is what the targets hold after each draw read, or are states and vertices alone?
+    /// Whether the targets' content after each draw is read, or only states and vertices.
     pub pictures: bool,
 }
 
@@ -35,11 +35,11 @@ impl Default for RenderDocOptions {
 pub struct RecordingRequest {
     /// The program and its arguments.
     pub command: Vec<String>,
-    /// Which frame it shows; the first is 0.
+    /// Number of the frame to record; the first that the program shows is 0.
     pub frame: u32,
-    /// Seconds that it has until then.
+    /// Seconds that the program has until then.
     pub seconds: u64,
-    /// Where the capture is kept.
+    /// Where the capture file is saved; `None` discards it.
     pub keep: Option<PathBuf>,
 }
 
@@ -55,7 +55,7 @@ pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> R
     // RenderDoc has one error for all of these.
     let reason = match std::fs::metadata(file) {
         Ok(found) if found.is_dir() => Some("it is a folder".to_owned()),
-        // A pipe would be waited for.
+        // Opening a pipe would wait.
         Ok(_) => open_plain(file).err().map(|error| format!("it {error}")),
         Err(error) => Some(error.to_string()),
     };
@@ -76,7 +76,7 @@ pub fn record(
     options: &RenderDocOptions,
     progress: &Progress,
 ) -> Result<RawFrame, ImportError> {
-    // The program has its own time; what RenderDoc needs to start and to write comes on top.
+    // The program has its own time; what RenderDoc needs to start and to write is added.
     let time = Duration::from_secs(recording.seconds.saturating_add(GRACE));
     let limits = ProcessLimits { time, memory: u64::MAX };
     let mut arguments = vec![recording.frame.to_string(), recording.seconds.to_string()];
@@ -93,7 +93,7 @@ pub fn record(
     Ok(RawFrame { program: Some(recording.program().to_owned()), ..frame })
 }
 
-/// What has ended the import of a file.
+/// Returns the error for the end of a process that imported a file.
 fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> ImportError {
     let file = file.to_owned();
     let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
@@ -109,11 +109,11 @@ fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> I
     }
 }
 
-/// What has ended the recording of a program.
+/// Returns the error for the end of a process that recorded a program.
 fn record_error(ended: ProcessEnd, recording: &RecordingRequest, options: &RenderDocOptions) -> ImportError {
     let Some([kind, words]) = said(&ended) else {
         return match ended {
-            // The script has a clock of its own, and did not get to look at it.
+            // The script has a timeout of its own, and did not get to check it.
             ProcessEnd::TooLong => never(recording, "RenderDoc does not answer"),
             _ => common_error(ended, options),
         };

@@ -1,11 +1,11 @@
-//! What a fragment shader may do, read from what the program gave to the API: the text of GLSL, the code of SPIR-V.
+//! The effects of a fragment shader, read from what the program gave to the API: the text of GLSL, the code of SPIR-V.
 //!
 //! Nothing is run and no branch is followed: a shader that can discard in some case may discard.
 
 use super::raw::RawFragment;
 use crate::plan::ShaderEffect;
 
-/// What the shader may do. `encoding` is RenderDoc's name of its language.
+/// Returns what the shader may do. `encoding` is RenderDoc's name of its language.
 pub fn read(encoding: &str, bytes: &[u8]) -> RawFragment {
     let [discards, depth] = match encoding {
         "GLSL" => glsl(&String::from_utf8_lossy(bytes)),
@@ -19,7 +19,7 @@ const fn may(does: bool) -> ShaderEffect {
     if does { ShaderEffect::Yes } else { ShaderEffect::No }
 }
 
-/// Words of GLSL outside comments.
+/// Finds effects in the words of GLSL outside comments.
 fn glsl(text: &str) -> [ShaderEffect; 2] {
     let code = without_comments(text);
     let has = |word: &str| code.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|found| found == word);
@@ -40,7 +40,7 @@ fn without_comments(text: &str) -> String {
     code
 }
 
-/// Instructions of SPIR-V, by the numbers of its specification.
+/// Finds effects in the instructions of SPIR-V, by the numbers of its specification.
 fn spirv(bytes: &[u8]) -> [ShaderEffect; 2] {
     const MAGIC: u32 = 0x0723_0203;
     const HEADER: usize = 5;

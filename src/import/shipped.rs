@@ -1,4 +1,4 @@
-//! Frames of other programs that come with this one: they can be looked at where there is no RenderDoc.
+//! Frames of other programs that are built into this one: they can be examined without RenderDoc.
 
 use super::read::read_from;
 use super::{ConvertedFrame, ImportError, convert};
@@ -8,7 +8,7 @@ use std::io::Cursor;
 /// A frame that another program drew, built in.
 #[derive(Debug, Clone, Copy)]
 pub struct ShippedFrame {
-    /// What opens it.
+    /// The name that opens it.
     pub name: &'static str,
     /// What it shows, in a sentence.
     pub lesson: &'static str,
@@ -27,7 +27,7 @@ macro_rules! shipped {
     };
 }
 
-/// All of them.
+/// All built-in frames.
 pub const SHIPPED: &[ShippedFrame] = &[
     shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
     shipped!("ogre-inside", "the eye in a shadow: OGRE counts that volume behind surfaces"),
@@ -35,12 +35,12 @@ pub const SHIPPED: &[ShippedFrame] = &[
 ];
 
 impl ShippedFrame {
-    /// The one of that name.
+    /// Returns the built-in frame of that name.
     pub fn named(name: &str) -> Option<&'static ShippedFrame> {
         SHIPPED.iter().find(|shipped| shipped.name == name)
     }
 
-    /// Its frame.
+    /// Reads the frame.
     pub fn open(&self) -> Result<WholeFrame, ImportError> {
         let frame = read_from(self.document, Cursor::new(self.data))?;
         let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, self.name)?;

@@ -1,4 +1,4 @@
-//! Fixed-function state, the same way round for every API.
+//! Fixed-function state, normalised for every API.
 
 use super::document::{RenderDocBlend, RenderDocBlendEquation, RenderDocDraw, RenderDocStencilFace};
 use super::raw::{RawBlend, RawCull, RawDepth, RawFormat, RawShape, RawStencilFace, RawView};
@@ -39,7 +39,8 @@ pub fn read(
     })
 }
 
-/// OpenGL counts rows from the bottom; Vulkan from the top, with y down unless the viewport's height is negative.
+/// Normalises viewport and scissor: OpenGL counts rows from the bottom; Vulkan from the top, with y down unless the
+/// viewport's height is negative.
 fn view(draw: &RenderDocDraw, is_gl: bool, height: u32) -> RawView {
     let [left, y, width, tall] = draw.viewport;
     let [low, high] = [y.min(y + tall), y.max(y + tall)];
@@ -56,8 +57,8 @@ fn view(draw: &RenderDocDraw, is_gl: bool, height: u32) -> RawView {
     }
 }
 
-/// OpenGL tells faces by how they turn in clip space, so that they turn the other way on the picture where its y
-/// points down; Vulkan by how they turn on the picture.
+/// Normalises the front face: OpenGL decides it by the winding in clip space, which is reversed on the picture where
+/// its y points down; Vulkan by the winding on the picture.
 fn shape(draw: &RenderDocDraw, is_gl: bool) -> Result<RawShape, String> {
     let cull = match draw.cull.as_str() {
         _ if draw.discards_all => RawCull::Both,
@@ -107,13 +108,13 @@ fn blend(blend: &RenderDocBlend) -> RawBlend {
     }
 }
 
-/// `None` where wgpu has no word for it.
+/// Returns a blend equation in wgpu's terms; `None` where wgpu has no equivalent.
 fn equation(RenderDocBlendEquation { source, target, operation }: &RenderDocBlendEquation) -> Option<BlendComponent> {
     let operation = match operation.as_str() {
         "Add" => BlendOperation::Add,
         "Subtract" => BlendOperation::Subtract,
         "ReversedSubtract" => BlendOperation::ReverseSubtract,
-        // Of these two no factor counts.
+        // These two operations ignore the factors.
         "Minimum" => return Some(BlendComponent { operation: BlendOperation::Min, ..BlendComponent::REPLACE }),
         "Maximum" => return Some(BlendComponent { operation: BlendOperation::Max, ..BlendComponent::REPLACE }),
         _ => return None,

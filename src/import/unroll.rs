@@ -2,8 +2,8 @@
 
 use super::raw::RawTopology;
 
-/// The triangles of a run of corners; empty for what has none. `corners` are indices of vertices, `None` where the
-/// primitive starts again.
+/// Returns the triangles of a run of corners; empty for points and lines. `corners` are indices of vertices, `None`
+/// where the primitive restarts.
 pub fn triangles(topology: RawTopology, corners: &[Option<u32>]) -> Vec<[u32; 3]> {
     corners.split(Option::is_none).flat_map(|run| of_run(topology, run)).collect()
 }
@@ -18,13 +18,13 @@ fn of_run(topology: RawTopology, run: &[Option<u32>]) -> Vec<[u32; 3]> {
         RawTopology::TriangleListAdjacency => {
             run.as_chunks::<6>().0.iter().map(|[a, _, b, _, c, _]| [*a, *b, *c]).collect()
         }
-        // Corners and neighbours take turns; a last corner without a neighbour makes no triangle.
+        // Corners and adjacent corners alternate; a last corner without an adjacent one makes no triangle.
         RawTopology::TriangleStripAdjacency => strip(&every_second()[..run.len() / 2]),
         RawTopology::Points | RawTopology::Lines | RawTopology::Other => Vec::new(),
     }
 }
 
-/// Every second triangle has its first two corners swapped, so that all turn the same way.
+/// Every second triangle has its first two corners swapped, so that all have the same winding.
 fn strip(run: &[u32]) -> Vec<[u32; 3]> {
     let triangle = |(at, three): (usize, &[u32])| match at % 2 {
         0 => [three[0], three[1], three[2]],
@@ -51,7 +51,7 @@ mod tests {
         assert_eq!(unrolled(RawTopology::TriangleList, &[4, 5, 6, 7, 8, 9, 1, 2]), [[4, 5, 6], [7, 8, 9]]);
     }
 
-    /// A strip that zigzags over a square grid: all triangles turn the same way.
+    /// A strip that zigzags over a square grid: all triangles have the same winding.
     #[test]
     fn all_triangles_of_a_strip_turn_the_same_way() {
         let place = |corner: u32| [f64::from(corner / 2), f64::from(corner % 2)];

@@ -2,7 +2,7 @@
 //!
 //! Panels are a function of the model (`model/mod.rs`): they read it, change what is selected in it, and return
 //! [`Action`]s. They open no file, run nothing and know no GPU; what has to be found out they want of the model's
-//! [`Answers`], and whoever draws the inspector answers. So they can be driven and tested without a window.
+//! [`Answers`](model::Model::answers), and whoever draws the inspector answers. So they can be driven and tested without a window.
 //!
 //! ```text
 //! Inspector::ui ─ keys ─ top_bar ─ messages ─ docked panels ─ status_bar ─ dialogs ─► Actions, questions among them

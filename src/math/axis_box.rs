@@ -1,8 +1,8 @@
-//! The box along the axes around some points.
+//! The bounding box of points, with sides along the axes.
 
 use glam::DVec3;
 
-/// A box whose sides lie along the axes. Around no point it is empty: lower than it is high nowhere.
+/// A box whose sides lie along the axes. Around no point it is empty: `low` is above `high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisBox {
     /// The lowest corner.
@@ -12,41 +12,41 @@ pub struct AxisBox {
 }
 
 impl AxisBox {
-    /// The smallest box that holds all points.
+    /// Returns the smallest box that contains all points.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> AxisBox {
         let none = AxisBox { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.into_iter().fold(none, |all, point| AxisBox { low: all.low.min(point), high: all.high.max(point) })
     }
 
-    /// Is a point in it, or on its border?
+    /// Returns whether a point is in it, or on its border.
     pub fn holds(&self, point: DVec3) -> bool {
         self.low.cmple(point).all() && self.high.cmpge(point).all()
     }
 
-    /// What two boxes have in common; empty where they don't meet.
+    /// Returns the intersection of two boxes; empty where they don't intersect.
     #[must_use]
     pub fn common(self, other: AxisBox) -> AxisBox {
         AxisBox { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
-    /// The smallest box that holds both.
+    /// Returns the smallest box that contains both.
     #[must_use]
     pub fn joined(self, other: AxisBox) -> AxisBox {
         let [this, other] = [self, other].map(|one| if one.is_empty() { AxisBox::around([]) } else { one });
         AxisBox { low: this.low.min(other.low), high: this.high.max(other.high) }
     }
 
-    /// Does it hold no point?
+    /// Returns whether it contains no point.
     pub fn is_empty(&self) -> bool {
         !self.low.cmple(self.high).all()
     }
 
-    /// Its length from corner to corner; infinite around no point.
+    /// Returns its length from corner to corner; infinite around no point.
     pub fn diagonal(&self) -> f64 {
         (self.high - self.low).length()
     }
 
-    /// Its eight corners.
+    /// Returns its eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
             let of = |axis: usize| if corner >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] };

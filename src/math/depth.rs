@@ -1,10 +1,10 @@
 //! Depth mappings: how the distance along the view axis becomes the depth that is stored.
 //!
-//! Every perspective mapping here is `depth = offset + scale / distance`, so two numbers say how
-//! a stored depth is read back and how fine it is. Those of a parallel camera are linear, `depth = offset +
-//! scale · distance`: no number there stands for infinity, so depth ends at a distance, and what must not be clipped
-//! behind it is clamped. Techniques are written for reversed depth,
-//! where greater is nearer; the frame turns tests and biases round for the others.
+//! Every perspective mapping here is `depth = offset + scale / distance`, so two numbers define how a stored depth is
+//! read back and how fine it is. Those of a parallel camera are linear, `depth = offset + scale · distance`: no number
+//! there stands for infinity, so depth ends at a distance, and what must not be clipped behind it is clamped.
+//! Techniques are written for reversed depth, where greater is nearer; the frame reverses tests and biases for the
+//! others.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -19,27 +19,27 @@ named_enum! {
         ReversedInfinite = "reversed-infinite",
         /// 0 at the near plane, 1 at infinity (Everitt and Kilgard 2002).
         StandardInfinite = "standard-infinite",
-        /// The same, with infinity pulled in by epsilon so that rounding can't clip what is there
+        /// 0 at the near plane, and infinity moved below 1 by epsilon, so that rounding can't clip what is there
         /// (Lengyel 2002).
         StandardInfiniteEpsilon = "standard-infinite-epsilon",
         /// 0 at the near plane, 1 at the far plane: what reaches beyond is clipped.
         StandardFinite = "standard-finite",
-        /// The same without clipping: what lies beyond is stored as 1.
+        /// 0 at the near plane, 1 at the far plane, without clipping: what lies beyond is stored as 1.
         StandardFiniteClamp = "standard-finite-clamp",
     }
 }
 
 named_enum! {
-    /// What a distance is told in.
+    /// The unit of a distance.
     #[derive(Default)]
     pub enum LengthUnit(
-        /// Where there is room for a letter.
+        /// Its symbol, where there is only space for a letter.
         letter
     ) {
         /// Scenes are in metres.
         #[default]
         Metre = "m" ("m"),
-        /// Another program's unit, which no capture tells.
+        /// Another program's unit, which no capture states.
         Unknown = "units" ("u"),
     }
 }
@@ -47,44 +47,44 @@ named_enum! {
 /// A mapping with its numbers: `depth = offset + scale / distance`, or `offset + scale · distance` where it is linear.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DepthCurve {
-    /// Which mapping.
+    /// The mapping.
     pub mapping: DepthMapping,
-    /// What an infinite distance becomes; of a linear one, no distance.
+    /// The depth of an infinite distance; of a linear mapping, the depth of distance 0.
     pub offset: f64,
-    /// In its unit; of a linear one, in parts of its unit.
+    /// Factor in the unit of distances; of a linear mapping, in depth per unit.
     pub scale: f64,
-    /// Of a parallel camera.
+    /// True for a parallel camera.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_linear: bool,
     /// Distance of the far plane; `None` where there is none.
     pub far: Option<f64>,
-    /// Of all distances.
+    /// Unit of all distances.
     #[serde(default)]
     pub unit: LengthUnit,
 }
 
 impl DepthMapping {
-    /// Is greater nearer?
+    /// Returns whether greater depth is nearer.
     pub fn is_reversed(self) -> bool {
         self == DepthMapping::ReversedInfinite
     }
 
-    /// Does it have a far plane?
+    /// Returns whether it has a far plane.
     pub fn is_finite(self) -> bool {
         matches!(self, DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp)
     }
 
-    /// Are depths beyond near and far clamped instead of clipped?
+    /// Returns whether depths beyond near and far are clamped instead of clipped.
     pub fn clamps(self) -> bool {
         self == DepthMapping::StandardFiniteClamp
     }
 
-    /// The depth where nothing was drawn.
+    /// Returns the depth where nothing was drawn.
     pub fn clear_depth(self) -> f32 {
         if self.is_reversed() { 0.0 } else { 1.0 }
     }
 
-    /// With its numbers. `far` counts for finite mappings, `epsilon` for the one of that name.
+    /// Returns the curve of a perspective camera. `far` is used by finite mappings, `epsilon` by the one of that name.
     pub fn curve(self, near: f64, far: f64, epsilon: f64) -> DepthCurve {
         let offset = match self {
             DepthMapping::ReversedInfinite => 0.0,
@@ -97,8 +97,8 @@ impl DepthMapping {
         DepthCurve { mapping: self, offset, scale, is_linear: false, far, unit: LengthUnit::Metre }
     }
 
-    /// With the numbers of a parallel camera, which are those of no other mapping: from 0 to 1 between `near` and
-    /// `end`, or from 1 to 0. Only a finite mapping has a far plane there.
+    /// Returns the linear curve of a parallel camera: from 0 to 1 between `near` and `end`, or from 1 to 0 where the
+    /// mapping is reversed. Only a finite mapping has a far plane there.
     pub fn linear_curve(self, near: f64, end: f64) -> DepthCurve {
         let scale = if self.is_reversed() { -1.0 / (end - near) } else { 1.0 / (end - near) };
         let offset = if self.is_reversed() { -end * scale } else { -near * scale };
@@ -108,30 +108,30 @@ impl DepthMapping {
 }
 
 impl DepthCurve {
-    /// What z of clip space is made of: factors of view z (negative ahead) and of w.
+    /// Returns the row of z in the clip matrix: factors of view z (negative ahead) and of w.
     pub fn z_row(&self) -> DVec2 {
         if self.is_linear { DVec2::new(-self.scale, self.offset) } else { DVec2::new(-self.offset, self.scale) }
     }
 
-    /// Ends where nothing must be clipped: volumes that go on are clamped there.
+    /// Returns whether depth ends where nothing must be clipped: volumes that continue are clamped there.
     pub fn keeps_volumes(&self) -> bool {
         self.is_linear && !self.mapping.is_finite()
     }
 
-    /// The formula, for people: `0 + 0.05 / distance`.
+    /// Returns the formula as text: `0 + 0.05 / distance`.
     pub fn formula(&self) -> String {
         let times = if self.is_linear { "*" } else { "/" };
         format!("{} + {} {times} distance", self.offset, self.scale)
     }
 
-    /// Distance along the view axis; `None` for the depth of what was not drawn.
+    /// Returns the distance along the view axis; `None` for the depth where nothing was drawn.
     pub fn distance(&self, depth: f32) -> Option<f64> {
         let above = f64::from(depth) - self.offset;
         (depth != self.mapping.clear_depth())
             .then(|| if self.is_linear { above / self.scale } else { self.scale / above })
     }
 
-    /// The depth of a distance, before it is rounded.
+    /// Returns the depth of a distance, before it is rounded.
     pub fn depth(&self, distance: f64) -> f64 {
         self.offset + if self.is_linear { self.scale * distance } else { self.scale / distance }
     }
@@ -161,7 +161,7 @@ mod tests {
         }
     }
 
-    /// z over w of the matrix rows, against the curve.
+    /// z over w of the matrix row must equal the curve.
     #[test]
     fn the_row_makes_the_curve() {
         for mapping in DepthMapping::ALL {

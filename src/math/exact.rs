@@ -1,10 +1,9 @@
 //! On which side of a triangle's plane a homogeneous point lies, decided exactly.
 //!
-//! Facing, caps, silhouettes and labels all hang on this one sign. A rounding error that two
-//! users of a triangle see differently opens a shadow volume; an exact sign can't. For points it
-//! is Shewchuk's adaptive `orient3d` (crate `robust`); for directions the determinant
-//! `D · (a×b + b×c + c×a)` is first bounded in floating point, and only where the bound can't
-//! tell is it summed exactly, as an expansion (Shewchuk 1997, "Adaptive Precision Floating-Point
+//! Facing, caps, silhouettes and labels all depend on this one sign. A rounding error that two users of a triangle see
+//! differently opens a shadow volume; an exact sign can't. For points it is Shewchuk's adaptive `orient3d` (crate
+//! `robust`); for directions the determinant `D · (a×b + b×c + c×a)` is first bounded in floating point, and only where
+//! the bound does not decide it is summed exactly, as an expansion (Shewchuk 1997, "Adaptive Precision Floating-Point
 //! Arithmetic and Fast Robust Geometric Predicates").
 
 use glam::{DVec2, DVec3, DVec4};
@@ -31,13 +30,13 @@ impl Sign {
         }
     }
 
-    /// This sign, or another one where it is zero.
+    /// Returns this sign, or another one where it is zero.
     #[must_use]
     pub fn or_else(self, other: impl FnOnce() -> Sign) -> Sign {
         if self == Sign::Zero { other() } else { self }
     }
 
-    /// Of `to − from`, however close they are.
+    /// Returns the sign of `to − from`, however close they are.
     pub fn between(from: f64, to: f64) -> Sign {
         if to > from {
             Sign::Positive
@@ -53,9 +52,9 @@ impl Sign {
     }
 }
 
-/// Positive where `point` is in front of the triangle `a b c`: seen from it, the corners run
-/// counter-clockwise. `point` has `w = 1`, or `w = 0` for a direction. Exact, but for overflow
-/// and underflow of products of three coordinates.
+/// Returns positive where `point` is in front of the triangle `a b c`: seen from it, the corners run counter-clockwise.
+/// `point` has `w = 1`, or `w = 0` for a direction. Exact, except for overflow and underflow of products of three
+/// coordinates.
 pub fn side_of_triangle([a, b, c]: [DVec3; 3], point: DVec4) -> Sign {
     if point.w == 0.0 {
         return side_of_direction([a, b, c], point.truncate());
@@ -65,14 +64,14 @@ pub fn side_of_triangle([a, b, c]: [DVec3; 3], point: DVec4) -> Sign {
     Sign::of(-orient3d(coord(a), coord(b), coord(c), coord(point.truncate())))
 }
 
-/// Positive where `point` is to the left of the line from `a` to `b`. Exact, but for overflow and
-/// underflow of products of two coordinates.
+/// Returns positive where `point` is to the left of the line from `a` to `b`. Exact, except for overflow and underflow
+/// of products of two coordinates.
 pub fn side_of_line([a, b]: [DVec2; 2], point: DVec2) -> Sign {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     Sign::of(orient2d(coord(a), coord(b), coord(point)))
 }
 
-/// The exact sign of a sum of products of two numbers each, but for overflow and underflow.
+/// Returns the exact sign of a sum of products of two numbers each, except for overflow and underflow.
 pub fn sign_of_sum(products: &[(f64, f64)]) -> Sign {
     let mut sum = Expansion::default();
     products.iter().for_each(|(a, b)| sum.add_product(*a, *b, 1.0));
@@ -131,7 +130,7 @@ impl Expansion {
     }
 }
 
-/// The rounded sum and what the rounding lost (Knuth).
+/// Returns the rounded sum and its rounding error (Knuth).
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
@@ -139,7 +138,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_part) + (b - b_part))
 }
 
-/// The rounded product and what the rounding lost.
+/// Returns the rounded product and its rounding error.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))
@@ -161,8 +160,8 @@ mod tests {
         assert_eq!(side_of_triangle(TRIANGLE, DVec4::new(1.0, 1.0, 0.0, 0.0)), Sign::Zero);
     }
 
-    /// A sheared plane far from the origin: naive arithmetic can't tell one unit in the last
-    /// place, and turning the corners round must always turn the sign.
+    /// A sheared plane far from the origin: naive arithmetic can't distinguish one unit in the last place, and
+    /// reversing the corners must always reverse the sign.
     #[test]
     fn a_direction_one_ulp_off_the_plane_is_reported_from_one_on_it() {
         let [a, b, c] = [

@@ -5,25 +5,25 @@ use glam::{DVec3, DVec4};
 /// A plane by its unit normal and offset: `normal · x + offset = 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
-    /// Of unit length.
+    /// Normal of unit length.
     pub normal: DVec3,
     /// Minus the plane's distance from the origin along `normal`.
     pub offset: f64,
 }
 
 impl Plane {
-    /// The plane through a point with a normal of any length but 0.
+    /// Returns the plane through a point with a normal of any length but 0.
     pub fn through(point: DVec3, normal: DVec3) -> Plane {
         let normal = normal.normalize();
         Plane { normal, offset: -normal.dot(point) }
     }
 
-    /// Signed distance of a point with `w = 1`; `normal · D` of a direction with `w = 0`.
+    /// Returns the signed distance of a point with `w = 1`; `normal · D` of a direction with `w = 0`.
     pub fn at(&self, point: DVec4) -> f64 {
         self.normal.dot(point.truncate()) + self.offset * point.w
     }
 
-    /// Signed distance of a point, and 0 where rounding can't tell it from the plane: what lies in one
+    /// Returns the signed distance of a point, and 0 where rounding can't distinguish it from the plane: points in one
     /// plane with others must not be above them by a unit in the last place.
     pub fn height(&self, point: DVec3) -> f64 {
         let height = self.at(point.extend(1.0));
@@ -31,7 +31,7 @@ impl Plane {
         if height.abs() > 16.0 * f64::EPSILON * products { height } else { 0.0 }
     }
 
-    /// The same plane with its normal turned round.
+    /// Returns the same plane with its normal reversed.
     pub fn flipped(&self) -> Plane {
         Plane { normal: -self.normal, offset: -self.offset }
     }

@@ -3,13 +3,14 @@
 use super::depth::DepthCurve;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-/// Clip space from view space: perspective. `aspect` is width over height.
+/// Returns clip space from view space for a perspective. `aspect` is width over height.
 pub fn perspective(fov_y_degrees: f64, aspect: f64, depth: &DepthCurve) -> DMat4 {
     let focal = 1.0 / (fov_y_degrees.to_radians() / 2.0).tan();
     frustum(focal / aspect, focal, depth)
 }
 
-/// The same by focal lengths: a point at distance 1 and offset `1 / focal` is at the picture's edge.
+/// Returns clip space from view space for a perspective by focal lengths: a point at distance 1 and offset `1 / focal`
+/// is at the picture's edge.
 pub fn frustum(focal_x: f64, focal_y: f64, depth: &DepthCurve) -> DMat4 {
     let z_row = depth.z_row();
     DMat4::from_cols(
@@ -20,8 +21,8 @@ pub fn frustum(focal_x: f64, focal_y: f64, depth: &DepthCurve) -> DMat4 {
     )
 }
 
-/// Clip space from view space: parallel, of pictures whose edges are `half` from the middle. What lies a metre behind
-/// the distance `in_place` is moved by `shear`. Depth must be linear.
+/// Returns clip space from view space for a parallel projection of pictures whose edges are `half` from the centre. A
+/// point a metre behind the distance `in_place` is moved by `shear`. Depth must be linear.
 pub fn parallel(half: [f64; 2], shear: DVec2, in_place: f64, depth: &DepthCurve) -> DMat4 {
     let z_row = depth.z_row();
     let half = DVec2::from_array(half);
@@ -34,8 +35,8 @@ pub fn parallel(half: [f64; 2], shear: DVec2, in_place: f64, depth: &DepthCurve)
     )
 }
 
-/// Clip space from a box in view space, looking down −z: x and y in ±`half`, and linear depth
-/// from `near` to `far` (distances along −z): from 1 to 0 where it is reversed, else from 0 to 1.
+/// Returns clip space from a box in view space, looking down −z: x and y in ±`half`, and linear depth from `near` to
+/// `far` (distances along −z): from 1 to 0 where it is reversed, else from 0 to 1.
 pub fn orthographic(half: [f64; 2], near: f64, far: f64, is_reversed: bool) -> DMat4 {
     let depth = if is_reversed { far - near } else { near - far };
     let end = if is_reversed { far } else { near };
@@ -47,15 +48,15 @@ pub fn orthographic(half: [f64; 2], near: f64, far: f64, is_reversed: bool) -> D
     )
 }
 
-/// Rotates world directions into view space looking along `forward`; neither argument is zero,
-/// nor are they parallel.
+/// Returns a rotation from world directions into view space looking along `forward`; neither argument is zero, nor are
+/// they parallel.
 pub fn view_from_world_rotation(forward: DVec3, up: DVec3) -> DMat3 {
     let back = -forward.normalize();
     let right = up.cross(back).normalize();
     DMat3::from_cols(right, back.cross(right), back).transpose()
 }
 
-/// A direction that is not parallel to `direction`: up for whatever looks along it.
+/// Returns a direction that is not parallel to `direction`: an up vector for a view along it.
 pub fn some_up_for(direction: DVec3) -> DVec3 {
     if direction.y.abs() > 0.9 * direction.length() { DVec3::Z } else { DVec3::Y }
 }

@@ -1,26 +1,26 @@
 //! Animated PNG: pictures of one size, one after the other, over and over.
 //!
-//! Pictures are written as they come, and only what changed since the one before is: the rectangle around it. Every
-//! browser shows such a file, and a program that knows none of it shows the first picture.
+//! Each picture is written when it is added, and only the rectangle around what changed since the one before. Every
+//! browser shows such a file, and a program that does not support it shows the first picture.
 
 use super::Picture;
 use super::colors::Rgb;
 use std::io::Write;
 
-/// The most that a channel of a rounded picture is away from what it was.
+/// The most that a channel of a rounded picture differs from the original.
 pub const ROUNDED_BY: u8 = 1;
 
-/// How colours are kept.
+/// How exactly colours are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColorDepth {
     /// To the bit.
     Exact,
-    /// Each channel to within [`ROUNDED_BY`] of 255: gently shaded surfaces take some two thirds of the room.
+    /// Each channel to within [`ROUNDED_BY`] of 255: gently shaded surfaces take some two thirds of the bytes.
     Rounded,
 }
 
 impl ColorDepth {
-    /// What becomes of a colour.
+    /// Returns the colour that is stored.
     pub fn reduced(self, color: Rgb) -> Rgb {
         let step = u16::from(2 * ROUNDED_BY + 1);
         match self {
@@ -32,7 +32,7 @@ impl ColorDepth {
         }
     }
 
-    /// The PNG filter that suits: rounded surfaces are runs of one colour already.
+    /// Returns the PNG filter that suits: rounded surfaces are runs of one colour already.
     fn filter(self) -> png::Filter {
         match self {
             ColorDepth::Exact => png::Filter::Adaptive,
@@ -41,16 +41,16 @@ impl ColorDepth {
     }
 }
 
-/// What an animation is like.
+/// Format of an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnimationFormat {
     /// Width and height of every picture.
     pub size: [u32; 2],
-    /// How many pictures there will be.
+    /// The number of pictures.
     pub pictures: u32,
     /// How long each is shown, milliseconds.
     pub milliseconds: u16,
-    /// How their colours are kept.
+    /// How exactly their colours are stored.
     pub colors: ColorDepth,
 }
 
@@ -60,9 +60,9 @@ pub enum AnimationError {
     /// It has another size than the animation.
     #[error("a picture of {found:?} pixels can't follow one of {expected:?}")]
     Size {
-        /// Of the animation.
+        /// Size of the animation.
         expected: [u32; 2],
-        /// Of the picture.
+        /// Size of the picture.
         found: [u32; 2],
     },
     /// It can't be written, or there are too few or too many.
@@ -74,12 +74,12 @@ pub enum AnimationError {
 pub struct AnimatedPng<W: Write> {
     writer: png::Writer<W>,
     format: AnimationFormat,
-    /// The last picture, as it is kept.
+    /// The last picture, as it is stored.
     shown: Option<Picture>,
 }
 
 impl<W: Write> AnimatedPng<W> {
-    /// Begins one.
+    /// Begins an animation.
     pub fn new(out: W, format: AnimationFormat) -> Result<AnimatedPng<W>, AnimationError> {
         let mut encoder = png::Encoder::new(out, format.size[0], format.size[1]);
         encoder.set_color(png::ColorType::Rgb);
@@ -101,7 +101,7 @@ impl<W: Write> AnimatedPng<W> {
         let pixels = picture.pixels.iter().map(|color| self.format.colors.reduced(*color)).collect();
         let picture = Picture { size: found, pixels };
         if let Some(shown) = &self.shown {
-            // A picture can't be empty: of one that is the same a pixel is written again.
+            // A picture can't be empty: where nothing changed, one pixel is written again.
             let [left, top, right, bottom] = changed(shown, &picture).unwrap_or([0; 4]);
             self.writer.reset_frame_position()?;
             self.writer.set_frame_dimension(right - left + 1, bottom - top + 1)?;
@@ -114,7 +114,7 @@ impl<W: Write> AnimatedPng<W> {
         Ok(())
     }
 
-    /// Ends it.
+    /// Ends the animation.
     pub fn finish(self) -> Result<(), AnimationError> {
         Ok(self.writer.finish()?)
     }
@@ -126,7 +126,8 @@ impl<W: Write> std::fmt::Debug for AnimatedPng<W> {
     }
 }
 
-/// The columns and rows `[left, top, right, bottom]`, ends included, around what differs; `None` where nothing does.
+/// Returns the columns and rows `[left, top, right, bottom]`, ends included, around what differs; `None` where nothing
+/// does.
 fn changed(one: &Picture, other: &Picture) -> Option<[u32; 4]> {
     let width = one.size[0] as usize;
     let mut bounds: Option<[u32; 4]> = None;
@@ -141,7 +142,7 @@ fn changed(one: &Picture, other: &Picture) -> Option<[u32; 4]> {
     bounds
 }
 
-/// The pixels of these columns and rows.
+/// Returns the pixels of these columns and rows.
 fn part(picture: &Picture, [left, top, right, bottom]: [u32; 4]) -> Vec<Rgb> {
     let rows = picture.pixels.chunks_exact(picture.size[0] as usize);
     let rows = rows.skip(top as usize).take((bottom - top + 1) as usize);
@@ -159,7 +160,7 @@ mod tests {
         AnimationFormat { size, pictures: pictures as u32, milliseconds: 500, colors: ColorDepth::Exact }
     }
 
-    /// The file of some pictures.
+    /// Returns the file of some pictures.
     fn animation(pictures: &[Picture]) -> Result<Vec<u8>, AnimationError> {
         let mut file = Vec::new();
         let size = pictures.first().map_or([1, 1], Picture::size);
@@ -169,7 +170,7 @@ mod tests {
         Ok(file)
     }
 
-    /// What a program shows of it, one picture after the other.
+    /// Returns the pictures that a program shows of it, one after the other.
     fn shown(file: Vec<u8>) -> Vec<Picture> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
         let count = reader.info().animation_control().expect("an animation").num_frames;
@@ -199,7 +200,7 @@ mod tests {
 
     #[test]
     fn only_what_changed_is_written() {
-        // What no filter makes small.
+        // Noise, which no filter makes small.
         let mut noise = Picture::filled([64, 64], BLACK);
         let mut state = 1_u32;
         for at in (0..64).flat_map(|y| (0..64).map(move |x| [x, y])) {

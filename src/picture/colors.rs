@@ -5,10 +5,10 @@
 use crate::numbers;
 use std::sync::LazyLock;
 
-/// sRGB.
+/// A colour in sRGB.
 pub type Rgb = [u8; 3];
 
-/// A stencil count of 0; also where nothing is.
+/// A stencil count of 0; also where nothing is drawn.
 pub const NOTHING: Rgb = [0x14, 0x17, 0x1d];
 /// Labels by value: lit, in shadow, background, faces away.
 pub const LABELS: [Rgb; 4] = [[0xf2, 0xd1, 0x6b], [0x46, 0x55, 0x7d], NOTHING, [0x7b, 0x82, 0x90]];
@@ -22,10 +22,10 @@ pub const MISSING_SHADOW: Rgb = [0xcc, 0x79, 0xa7];
 pub const WRONG_SURFACE: Rgb = [0x56, 0xb4, 0xe9];
 /// A difference that is excused, at an edge.
 pub const EDGE_BAND: Rgb = [0x7b, 0x82, 0x90];
-/// Behind pictures that stand side by side.
+/// Background of pictures side by side.
 pub const BACKGROUND: Rgb = [0x14, 0x16, 0x1b];
 
-/// Counts 1 to 7.
+/// Colours of counts 1 to 7.
 const STENCIL_CYCLE: [Rgb; 7] = [
     [0x56, 0xb4, 0xe9],
     [0x00, 0x9e, 0x73],
@@ -37,17 +37,17 @@ const STENCIL_CYCLE: [Rgb; 7] = [
 ];
 /// A count of −1, stored as 255.
 const STENCIL_MINUS_ONE: Rgb = [0xff, 0x59, 0x64];
-/// What −128 ends at: lighter further away.
+/// The colour that −128 ends at: counts further from 0 are lighter.
 const STENCIL_MINUS_MOST: Rgb = [0xff, 0xe3, 0xe5];
 
-/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
-/// each turn; 255 (−1) downwards in reds, lighter further away.
+/// Returns the colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step each time; 255
+/// (−1) downwards in reds, lighter further away.
 pub fn stencil(value: u8) -> Rgb {
     match value {
         0 => NOTHING,
         1..=127 => {
             let turn = f32::from((value - 1) / 7);
-            // 18 turns fit below 128; the last one keeps a third of its brightness.
+            // 18 cycles fit below 128; the last one has a third of the brightness.
             between(STENCIL_CYCLE[usize::from((value - 1) % 7)], [0; 3], turn * (2.0 / 3.0) / 18.0)
         }
         128..=255 => {
@@ -57,13 +57,13 @@ pub fn stencil(value: u8) -> Rgb {
     }
 }
 
-/// The colour of a label; a value that is none is drawn as its stencil colour would be.
+/// Returns the colour of a label; any other value is drawn as its stencil colour would be.
 pub fn label(value: u8) -> Rgb {
     LABELS.get(usize::from(value)).copied().unwrap_or_else(|| stencil(value))
 }
 
-/// The colour of a finding's number, as in error pictures; a number that is none is drawn as its stencil
-/// colour would be.
+/// Returns the colour of a finding's number, as in error pictures; any other value is drawn as its stencil colour would
+/// be.
 pub fn finding(value: u8) -> Rgb {
     [AGREES, FALSE_SHADOW, MISSING_SHADOW, WRONG_SURFACE, EDGE_BAND, NOTHING]
         .get(usize::from(value))
@@ -74,8 +74,8 @@ pub fn finding(value: u8) -> Rgb {
 /// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
 pub const READS_ZERO: Rgb = [0xff, 0x2b, 0xf2];
 
-/// The colour of a count: that of the stencil's palette, whose cycle goes on in its last turn beyond
-/// 127. What eight bits would take for zero has a colour that nothing else has.
+/// Returns the colour of a count: that of the stencil's palette, whose last cycle is repeated beyond 127, except that a
+/// count that eight bits would take for zero has a colour that nothing else has.
 pub fn count(count: f32) -> Rgb {
     if numbers::reads_zero_in_eight_bits(count) {
         return READS_ZERO;
@@ -86,7 +86,7 @@ pub fn count(count: f32) -> Rgb {
         // −1 is 255.
         -128..0 => (256 + whole) as u8,
         0..128 => whole as u8,
-        // 121 is the first of the last turn of seven.
+        // 121 is the first of the last cycle of seven.
         _ => (121 + (whole - 121) % 7) as u8,
     })
 }
@@ -100,17 +100,17 @@ static ENCODED: LazyLock<[u8; 256]> = LazyLock::new(|| {
     })
 });
 
-/// How a share of light, linear bytes, is shown on the screen.
+/// Returns the screen colour of a share of light, given as linear bytes.
 pub fn linear([red, green, blue]: Rgb) -> Rgb {
     [red, green, blue].map(|share| ENCODED[usize::from(share)])
 }
 
-/// Grey for a place between near (0) and far (1): near is light.
+/// Returns a grey for a place between near (0) and far (1): near is light.
 pub fn near_far(place: f32) -> Rgb {
     [(238.0 - 196.0 * place.clamp(0.0, 1.0)) as u8; 3]
 }
 
-/// From one colour (0) to another (1), in sRGB.
+/// Returns a colour between one (0) and another (1), in sRGB.
 pub fn between(from: Rgb, to: Rgb, share: f32) -> Rgb {
     std::array::from_fn(|channel| {
         let [from, to] = [from, to].map(|color| f32::from(color[channel]));

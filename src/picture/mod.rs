@@ -24,7 +24,7 @@ const DIGITS: [[u8; 5]; 10] = [
     [0b111, 0b101, 0b111, 0b101, 0b111],
     [0b111, 0b101, 0b111, 0b001, 0b111],
 ];
-/// Dots of a digit with the gap after it, and of a number's height; a dot of paper is all round.
+/// Dots of a digit with the gap after it; dots of a number's height; a dot of paper is all round.
 const DIGIT_WIDTH: u32 = 4;
 const DIGIT_HEIGHT: u32 = 5;
 
@@ -36,7 +36,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// One colour everywhere.
+    /// Returns a picture of one colour.
     pub fn filled(size: [u32; 2], color: Rgb) -> Picture {
         Picture { size, pixels: vec![color; size[0] as usize * size[1] as usize] }
     }
@@ -61,14 +61,15 @@ impl Picture {
         }
     }
 
-    /// Paints another picture with its top left corner at a place; what sticks out is left away.
+    /// Paints another picture with its top left corner at a place; pixels outside are left out.
     pub fn paste(&mut self, other: &Picture, [left, top]: [u32; 2]) {
         for (row, y) in other.pixels.chunks_exact(other.size[0].max(1) as usize).zip(top..) {
             row.iter().zip(left..).for_each(|(color, x)| self.set([x, y], *color));
         }
     }
 
-    /// As large as fits into `most`: made smaller by averaging, or enlarged so that a pixel becomes a square.
+    /// Returns the picture as large as fits into `most`: made smaller by averaging, or enlarged so that a pixel becomes
+    /// a square.
     pub fn fitted(&self, most: [u32; 2]) -> Picture {
         let [width, height] = self.size.map(|side| side.max(1));
         let times = (most[0] / width).min(most[1] / height);
@@ -98,14 +99,14 @@ impl Picture {
         })
     }
 
-    /// Each pixel as `color` has it.
+    /// Returns a picture with the colour `color` at each pixel.
     pub fn drawn(size: [u32; 2], color: impl Fn([u32; 2]) -> Rgb) -> Picture {
         let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
         Picture { size, pixels: places.map(color).collect() }
     }
 
-    /// A frame around columns and rows `[left, top, right, bottom]` (ends included), `gap` pixels away
-    /// and `width` wide; what lies outside the picture is left away.
+    /// Draws a frame around columns and rows `[left, top, right, bottom]` (ends included), `gap` pixels away and
+    /// `width` wide; pixels outside the picture are left out.
     pub fn frame(&mut self, bounds: [u32; 4], gap: u32, width: u32, color: Rgb) {
         let [left, top, right, bottom] = bounds.map(i64::from);
         for step in i64::from(gap) + 1..=i64::from(gap) + i64::from(width) {
@@ -134,13 +135,13 @@ impl Picture {
         }
     }
 
-    /// Width and height that a number takes.
+    /// Returns width and height that a number takes, pixels.
     pub fn number_size(number: usize, dot: u32) -> [u32; 2] {
         let digits = number.to_string().len() as u32;
         [(digits * DIGIT_WIDTH + 1) * dot, (DIGIT_HEIGHT + 2) * dot]
     }
 
-    /// The picture as a PNG file.
+    /// Returns the picture as a PNG file.
     pub fn to_png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.size[0], self.size[1]);

@@ -1,4 +1,4 @@
-//! SVG as pixels, with the one face that is built in: the same picture everywhere.
+//! SVG as pixels, with one built-in typeface: the same picture everywhere.
 
 use super::Picture;
 use resvg::tiny_skia::{Pixmap, Transform};
@@ -6,16 +6,16 @@ use resvg::usvg::fontdb::Database;
 use resvg::usvg::{self, Options, Tree};
 use std::sync::{Arc, LazyLock};
 
-/// Most pixels along a side.
+/// The most pixels along a side.
 const MOST_PIXELS: f32 = 16_384.0;
 
-/// Why there are no pixels.
+/// Why an SVG can't be rendered.
 #[derive(Debug, thiserror::Error)]
 pub enum SvgError {
-    /// It was refused.
+    /// It is not valid, or not supported.
     #[error(transparent)]
     Svg(#[from] usvg::Error),
-    /// More pixels than memory has room for.
+    /// More pixels than the limit.
     #[error("{width}×{height} pixels are too many")]
     TooLarge {
         /// Pixels across.
@@ -25,7 +25,7 @@ pub enum SvgError {
     },
 }
 
-/// The face and its family.
+/// The typeface and its family name.
 static FACE: LazyLock<(String, Arc<Database>)> = LazyLock::new(|| {
     let mut fonts = Database::new();
     fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
@@ -41,7 +41,7 @@ fn tree(svg: &str) -> Result<Tree, SvgError> {
     Ok(Tree::from_str(svg, &options)?)
 }
 
-/// An SVG with `scale` pixels a point. What it leaves open is black.
+/// Renders an SVG with `scale` pixels a point. Where it draws nothing the picture is black.
 pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
     let tree = tree(svg)?;
     let size = [tree.size().width(), tree.size().height()].map(|side| (side * scale).ceil());
@@ -56,12 +56,12 @@ pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
     Ok(Picture { size: [width, height], pixels })
 }
 
-/// How wide what an SVG shows is, points.
+/// Returns the width of an SVG, points.
 pub fn width(svg: &str) -> Result<f32, SvgError> {
     Ok(tree(svg)?.root().abs_bounding_box().width())
 }
 
-/// Text as XML: markup escaped, characters that XML can't hold replaced.
+/// Returns text as XML: markup escaped, characters that XML does not allow replaced.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,4 +1,4 @@
-//! Vertices, indices and pictures of draws, named by the hash of their content.
+//! The data that draws read: meshes (vertices and indices) and textures. Each is named by the hash of its content.
 
 use crate::geometry::{Blob, Extruded};
 use crate::scene::TextureImage;
@@ -7,55 +7,57 @@ use std::sync::Arc;
 /// An indexed triangle list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawMesh {
-    /// For people: `bunny`, `volume of bunny`.
+    /// Shown to people: `bunny`, `volume of bunny`.
     pub name: String,
     /// Homogeneous positions relative to the origin of the pass's view; `w = 0` is at infinity.
     pub vertices: Blob<[f32; 4]>,
-    /// Three a triangle, into `vertices`.
+    /// Three indices a triangle, into `vertices`.
     pub indices: Blob<u32>,
-    /// What shading and labels need; `None` for meshes drawn by position only.
+    /// Normals, sides and texture coordinates for shading and labels; `None` for meshes drawn by position only.
     pub surface: Option<SurfaceData>,
-    /// The vertex shader makes the vertices of these; [`DrawMesh::vertices`] are what comes of it.
+    /// The input of a vertex shader that computes the vertices; [`DrawMesh::vertices`] is its result.
     pub extruded: Option<Extruded>,
-    /// The fragments that another program's shader has not discarded, where that was noted, in order: the pixel
-    /// ([`DrawMesh::pixel_word`]) and the triangle. Corners are not shared then: the three of triangle `t` begin at `3t`.
+    /// The fragments that another program's shader did not discard, where they were recorded, sorted: the pixel
+    /// ([`DrawMesh::pixel_word`]) and the triangle. Corners are not shared then: the three of triangle `t` begin at
+    /// `3t`.
     pub retained: Option<Blob<[u32; 2]>>,
 }
 
 impl DrawMesh {
-    /// A mesh that is drawn by position only; see [`relative`](crate::geometry::relative) for its vertices.
+    /// Returns a mesh that is drawn by position only; see [`relative`](crate::geometry::relative) for its vertices.
     pub fn of_positions(name: impl Into<String>, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
         DrawMesh::of_blobs(name, Blob::new(vertices), Blob::new(indices))
     }
 
-    /// The same of data that may be shared.
+    /// Returns a mesh that is drawn by position only, of data that other meshes may share.
     pub fn of_blobs(name: impl Into<String>, vertices: Blob<[f32; 4]>, indices: Blob<u32>) -> DrawMesh {
         DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, retained: None }
     }
 
-    /// A mesh whose vertices a vertex shader carries away from a light.
+    /// Returns a mesh whose vertices a vertex shader carries away from a light.
     pub fn of_extruded(name: impl Into<String>, extruded: Extruded, indices: Blob<u32>) -> DrawMesh {
         let vertices = extruded.vertices();
         DrawMesh { extruded: Some(extruded), ..DrawMesh::of_blobs(name, vertices, indices) }
     }
 
-    /// Column and row of a pixel in one word, as [`DrawMesh::retained`] has it.
+    /// Packs the column and row of a pixel into one word, as [`DrawMesh::retained`] stores it.
     pub fn pixel_word([x, y]: [u32; 2]) -> u32 {
         x | y << 16
     }
 
-    /// Is a fragment of a triangle there after the shader, as far as is known?
+    /// Returns whether the fragment of `triangle` at `pixel` is retained by its shader. True where that was not
+    /// recorded.
     pub fn keeps(&self, pixel: [u32; 2], triangle: u32) -> bool {
         let wanted = [DrawMesh::pixel_word(pixel), triangle];
         self.retained.as_ref().is_none_or(|retained| retained.data().binary_search(&wanted).is_ok())
     }
 
-    /// How many triangles it has.
+    /// The number of triangles.
     pub fn triangles(&self) -> u32 {
         (self.indices.len() / 3) as u32
     }
 
-    /// Hash and bytes of all its data.
+    /// Hash and bytes of each of its arrays.
     pub(super) fn blobs(&self) -> Vec<(u64, u64)> {
         fn entry<T: bytemuck::Pod>(blob: &Blob<T>) -> (u64, u64) {
             (blob.hash(), (blob.len() * size_of::<T>()) as u64)
@@ -69,7 +71,7 @@ impl DrawMesh {
     }
 }
 
-/// Data of surfaces beside their positions.
+/// Per-surface data beside the positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceData {
     /// Unit world-space normal of each corner, parallel to the indices; the fourth is unused.
@@ -78,22 +80,22 @@ pub struct SurfaceData {
     /// side of the triangle's plane (a light or eye on the plane counts as not). Bit 31: the eye
     /// sees the back.
     pub sides: Blob<u32>,
-    /// Where each corner lies in a picture, parallel to the indices: 0, 0 is its lower left, 1, 1 its upper right.
-    /// `None` where no part of it shows one.
+    /// Texture coordinates of each corner, parallel to the indices: 0, 0 is the picture's lower left, 1, 1 its upper
+    /// right. `None` where no surface of the mesh has a texture.
     pub uvs: Option<Blob<[f32; 2]>>,
 }
 
-/// A picture on surfaces.
+/// A texture on surfaces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanTexture {
-    /// Its texels and their pyramid.
+    /// Its texels and their mip chain.
     pub picture: Arc<TextureImage>,
-    /// Beyond it, its last texels go on; else it repeats.
+    /// True clamps lookups outside of the picture to its edge; false repeats the picture.
     pub clamps: bool,
 }
 
 impl PlanTexture {
-    /// Bytes that all its levels take.
+    /// Bytes that all its mip levels take.
     pub fn bytes(&self) -> u64 {
         let half = |side: u32, level: u32| u64::from((side >> level).max(1));
         let [width, height] = self.picture.size();

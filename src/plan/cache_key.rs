@@ -1,13 +1,13 @@
-//! What a light's map is made from: equal inputs make equal texels, so a map may be kept from frame to frame.
+//! What a light's map is made from: equal inputs make equal texels, so a map may be cached from frame to frame.
 
 use super::{Attachment, AttachmentId, Draw, FramePlan, Pass};
 use foldhash::quality::FixedState;
 use std::hash::{BuildHasher, Hash, Hasher};
 
 impl FramePlan {
-    /// A hash of all that decides what an attachment holds when the frame is done; stable within a process
-    /// only. `None` where that is more than the passes that draw into it alone, by position or in one colour,
-    /// and where the plan does not say that it is kept.
+    /// Returns a hash of all that decides what an attachment stores when the frame is done; stable within a process
+    /// only. `None` where passes that draw by position or in one colour are not all that decides it, and where the plan
+    /// does not say that the attachment is cached.
     pub fn cache_key(&self, id: AttachmentId) -> Option<u64> {
         let map = self.map_in(id)?;
         if !map.is_cached {
@@ -37,7 +37,7 @@ impl FramePlan {
     }
 
     fn hash_draw(&self, draw: &Draw, hasher: &mut impl Hasher) -> Option<()> {
-        // Other programs read more than this.
+        // Shaders that are not flat read more than this hash covers.
         if !draw.program.is_flat() {
             return None;
         }
@@ -50,7 +50,7 @@ impl FramePlan {
 }
 
 impl Pass {
-    /// The pictures that it draws into.
+    /// The attachments that the pass draws into.
     pub(crate) fn targets(&self) -> impl Iterator<Item = AttachmentId> {
         let color = self.color.iter().map(|target| target.attachment);
         color.chain(self.depth_stencil.iter().map(|target| target.attachment))

@@ -1,4 +1,4 @@
-//! The bits of the stencil that a count is kept in.
+//! How many bits of the stencil store a count.
 
 use std::fmt;
 
@@ -7,28 +7,29 @@ use std::fmt;
 pub struct CountBits(u8);
 
 impl CountBits {
-    /// All of them.
+    /// All eight bits of a stencil.
     pub const EIGHT: CountBits = CountBits(8);
 
-    /// Those that a write mask has, from the lowest on; all where it has gaps, as no count then fits.
+    /// The bits that a write mask has, from the lowest on; all eight where the mask has gaps, as no count fits then.
     pub fn of_mask(mask: u32) -> CountBits {
         let ones = (mask as u8).trailing_ones() as u8;
         if (1..8).contains(&ones) && mask == (1 << ones) - 1 { CountBits(ones) } else { CountBits::EIGHT }
     }
 
-    /// How many different counts they hold.
+    /// The number of different counts that the bits can store.
     pub fn modulus(self) -> i32 {
         1 << self.0
     }
 
-    /// Do they hold a sum as this byte although it is another number? Of eight bits, the upper half reads as negative.
+    /// Returns whether the bits store `sum` as this `byte` although the two differ. Of eight bits, the upper half reads
+    /// as negative.
     pub fn hold_otherwise(self, sum: i32, byte: u8) -> bool {
         let least = if self == CountBits::EIGHT { -128 } else { 0 };
         sum.rem_euclid(self.modulus()) == i32::from(byte) && !(least..self.modulus()).contains(&sum)
     }
 }
 
-/// `eight bits`.
+/// Written as `eight bits`.
 impl fmt::Display for CountBits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const NAMES: [&str; 8] =

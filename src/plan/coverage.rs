@@ -1,13 +1,13 @@
 //! Which triangles of a frame lie over one pixel, from geometry alone.
 //!
-//! Every corner goes through the pass's matrix. A first sieve keeps triangles that are not wholly
-//! on one side of a small square round the pixel's centre: four planes through the eye, so it holds
-//! for corners behind the eye and at infinity too. What is left is looked at in `f64`: seen from
-//! the eye, three signed areas say whether the centre is inside (Olano and Greer 1997, "Triangle
-//! scan conversion using 2D homogeneous coordinates"), and weigh the corners' depths.
+//! Every corner goes through the pass's matrix. A first sieve passes only triangles that are not wholly on one side of
+//! a small square round the pixel's centre: four planes through the eye, so it is valid for corners behind the eye and
+//! at infinity too. The rest is examined in `f64`: seen from the eye, three signed areas say whether the centre is
+//! inside (Olano and Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates"), and weigh the corners'
+//! depths.
 //!
-//! A rasterizer rounds corners to parts of a pixel, so near an edge only the GPU can tell. This
-//! tells what it must be asked about, what it must say yes to, and what it never sees: triangles
+//! A rasterizer rounds corners to parts of a pixel, so near an edge only the GPU can decide. This module says which
+//! triangles the GPU must be asked about, which it must cover the pixel with, and which leave no fragment: triangles
 //! that are culled, or clipped away at the near or far plane.
 
 use super::{Draw, DrawPart, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
@@ -30,24 +30,24 @@ pub struct Covering {
     pub pass: usize,
     /// Index of the draw in its pass.
     pub draw: usize,
-    /// Index among the draw's triangles in the order in which they are drawn.
+    /// Index among the draw's triangles, in drawing order.
     pub primitive: u32,
     /// Index in the mesh's triangle list.
     pub triangle: u32,
-    /// The draw's, or of caps that a vertex shader carries light cap or dark cap.
+    /// The draw's part; for caps that a vertex shader carries, light cap or dark cap.
     pub part: DrawPart,
     /// Corners as the mesh has them: homogeneous, relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
-    /// What geometry says.
+    /// What geometry alone says about the triangle at the pixel.
     pub coverage: Coverage,
 }
 
-/// What geometry says of a triangle and a pixel.
+/// What geometry alone says about a triangle at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coverage {
     /// It leaves a fragment there.
     Sure,
-    /// The pixel's centre is too near to an edge, or the triangle too thin, to tell.
+    /// The pixel's centre is too near to an edge, or the triangle too thin, to decide.
     Doubtful,
     /// It covers the pixel, but the draw throws this side of triangles away.
     Culled(VisibleFace),
@@ -78,24 +78,24 @@ pub enum ClipPlane {
 pub struct LoggedFragment {
     /// Index into the triangles that were asked about.
     pub covering: usize,
-    /// Of the front of its triangle.
+    /// True for a fragment of the triangle's front.
     pub is_front: bool,
-    /// As the depth test sees it, bias included; not clamped.
+    /// Depth as the depth test sees it, bias included; not clamped.
     pub depth: f32,
 }
 
 /// The fragments of a pixel in the order in which their triangles were drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FragmentLog {
-    /// What was written down.
+    /// The fragments that fitted into the GPU's log.
     pub fragments: Vec<LoggedFragment>,
-    /// How many the GPU counted.
+    /// The number of fragments that the GPU counted, logged or not.
     pub counted: u32,
 }
 
 impl FramePlan {
-    /// Does a pass draw into the picture, or test against its depth and stencil? Passes of shadow
-    /// maps and textures have pixels of their own.
+    /// Returns whether a pass draws into the picture, or tests against its depth and stencil. Passes of shadow maps and
+    /// textures have pixels of their own.
     pub fn is_of_picture(&self, pass: &Pass) -> bool {
         let is_map = |id| matches!(self.attachment(id).role, super::AttachmentRole::Map(_));
         let color = pass.color.iter().map(|target| target.attachment);
@@ -103,14 +103,14 @@ impl FramePlan {
         !color.chain(depth).any(is_map)
     }
 
-    /// Does a pass draw into a float count?
+    /// Returns whether a pass draws into a float count.
     pub fn counts_in_float(&self, pass: &Pass) -> bool {
         let role = pass.color.as_ref().map(|target| self.attachment(target.attachment).role);
         matches!(role, Some(super::AttachmentRole::Count(_)))
     }
 
-    /// Every triangle of every pass of the picture that lies over the centre of `pixel` or within a
-    /// pixel of it, in the order in which the GPU draws them.
+    /// Returns every triangle of every pass of the picture that lies over the centre of `pixel` or within a pixel of
+    /// it, in the order in which the GPU draws them.
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
         let mut search =
             CoverageSearch { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
@@ -126,13 +126,13 @@ impl FramePlan {
     }
 }
 
-/// Triangles of a mesh are looked through once, however many draws show them.
+/// Key under which a mesh's triangles are searched once, however many draws show them.
 type SearchedMesh = (MeshId, ViewId, [u32; 4], [u32; 3]);
 
 struct CoverageSearch<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
-    /// For each vertex of the last mesh, which of the four planes it is outside of.
+    /// For each vertex of the last mesh, a bit for each of the four planes that it is outside of.
     sieve: Vec<u8>,
     sieve_of: Option<(MeshId, ViewId, Viewport)>,
     found: BTreeMap<SearchedMesh, Vec<u32>>,
@@ -220,15 +220,15 @@ impl FramePlan {
 /// A pixel's centre and the square round it, in normalized device coordinates.
 struct PixelSquare {
     center: DVec2,
-    /// Half of a pixel's sides.
+    /// Half of a pixel's width and height.
     half_pixel: DVec2,
     /// How far the centre lies inside of the viewport, pixels.
     inside: f64,
 }
 
-/// How a triangle lies to the centre.
+/// Where the pixel's centre lies relative to a triangle.
 enum CenterCoverage {
-    /// Its depth is that of clip space.
+    /// Inside, with its depth in clip space.
     Inside {
         runs_counterclockwise: bool,
         depth: f64,
@@ -246,8 +246,8 @@ impl PixelSquare {
         PixelSquare { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
     }
 
-    /// Four bits for each vertex: right of, left of, above and below the square, as far as `f32` can
-    /// tell for sure.
+    /// Computes four bits for each vertex: right of, left of, above and below the square, as far as `f32` can decide
+    /// with certainty.
     fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]], sieve: &mut Vec<u8>) {
         let clip = clip_from_relative.as_dmat4();
         let reach = self.half_pixel * (2.0 * DOUBT);
@@ -270,7 +270,7 @@ impl PixelSquare {
         sieve.extend(vertices.iter().map(outside));
     }
 
-    /// `None` where the triangle is farther from the centre than doubt reaches.
+    /// Returns where the centre lies; `None` where the triangle is farther from it than [`DOUBT`].
     fn look(&self, clip_from_relative: Option<Mat4>, corners: [[f32; 4]; 3]) -> Option<CenterCoverage> {
         let corners = corners.map(|corner| DVec4::from_array(corner.map(f64::from)));
         let clip = clip_from_relative.map_or(corners, |matrix| corners.map(|corner| matrix.as_dmat4() * corner));

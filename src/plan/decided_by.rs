@@ -1,7 +1,7 @@
-//! How a frame decides where a light's shadow is: what its light pass asks.
+//! How a frame decides where a light's shadow is: what its light pass reads.
 //!
-//! It is said for each light, not for the technique: a light that reaches nothing in view is decided by
-//! nothing, and `auto` counts in the stencil or, where eight bits could be too few, in floats.
+//! It is stated for each light, not for the technique: a light that reaches nothing in view is decided by nothing, and
+//! `auto` counts in the stencil or, where eight bits could be too few, in floats.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,27 +9,27 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum DecidedBy {
-    /// How many shadow volumes hold the surface, as eight bits of stencil: 0 is lit.
+    /// How many shadow volumes contain the surface, as eight bits of stencil: 0 is lit.
     StencilCount {
         /// On which side of the surface faces count.
         side: CountedSide,
     },
-    /// How many shadow volumes hold the surface, as a signed float: 0 is lit.
+    /// How many shadow volumes contain the surface, as a signed float: 0 is lit.
     FloatCount {
         /// On which side of the surface faces count.
         side: CountedSide,
     },
-    /// The depth that the light sees in its map.
+    /// The depth that the light sees, in its shadow map.
     Map,
-    /// What arrives on a flat receiver, drawn into a texture of its own.
+    /// The light that arrives on a flat receiver, drawn into a texture of its own.
     ReceiverTextures,
-    /// What the casters let through, thrown over the scene.
+    /// The light that the casters let through, drawn as silhouettes and projected onto the scene.
     Silhouettes,
     /// Casters flattened onto flat receivers.
     Flattened,
-    /// Labels that rays made on the CPU.
+    /// Labels computed with rays on the CPU.
     Labels,
-    /// Nobody asks: the light reaches all that faces it.
+    /// Nothing is read: the light reaches all that faces it.
     Nothing,
 }
 
@@ -43,21 +43,21 @@ named_enum! {
         InFront = "in-front" ("in front of"),
         /// Between the surface and infinity: z-fail.
         Behind = "behind" ("behind"),
-        /// Those of some volumes in front of it, those of others behind it.
+        /// In front of the surface for some volumes, behind it for others.
         AsNeeded = "as-needed" ("on either side of"),
     }
 }
 
 named_enum! {
-    /// What a count of a light's shadow volumes is a count of.
+    /// What a light's count of shadow volumes counts.
     pub enum CountOf(
         /// `bodies`, `surfaces`, `bodies and surfaces`.
         what,
-        /// In a sentence, for whoever reads a count.
+        /// A clause that explains a count to its reader.
         meaning
     ) {
-        /// Casters that are proven closed: of each, only triangles that face the light cast. Others too, that have no
-        /// surface behind them.
+        /// Casters that are proven closed: of each, only triangles that face the light cast. A caster that has no
+        /// surface behind it counts so too.
         Bodies = "bodies" (
             "bodies",
             "A count is of bodies: every caster that can darken a surface here is proven closed, and counts 1 each \
@@ -69,7 +69,7 @@ named_enum! {
             "A count is of surfaces, not of bodies: each one on the way to the light counts 1, so that a closed body \
              whose both sides cast counts 2."
         ),
-        /// Some casters are proven closed, of others every surface counts.
+        /// Some casters are proven closed; every surface of the others counts.
         Mixed = "mixed" (
             "bodies and surfaces",
             "A count is of bodies and of surfaces: a caster that is proven closed counts 1 each time the way to the \
@@ -79,12 +79,12 @@ named_enum! {
 }
 
 impl DecidedBy {
-    /// Are shadow volumes counted, in whatever way?
+    /// Returns whether shadow volumes are counted, in the stencil or in floats.
     pub fn counts_volumes(self) -> bool {
         self.counted_side().is_some()
     }
 
-    /// Are they counted in a float for each pixel, and not in eight bits?
+    /// Returns whether shadow volumes are counted in a float for each pixel instead of eight bits.
     pub fn counts_in_floats(self) -> bool {
         matches!(self, DecidedBy::FloatCount { .. })
     }

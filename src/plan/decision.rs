@@ -1,12 +1,12 @@
-//! What a frame may do without: one decision each, and what it leaves out in words.
+//! What a frame may do without: one decision for each reason, with the text for what it leaves out.
 
 use crate::numbers;
 
 named_enum! {
-    /// Why something is not in a frame. The first may be forbidden (`leave-out`), each by its name; the rest is what
-    /// a technique can't do, does not do, or has done before.
+    /// Why something is not in a frame. The first decisions can be forbidden by their names (`leave-out`); the rest is
+    /// what a technique can't do, does not do, or has done before.
     pub enum Decision(
-        /// What is left out, for people, with places for a name and a number.
+        /// What is left out, in words, with places for a name and a number.
         template
     ) {
         /// A light that reaches no surface in view: its passes.
@@ -19,13 +19,13 @@ named_enum! {
         Umbra = "umbra" ("volume"),
         /// Of a closed caster, the triangles that face away from the light.
         AwayTriangles = "away-triangles" ("triangles that face away"),
-        /// Caps of a caster that holds no point of the near plane in its shadow: z-pass counts without.
+        /// The caps of a caster whose shadow contains no point of the near plane: z-pass counts without.
         Caps = "caps" ("caps"),
         /// The light cap of a caster that is not in view.
         LightCap = "light-cap" ("light cap"),
         /// The dark cap of a volume whose far end is not in view, or is one point.
         DarkCap = "dark-cap" ("dark cap"),
-        /// What of a volume lies beyond all that receives: it ends there.
+        /// The part of a volume that lies beyond all receivers: the volume ends there.
         BeyondReceivers = "beyond-receivers" ("far part of the volume"),
         /// Surfaces that are not in view.
         Surfaces = "surfaces" ("surface"),
@@ -47,23 +47,23 @@ named_enum! {
         VolumePass = "volume-pass" ("volume pass"),
         /// Triangles inside the outline of a dark cap at infinity.
         InnerDarkCap = "inner-dark-cap" ("inner triangles of the dark cap"),
-        /// Counting with the triangles that face the light alone: what it takes is not proven.
+        /// Counting with the triangles that face the light alone: the conditions for it are not proven.
         LightFacing = "light-facing" ("choice of light-facing triangles"),
         /// Counting in eight bits, which could be too few.
         EightBits = "eight-bits" ("eight-bit count"),
-        /// Two passes and clamping, which a float count does not know.
+        /// Two passes and clamping, which do not apply to a float count.
         TwoPasses = "two-passes" ("two passes and clamping"),
-        /// Extrusion in the vertex shader, which finds no casting triangle for the CPU.
+        /// Extrusion in the vertex shader, which leaves the CPU without the casting triangles.
         VertexExtrusion = "vertex-extrusion" ("extrusion in the vertex shader"),
-        /// What z-pass-plus begins with.
+        /// The count at the near plane that z-pass-plus begins with.
         NearPlane = "near-plane" ("count at the near plane"),
         /// A light's shadow map: nothing would be in it.
         Map = "map" ("shadow map"),
         /// A caster in a light's map: behind it there is nothing.
         MapCaster = "map-caster" ("{name} in the shadow map"),
-        /// A caster's silhouette: behind it there is nothing, or no picture holds it.
+        /// A caster's silhouette: nothing lies behind the caster, or no picture can contain the silhouette.
         Silhouette = "silhouette" ("silhouette of {name}"),
-        /// Silhouettes of more casters than fit.
+        /// Silhouettes of more casters than the budget allows.
         MostSilhouettes = "most-silhouettes" ("silhouettes of the last {count} objects"),
         /// The texture of a receiver that would show no shadow.
         Texture = "texture" ("texture of {name}"),
@@ -73,23 +73,23 @@ named_enum! {
         PlanarShadows = "planar-shadows" ("planar shadows"),
         /// Flat receivers that show the side that the light is not on.
         DarkReceivers = "dark-receivers" ("{count} flat receivers"),
-        /// Flat receivers beyond those that are served.
+        /// Flat receivers beyond the number that get a texture.
         SmallReceivers = "small-receivers" ("{count} small flat receivers"),
-        /// Darkening a pixel once only, which takes a stencil.
+        /// Darkening a pixel only once, which takes a stencil.
         BlendOnce = "blend-once" ("blending once"),
-        /// What a model's materials ask for and no shader does.
+        /// A feature that a model's materials ask for and no shader has.
         Material = "material" ("{name}"),
-        /// What a scene's file holds and no frame shows.
+        /// Data in a scene's file that no frame shows.
         SceneFile = "scene-file" ("{name}"),
-        /// Drawing again what is there from the frame before.
+        /// Drawing again what is cached from the frame before.
         Cached = "kept" ("drawing `{name}` again"),
-        /// A draw of which no sample showed in the frame before.
+        /// A draw of which no sample passed in the frame before.
         Unseen = "unseen" ("{name}"),
     }
 }
 
 impl Decision {
-    /// The names of those that may be forbidden: what `leave-out` knows, in order.
+    /// The names of the decisions that can be forbidden: the values of `leave-out`, in order.
     pub const NAMES: [&str; 16] = {
         let mut names = [""; 16];
         let mut index = 0;
@@ -100,7 +100,7 @@ impl Decision {
         names
     };
 
-    /// What is left out, for people: `dark cap`, `texture of floor`, `3 flat receivers`. `count`: how many
+    /// Returns what is left out, in words: `dark cap`, `texture of floor`, `3 flat receivers`. `count`: how many
     /// triangles or things; `name`: which of several.
     pub(super) fn what(self, name: Option<&str>, count: Option<u64>) -> String {
         let (name, of) = (name.unwrap_or("it"), numbers::count(count.unwrap_or(0)));

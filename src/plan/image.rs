@@ -3,20 +3,20 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Makes a picture, each time the frame runs: its time is part of the frame's.
+/// Computes a picture each time the frame runs: its time is part of the frame's.
 pub trait MakeImage: Debug + Send + Sync {
-    /// Texels of the pass's colour target, row by row without padding.
+    /// Returns the texels of the pass's colour target, row by row without padding.
     fn make(&self) -> Vec<u8>;
 }
 
-/// How a pass's picture is made.
+/// How the CPU computes a pass's picture.
 #[derive(Debug, Clone)]
 pub struct CpuImage {
-    /// For people: `rays of light 1`.
+    /// Shown to people: `rays of light 1`.
     pub name: String,
     /// Hash of all that the picture depends on.
     pub content: u64,
-    /// Does the work.
+    /// Computes the picture.
     pub source: Arc<dyn MakeImage>,
 }
 

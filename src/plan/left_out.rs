@@ -1,4 +1,4 @@
-//! A record of something that this scene does not need.
+//! The record of something that this scene does not need.
 
 use super::{Decision, LightId, Pass};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -6,13 +6,13 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// Something the plan leaves out, with the reason: absence is a lesson too.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// What decided it; `None` in a folder that does not say, or says what this version does not know.
+    /// The decision; `None` in a folder that does not state it, or states one that this version does not know.
     #[serde(default, deserialize_with = "known", skip_serializing_if = "Option::is_none")]
     pub decision: Option<Decision>,
-    /// Which of several things, where there are: a face, a receiver, a caster, a draw.
+    /// Which of several things it is: the name of a face, a receiver, a caster or a draw.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// In words, for example `dark cap`, `stencil buffer`, `map +x`.
+    /// What is left out, in words, for example `dark cap`, `stencil buffer`, `map +x`.
     pub what: String,
     /// The object, light or pass it would have belonged to.
     pub of: String,
@@ -24,28 +24,28 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// What `decision` says of `of` is not needed because of `because`.
+    /// Records that what `decision` leaves out of `of` is not needed, because of `because`.
     pub fn new(decision: Decision, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
         LeftOut::made(decision, None, None, of.into(), because.into())
     }
 
-    /// So many triangles or things of `of`.
+    /// Records that `count` triangles or things of `of` are left out.
     pub fn counted(decision: Decision, count: u64, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
         LeftOut::made(decision, None, Some(count), of.into(), because.into())
     }
 
-    /// The one of that name, of several that `of` has.
+    /// Records that one thing of several in `of`, called `name`, is left out.
     pub fn named(decision: Decision, name: &str, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
         LeftOut::made(decision, Some(name), None, of.into(), because.into())
     }
 
-    /// A pass that did not run, since what it makes is there from the frame before.
+    /// Records that a pass did not run, since its result is cached from the frame before.
     pub fn cached(pass: &Pass) -> LeftOut {
         let of = pass.light.map_or_else(|| "the frame".to_owned(), LightId::name);
         LeftOut::named(Decision::Cached, &pass.name, of, "nothing that makes it has changed since")
     }
 
-    /// Triangles that a light gives nothing.
+    /// Records that `count` triangles are left out that a light does not reach.
     pub fn unlit(count: u64, light: LightId, has_range: bool) -> LeftOut {
         let of = format!("the pass of {}", light.name());
         let mut left_out = LeftOut::counted(Decision::UnlitTriangles, count, of, "it adds nothing to them");
@@ -53,12 +53,12 @@ impl LeftOut {
         left_out
     }
 
-    /// Is it this that was left out of that object, light or pass?
+    /// Returns whether `decision` was made about that object, light or pass.
     pub fn is(&self, decision: Decision, of: &str) -> bool {
         self.decision == Some(decision) && self.of == of
     }
 
-    /// Is it the one of that name that was left out?
+    /// Returns whether `decision` left out the thing called `name`.
     pub fn names(&self, decision: Decision, name: &str) -> bool {
         self.decision == Some(decision) && self.name.as_deref() == Some(name)
     }
@@ -70,7 +70,7 @@ impl LeftOut {
 }
 
 impl std::fmt::Display for LeftOut {
-    /// `dark cap of box`.
+    /// Written as `dark cap of box`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} of {}", self.what, self.of)
     }

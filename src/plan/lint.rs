@@ -1,4 +1,4 @@
-//! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
+//! Checks a plan without a GPU: each of its errors names what would be a driver error, or silently wrong.
 
 use super::{
     AttachmentId, AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, RecordedPass, StartContent,
@@ -13,11 +13,11 @@ pub struct LintError {
     pub pass: usize,
     /// Its name.
     pub name: String,
-    /// What is wrong.
+    /// What is wrong, in words.
     pub problem: String,
 }
 
-/// Every broken rule, in the order of passes.
+/// Returns every broken rule, in the order of passes.
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
     let in_range = |mesh: &DrawMesh| {
         let vertex_count = mesh.vertices.len();
@@ -108,7 +108,7 @@ fn recorded_problem(plan: &FramePlan, pass: &Pass, recorded: &RecordedPass) -> O
     }
 }
 
-/// Does the mesh have every vertex that the draw's moved indices ask for?
+/// Returns whether the mesh has every vertex that the draw's indices refer to, with its base vertex added.
 fn base_fits(mesh: &DrawMesh, draw: &Draw) -> bool {
     let corners = draw.triangles.start as usize * 3..draw.triangles.end as usize * 3;
     let count = mesh.vertices.len();

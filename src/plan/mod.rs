@@ -1,8 +1,8 @@
-//! A frame as data: everything that a GPU will be told, and why.
+//! A frame as data: everything that a GPU is given, and why.
 //!
-//! A technique turns a scene into a [`FramePlan`]; `gpu::Executor` runs any plan. A plan holds no
-//! GPU object, so it can be printed ([`text`]), checked ([`lint`]), diffed and tested without one,
-//! and a broken frame is a good plan with one thing changed.
+//! A technique turns a scene into a [`FramePlan`]; `gpu::Executor` runs any plan. A plan has no GPU object, so it can
+//! be printed ([`text`]), checked ([`lint`]), diffed and tested without one, and a broken frame is a good plan with one
+//! thing changed.
 //!
 //! ```text
 //! FramePlan ─ attachments   pictures that passes draw into
@@ -59,7 +59,7 @@ pub struct ViewId(pub usize);
 pub struct LightId(pub usize);
 
 impl LightId {
-    /// For people, counted from 1: `light 1`.
+    /// Shown to people, counted from 1: `light 1`.
     pub fn name(self) -> String {
         crate::numbers::light(self.0)
     }
@@ -76,7 +76,7 @@ pub struct TextureId(pub usize);
 /// One frame, ready to be run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FramePlan {
-    /// Name of the technique that made it.
+    /// Name of the technique that planned it.
     pub technique: String,
     /// Every setting of the technique, defaults included, as in `--set`.
     pub settings: BTreeMap<String, String>,
@@ -94,26 +94,26 @@ pub struct FramePlan {
     pub lights: Vec<PlanLight>,
     /// Linear RGB light that reaches every surface.
     pub ambient: [f32; 3],
-    /// Vertices and indices of the draws. Capture folders hold them as arrays.
+    /// Vertices and indices of the draws. Capture folders store them as arrays.
     #[serde(skip)]
     pub meshes: Vec<DrawMesh>,
-    /// Pictures on surfaces. Capture folders hold them as pictures.
+    /// Textures on surfaces. Capture folders store them as pictures.
     #[serde(skip)]
     pub textures: Vec<PlanTexture>,
-    /// In the order in which they run.
+    /// Passes in the order in which they run.
     pub passes: Vec<Pass>,
-    /// What this scene does not need.
+    /// Work that this scene does not need.
     pub left_out: Vec<LeftOut>,
 }
 
 /// A picture that passes draw into.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Attachment {
-    /// For people: `color`, `depth and stencil`, `light 0 map`, `light 0 labels`.
+    /// Shown to people: `color`, `depth and stencil`, `light 0 map`, `light 0 labels`.
     pub name: String,
-    /// What it is for: how it is read back and shown.
+    /// Purpose: how it is read back and shown.
     pub role: AttachmentRole,
-    /// The GPU's format.
+    /// The GPU format of its texels.
     pub format: wgpu::TextureFormat,
     /// Width and height in texels.
     pub size: [u32; 2],
@@ -132,20 +132,20 @@ pub enum AttachmentRole {
     Map(LightId),
     /// How many shadow volumes of a light contain each pixel's surface, signed.
     Count(LightId),
-    /// What the technique says of a light, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the
-    /// light or beyond its range.
+    /// The technique's labels of a light, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 faces away from the
+    /// light or is beyond its range.
     Labels(LightId),
 }
 
-/// Where a pass is seen from.
+/// The view that a pass is drawn from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanView {
-    /// For people: `camera`, `light 0 face +x`.
+    /// Shown to people: `camera`, `light 0 face +x`.
     pub name: String,
     /// World position that the vertices of this view's meshes are relative to.
     pub origin: DVec3,
-    /// Where lines of sight meet, homogeneous and relative to `origin`; of a parallel view the direction towards it.
-    /// Highlights ask for it.
+    /// Where view rays begin, homogeneous and relative to `origin`; of a parallel view the direction towards its eye.
+    /// Specular highlights use it.
     #[serde(default = "PlanView::at_origin")]
     pub eye: Vec4,
     /// Clip space from positions relative to `origin`.
@@ -153,27 +153,27 @@ pub struct PlanView {
 }
 
 impl PlanView {
-    /// An eye where the vertices are relative to.
+    /// An eye at the origin that vertices are relative to.
     pub fn at_origin() -> Vec4 {
         Vec4::W
     }
 }
 
-/// What shaders know of a light.
+/// The data of a light that shaders get.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanLight {
     /// Homogeneous, relative to the eye: `(L.xyz − L.w·eye, L.w)`.
     pub relative_position: [f32; 4],
     /// Linear RGB times intensity.
     pub color: [f32; 3],
-    /// Where it has faded to nothing; `None`: no falloff.
+    /// Distance at which the light has faded to nothing; `None`: no falloff.
     pub range: Option<f32>,
-    /// What its light pass asks.
+    /// What its light pass reads to decide where the shadow is.
     pub decided_by: DecidedBy,
     /// What a count of its volumes counts, where that is known.
     #[serde(default)]
     pub count_of: Option<CountOf>,
-    /// Its shadow map, where the technique makes one.
+    /// Its shadow map or textures, where the technique makes any.
     pub map: Option<PlanMap>,
     /// Where its volumes are counted, if not in the stencil.
     pub count: Option<AttachmentId>,
@@ -185,46 +185,44 @@ pub struct PlanLight {
 /// (+x −x +y −y +z −z), the texture of each receiver, or the silhouette of each caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanMap {
-    /// Its texture.
+    /// The attachment that stores its texels.
     pub attachment: AttachmentId,
-    /// The view of each face; `None` where a face sees no caster: it takes no memory, and shows as
-    /// clear.
+    /// The view of each face; `None` where a face sees no caster: it takes no memory, and shows as clear.
     pub faces: Vec<Option<ViewId>>,
     /// Light space from world space.
     pub light_from_world: DMat4,
-    /// The clip space of each face from light space.
+    /// Clip space of each face from light space.
     pub clip_from_light: Vec<DMat4>,
-    /// The clip space of each face from positions relative to the eye: what a receiver's
-    /// fragment is carried by.
+    /// Clip space of each face from positions relative to the eye: receivers' fragments are projected with it.
     pub clip_from_relative: Vec<Mat4>,
-    /// What the layers are of, where they hold colours: receivers or casters. Empty for the faces of a depth map.
+    /// Name of the receiver or caster of each layer, where the map stores colours. Empty for the faces of a depth map.
     pub layer_names: Vec<String>,
-    /// How depths are looked up; `None` where it holds colours.
+    /// How depths are looked up; `None` where the map stores colours.
     pub lookup: Option<MapLookup>,
     /// Projected colours reach behind the light too.
     pub projects_backwards: bool,
-    /// Beyond its picture its last texels go on, as a lookup clamped to the edge has them; else all of the light arrives.
+    /// True clamps lookups outside of the map to its edge; false lets all of the light through there.
     #[serde(default)]
     pub repeats_edge: bool,
-    /// Its texture stays from frame to frame while what draws it is the same.
+    /// Its texture is cached from frame to frame while what draws it is the same.
     pub is_cached: bool,
 }
 
 impl PlanMap {
-    /// As many faces fit into a shader's light.
+    /// The largest number of faces that a shader's light has space for.
     pub const MOST_FACES: usize = 64;
 }
 
 /// How a shadow map is looked up.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapLookup {
-    /// What texels hold that no caster covers; 0 where depth is reversed.
+    /// Depth of texels that no caster covers; 0 where depth is reversed.
     pub clear_depth: f32,
-    /// How far the point is moved along its normal, in texels, times the sine of the light's angle.
+    /// Normal offset: how far the point is moved along its normal, in texels, times the sine of the light's angle.
     pub bias_normal: f32,
-    /// Each texel is compared with the depth that the surface's plane has there.
+    /// Receiver-plane bias: each texel is compared with the depth that the surface's plane has there.
     pub bias_receiver_plane: bool,
-    /// Texels averaged along each side.
+    /// Width of the filter: texels averaged along each side.
     pub filter_width: u32,
 }
 
@@ -233,32 +231,33 @@ pub struct MapLookup {
 pub struct Pass {
     /// Short, lower case: `ambient`, `volumes`, `light`.
     pub name: String,
-    /// One sentence for the learner.
+    /// One sentence that explains the pass to a learner.
     pub purpose: String,
     /// The light it belongs to; `None` for the scene's own passes.
     pub light: Option<LightId>,
-    /// Part of the frame whose time counts; mask passes are not.
+    /// True for passes whose time counts for the frame; mask passes do not count.
     pub timed: bool,
-    /// Where it is seen from.
+    /// The view it is drawn from.
     pub view: ViewId,
     /// Colour target, if any.
     pub color: Option<ColorTarget>,
     /// Depth-stencil target, if any.
     pub depth_stencil: Option<DepthStencilTarget>,
-    /// Draws change nothing outside of these pixels: left, top, columns, rows. Clears do.
+    /// Scissor rectangle: left, top, columns, rows. Draws change nothing outside of it; clears do.
     pub scissor: Option<[u32; 4]>,
-    /// In order.
+    /// Draws in order.
     pub draws: Vec<Draw>,
-    /// What it leaves in its colour target where no draw makes it. Capture folders hold it as an array.
+    /// A picture computed on the CPU that goes into its colour target in place of draws. Capture folders store it as an
+    /// array.
     #[serde(skip)]
     pub image: Option<CpuImage>,
-    /// What it has beside this where another program made it.
+    /// Further data of a pass of another program's frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recorded: Option<Box<RecordedPass>>,
 }
 
 impl Pass {
-    /// May its draws change a pixel?
+    /// Returns whether its draws may change a pixel, by its scissor rectangle.
     pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
         let holds = |[left, top, columns, rows]: [u32; 4]| {
             (left..left.saturating_add(columns)).contains(&x) && (top..top.saturating_add(rows)).contains(&y)
@@ -266,7 +265,8 @@ impl Pass {
         self.scissor.is_none_or(holds)
     }
 
-    /// Does it count the volumes that hold the near plane, as z-pass-plus begins? It sees them from the light.
+    /// Returns whether the pass counts the volumes that contain the near plane, as z-pass-plus begins. Its view is from
+    /// the light.
     pub fn counts_at_near_plane(&self) -> bool {
         self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
     }
@@ -275,25 +275,25 @@ impl Pass {
 /// The colour target of a pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ColorTarget {
-    /// Which picture.
+    /// The attachment that is drawn into.
     pub attachment: AttachmentId,
-    /// Which of its layers.
+    /// The layer that is drawn into.
     pub layer: u32,
-    /// What it holds at the start: cleared to this value (linear RGBA, or a label in the first
-    /// component), or kept.
+    /// Value that it is cleared to at the start (linear RGBA, or a label in the first component); `None` loads what is
+    /// stored.
     pub clear: Option<[f64; 4]>,
 }
 
 /// The depth-stencil target of a pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DepthStencilTarget {
-    /// Which picture.
+    /// The attachment that is tested and drawn into.
     pub attachment: AttachmentId,
-    /// Which of its layers.
+    /// The layer that is tested and drawn into.
     pub layer: u32,
-    /// Depth is cleared to this value at the start, or kept.
+    /// Depth that it is cleared to at the start; `None` loads what is stored.
     pub clear_depth: Option<f32>,
-    /// Stencil is cleared to this value at the start, or kept.
+    /// Stencil value that it is cleared to at the start; `None` loads what is stored.
     pub clear_stencil: Option<u8>,
 }
 
@@ -302,9 +302,9 @@ pub struct DepthStencilTarget {
 pub struct Draw {
     /// Short: `sides of bunny`.
     pub name: String,
-    /// The object it shows or whose shadow it makes.
+    /// The object that it shows, or whose shadow it draws.
     pub caster: Option<String>,
-    /// Which part of the object or of its shadow.
+    /// Which part of the object or of its shadow it draws.
     pub part: DrawPart,
     /// The shader.
     pub program: Program,
@@ -312,19 +312,19 @@ pub struct Draw {
     pub raster: RasterState,
     /// Vertices and indices.
     pub mesh: MeshId,
-    /// Which triangles of the mesh's index list.
+    /// Range of triangles in the mesh's index list.
     pub triangles: Range<u32>,
     /// Added to every index: a dark cap is its light cap at the far vertices.
     pub base_vertex: u32,
-    /// Of a shadow volume's part: its triangles face into the volume, and their backs are its outside.
-    /// Caps are runs of the caster's own triangles, so either way occurs.
+    /// For a part of a shadow volume: true where its triangles' fronts face into the volume, and their backs outwards.
+    /// Caps are runs of the caster's own triangles, so either is possible.
     pub faces_inwards: bool,
     /// Values for the shader.
     pub constants: DrawConstants,
 }
 
 impl Draw {
-    /// Which part one of its triangles is: of caps that a vertex shader carries, light cap or dark cap.
+    /// Returns which part a triangle of the draw is: of caps that a vertex shader carries, light cap or dark cap.
     pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> DrawPart {
         match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
             (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
@@ -333,7 +333,7 @@ impl Draw {
         }
     }
 
-    /// A draw of a whole mesh by position only, as into the stencil.
+    /// Returns a draw of a whole mesh by position only, as into the stencil.
     pub fn of_positions(
         name: impl Into<String>,
         part: DrawPart,
@@ -367,7 +367,7 @@ named_enum! {
         LightCap = "light-cap",
         /// The casting triangles carried to infinity.
         DarkCap = "dark-cap",
-        /// Light cap and dark cap in one: the vertex shader tells which triangle is which.
+        /// Light cap and dark cap in one: the vertex shader decides which triangle is which.
         Caps = "caps",
         /// A plane that planar shadows fall on.
         Receiver = "receiver",
@@ -379,74 +379,75 @@ named_enum! {
 }
 
 impl DrawPart {
-    /// Is it a part of a shadow volume?
+    /// Returns whether it is a part of a shadow volume.
     pub fn is_of_volume(self) -> bool {
         matches!(self, DrawPart::Side | DrawPart::LightCap | DrawPart::DarkCap | DrawPart::Caps)
     }
 
-    /// Is it this part, or does it hold it?
+    /// Returns whether this part is `part`, or contains it.
     pub fn includes(self, part: DrawPart) -> bool {
         self == part || (self == DrawPart::Caps && matches!(part, DrawPart::LightCap | DrawPart::DarkCap))
     }
 }
 
-/// Which shader a draw runs. All share one vertex transformation, so depths are bit-equal.
+/// The shader of a draw. All share one vertex transformation, so depths are bit-equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Program {
-    /// Positions only: volumes, caps, planar shadows, shadow maps, receiver marks.
+    /// Writes depth and stencil only: volumes, caps, planar shadows, shadow maps, receiver marks.
     Position,
-    /// The draw's flat colour.
+    /// Writes the draw's flat colour.
     Flat,
-    /// The draw's label, whichever way the surface faces.
+    /// Writes the draw's label, whichever way the surface faces.
     FlatLabel,
-    /// The draw's count where the front of a triangle is seen, minus that where its back is.
+    /// Adds the draw's count where the front of a triangle is seen, and subtracts it where its back is.
     Count,
-    /// The material's colour times the ambient light.
+    /// Writes the material's colour times the ambient light.
     Ambient {
-        /// Drops what is nearer than the near plane, where nothing else clips it.
+        /// Discards fragments nearer than the near plane, where nothing else clips them.
         from_near: bool,
     },
-    /// What the pass's light adds, as far as it arrives.
+    /// Adds the pass's light, as far as it arrives.
     Light(Visibility),
-    /// What the draw's layer of the light's map lets through, to darken what is there.
+    /// Writes what the draw's layer of the light's map lets through, to darken what is there.
     Through,
     /// Writes a label: 3 where the triangle faces away from the light or is beyond its range, 1 where less than half of
     /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
     Label(Visibility),
-    /// Another program's shader: vertices are clip-space positions, and pass through. Its colours are not known.
+    /// Another program's shader: vertices are clip-space positions, and go through unchanged. Its colours are not
+    /// known.
     Recorded {
-        /// May it drop fragments?
+        /// Whether it may discard fragments.
         may_discard: ShaderEffect,
-        /// May it make a depth of its own?
+        /// Whether it may write a depth of its own.
         writes_depth: ShaderEffect,
     },
 }
 
-/// Whom a shader asks how much of a light arrives at a point.
+/// What a shader reads to find how much of a light arrives at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Visibility {
-    /// Nothing: all that the depth and stencil tests let through is lit.
+    /// Nothing: all that passes the depth and stencil tests is lit.
     Everywhere,
     /// The light's shadow map.
     Map,
-    /// The light's labels, made on the CPU.
+    /// The light's labels, computed on the CPU.
     Labels,
     /// The light's count: zero is lit.
     Count,
-    /// The texture of the receiver that is drawn: the draw's layer of the light's map.
+    /// The receiver's texture: the draw's layer of the light's map.
     ReceiverTexture,
-    /// The silhouettes of all casters, projected, but for the draw's own layer.
+    /// The silhouettes of all casters, projected, except the one in the draw's own layer.
     Projected,
 }
 
 impl Visibility {
-    /// Shaders branch on what the light's map is like.
+    /// Returns whether the shader branches on properties of the light's map.
     pub(crate) fn branches_on_light(self) -> bool {
         matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
     }
 
-    /// Every one.
+    /// All six, in order.
     pub const ALL: [Visibility; 6] = [
         Visibility::Everywhere,
         Visibility::Map,
@@ -456,14 +457,14 @@ impl Visibility {
         Visibility::Projected,
     ];
 
-    /// Does it read the light's map?
+    /// Returns whether it reads the light's map.
     pub fn reads_map(self) -> bool {
         matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
     }
 }
 
 impl Program {
-    /// Every one.
+    /// Returns all programs of our own frames.
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
@@ -472,8 +473,8 @@ impl Program {
         flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
     }
 
-    /// Which side of the range of depths a fragment lies on that the shader throws away: where depth
-    /// is clamped, nothing else clips at near and far (`discard` in the shaders' files).
+    /// Returns the clip plane beyond which the shader discards a fragment of this depth: where depth is clamped,
+    /// nothing else clips at near and far (`discard` in the shaders' files).
     pub fn discards(self, depth: f32) -> Option<ClipPlane> {
         match self {
             Program::Ambient { from_near: true } if depth < 0.0 => Some(ClipPlane::Near),
@@ -482,17 +483,17 @@ impl Program {
         }
     }
 
-    /// Does it show the picture on a surface, where there is one?
+    /// Returns whether it shows a surface's texture, where there is one.
     pub fn shows_texture(self) -> bool {
         matches!(self, Program::Ambient { .. } | Program::Light(_))
     }
 
-    /// Reads nothing but positions and the draw's flat colour.
+    /// Returns whether it reads nothing but positions and the draw's flat colour.
     pub fn is_flat(self) -> bool {
         matches!(self, Program::Position | Program::Flat)
     }
 
-    /// What it asks how much light arrives; `None` for programs that do not light.
+    /// What it reads to find how much light arrives; `None` for programs that do not light.
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
@@ -507,29 +508,29 @@ impl Program {
     }
 }
 
-/// Values that one draw hands to its shader.
+/// Values that one draw passes to its shader.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct DrawConstants {
-    /// Of the surface.
+    /// Material of the surface.
     pub material: crate::scene::Material,
     /// What [`Program::Label`] and [`Program::FlatLabel`] write: 0 lit or 1 shadow.
     pub label: u32,
-    /// What [`Program::Flat`] writes, linear.
+    /// Linear RGBA that [`Program::Flat`] writes.
     pub flat: [f32; 4],
     /// What [`Program::Count`] adds for a front face: 1 or −1.
     pub count: f32,
-    /// The layer of the light's map that is the draw's own.
+    /// Index of the draw's own layer in the light's map.
     pub layer: Option<u32>,
-    /// The eye's world X and Z, less whole pairs of the material's checks: where their pattern begins.
+    /// The eye's world X and Z, less whole periods of the material's checks: where their pattern begins, in metres.
     #[serde(default)]
     pub checks_from: [f32; 2],
-    /// The picture that the material's colour is multiplied with.
+    /// The texture that the material's colour is multiplied with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texture: Option<TextureId>,
 }
 
 impl FramePlan {
-    /// The attachment behind an id.
+    /// Returns the attachment with this id.
     ///
     /// # Panics
     /// If the id is of another plan; [`lint::check`] finds that beforehand.
@@ -537,14 +538,14 @@ impl FramePlan {
         &self.attachments[id.0]
     }
 
-    /// Triangles that the frame submits; mask passes are not part of it.
+    /// The number of triangles that the frame submits, without those of mask passes.
     pub fn triangles(&self) -> u64 {
         let draws = self.timed_passes().flat_map(|pass| &pass.draws);
         draws.map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
     }
 
-    /// Bytes of GPU memory that the frame needs for attachments, vertices, indices and pictures on surfaces. What only
-    /// mask passes need is left out.
+    /// Bytes of GPU memory that the frame needs for attachments, vertices, indices and textures. What only mask passes
+    /// need is left out.
     pub fn bytes(&self) -> u64 {
         let (mut attachments, mut blobs, mut textures) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         for pass in self.timed_passes() {

@@ -3,32 +3,31 @@
 use serde::{Deserialize, Serialize};
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
-/// Tests of one face of the stencil buffer.
+/// The stencil test of one face.
 pub type StencilFace = wgpu::StencilFaceState;
 
-/// The whole raster state of a draw. Surfaces are never culled unless it says so.
+/// The whole raster state of a draw. Surfaces are never culled unless [`RasterState::cull`] says so.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RasterState {
-    /// A fragment passes when `compare(fragment depth, stored depth)` holds.
+    /// A fragment passes when `compare(fragment depth, stored depth)` is true.
     pub depth_compare: CompareFunction,
     /// Depths beyond near and far are clamped instead of clipped.
     pub unclipped_depth: bool,
-    /// Passing fragments store their depth.
+    /// True stores the depth of fragments that pass.
     pub depth_write: bool,
     /// Added to depth before the test.
     pub depth_bias: DepthBiasState,
-    /// Functions and operations of each face and the masks; off where
-    /// [`wgpu::StencilState::is_enabled`] says so.
+    /// Functions, operations and masks of each face; off where [`wgpu::StencilState::is_enabled`] is false.
     pub stencil: wgpu::StencilState,
-    /// The reference of both faces, unless `back` has another.
+    /// The stencil reference of both faces, unless `back` has another.
     pub stencil_reference: u8,
-    /// What back faces have in place of the front's reference and masks, as OpenGL and Vulkan may; WebGPU draws them
-    /// in a draw of their own.
+    /// Reference and masks of back faces where they differ from the front's, as OpenGL and Vulkan allow; WebGPU needs a
+    /// second draw for them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub back: Option<FaceMasks>,
     /// Which way round a triangle's corners run on the screen where its front is seen.
     pub front_face: wgpu::FrontFace,
-    /// Faces that are thrown away.
+    /// Faces that are culled.
     pub cull: Option<wgpu::Face>,
     /// What passing fragments do to the colour target.
     pub color: ColorWrite,
@@ -37,11 +36,11 @@ pub struct RasterState {
 /// The reference and the masks of a face's stencil test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct FaceMasks {
-    /// What stored values are compared with, and replaced by.
+    /// The value that stored values are compared with and replaced by.
     pub reference: u8,
-    /// Bits that are compared.
+    /// Mask of the bits that are compared.
     pub read: u8,
-    /// Bits that may change.
+    /// Mask of the bits that may change.
     pub write: u8,
 }
 
@@ -56,14 +55,14 @@ pub enum ColorWrite {
     Add,
     /// Multiply with it.
     Multiply,
-    /// Keep the smaller of both, channel by channel.
+    /// Store the smaller of both, channel by channel.
     Minimum,
-    /// Blend with it in another way, of another program.
+    /// Blend with it in a way of another program that has no name here.
     Blend,
 }
 
 impl RasterState {
-    /// Draws surfaces first: nearest wins, both sides, reversed depth.
+    /// The state that draws surfaces first: nearest wins, both sides, reversed depth.
     pub fn surface() -> RasterState {
         RasterState {
             depth_compare: CompareFunction::Greater,
@@ -79,18 +78,18 @@ impl RasterState {
         }
     }
 
-    /// Draws again exactly where a surface is already visible, without changing depth.
+    /// The state that draws again exactly where a surface is already visible, without changing depth.
     pub fn visible_surface(color: ColorWrite) -> RasterState {
         RasterState { depth_compare: CompareFunction::Equal, depth_write: false, color, ..RasterState::surface() }
     }
 
-    /// The same, with both faces of the stencil test as given and masks 0xff.
+    /// Returns this state with `face` as the stencil test of both faces, and masks 0xff.
     #[must_use]
     pub fn with_stencil(self, face: StencilFace, reference: u8) -> RasterState {
         self.with_faces(face, face, reference)
     }
 
-    /// The same, with the two faces of the stencil test as given and masks 0xff.
+    /// Returns this state with the given stencil tests of front and back faces, and masks 0xff.
     #[must_use]
     pub fn with_faces(mut self, front: StencilFace, back: StencilFace, reference: u8) -> RasterState {
         self.stencil = wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
@@ -99,14 +98,14 @@ impl RasterState {
         self
     }
 
-    /// The same, with these bits of the stencil written and no others, and only they are tested.
+    /// Returns this state with stencil read and write masks of `mask`.
     #[must_use]
     pub fn writing(mut self, mask: u8) -> RasterState {
         (self.stencil.read_mask, self.stencil.write_mask) = (mask.into(), mask.into());
         self
     }
 
-    /// Turned round for depth where greater is farther: tests and biases change sign.
+    /// Returns this state for depth where greater is farther: comparisons and biases are reversed.
     #[must_use]
     pub fn for_standard_depth(mut self) -> RasterState {
         self.depth_compare = match self.depth_compare {
@@ -122,14 +121,14 @@ impl RasterState {
         self
     }
 
-    /// The tests and operations of a face, and its reference and masks.
+    /// Returns the stencil test of a face, with its reference and masks.
     pub fn face(&self, is_front: bool) -> (&StencilFace, FaceMasks) {
         let wgpu::StencilState { front, back, read_mask, write_mask } = &self.stencil;
         let shared = FaceMasks { reference: self.stencil_reference, read: *read_mask as u8, write: *write_mask as u8 };
         if is_front { (front, shared) } else { (back, self.back.unwrap_or(shared)) }
     }
 
-    /// As states whose reference and masks hold for both faces: itself, or one of each face.
+    /// Returns the state as states without [`RasterState::back`]: itself, or one for each face.
     pub fn by_face(&self) -> Vec<RasterState> {
         let Some(back) = self.back else {
             return vec![RasterState { back: None, ..self.clone() }];
@@ -143,7 +142,7 @@ impl RasterState {
         shown.map(|(face, state)| RasterState { cull: Some(other(face)), ..state }).collect()
     }
 
-    /// Does a fragment that fails a test leave everything as it was?
+    /// Returns whether a fragment that fails a test changes nothing.
     pub fn acts_only_where_it_passes(&self) -> bool {
         let keeps = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write == 0 || [face.fail_op, face.depth_fail_op] == [StencilOperation::Keep; 2]
@@ -151,7 +150,7 @@ impl RasterState {
         keeps(self.face(true)) && keeps(self.face(false))
     }
 
-    /// Can a draw with this state change the stored stencil?
+    /// Returns whether a draw with this state can change the stored stencil.
     pub fn writes_stencil(&self) -> bool {
         let writes = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write != 0

@@ -1,35 +1,35 @@
-//! What only the frames of other programs need: a viewport, targets that hold something before a pass begins,
-//! depths stored in 16 or 24 bits, shaders of which no more is known than where their vertices land.
+//! What only the frames of other programs need: a viewport, targets with content before a pass begins, depths stored in
+//! 16 or 24 bits, and shaders of which only the vertices' clip positions are known.
 
 use super::{Attachment, Blob, Draw, DrawMesh, Pass, Program};
 use serde::{Deserialize, Serialize};
 use wgpu::TextureFormat;
 
 named_enum! {
-    /// May a shader do it?
+    /// Whether a shader has an effect, such as discarding fragments.
     pub enum ShaderEffect {
-        /// It can't.
+        /// It never has it.
         No = "no",
-        /// It may, for some fragments.
+        /// It may have it, for some fragments.
         Yes = "yes",
-        /// It could not be read.
+        /// The shader could not be read.
         Unknown = "unknown",
     }
 }
 
-/// What a pass of another program's frame has beside what ours have.
+/// Further data of a pass of another program's frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPass {
-    /// Where its draws land.
+    /// The viewport of its draws.
     pub viewport: Viewport,
-    /// The program's debug groups that it is in, outermost first.
+    /// The program's debug groups around it, outermost first.
     pub groups: Vec<String>,
-    /// What its depth and stencil hold as it begins, where that is not what the pass before left.
+    /// Content of its depth and stencil as it begins, where that is not what the pass before left.
     #[serde(skip)]
     pub start: Option<StartContent>,
 }
 
-/// Where clip space lands in a target.
+/// The rectangle and depth range of a target that clip space is mapped to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Viewport {
     /// Left, top, width and height in pixels.
@@ -39,25 +39,25 @@ pub struct Viewport {
 }
 
 impl Viewport {
-    /// All of a target, and all depths.
+    /// The viewport of a whole target, with all depths.
     pub fn whole(size: [u32; 2]) -> Viewport {
         let [width, height] = size.map(|side| side as f32);
         Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
     }
 
-    /// The stored depth of a clip depth.
+    /// Returns the depth that a clip depth is stored as.
     pub fn stored(&self, depth: f64) -> f64 {
         let [near, far] = self.depth.map(f64::from);
         near + (far - near) * depth
     }
 }
 
-/// What a depth-stencil target holds, row by row from the top, without padding.
+/// Content of a depth-stencil target, row by row from the top, without padding.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StartContent {
-    /// As stored.
+    /// Depths as stored; `None` where the target has none.
     pub depth: Option<Blob<f32>>,
-    /// Eight bits.
+    /// Stencil values, a byte a pixel; `None` where the target has none.
     pub stencil: Option<Blob<u8>>,
 }
 
@@ -71,8 +71,8 @@ impl Attachment {
         }
     }
 
-    /// The format that the GPU is given: depths of 16 and 24 bits can't be copied everywhere, so they are kept as the
-    /// floats next to them, of which each is another.
+    /// The format that the attachment gets on the GPU. Depths of 16 and 24 bits can't be copied everywhere, so each is
+    /// stored as the nearest float; no two of them share one.
     pub fn stored_format(&self) -> TextureFormat {
         match self.format {
             TextureFormat::Depth16Unorm | TextureFormat::Depth24Plus => TextureFormat::Depth32Float,
@@ -81,13 +81,13 @@ impl Attachment {
         }
     }
 
-    /// How far a depth that is computed anew may be from the one that was stored: sixteen steps of its format, or of 24
-    /// bits. OpenGL's clip space begins at −w, and a corner's depth is rounded once more on its way to ours.
+    /// How far a recomputed depth may be from the one that was stored: sixteen steps of its format, or of 24 bits.
+    /// OpenGL's clip space begins at −w, and a corner's depth is rounded once more on its way to ours.
     pub fn depth_rounding(&self) -> f32 {
         16.0 / self.depth_steps().unwrap_or(0xff_ffff) as f32
     }
 
-    /// A depth as it is stored: the nearest that the format has.
+    /// Rounds a depth to the nearest that the format can store.
     pub fn stored_depth(&self, depth: f32) -> f32 {
         match self.depth_steps() {
             Some(steps) => (depth * steps as f32).round_ties_even() / steps as f32,
@@ -97,21 +97,21 @@ impl Attachment {
 }
 
 impl Program {
-    /// Is it another program's shader? Vertices are in clip space then, and go through as they are.
+    /// Returns whether it is another program's shader. Its vertices are in clip space, and go through unchanged.
     pub fn is_recorded(self) -> bool {
         matches!(self, Program::Recorded { .. })
     }
 }
 
 impl Pass {
-    /// Where its draws land in a target of that size.
+    /// Returns the viewport of its draws in a target of that size.
     pub fn viewport(&self, size: [u32; 2]) -> Viewport {
         self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
     }
 }
 
 impl Draw {
-    /// May its shader discard fragments without it being known which? `mesh` is the draw's.
+    /// Returns whether the draw's shader may discard fragments and no record says which. `mesh` is the draw's.
     pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
         matches!(self.program, Program::Recorded { may_discard: ShaderEffect::Yes | ShaderEffect::Unknown, .. })
             && mesh.retained.is_none()

@@ -1,17 +1,17 @@
-//! The same frame with one pass a draw, so that a snapshot after each pass is one after each draw:
-//! of the whole frame, or of one of its passes.
+//! A frame split into one pass a draw, so that a snapshot after each pass is one after each draw: of the whole frame,
+//! or of one of its passes.
 
 use super::{ColorTarget, DepthStencilTarget, FramePlan, Pass};
 
 impl FramePlan {
-    /// Splits every pass at its draws: the first part clears what the pass clears, the others keep
-    /// what is there. The pictures after the last part of a pass are those after the pass. A pass
-    /// of one draw, or of none, stays as it is.
+    /// Splits every pass at its draws: the first part clears what the pass clears, the others load what is stored. The
+    /// attachments after the last part of a pass are those after the pass. A pass of one draw, or of none, stays as it
+    /// is.
     pub fn split_at_draws(&self) -> FramePlan {
         self.split_where(|_| true)
     }
 
-    /// The frame up to pass `index` and no further, of which only that pass is split.
+    /// Returns the frame up to and including pass `index`, with only that pass split.
     pub fn split_pass_at_draws(&self, index: usize) -> FramePlan {
         let mut plan = self.split_where(|pass| pass == index);
         let parts = self.passes.get(index).map_or(0, |pass| pass.draws.len().max(1));
@@ -23,7 +23,7 @@ impl FramePlan {
         let parts = |(index, pass)| if is_split(index) { split(pass) } else { vec![pass.clone()] };
         let passes = self.passes.iter().enumerate().flat_map(parts).collect();
         let mut plan = FramePlan { passes, ..self.clone() };
-        // What a draw leaves in a map is seen only if it is drawn again.
+        // A cached map would not be drawn, and its draws left nothing to see.
         plan.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_cached = false);
         plan
     }

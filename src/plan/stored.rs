@@ -3,8 +3,8 @@
 use super::{Attachment, AttachmentId, FramePlan, PlanMap};
 
 impl PlanMap {
-    /// Where a face lies in the map's texture, which has only those that are drawn; `None` for one that is left
-    /// out, or that the map does not have.
+    /// Returns the layer of a face in the map's texture, which has only faces that are drawn; `None` for one that is
+    /// left out, or that the map does not have.
     pub fn stored_layer(&self, face: u32) -> Option<u32> {
         let before = self.faces.get(..=face as usize)?;
         before.last()?.map(|_| before.iter().flatten().count() as u32 - 1)
@@ -12,12 +12,12 @@ impl PlanMap {
 }
 
 impl FramePlan {
-    /// The map that lies in an attachment.
+    /// The map that is stored in an attachment.
     pub(crate) fn map_in(&self, id: AttachmentId) -> Option<&PlanMap> {
         self.lights.iter().filter_map(|light| light.map.as_ref()).find(|map| map.attachment == id)
     }
 
-    /// Where a layer of an attachment lies in its texture; `None` where it is left out.
+    /// Returns where a layer of an attachment is in its texture; `None` where it is left out.
     pub fn stored_layer(&self, id: AttachmentId, layer: u32) -> Option<u32> {
         match self.map_in(id) {
             Some(map) => map.stored_layer(layer),
@@ -25,7 +25,7 @@ impl FramePlan {
         }
     }
 
-    /// Layers of an attachment's texture, at least one.
+    /// The number of layers of an attachment's texture, at least one.
     ///
     /// # Panics
     /// If the id is of another plan.
@@ -34,16 +34,16 @@ impl FramePlan {
         self.map_in(id).map_or_else(|| self.attachment(id).layers, drawn)
     }
 
-    /// Texels of all layers that an attachment's texture has.
+    /// The number of texels in all layers of an attachment's texture.
     pub(crate) fn stored_texels(&self, id: AttachmentId) -> u64 {
         let [width, height] = self.attachment(id).size.map(u64::from);
         width * height * u64::from(self.stored_layers(id))
     }
 
-    /// Of all its texels.
+    /// Bytes of all its texels.
     pub(crate) fn attachment_bytes(&self, id: AttachmentId) -> u64 {
         let Attachment { format, .. } = self.attachment(id);
-        // Depth32FloatStencil8 has no fixed size; drivers keep four bytes and one.
+        // Depth32FloatStencil8 has no fixed size; drivers use four bytes and one.
         self.stored_texels(id) * u64::from(format.block_copy_size(None).unwrap_or(5))
     }
 }

@@ -1,7 +1,6 @@
 //! A plan as text: stable, so that two plans can be compared line by line.
 //!
-//! Vertices are given by their number and kind; everything a GPU is told beside them is printed
-//! in full.
+//! Vertices are given by their number and kind; everything else that a GPU is given is printed in full.
 
 use super::{
     AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup,
@@ -25,7 +24,7 @@ impl Display for FramePlan {
         }
         for (index, mesh) in self.meshes.iter().enumerate() {
             let (name, vertices, triangles) = (&mesh.name, mesh.vertices.len(), mesh.triangles());
-            // What a vertex shader makes of them is not made for this.
+            // The vertices that a vertex shader computes are not printed.
             if let Some(Carry { light, scale, offset, w }) = mesh.extruded.as_ref().map(|extruded| extruded.carry) {
                 writeln!(f, "mesh {index}: {name}, {vertices} vertices, {triangles} triangles")?;
                 writeln!(f, "  by its vertex shader carried from {light:?} to ({scale} v + {offset:?}, {w})")?;

@@ -1,13 +1,13 @@
-//! The same frame without draws of which nothing shows.
+//! A frame without the draws of which no sample showed in the frame before.
 
 use super::{Decision, FramePlan, LeftOut};
 
 impl FramePlan {
-    /// Leaves out of the timed passes each draw of which no sample passed its tests. `samples`: by pass and
-    /// draw, of this very plan; `None` where that is not known, or not all that a draw does.
+    /// Leaves out of the timed passes each draw of which no sample passed its tests. `samples`: by pass and draw, of
+    /// this very plan; `None` where that is not known, or where samples are not all that the draw does.
     ///
-    /// A draw that changes nothing where it fails its tests, and passes them nowhere, changes nothing: so
-    /// those beside it leave the same without it.
+    /// A draw that changes nothing where it fails its tests, and passes them nowhere, changes nothing: so the frame is
+    /// the same without it.
     #[must_use]
     pub fn without_unseen(mut self, samples: &[Vec<Option<u64>>]) -> FramePlan {
         for (pass, samples) in self.passes.iter_mut().zip(samples).filter(|(pass, _)| pass.timed) {

@@ -1,8 +1,8 @@
 //! A draw's whole raster state in the words of WebGPU, OpenGL and Direct3D 12, and as a sentence.
 //!
-//! The three name the same functions; where they differ, the lines say so by being what one would
-//! write there. The stencil's reference and masks hold for both faces in WebGPU; OpenGL and
-//! Direct3D get them for each face, equal unless another program had others.
+//! The three name the same functions; where they differ, each line is what one would write in that API. In WebGPU the
+//! stencil's reference and masks apply to both faces; OpenGL and Direct3D get them for each face, equal unless another
+//! program had others.
 
 mod defaults;
 
@@ -13,10 +13,10 @@ use std::fmt;
 use wgpu::{CompareFunction, StencilOperation};
 
 named_enum! {
-    /// Whose words.
+    /// The API whose words are used.
     #[derive(Default)]
     pub enum RasterApi {
-        /// As a WebGPU pipeline is described.
+        /// A WebGPU pipeline descriptor.
         #[default]
         WebGpu = "WebGPU",
         /// OpenGL 4.5 calls.
@@ -26,7 +26,7 @@ named_enum! {
     }
 }
 
-/// The state as lines that one would write in `api`, in the order depth, stencil, raster, colour.
+/// Returns the state as lines that one would write in `api`, in the order depth, stencil, raster, colour.
 pub fn lines(raster: &RasterState, api: RasterApi) -> Vec<String> {
     match api {
         RasterApi::WebGpu => web_gpu(raster),
@@ -35,7 +35,7 @@ pub fn lines(raster: &RasterState, api: RasterApi) -> Vec<String> {
     }
 }
 
-/// What a fragment of this draw does, in a sentence for each buffer.
+/// Says what a fragment of this draw does, in a sentence for each buffer.
 pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
     let mut said = Vec::new();
     if pass.depth_stencil.is_some() {
@@ -121,7 +121,7 @@ fn operation(op: StencilOperation, reference: u8) -> String {
     }
 }
 
-/// `DecrementWrap` as `decrement-wrap`, `DECREMENT_WRAP` …: words joined by `between`.
+/// Spells a name with words joined by `between`: `DecrementWrap` as `decrement-wrap`, `DECREMENT_WRAP` ….
 pub(crate) fn spelled(name: impl fmt::Debug, between: char) -> String {
     let mut words = String::new();
     for letter in format!("{name:?}").chars() {
@@ -174,7 +174,7 @@ fn web_gpu(raster: &RasterState) -> Vec<String> {
     lines
 }
 
-/// In OpenGL and in Direct3D.
+/// Names of a stencil operation in OpenGL and in Direct3D.
 fn operation_in(op: StencilOperation) -> [&'static str; 2] {
     match op {
         StencilOperation::IncrementClamp => ["INCR", "INCR_SAT"],
@@ -301,7 +301,7 @@ fn direct3d(raster: &RasterState) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// z-fail's volumes: a hidden back face adds 1, a hidden front face takes 1 away.
+    /// The state of z-fail's volumes: a hidden back face adds 1, a hidden front face subtracts 1.
     fn z_fail() -> RasterState {
         let face = |depth_fail_op| StencilFace {
             compare: CompareFunction::Always,

@@ -1,5 +1,6 @@
-//! Which fragments a draw's shader keeps: the draw is done once more, each instance by itself, into a target of the same size
-//! with no test, by a fragment shader that writes down what comes back from the program's own.
+//! Which fragments of a draw its shader does not discard: the draw is run once more, each instance by itself, into a
+//! target of the same size with no test, by a fragment shader that logs the fragments that the program's own does not
+//! discard.
 //!
 //! What a shader discards depends on what it reads, as it was when the draw began: this runs before the draw does.
 
@@ -11,7 +12,7 @@ use crate::wrap::PipelineSource;
 use crate::wrap::command::{DrawCommand, PassCommand};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// The pipeline that notes what is kept.
+/// Returns the pipeline that logs retained fragments.
 ///
 /// # Errors
 /// Why there is none, in words.
@@ -43,7 +44,7 @@ pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe,
     Ok(Probe::new(device, described, parts))
 }
 
-/// What is kept of some draws of one instance, each with the number of its first triangle.
+/// Returns the retained fragments of some draws of one instance, each with the number of its first triangle.
 ///
 /// # Errors
 /// There are more than `most`, or the GPU fails.
@@ -55,7 +56,7 @@ pub fn retained(
     size: [u32; 2],
     most: u64,
 ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
-    // Enough for one layer of fragments; more where they are more.
+    // Enough for one layer of fragments; grown where there are more.
     let mut capacity = most.min(u64::from(size[0]) * u64::from(size[1]));
     loop {
         let log = log(probe, gpu, state, draws, size, capacity)?;

@@ -1,4 +1,4 @@
-//! A pipeline of the program's with one of its shaders rewritten to write a log, and what it draws into.
+//! A pipeline of the program's with one of its shaders rewritten to write a log, and its target.
 
 use super::states::PassState;
 use crate::wrap::command::PassCommand;
@@ -9,18 +9,18 @@ use std::collections::BTreeSet;
 #[derive(Debug)]
 pub(super) struct Probe {
     pub pipeline: wgpu::RenderPipeline,
-    /// Group and binding of what its stages read.
+    /// Group and binding of the resources that its stages read.
     bindings: BTreeSet<(u32, u32)>,
-    /// Which group the log is bound as.
+    /// Index of the group that the log is bound as.
     group: u32,
-    /// The layouts are the pipeline's own.
+    /// True where wgpu derived the layouts from the shaders.
     is_automatic: bool,
 }
 
-/// Which group of a pipeline's is free for a log.
+/// Returns the index of a group of the pipeline's that is free for a log.
 ///
 /// # Errors
-/// None is; or it draws in a way that is not followed.
+/// No group is free; or the pipeline draws in a way that is not followed.
 pub(super) fn free_group(
     device: &wgpu::Device,
     described: &PipelineSource,
@@ -29,7 +29,7 @@ pub(super) fn free_group(
     if described.multiview_mask.is_some() {
         return Err("draws into several views at once are not followed");
     }
-    // A pipeline with layouts of its own has as many groups as its shaders use.
+    // A pipeline whose layouts wgpu derives has as many groups as its shaders use.
     let variables = modules.iter().flat_map(|module| module.global_variables.iter());
     let automatic = || variables.filter_map(|(_, of)| of.binding).map(|of| of.group + 1).max();
     let group = match &described.layout {
@@ -40,7 +40,7 @@ pub(super) fn free_group(
     is_free.then_some(group).ok_or("it binds as many groups as this GPU has")
 }
 
-/// A stage that is rewritten, or goes on as it is.
+/// A stage of the pipeline, rewritten or unchanged.
 pub(super) struct ProbeStage {
     pub module: wgpu::ShaderModule,
     pub entry_point: Option<String>,
@@ -48,7 +48,7 @@ pub(super) struct ProbeStage {
 }
 
 impl ProbeStage {
-    /// Of a stage of the program's, with another module.
+    /// Returns a stage of the program's, with another module.
     pub fn of(
         device: &wgpu::Device,
         stage: &ProgrammableStage,
@@ -74,13 +74,13 @@ pub(super) struct ProbeParts {
     pub bias: wgpu::DepthBiasState,
     pub compare: wgpu::CompareFunction,
     pub group: u32,
-    /// What is bound in that group, all of it storage: who sees it, and whether it is only read.
+    /// The bindings of that group, all of them storage: the stages that use each, and whether it is only read.
     pub log: Vec<(wgpu::ShaderStages, bool)>,
     pub bindings: BTreeSet<(u32, u32)>,
 }
 
 impl Probe {
-    /// `described` is the program's.
+    /// Creates the probe of a pipeline that the program created from `described`.
     pub fn new(device: &wgpu::Device, described: &PipelineSource, parts: ProbeParts) -> Probe {
         let layout = described.layout.as_ref().map(|PipelineLayoutSource { groups, immediate_size, .. }| {
             let entry = |(binding, (visibility, read_only)): (u32, &(wgpu::ShaderStages, bool))| {
@@ -134,7 +134,7 @@ impl Probe {
         Probe { pipeline, bindings: parts.bindings, group: parts.group, is_automatic }
     }
 
-    /// Sets the pipeline, and of the program's states those that `is_wanted`.
+    /// Sets the pipeline, and those of the program's states for which `is_wanted` is true.
     pub fn set(
         &self,
         device: &wgpu::Device,
@@ -166,7 +166,7 @@ impl Probe {
         }
     }
 
-    /// Binds its own group.
+    /// Binds the log's group.
     pub fn bind(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, log: &[wgpu::BindingResource<'_>]) {
         let log =
             (0..).zip(log).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() });
@@ -184,10 +184,10 @@ fn layout_of(buffer: &VertexBufferSource) -> wgpu::VertexBufferLayout<'_> {
     wgpu::VertexBufferLayout { array_stride: *stride, step_mode: *step, attributes }
 }
 
-/// Of the target, of which nothing is kept.
+/// Format of the target, whose content is discarded.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A target of which nothing is kept.
+/// Returns a target whose content is discarded.
 pub(super) fn target(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
     let target = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("stencilscope probe"),
@@ -214,7 +214,7 @@ pub(super) fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::Te
     })
 }
 
-/// The two devices' ends that everything here needs.
+/// The real device and queue, which all probes need.
 #[derive(Debug, Clone, Copy)]
 pub struct ProbeGpu<'a> {
     pub device: &'a wgpu::Device,
@@ -222,7 +222,7 @@ pub struct ProbeGpu<'a> {
 }
 
 impl ProbeGpu<'_> {
-    /// Does what was encoded; `None` where wgpu refuses it.
+    /// Submits an encoder's commands; `None` where wgpu refuses them.
     pub fn does(self, encoder: wgpu::CommandEncoder) -> Option<()> {
         accepted(self.device, || {
             self.queue.submit([encoder.finish()]);
@@ -230,11 +230,11 @@ impl ProbeGpu<'_> {
     }
 }
 
-/// Every kind of error.
+/// All kinds of errors.
 const FILTERS: [wgpu::ErrorFilter; 3] =
     [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
 
-/// What comes of something, unless wgpu refuses it.
+/// Returns the result of some work, or `None` where wgpu refuses it.
 pub(super) fn accepted<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Option<T> {
     let scopes = FILTERS.map(|filter| device.push_error_scope(filter));
     let made = work();

@@ -1,5 +1,5 @@
-//! Where the vertices of draws land, and which fragments their shaders keep: draws are done once more, by pipelines that
-//! are made once for all of the program's that differ in nothing that counts here.
+//! Positions of the vertices of draws, and which fragments their shaders do not discard: draws are run once more, by
+//! pipelines that are created once for all of the program's that do not differ in what matters here.
 
 use super::probe::{Probe, ProbeGpu, accepted};
 use super::states::PassState;
@@ -9,10 +9,10 @@ use crate::wrap::PipelineSource;
 use crate::wrap::command::DrawCommand;
 use std::sync::Arc;
 
-/// More instances than are followed fragment by fragment: each is a draw.
+/// Draws of more instances than this are not followed fragment by fragment, since each instance is a draw.
 const MOST_INSTANCES: usize = 1 << 14;
 
-/// How many corners and kept fragments of a frame there is still memory for.
+/// How many corners and retained fragments of a frame there is still memory for.
 #[derive(Debug)]
 pub struct ProbeBudget {
     pub corners: u64,
@@ -33,11 +33,11 @@ pub struct Probes {
     of_fragments: ProbePipelines,
 }
 
-/// Pipelines of one kind: those of the program that differ in nothing that counts here share one.
+/// Pipelines of one kind: those of the program that do not differ in what matters here share one.
 #[derive(Debug, Default)]
 struct ProbePipelines(Vec<(Arc<PipelineSource>, ProbeResult)>);
 
-/// Why there is none, in words, is kept as well.
+/// The probe, or why there is none, in words.
 type ProbeResult = Result<Arc<Probe>, &'static str>;
 
 impl ProbePipelines {
@@ -56,27 +56,27 @@ impl ProbePipelines {
     }
 }
 
-/// Have two pipelines the same vertices?
+/// Returns whether two pipelines have the same vertices.
 fn have_same_vertices(one: &PipelineSource, other: &PipelineSource) -> bool {
     let of = |of: &PipelineSource| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
     let layout = |of: &PipelineSource| of.layout.as_ref().map(|layout| (layout.groups.clone(), layout.immediate_size));
     of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && layout(one) == layout(other)
 }
 
-/// And the same fragments, before any test?
+/// Returns whether two pipelines have the same fragments, before any test.
 fn have_same_fragments(one: &PipelineSource, other: &PipelineSource) -> bool {
     let bias = |of: &PipelineSource| of.depth_stencil.as_ref().map(|state| state.bias);
     let of = |of: &PipelineSource| (of.primitive, of.multisample, bias(of));
     have_same_vertices(one, other) && of(one) == of(other) && one.fragment == other.fragment
 }
 
-/// Does what is not the program's: an error of it is not the program's either.
+/// Runs work of our own: its errors are not reported to the program.
 fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, &'static str>) -> Result<T, &'static str> {
     accepted(device, work).unwrap_or(Err("wgpu refuses to draw it once more"))
 }
 
 impl Probes {
-    /// Where the vertices of a draw land.
+    /// Returns the clip-space positions of a draw's vertices.
     ///
     /// # Errors
     /// Why that can't be found, in words.
@@ -105,7 +105,8 @@ impl Probes {
         Ok(all)
     }
 
-    /// Which fragments of a draw, whose triangles `landed`, its shader keeps, of a target of that size.
+    /// Returns which fragments of a draw, whose triangles `landed`, its shader does not discard, in a target of that
+    /// size.
     ///
     /// # Errors
     /// Why that can't be found, in words.
@@ -133,7 +134,7 @@ impl Probes {
     }
 }
 
-/// A draw of each instance.
+/// Splits a draw into one for each instance.
 fn single(draw: &DrawCommand) -> Vec<DrawCommand> {
     let one = |instance: u32| match draw.clone() {
         DrawCommand::Vertices { vertices, .. } => DrawCommand::Vertices { vertices, instances: instance..instance + 1 },

@@ -3,7 +3,7 @@
 use crate::import::{RawContents, RawFormat, pictures};
 use wgpu::TextureFormat as Format;
 
-/// Bytes of a part of a buffer that can be copied from; `None` if it can't, or the device fails.
+/// Reads the bytes of a part of a buffer that can be copied from; `None` if it can't, or the device fails.
 pub fn buffer(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -14,7 +14,7 @@ pub fn buffer(
     if !of.usage().contains(wgpu::BufferUsages::COPY_SRC) || offset.checked_add(size)? > of.size() {
         return None;
     }
-    // Copies count in words.
+    // Copies have offsets of whole words.
     let from = offset / 4 * 4;
     let to = (offset + size).next_multiple_of(4).min(of.size() / 4 * 4);
     let readable = readable(device, to.checked_sub(from)?);
@@ -35,13 +35,13 @@ fn readable(device: &wgpu::Device, size: u64) -> wgpu::Buffer {
 }
 
 fn mapped(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Option<Vec<u8>> {
-    // A failure shows when the range is asked for.
+    // A failure shows when the range is read.
     buffer.map_async(wgpu::MapMode::Read, .., |_| {});
     device.poll(wgpu::PollType::wait_indefinitely()).ok()?;
     Some(buffer.get_mapped_range(..).ok()?.to_vec())
 }
 
-/// A texture's format in the words of a raw frame.
+/// Returns the format of a raw frame that a texture's format corresponds to.
 pub fn format(format: Format) -> RawFormat {
     match format {
         Format::Depth16Unorm => RawFormat::D16,
@@ -61,7 +61,7 @@ pub fn format(format: Format) -> RawFormat {
     }
 }
 
-/// A level of a layer of a texture.
+/// A mip level of a layer of a texture.
 #[derive(Debug, Clone, Copy)]
 pub struct TextureSubresource<'a> {
     pub texture: &'a wgpu::Texture,
@@ -69,7 +69,7 @@ pub struct TextureSubresource<'a> {
     pub layer: u32,
 }
 
-/// The pictures of some parts, all of them copied before any is waited for.
+/// Reads the pictures of some subresources: all of them are copied before any is waited for.
 pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[TextureSubresource<'_>]) -> Vec<RawContents> {
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let copies: Vec<Vec<AspectReadback>> = parts
@@ -77,7 +77,7 @@ pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[TextureSubr
         .map(|part| aspects(part, |aspect, format| part.copy(device, &mut encoder, aspect, format)))
         .collect();
     queue.submit([encoder.finish()]);
-    // A failure shows when a range is asked for.
+    // A failure shows when a range is read.
     copies.iter().flatten().for_each(|copy| copy.buffer.map_async(wgpu::MapMode::Read, .., |_| {}));
     let is_done = device.poll(wgpu::PollType::wait_indefinitely()).is_ok();
     let read = |copies: Vec<AspectReadback>| {
@@ -87,7 +87,7 @@ pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[TextureSubr
     copies.into_iter().map(read).collect()
 }
 
-/// What is copied of a part: depth, stencil or colour, each as far as it can be read.
+/// Starts copies of a subresource: depth, stencil or colour, each as far as it can be read.
 fn aspects(
     part: &TextureSubresource<'_>,
     mut copy: impl FnMut(wgpu::TextureAspect, RawFormat) -> Option<AspectReadback>,
@@ -96,7 +96,7 @@ fn aspects(
     let depth = match of {
         Format::Depth16Unorm => Some(RawFormat::D16),
         Format::Depth32Float | Format::Depth32FloatStencil8 => Some(RawFormat::D32F),
-        // Nothing copies depths of 24 bits.
+        // Depths of 24 bits can't be copied.
         _ => None,
     };
     let depth = depth.map(|depth| (wgpu::TextureAspect::DepthOnly, depth));
@@ -105,7 +105,7 @@ fn aspects(
     [depth, stencil, color].into_iter().flatten().filter_map(|(aspect, format)| copy(aspect, format)).collect()
 }
 
-/// An aspect on its way.
+/// A copy of an aspect that is under way.
 struct AspectReadback {
     buffer: wgpu::Buffer,
     format: RawFormat,

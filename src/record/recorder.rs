@@ -1,4 +1,4 @@
-//! Which frame is recorded, and what becomes of it.
+//! Decides which frame is recorded, and what is done with it.
 
 use super::RecordError;
 use super::probes::Probes;
@@ -17,15 +17,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
-/// Frames that were asked for.
+/// A request for frames.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct FrameRequest {
     folder: PathBuf,
-    /// Of those that begin from now on, counted from 0.
+    /// Numbers of the frames, counted from 0 for the next that begins.
     frames: Range<u32>,
-    /// Each has a folder of its own within, named by its number.
+    /// True where each has a folder of its own within, named by its number.
     is_series: bool,
-    /// How many have begun.
+    /// The number of frames that have begun.
     begun: u32,
 }
 
@@ -38,7 +38,7 @@ impl FrameRequest {
         FrameRequest { folder, frames, is_series: true, begun: 0 }
     }
 
-    /// Of `DIR`, `DIR:N` or `DIR:A..B`.
+    /// Parses `DIR`, `DIR:N` or `DIR:A..B`.
     fn of(text: &str) -> FrameRequest {
         let parted = text.rsplit_once(':');
         let one = || {
@@ -53,7 +53,7 @@ impl FrameRequest {
         one().or_else(series).unwrap_or_else(|| FrameRequest::one(text.into(), 0))
     }
 
-    /// A frame begins: where it is recorded to, if it is.
+    /// Counts a frame that begins; returns the folder that it is recorded to, if it is.
     fn next(&mut self) -> Option<PathBuf> {
         let number = self.begun;
         self.begun = number.saturating_add(1);
@@ -66,20 +66,20 @@ impl FrameRequest {
     }
 }
 
-/// The wish of the environment, which the first device takes that encodes something.
+/// Returns the environment's request, which the first device takes that encodes something.
 fn of_environment() -> Option<FrameRequest> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let text = std::env::var(super::VARIABLE).ok().filter(|text| !text.is_empty())?;
     (!TAKEN.swap(true, Ordering::Relaxed)).then(|| FrameRequest::of(&text))
 }
 
-/// What recording a frame took.
+/// The cost of recording a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordingCost {
-    /// Draws that were done one by one.
+    /// The number of draws that were run one by one.
     pub draws: usize,
-    /// Time that the program would not have spent otherwise: doing each submission in parts, computing the frame anew,
-    /// writing.
+    /// Time that the program would not have spent otherwise: running each submission in parts, computing the frame
+    /// again, writing.
     pub time: Duration,
     /// Bytes of the folder.
     pub bytes: u64,
@@ -92,44 +92,44 @@ impl fmt::Display for RecordingCost {
     }
 }
 
-/// What was recorded.
+/// A recorded frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedFrame {
-    /// The frame in our words: plan, pictures, scene and lights as far as they were found.
+    /// The frame in the form of our own: plan, pictures, scene and lights as far as they were found.
     pub frame: ConvertedFrame,
-    /// Where it was written.
+    /// The folder that it was written to.
     pub folder: PathBuf,
-    /// What that took.
+    /// The cost of recording it.
     pub cost: RecordingCost,
 }
 
 /// A frame of a series.
 #[derive(Debug)]
 pub struct SeriesFrame {
-    /// Where it was to be written.
+    /// The folder that it was to be written to.
     pub folder: PathBuf,
-    /// What it took, or why it was not written.
+    /// What it cost, or why it was not written.
     pub outcome: Result<RecordingCost, RecordError>,
 }
 
-/// The recording of a device.
+/// The recorder of a device.
 #[derive(Debug, Default)]
 pub struct Recorder {
     is_recording: AtomicBool,
-    /// An encoder was made since the last frame ended.
+    /// True where an encoder was created since the last frame ended.
     has_begun: AtomicBool,
     asked: Mutex<PendingRecording>,
     stage: ReplayTurns,
 }
 
-/// What was asked for, and has not ended. Nothing of wgpu's is called while it is locked.
+/// Requests that have not ended. No function of wgpu is called while it is locked.
 #[derive(Debug, Default)]
 struct PendingRecording {
     wish: Option<FrameRequest>,
     series: FrameSeries,
 }
 
-/// What lasts from frame to frame of a series.
+/// What is reused from frame to frame of a series.
 #[derive(Debug, Default)]
 struct FrameSeries {
     number: u64,
@@ -137,7 +137,7 @@ struct FrameSeries {
     tools: RecordingTools,
 }
 
-/// What recording a frame needs, and takes time to make.
+/// What recording a frame needs, and takes time to create.
 #[derive(Debug, Default)]
 struct RecordingTools {
     probes: Probes,
@@ -155,14 +155,14 @@ struct RunningRecording {
 /// What ends a recorded frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RecordingEnd {
-    /// A closure that is done.
+    /// The closure returns.
     Closure,
-    /// The program, by showing it or, without a surface, by submitting it. Maybe it is one of a series.
+    /// The program presents the frame or, without a surface, submits it. The number is that of its series, if any.
     Frame(Option<u64>),
 }
 
-/// Where a frame is played. Threads take turns; what a thread submits while it has its turn, in a callback of wgpu's, goes
-/// past.
+/// Exclusive access to the frame that is replayed. Threads take turns; what a thread submits from a callback of wgpu's
+/// during its own turn is not recorded.
 #[derive(Debug, Default)]
 struct ReplayTurns {
     running: Mutex<Option<RunningRecording>>,
@@ -170,7 +170,7 @@ struct ReplayTurns {
 }
 
 impl ReplayTurns {
-    /// `None` in a callback.
+    /// Waits for a turn; `None` in a callback.
     fn turn(&self) -> Option<ReplayTurn<'_>> {
         let thread = std::thread::current().id();
         if *lock(&self.player) == Some(thread) {
@@ -193,12 +193,12 @@ impl Drop for ReplayTurn<'_> {
     }
 }
 
-/// A frame that a closure draws: recorded until it ends, or given up where the closure panics.
+/// A frame that a closure draws: recorded until it ends, or discarded where the closure panics.
 #[derive(Debug)]
 pub struct ClosureFrame<'a>(&'a Recorder);
 
 impl ClosureFrame<'_> {
-    /// Writes what was recorded.
+    /// Writes the recorded frame.
     pub fn end(self, shared: &SharedDevice) -> Result<RecordedFrame, RecordError> {
         let running = self.0.take(|running| running.end == RecordingEnd::Closure).ok_or(RecordError::Busy)?;
         running.write(shared, &mut RecordingTools::default())
@@ -216,7 +216,7 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Recorder {
-    /// Wishes for the next frame that begins.
+    /// Requests the next frame that begins.
     pub fn wish(&self, shared: &SharedDevice, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |_| FrameRequest::one(folder, 0))
     }
@@ -232,15 +232,15 @@ impl Recorder {
             return Err(RecordError::Busy);
         }
         *asked = Some(wish(series));
-        // Without a surface, an encoder that was made since the last frame need not be one of the next: it may have read
-        // the last one's picture back.
+        // Without a surface, an encoder that was created since the last frame need not be one of the next: it may have
+        // read the last one's picture back.
         if !shared.is_presented() {
             self.has_begun.store(false, Ordering::Release);
         }
         Ok(())
     }
 
-    /// Wishes for each frame that begins from now on.
+    /// Requests each frame that begins from now on.
     pub fn start_series(&self, shared: &SharedDevice, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |series| {
             *series = FrameSeries { number: series.number + 1, ..FrameSeries::default() };
@@ -248,16 +248,16 @@ impl Recorder {
         })
     }
 
-    /// No further frame is wished for; those of the series that are written.
+    /// Ends the request for a series; returns the frames of the series that are written.
     pub fn stop_series(&self) -> Vec<SeriesFrame> {
         let mut asked = lock(&self.asked);
         asked.wish.take_if(|wish| wish.is_series);
-        // A frame that goes on is of no series from now on.
+        // A frame that is still recorded belongs to no series from now on.
         let number = asked.series.number + 1;
         std::mem::replace(&mut asked.series, FrameSeries { number, ..FrameSeries::default() }).recorded
     }
 
-    /// A frame begins: is it recorded?
+    /// Called where a frame begins: starts recording it if it was requested.
     fn begin_if_wished(&self) {
         let Some(mut turn) = self.stage.turn() else { return };
         if turn.running.is_some() {
@@ -294,7 +294,7 @@ impl Recorder {
         Ok(ClosureFrame(self))
     }
 
-    /// The frame that is recorded, if it ends so.
+    /// Takes the frame that is recorded, if `ends` is true for it.
     fn take(&self, ends: impl FnOnce(&RunningRecording) -> bool) -> Option<RunningRecording> {
         let mut turn = self.stage.turn()?;
         let running = turn.running.take_if(|running| ends(running));
@@ -305,7 +305,7 @@ impl Recorder {
         running
     }
 
-    /// A frame ends that is recorded, or one that is not and has drawn.
+    /// Called where a frame ends, recorded or not, if it has drawn.
     fn frame_ends(&self, shared: &SharedDevice) {
         // A submission that draws nothing, such as an upload, is no frame.
         let running = self.take(|running| running.end != RecordingEnd::Closure && running.replay.has_drawn());
@@ -325,7 +325,7 @@ impl Recorder {
         if !is_of(&asked.series) {
             return;
         }
-        // What can't be written once can't be written for each frame that follows.
+        // A folder that can't be written once can't be written for each frame that follows.
         asked.wish.take_if(|_| matches!(outcome, Err(RecordError::Disk(_))));
         if asked.wish.is_some() {
             asked.series.tools = tools;
@@ -335,7 +335,7 @@ impl Recorder {
 }
 
 impl RecordingTools {
-    /// Computes each draw anew, and notes where that differs.
+    /// Computes each draw again, and records where the result differs.
     fn hold_against_itself(
         &mut self,
         of: &mut ConvertedFrame,
@@ -375,7 +375,7 @@ impl RunningRecording {
 
 impl CallRecorder for Recorder {
     fn is_recording(&self) -> bool {
-        // An encoder asks: the first since the last frame begins the next.
+        // The first encoder since the last frame begins the next.
         if !self.has_begun.swap(true, Ordering::AcqRel) {
             self.begin_if_wished();
         }

@@ -1,4 +1,4 @@
-//! A recorded frame done draw by draw, with what each draw left read back.
+//! Runs a recorded frame draw by draw, and reads back what each draw left.
 
 use super::probe::{ProbeGpu, accepted};
 use super::probes::{ProbeBudget, Probes};
@@ -13,14 +13,14 @@ use crate::wrap::command::{DrawCommand, EncoderCommand, FinishedCommands, PassCo
 use crate::wrap::{PipelineSource, ViewSubresource};
 use std::collections::{BTreeMap, HashMap};
 
-/// A frame in the making.
+/// A frame while it is replayed.
 #[derive(Debug, Default)]
 pub struct FrameReplay {
     textures: HashMap<wgpu::Texture, usize>,
     raw: Vec<RawTexture>,
     of_target: BTreeMap<RawTarget, wgpu::Texture>,
     before: Vec<(RawTarget, RawContents)>,
-    /// What each target held last.
+    /// The last content of each target.
     contents: BTreeMap<RawTarget, RawContents>,
     events: Vec<RawEvent>,
     groups: Vec<String>,
@@ -30,7 +30,7 @@ pub struct FrameReplay {
     draws: usize,
 }
 
-/// What a pass draws into.
+/// The targets of a pass.
 #[derive(Debug, Clone, Default)]
 struct PassTarget {
     colors: Vec<RawTarget>,
@@ -38,22 +38,22 @@ struct PassTarget {
 }
 
 impl FrameReplay {
-    /// With probes of frames before, if there are any.
+    /// Returns a replay that uses the probes of frames before, if there are any.
     pub fn with(probes: Probes) -> FrameReplay {
         FrameReplay { probes, ..FrameReplay::default() }
     }
 
-    /// How many draws were done yet.
+    /// The number of draws that were run so far.
     pub fn draws(&self) -> usize {
         self.draws
     }
 
-    /// Has anything been drawn yet?
+    /// Returns whether anything has been drawn yet.
     pub fn has_drawn(&self) -> bool {
         self.draws > 0
     }
 
-    /// Does what encoders have made, in order.
+    /// Runs the commands of encoders, in order.
     pub fn submit(
         &mut self,
         device: &wgpu::Device,
@@ -76,7 +76,7 @@ impl FrameReplay {
             });
             if played.flatten().is_none() {
                 self.limit("wgpu refused some of its commands");
-                // The program is told so by submitting all of it as it was.
+                // The program gets the error by submitting all of it as it was.
                 queue.submit([inner]);
             }
         }
@@ -89,7 +89,7 @@ impl FrameReplay {
         }
     }
 
-    /// `None` where wgpu refuses a part: what follows it is not done.
+    /// Runs commands; `None` where wgpu refuses a part: the commands after it are not run.
     fn play(&mut self, gpu: ProbeGpu<'_>, commands: Vec<EncoderCommand>) -> Option<()> {
         let mut pending = new_encoder(gpu.device);
         let depth = self.groups.len();
@@ -113,7 +113,7 @@ impl FrameReplay {
         gpu.does(pending)
     }
 
-    /// A pass in as many parts as it has draws, where it can be taken apart.
+    /// Runs a pass in as many parts as it has draws, where it can be split.
     fn pass(&mut self, gpu: ProbeGpu<'_>, whole: &EncoderCommand) -> Option<()> {
         let EncoderCommand::RenderPass(targets, commands) = whole else { return Some(()) };
         let into = self.targets(gpu, targets);
@@ -177,7 +177,7 @@ impl FrameReplay {
         Some(())
     }
 
-    /// The targets of a pass; what they hold is read where they are met for the first time.
+    /// Returns the targets of a pass; content is read where a target occurs for the first time.
     fn targets(&mut self, gpu: ProbeGpu<'_>, targets: &PassTargets) -> PassTarget {
         let colors = targets.colors.iter().flatten();
         let colors: Vec<RawTarget> = colors.map(|color| self.target(gpu, color.view.texture(), color.part)).collect();
@@ -209,7 +209,8 @@ impl FrameReplay {
         target
     }
 
-    /// What targets hold, each of which has been met; rows that stay are in the memory of what it held before.
+    /// Reads the content of targets, each of which has occurred before; unchanged rows share the memory of the content
+    /// before.
     fn read(&mut self, gpu: ProbeGpu<'_>, targets: &[RawTarget]) -> Vec<RawContents> {
         let part =
             |RawTarget { mip, layer, .. }: RawTarget, texture| readback::TextureSubresource { texture, mip, layer };
@@ -236,7 +237,7 @@ impl FrameReplay {
         self.events.push(RawEvent { id, name, groups, kind, color_targets, depth_target, after });
     }
 
-    /// An event, with what it left.
+    /// Adds an event, with what it left.
     fn after(&mut self, gpu: ProbeGpu<'_>, name: String, kind: RawKind, into: &PassTarget) {
         self.event(name, kind, into);
         let targets: Vec<RawTarget> = into.depth.into_iter().chain(into.colors.first().copied()).collect();
@@ -264,7 +265,7 @@ impl FrameReplay {
         let unlike = described.map(unlike).unwrap_or_default().into_iter().chain(clips.then_some(CLIPS));
         unlike.for_each(|what| self.limit(what));
         let fragment = described.map_or(UNKNOWN, fragment);
-        // What is not followed has no fragments to tell apart.
+        // Draws that are not followed have no fragments to distinguish.
         let is_followed =
             !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
         let is_asked = is_followed && fragment.may_discard == ShaderEffect::Yes;
@@ -290,7 +291,7 @@ impl FrameReplay {
         }
     }
 
-    /// All of it, as an import has it; and what frames after it may use again.
+    /// Returns the whole frame, as an import has it, and the probes that frames after it may use again.
     pub fn frame(self, adapter: &wgpu::AdapterInfo) -> (RawFrame, Probes) {
         let program = std::env::current_exe().ok();
         let program = program.and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
@@ -319,7 +320,7 @@ fn clips(described: &PipelineSource) -> bool {
     stage.source.module().is_some_and(|module| rewrite::clips(&module, stage.entry_point.as_deref()))
 }
 
-/// What a pipeline does that is not followed, in words.
+/// Names what a pipeline does that is not followed.
 fn unlike(described: &PipelineSource) -> Vec<&'static str> {
     let all = if described.multisample.count >= 64 { u64::MAX } else { (1 << described.multisample.count) - 1 };
     let masks = described.multisample.mask & all != all;
@@ -333,7 +334,7 @@ fn unlike(described: &PipelineSource) -> Vec<&'static str> {
 
 const UNKNOWN: RawFragment = RawFragment { may_discard: ShaderEffect::Unknown, writes_depth: ShaderEffect::Unknown };
 
-/// Of a draw without a pipeline, which wgpu refuses.
+/// Returns the state of a draw without a pipeline, which wgpu refuses.
 fn no_shape() -> crate::import::RawShape {
     crate::import::RawShape {
         cull: crate::import::RawCull::Both,
@@ -346,7 +347,7 @@ fn no_shape() -> crate::import::RawShape {
     }
 }
 
-/// What a pipeline's fragment shader may do.
+/// Returns the effects of a pipeline's fragment shader.
 fn fragment(described: &PipelineSource) -> RawFragment {
     let Some(stage) = &described.fragment else {
         return RawFragment { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };

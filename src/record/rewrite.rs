@@ -1,5 +1,5 @@
-//! Shaders that write down where their vertices land, and which fragments they keep: the entry point becomes a function
-//! that a new one calls.
+//! Shaders that log where their vertices land, and which fragments they do not discard: the entry point becomes a
+//! function that a new one calls.
 //!
 //! ```text
 //! fn vs(…same inputs…, vertex, instance) -> …same outputs… {
@@ -9,7 +9,7 @@
 //! }
 //!
 //! fn fs(…same inputs…, position, primitive) {
-//!     inner(…);                  // where it discards, it says so before: some GPUs go on from there
+//!     inner(…);                  // where it discards, it sets a flag before: some GPUs go on from there
 //!     if !discarded { note(pixel of position, first triangle + primitive); }
 //! }
 //! ```
@@ -33,11 +33,11 @@ pub const FRAGMENT_RECORD: u64 = 8;
 pub struct LoggingModule {
     pub module: Module,
     pub entry_point: String,
-    /// Group and binding of what the entry point reads.
+    /// Group and binding of the resources that the entry point reads.
     pub bindings: BTreeSet<(u32, u32)>,
 }
 
-/// The vertex entry point of that name, or the only one, with a log as binding 0 of a group of its own.
+/// Rewrites the vertex entry point of that name, or the only one, with a log as binding 0 of a group of its own.
 ///
 /// # Errors
 /// Why it can't be rewritten.
@@ -57,7 +57,7 @@ pub fn vertex_log(module: &Module, name: Option<&str>, group: u32) -> Result<Log
     rewritten.ok_or("its vertex shader can't be rewritten")
 }
 
-/// Group and binding of what the vertex entry point of that name, or the only one, reads.
+/// Returns group and binding of the resources that the vertex entry point of that name, or the only one, reads.
 ///
 /// # Errors
 /// It must not run twice.
@@ -67,8 +67,8 @@ pub fn vertex_bindings(module: &Module, name: Option<&str>) -> Result<BTreeSet<(
     if used.writes { Err("its vertex shader writes to storage, and must not run twice") } else { Ok(used.bindings) }
 }
 
-/// The fragment entry point of that name, or the only one, with a log as binding 0 and the number of the first triangle
-/// as binding 1 of a group of its own. It has no outputs.
+/// Rewrites the fragment entry point of that name, or the only one, with a log as binding 0 and the number of the first
+/// triangle as binding 1 of a group of its own. It has no outputs.
 ///
 /// # Errors
 /// Why it can't be rewritten.
@@ -87,13 +87,13 @@ pub fn fragment_log(module: &Module, name: Option<&str>, group: u32) -> Result<L
     rewritten.ok_or("its fragment shader can't be rewritten")
 }
 
-/// The entry point of a stage with that name, or the only one.
+/// Returns the entry point of a stage with that name, or the only one.
 fn entry_of<'a>(module: &'a Module, stage: ShaderStage, name: Option<&str>) -> Option<&'a EntryPoint> {
     module.entry_points.iter().find(|entry| entry.stage == stage && name.is_none_or(|name| entry.name == name))
 }
 
-/// A module with nothing but an entry point, whose function `rewrite` makes from what it was; `None` where it can't, or
-/// nothing valid comes of it.
+/// Returns a module with nothing but an entry point, whose function `rewrite` derives from the original; `None` where
+/// it can't, or the result is not valid.
 fn logging(
     module: &Module,
     entry: &EntryPoint,
@@ -119,7 +119,7 @@ struct UsedBindings {
     writes: bool,
 }
 
-/// What an entry point reads and writes.
+/// Returns the resources that an entry point reads and writes.
 fn used(module: &Module, entry: &EntryPoint) -> Result<UsedBindings, &'static str> {
     let info = validated(module).map_err(|_| "its shader is not valid")?;
     let index = module.entry_points.iter().position(|one| one.name == entry.name && one.stage == entry.stage);
@@ -143,8 +143,8 @@ fn member(name: &str, ty: Handle<Type>, offset: u32) -> StructMember {
     StructMember { name: Some(name.to_owned()), ty, binding: None, offset }
 }
 
-/// `fn note(…fields…)`: appends a record of them while there is room, and counts on when there is none. Of each field: its
-/// name, its type, and where it is in the record.
+/// Adds `fn note(…fields…)`: it appends a record of them while there is space, and counts on when there is none.
+/// `fields`: name, type, and offset in the record.
 fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], record_bytes: u32) -> Handle<Function> {
     let unsigned = add_type(module, TypeInner::Scalar(Scalar::U32));
     let counter = add_type(module, TypeInner::Atomic(Scalar::U32));
@@ -188,7 +188,7 @@ fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], reco
     module.functions.append(function, Span::UNDEFINED)
 }
 
-/// A variable in storage.
+/// Adds a variable in storage.
 fn global(
     module: &mut Module,
     name: &str,
@@ -207,19 +207,19 @@ fn global(
     module.global_variables.append(variable, Span::UNDEFINED)
 }
 
-/// A function's code in the making.
+/// Builds the code of a function.
 struct FunctionCode<'a> {
     expressions: &'a mut Arena<Expression>,
     body: Block,
 }
 
 impl FunctionCode<'_> {
-    /// An expression that is there without being computed.
+    /// Adds an expression that needs no evaluation, such as a constant.
     fn plain(&mut self, expression: Expression) -> Handle<Expression> {
         self.expressions.append(expression, Span::UNDEFINED)
     }
 
-    /// An expression that is computed here.
+    /// Adds an expression that is evaluated at this point.
     fn emitted(&mut self, expression: Expression) -> Handle<Expression> {
         let before = self.expressions.len();
         let handle = self.plain(expression);
@@ -228,12 +228,12 @@ impl FunctionCode<'_> {
         handle
     }
 
-    /// The arguments of the function.
+    /// Returns the arguments of the function.
     fn arguments(&mut self, count: usize) -> Vec<Handle<Expression>> {
         (0..count as u32).map(|index| self.plain(Expression::FunctionArgument(index))).collect()
     }
 
-    /// One of the arguments, or a member of one.
+    /// Returns one of the arguments, or a member of one.
     fn given(&mut self, arguments: &[Handle<Expression>], place: BuiltinPlace) -> Handle<Expression> {
         match place {
             BuiltinPlace::Whole(index) => arguments[index as usize],
@@ -270,12 +270,12 @@ fn place(
     Some(BuiltinPlace::Member(index, member as u32))
 }
 
-/// Positions may be invariant, or not.
+/// Compares built-ins; positions may be invariant, or not.
 fn is_same(built_in: BuiltIn, wanted: BuiltIn) -> bool {
     std::mem::discriminant(&built_in) == std::mem::discriminant(&wanted)
 }
 
-/// What an entry point does, as a function that another can call.
+/// Turns an entry point into a function that another can call.
 fn inner(module: &mut Module, entry: &Function) -> Handle<Function> {
     let mut inner = entry.clone();
     inner.name = Some("stencilscope_inner".into());
@@ -284,7 +284,7 @@ fn inner(module: &mut Module, entry: &Function) -> Handle<Function> {
     module.functions.append(inner, Span::UNDEFINED)
 }
 
-/// Where a built-in value comes in: as the program has it, or as an argument more.
+/// Returns where a built-in value is an input: as the program has it, or as an added argument.
 fn input(
     module: &mut Module,
     arguments: &mut Vec<FunctionArgument>,
@@ -302,7 +302,7 @@ fn input(
     })
 }
 
-/// A function in place of an entry point's, that calls it and notes what comes out; `None` where no position does.
+/// Returns a function in place of an entry point's, that calls it and logs the position; `None` where it returns none.
 fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>) -> Option<Function> {
     let result = entry.result.clone()?;
     let position = place(module, 0, result.ty, result.binding.as_ref(), BuiltIn::Position { invariant: false })?;
@@ -328,7 +328,7 @@ fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>
     Some(function)
 }
 
-/// A variable that is set before each discard in a module's functions and in an entry point's.
+/// Adds a variable that is set before each discard in a module's functions and in an entry point's.
 fn flag_discards(module: &mut Module, entry: &mut Function) -> Handle<GlobalVariable> {
     let ty = add_type(module, TypeInner::Scalar(Scalar::BOOL));
     let variable = GlobalVariable {
@@ -348,7 +348,7 @@ fn flag_discards(module: &mut Module, entry: &mut Function) -> Handle<GlobalVari
     flag
 }
 
-/// Puts a statement before each discard of a block.
+/// Inserts a statement before each discard of a block.
 fn before_kills(block: &mut Block, statement: &Statement) {
     let mut changed = Block::with_capacity(block.len());
     for (mut one, span) in std::mem::take(block).span_into_iter() {
@@ -371,7 +371,7 @@ fn before_kills(block: &mut Block, statement: &Statement) {
     *block = changed;
 }
 
-/// A function in place of an entry point's, that calls it and notes the fragment, if it was not discarded.
+/// Returns a function in place of an entry point's, that calls it and logs the fragment, if it was not discarded.
 fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function>, group: u32) -> Function {
     let mut entry = entry.clone();
     let discarded = flag_discards(module, &mut entry);
@@ -418,16 +418,16 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
     function
 }
 
-/// What a fragment shader may do.
+/// The effects of a fragment shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FragmentEffects {
     pub discards: bool,
-    /// It says which samples of a fragment are kept.
+    /// True where it writes the sample mask.
     pub masks: bool,
     pub writes_depth: bool,
 }
 
-/// Does the vertex entry point of that name, or the only one, cut triangles by planes of its own?
+/// Returns whether the vertex entry point of that name, or the only one, clips triangles by planes of its own.
 pub fn clips(module: &Module, name: Option<&str>) -> bool {
     let entry = entry_of(module, ShaderStage::Vertex, name);
     entry.is_some_and(|entry| output(module, entry, BuiltIn::ClipDistances).is_some())
@@ -438,7 +438,7 @@ fn output(module: &Module, entry: &EntryPoint, wanted: BuiltIn) -> Option<Builti
     place(module, 0, result.ty, result.binding.as_ref(), wanted)
 }
 
-/// What the fragment entry point of that name, or the only one, may do; `None` where there is no such.
+/// Returns the effects of the fragment entry point of that name, or the only one; `None` where there is no such.
 pub fn fragment(module: &Module, name: Option<&str>) -> Option<FragmentEffects> {
     let entry = entry_of(module, ShaderStage::Fragment, name)?;
     let has = |wanted| output(module, entry, wanted).is_some();
@@ -446,7 +446,7 @@ pub fn fragment(module: &Module, name: Option<&str>) -> Option<FragmentEffects> 
     Some(FragmentEffects { discards, masks: has(BuiltIn::SampleMask), writes_depth: has(BuiltIn::FragDepth) })
 }
 
-/// Does a fragment's life end in a block, or in what it calls?
+/// Returns whether a block, or a function that it calls, can discard the fragment.
 fn kills(module: &Module, block: &Block, seen: &mut BTreeSet<Handle<Function>>) -> bool {
     block.iter().any(|statement| match statement {
         Statement::Kill => true,
@@ -489,7 +489,7 @@ mod tests {
         naga::front::wgsl::parse_str(SHADER).expect("a module")
     }
 
-    /// What comes out is valid, binds what the entry point reads and no more, and has the log in its group.
+    /// The result is valid, binds what the entry point reads and no more, and has the log in its group.
     #[test]
     fn positions_are_noted_wherever_the_result_has_them() {
         for name in ["structured", "plain"] {
@@ -503,7 +503,7 @@ mod tests {
         }
     }
 
-    /// Whatever it puts out, and whether or not it asks where it is.
+    /// Whatever its outputs are, and whether or not it reads its position.
     #[test]
     fn kept_fragments_are_noted() {
         for name in ["keeps", "may_drop", "deep", "knows"] {

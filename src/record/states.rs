@@ -7,20 +7,20 @@ use crate::wrap::command::PassCommand;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a pass has been told and still holds.
+/// The states that a pass has set so far.
 #[derive(Debug, Clone, Default)]
 pub struct PassState {
     commands: BTreeMap<StateSlot, PassCommand>,
 }
 
-/// What a state is of: the kind, and which of its kind.
+/// What a state sets: its kind, and the index within its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum StateSlot {
     Pipeline,
     BindGroup(u32),
     IndexBuffer,
     VertexBuffer(u32),
-    /// Of four bytes, that offset.
+    /// Four bytes of immediates, at this offset.
     Immediates(u32),
     BlendConstant,
     Scissor,
@@ -29,7 +29,7 @@ enum StateSlot {
 }
 
 impl StateSlot {
-    /// Is it there after a bundle as it was before?
+    /// Returns whether it is the same after a bundle as before.
     fn outlasts_bundles(self) -> bool {
         matches!(
             self,
@@ -53,7 +53,7 @@ fn slot(command: &PassCommand) -> Option<StateSlot> {
 }
 
 impl PassState {
-    /// Notes a command; is it a state?
+    /// Records a command; returns whether it sets a state.
     pub fn note(&mut self, command: &PassCommand) -> bool {
         match command {
             PassCommand::Unbound => self.commands.retain(|slot, _| slot.outlasts_bundles()),
@@ -74,7 +74,7 @@ impl PassState {
         true
     }
 
-    /// A pipeline of another layout finds zeros.
+    /// Clears immediates for a pipeline of another layout, which starts with zeros.
     fn clear_immediates(&mut self, next: &Arc<PipelineSource>) {
         let is_same = self.pipeline().is_some_and(|current| match (&current.layout, &next.layout) {
             (Some(current), Some(next)) => current.real == next.real,
@@ -83,7 +83,7 @@ impl PassState {
         if is_same {
             return;
         }
-        // How much a layout of wgpu's own has room for is not known.
+        // The immediate size of a layout that wgpu derives is not known.
         let bytes = next.layout.as_ref().map_or(0, |layout| layout.immediate_size);
         self.commands.retain(|slot, _| !matches!(slot, StateSlot::Immediates(offset) if *offset >= bytes));
         for command in self.commands.values_mut() {
@@ -93,7 +93,7 @@ impl PassState {
         }
     }
 
-    /// All of it, the pipeline first.
+    /// All commands that set the states, the pipeline first.
     pub fn commands(&self) -> impl Iterator<Item = &PassCommand> {
         self.commands.values()
     }
@@ -105,7 +105,7 @@ impl PassState {
         }
     }
 
-    /// The index buffer, its format, where it begins.
+    /// Returns the index buffer, its format, and the offset where it begins.
     pub fn index_buffer(&self) -> Option<(&wgpu::Buffer, wgpu::IndexFormat, u64)> {
         match self.commands.get(&StateSlot::IndexBuffer) {
             Some(PassCommand::IndexBuffer { buffer, format, offset, .. }) => Some((buffer, *format, *offset)),
@@ -120,7 +120,7 @@ impl PassState {
         }
     }
 
-    /// Where clip space lands in a target of that size.
+    /// Returns viewport and scissor in a target of that size.
     pub fn view(&self, [width, height]: [u32; 2]) -> RawView {
         let (viewport, depth_range) = match self.commands.get(&StateSlot::Viewport) {
             Some(PassCommand::Viewport { area, depth }) => (*area, *depth),
@@ -133,7 +133,7 @@ impl PassState {
         RawView { viewport, depth_range, scissor, y_up: true, z_from_minus_w: false }
     }
 
-    /// The stencil test, where it does something.
+    /// Returns the stencil test, where it has an effect.
     pub fn stencil(&self, pipeline: &PipelineSource) -> Option<[RawStencilFace; 2]> {
         let state = &pipeline.depth_stencil.as_ref()?.stencil;
         let masks =
@@ -142,7 +142,7 @@ impl PassState {
     }
 }
 
-/// Which triangles make fragments; maybe they are cut by planes of the shader's.
+/// Returns which triangles make fragments; `clip_planes`: the shader clips by planes of its own.
 pub fn shape(pipeline: &PipelineSource, clip_planes: bool) -> RawShape {
     let primitive = &pipeline.primitive;
     let bias = pipeline.depth_stencil.as_ref().map(|state| state.bias).unwrap_or_default();
@@ -170,14 +170,14 @@ pub fn topology(pipeline: &PipelineSource) -> RawTopology {
     }
 }
 
-/// The depth test.
+/// Returns the depth test.
 pub fn depth(pipeline: &PipelineSource) -> Option<RawDepth> {
     let state = pipeline.depth_stencil.as_ref().filter(|state| state.format.has_depth_aspect())?;
     let write = state.depth_write_enabled.unwrap_or(false);
     Some(RawDepth { compare: state.depth_compare?, write, bounds: false })
 }
 
-/// How the first colour target is written.
+/// Returns how the first colour target is written.
 pub fn blend(pipeline: &PipelineSource) -> Option<RawBlend> {
     let target = pipeline.targets.first()?.as_ref()?;
     let write = [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];

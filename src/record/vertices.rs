@@ -1,5 +1,5 @@
-//! Where a draw's vertices land: the draw is done once more into a target of one pixel that nobody looks at, by a shader
-//! that writes it down.
+//! Clip-space positions of a draw's vertices: the draw is run once more into a target of one pixel whose content is
+//! discarded, by a shader that logs them.
 
 use super::probe::{Probe, ProbeGpu, ProbeParts, ProbeStage, begin, free_group, target};
 use super::readback;
@@ -11,9 +11,9 @@ use crate::wrap::command::DrawCommand;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// More corners than a draw is followed with.
+/// Draws of more corners are not followed.
 pub const MOST_CORNERS: u64 = 1 << 22;
-/// What a draw's vertices are and how they make triangles, as `RawDraw` has them.
+/// A draw's vertices and triangles, as `RawDraw` has them.
 #[derive(Debug, Default)]
 pub struct ResolvedVertices {
     pub positions: Vec<[f32; 4]>,
@@ -21,7 +21,7 @@ pub struct ResolvedVertices {
     pub instances: Vec<Range<usize>>,
 }
 
-/// The pipeline that notes where vertices land.
+/// Returns the pipeline that logs positions of vertices.
 pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe, &'static str> {
     if !device.features().contains(wgpu::Features::VERTEX_WRITABLE_STORAGE) {
         return Err("vertex shaders can't write to storage on this GPU");
@@ -48,7 +48,7 @@ pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe,
     Ok(Probe::new(device, described, parts))
 }
 
-/// Each vertex of each instance, and where it lands.
+/// Returns each vertex of each instance, with its position.
 pub fn log(
     probe: &Probe,
     gpu: ProbeGpu<'_>,
@@ -139,7 +139,7 @@ pub fn instances(draw: &DrawCommand) -> Range<u32> {
     }
 }
 
-/// A draw whose numbers may be on the GPU as draws whose numbers are known, and of which none is empty.
+/// Returns a draw whose numbers may be on the GPU as draws whose numbers are known, and of which none is empty.
 pub fn direct(gpu: ProbeGpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static str> {
     let words = |buffer: &wgpu::Buffer, offset: u64, count: u64| {
         let bytes = readback::buffer(gpu.device, gpu.queue, buffer, offset, 4 * count);
@@ -187,7 +187,7 @@ fn draws_some(draw: &DrawCommand) -> bool {
     }
 }
 
-/// The vertices of a direct draw in the order drawn, `None` where a strip starts again.
+/// Returns the vertices of a direct draw in the order drawn, `None` where a strip restarts.
 pub fn corners(
     gpu: ProbeGpu<'_>,
     state: &PassState,

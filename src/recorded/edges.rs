@@ -3,18 +3,18 @@
 use crate::plan::{Draw, FramePlan};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A corner by its bits.
+/// A corner, by the bits of its position.
 type CornerBits = [u32; 4];
 
-/// Open edges of some draws together. What is drawn twice, once for each face, counts once.
+/// Open edges of some draws together. A volume that is drawn twice, once for each face, counts once.
 #[derive(Debug, Clone, Default)]
 pub struct OpenEdges {
-    /// From and to, and how often more it is run along so than the other way.
+    /// Both ends of each edge, and how many more triangles run along it this way than the other.
     edges: Vec<([CornerBits; 2], u32)>,
 }
 
 impl OpenEdges {
-    /// Of draws of a plan.
+    /// Finds the open edges of draws of a plan.
     pub fn of<'a>(plan: &FramePlan, draws: impl Iterator<Item = &'a Draw>) -> OpenEdges {
         let mut seen: BTreeSet<[CornerBits; 3]> = BTreeSet::new();
         let mut sums: BTreeMap<[CornerBits; 2], i64> = BTreeMap::new();
@@ -43,12 +43,12 @@ impl OpenEdges {
         OpenEdges { edges: open.map(edge).collect() }
     }
 
-    /// How many there are.
+    /// The number of open edges.
     pub fn count(&self) -> usize {
         self.edges.len()
     }
 
-    /// Triangles that close them: of each connected run of edges a fan round its middle.
+    /// Returns triangles that close them: for each connected run of edges a fan round its middle.
     pub fn caps(&self) -> Vec<[[f32; 4]; 3]> {
         let mut root: BTreeMap<CornerBits, CornerBits> = BTreeMap::new();
         fn find(root: &BTreeMap<CornerBits, CornerBits>, corner: CornerBits) -> CornerBits {

@@ -4,9 +4,9 @@ use super::space::neighbours;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
 
-/// Which places lie behind another as a light at `position` sees them, or at infinity.
+/// Returns which places lie behind another as a light at `position` sees them, or at infinity.
 pub fn far_ends(places: &[Option<DVec4>], position: DVec4) -> Vec<bool> {
-    /// Places are on one ray where their directions differ by no more, in parts.
+    /// Places are on one ray where their directions differ by no more than this, as a part of their length.
     const SAME: f64 = 1e-4;
     let is_point = position.w != 0.0;
     let size = places.iter().flatten().map(|place| place.truncate().length()).fold(0.0, f64::max) * SAME;

@@ -1,4 +1,4 @@
-//! What a frame takes for lit, from what the stencil test of the light's pass lets through.
+//! The labels of another program's frame: lit is what the stencil test of the light's pass lets through.
 
 use crate::capture::{Capture, Image, PixelFormat, Snapshot};
 use crate::plan::{FramePlan, LightId, Pass};
@@ -6,8 +6,8 @@ use crate::stencil_machine::stencil_passes;
 use crate::truth::{BACKGROUND, LIT, SHADOW};
 use std::sync::Arc;
 
-/// A byte a pixel, as techniques say it: lit, in shadow, or background where no surface was drawn. `None` where no pass
-/// of the light asks the stencil.
+/// Returns a byte a pixel, as techniques label them: lit, in shadow, or background where no surface was drawn. `None`
+/// where no pass of the light tests the stencil.
 pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
     let asks = |pass: &Pass| {
         let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
@@ -15,7 +15,7 @@ pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc
     };
     let index = plan.passes.iter().position(asks)?;
     let raster = &plan.passes[index].draws.iter().find(|draw| draw.raster.stencil.is_enabled())?.raster;
-    // The stencil that it asks is what the pass before left: where it sets its own, nothing was counted.
+    // The stencil that it tests is what the pass before left: where it sets its own, nothing was counted.
     let pass = &plan.passes[index];
     let is_set = pass.depth_stencil.as_ref().is_some_and(|target| target.clear_stencil.is_some())
         || pass

@@ -1,35 +1,35 @@
-//! Where a light is, from the shadow volumes that are counted for it.
+//! The position of a light, from the shadow volumes that are counted for it.
 //!
 //! Every edge of a side that runs from a caster's corner to that corner carried away lies on a line through the light.
-//! Other edges of the volume, diagonals of its sides and silhouettes, lie anywhere. So edges vote: two of them meet near
-//! a point, and the point that most edges point away from is the light; where most run the same way, it is a direction.
-//! The winner is fitted by least squares over its voters, again and again with a finer measure of who they are.
+//! Other edges of the volume, diagonals of its sides and silhouettes, lie anywhere. So edges vote: two of them
+//! intersect near a point, and the point that most edges point away from is the light; where most run the same way, it
+//! is a direction. The winner is fitted by least squares over its voters, repeatedly with a smaller limit for voting.
 
 use super::space::{PassSpace, triangles};
 use crate::plan::{FramePlan, LightId};
 use glam::{DMat3, DVec3, DVec4};
 use std::collections::BTreeMap;
 
-/// Edges that vote, at most.
+/// The most edges that vote.
 const MOST_EDGES: usize = 2000;
-/// Pairs of edges that are tried.
+/// The number of pairs of edges that are tried.
 const TRIES: usize = 3000;
 /// How far an edge may point past the light and vote for it: the sine of the angle.
 const REACH: f64 = 1e-3;
-/// The same in the fits that follow.
+/// The limits of the fits that follow: sines of the angle.
 const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
-/// A light is found if so many edges agree, and so much of them all.
+/// A light is found if at least this many edges agree, and at least this part of all edges.
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
 /// A light that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoundLight {
-    /// Homogeneous, in the eye's space: a point, or with `w = 0` the direction towards it.
+    /// Homogeneous position in the eye's space: a point, or with `w = 0` the direction towards it.
     pub position: DVec4,
-    /// Edges that point away from it.
+    /// The number of edges that point away from it.
     pub agree: usize,
-    /// Edges that were asked.
+    /// The number of edges that could vote.
     pub of: usize,
 }
 
@@ -37,11 +37,11 @@ pub struct FoundLight {
 #[derive(Debug, Clone, Copy)]
 struct EdgeLine {
     from: DVec3,
-    /// Of unit length.
+    /// Direction, of unit length.
     along: DVec3,
 }
 
-/// Where a light is; `None` where no volumes tell.
+/// Finds a light's position; `None` where its volumes do not determine it.
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     let lines = thinned(lines(plan, light));
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
@@ -55,7 +55,7 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     is_found.then_some(FoundLight { position, agree, of: lines.len() })
 }
 
-/// Edges that may run away from the light: towards infinity where some do, else all.
+/// Returns edges that may run away from the light: towards infinity where some do, else all.
 fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
     let (mut infinite, mut finite) = (Vec::new(), BTreeMap::new());
     for pass in plan.passes.iter().filter(|pass| pass.light == Some(light) && plan.is_of_picture(pass)) {
@@ -83,13 +83,13 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
     if infinite.is_empty() { finite.into_values().collect() } else { infinite }
 }
 
-/// Some of them, evenly.
+/// Returns some of the lines, evenly spaced.
 fn thinned(lines: Vec<EdgeLine>) -> Vec<EdgeLine> {
     let step = lines.len().div_ceil(MOST_EDGES).max(1);
     lines.into_iter().step_by(step).collect()
 }
 
-/// Where pairs of lines come nearest to each other, and the ways they run.
+/// Returns points where pairs of lines come nearest to each other, and the lines' directions.
 fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
     let count = lines.len();
     let mut found = Vec::new();
@@ -112,7 +112,7 @@ fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
         let point = a.from + a.along * shares.x;
         found.extend(point.is_finite().then(|| point.extend(1.0)));
     }
-    // What runs away from the light runs away from where the light is.
+    // An edge that runs away from the light runs opposite to the direction towards it.
     found
         .iter()
         .map(|one| if one.w == 0.0 { -*one } else { *one })
@@ -120,7 +120,7 @@ fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
         .collect()
 }
 
-/// Lines that point away from the light.
+/// Returns the lines that point away from the light.
 fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item = EdgeLine> + '_ {
     lines.iter().copied().filter(move |line| {
         let away = (line.from * position.w - position.truncate()).normalize_or_zero();
@@ -128,7 +128,7 @@ fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item
     })
 }
 
-/// The point nearest to all lines, or their mean way.
+/// Returns the point nearest to all lines, or their mean direction.
 fn fitted(lines: &[EdgeLine], position: DVec4) -> Option<DVec4> {
     if position.w == 0.0 {
         let towards = -lines.iter().map(|line| line.along).sum::<DVec3>();
@@ -137,7 +137,7 @@ fn fitted(lines: &[EdgeLine], position: DVec4) -> Option<DVec4> {
     let mut system = DMat3::ZERO;
     let mut right = DVec3::ZERO;
     for line in lines {
-        // Errors are angles: what is far away tells less about the place.
+        // Errors are angles: a line that is far away determines the position less.
         let weight = 1.0 / (line.from - position.truncate()).length_squared().max(f64::MIN_POSITIVE);
         let across = DMat3::IDENTITY
             - DMat3::from_cols(line.along * line.along.x, line.along * line.along.y, line.along * line.along.z);

@@ -1,15 +1,15 @@
-//! What another program's frame says by itself: where its lights are, its surfaces, what it takes for lit.
+//! What another program's frame reveals by itself: its lights' positions, its surfaces, and its labels.
 //!
 //! ```text
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
-//!           ─ light.rs   the sides of shadow volumes run away from the light: where they meet, it is
+//!           ─ light.rs   the sides of shadow volumes run away from the light: it is where they intersect
 //!           ─ edges.rs   where volumes are open
 //!           ─ ends.rs    which end of a volume is the caster's
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
 //!           ─ labels.rs  what the stencil test of the light's pass lets through is lit
 //! ```
 //!
-//! The scene that comes out can be traced like any other, so the truth of the frame is known from nothing but its draws.
+//! The resulting scene can be traced like any other, so the truth of the frame is known from nothing but its draws.
 
 mod edges;
 mod ends;

@@ -1,7 +1,8 @@
 //! The surfaces of a frame as the objects of a scene, which can be traced.
 //!
-//! What casts is told by the volumes: a surface casts if a volume of some light begins at its corners. A volume that
-//! begins at none is of a caster out of view: its near end casts, unseen, or where it has none, a fan over its near edges.
+//! Casters are known by the volumes: a surface casts if a volume of some light begins at its corners. A volume that
+//! begins at none is of a caster out of view: its near end casts, unseen, or where it has none, a fan over its near
+//! edges.
 
 use super::ends::far_ends;
 use super::space::{PassSpace, neighbours, triangles};
@@ -11,10 +12,10 @@ use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Corners are the same where they are no farther apart, in parts of their distance from the eye.
+/// Corners are equal where they are no farther apart than this part of their distance from the eye.
 const SAME_PLACE: f64 = 1e-4;
 
-/// The scene that a frame is of, seen by `camera`, in `lights`. Objects are named by their draws.
+/// Returns the scene that a frame shows, seen by `camera`, in `lights`. Objects are named by their draws.
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
     let surfaces = draws(plan, |draw| draw.part == DrawPart::Surface && draw.raster.depth_write);
     let volumes = draws(plan, |draw| draw.part.is_of_volume());
@@ -25,7 +26,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
         let Some(mesh) = mesh(plan, draw, &places, |corners| corners.iter().all(|corner| corner.w == 1.0)) else {
             continue;
         };
-        // What is drawn again, for light or ambient, is one object.
+        // A surface that is drawn again, for light or ambient, is one object.
         if objects.iter().any(|known| known.mesh.content_hash() == mesh.content_hash()) {
             continue;
         }
@@ -57,8 +58,8 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     builder.objects(objects).objects(unseen).build()
 }
 
-/// The draws of shadow volumes with their passes, and the index of the object of `scene` that throws each: most of a
-/// volume's corners that are not at infinity are its caster's.
+/// Returns the draws of shadow volumes with their passes, and the index of the object of `scene` that casts each: most
+/// of a volume's corners that are not at infinity are its caster's.
 pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Draw, usize)> {
     let mut corners = KnownCorners::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
@@ -71,12 +72,12 @@ pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Dra
     draws(plan, |draw| draw.part.is_of_volume()).into_iter().filter_map(thrown).collect()
 }
 
-/// Places that are not at infinity.
+/// Returns the places that are not at infinity.
 fn finite(places: &[Option<DVec4>]) -> Vec<DVec3> {
     places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
 }
 
-/// Draws of the picture, with their passes.
+/// Returns draws of the picture for which `is_meant` is true, with their passes.
 fn draws(plan: &FramePlan, is_meant: impl Fn(&Draw) -> bool) -> Vec<(&Pass, &Draw)> {
     let picture = plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
     picture
@@ -85,7 +86,7 @@ fn draws(plan: &FramePlan, is_meant: impl Fn(&Draw) -> bool) -> Vec<(&Pass, &Dra
         .collect()
 }
 
-/// The triangles of a draw that are meant; `None` where there are none.
+/// Returns the triangles of a draw for which a condition is true; `None` where there are none.
 fn mesh(
     plan: &FramePlan,
     draw: &Draw,
@@ -107,8 +108,8 @@ fn built(triangles: Vec<[DVec3; 3]>) -> Option<Mesh> {
     builder.build().ok().filter(|mesh| !mesh.triangles().is_empty())
 }
 
-/// What of a volume stops light where its caster is not seen: the cap at its near end, or where it has none, a fan over
-/// the near edges of its sides.
+/// Returns the part of a volume that stops light where its caster is not visible: the cap at its near end, or where it
+/// has none, a fan over the near edges of its sides.
 fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec4) -> Option<Mesh> {
     let far = far_ends(places, light);
     let is_near = |corner: u32| far.get((corner + draw.base_vertex) as usize) == Some(&false);
@@ -130,7 +131,7 @@ fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec
     built(edges.into_iter().map(|[from, to]| [from, to, middle]).collect())
 }
 
-/// Corners of objects, to be found again though they were rounded on the way.
+/// Objects by their corners, which can be looked up although they were rounded.
 #[derive(Default)]
 struct KnownCorners(BTreeMap<[i64; 3], Vec<usize>>);
 
@@ -144,14 +145,14 @@ impl KnownCorners {
         }
     }
 
-    /// A cell as large as places may be apart at its distance.
+    /// Returns the cell of a place: as large as equal places may be apart at its distance.
     fn cell(place: DVec3) -> [i64; 3] {
         // Steps that double with the distance, so that both of a pair take the same.
         let size = (place.length().max(f64::MIN_POSITIVE).log2().ceil()).exp2() * SAME_PLACE;
         (place / size).to_array().map(|value| value.round() as i64)
     }
 
-    /// The object that has most of these corners, and how many.
+    /// Returns the object that has most of these corners, and how many.
     fn most(&self, places: &[DVec3]) -> Option<(usize, usize)> {
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
         for place in places {

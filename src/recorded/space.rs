@@ -1,18 +1,18 @@
-//! From clip space to the space that the eye stands in.
+//! The transform from clip space to the eye's space.
 //!
-//! A perspective has w = distance along the view axis and z = a·w + b·h, where h is 1 for what is somewhere and 0 for what
-//! is at infinity. So (x, y, −w, h) is view space but for a stretch of x and y, which the field of view would tell. The
-//! stretch is taken as that of an eye that sees 90 degrees in square pixels: lines, planes and what lies between what
-//! are kept by any stretch.
+//! A perspective has w = distance along the view axis and z = a·w + b·h, where h is 1 for a finite point and 0 for one
+//! at infinity. So (x, y, −w, h) is view space except for a stretch of x and y, which depends on the unknown field of
+//! view. The stretch is taken as that of an eye that sees 90 degrees in square pixels: lines, planes and the order
+//! along a line are preserved by any stretch.
 
 use crate::math::depth::DepthCurve;
 use crate::plan::{Draw, FramePlan, Pass, Viewport};
 use glam::DVec4;
 
-/// h below this is at infinity: depths near the far end round.
+/// Points of smaller h are at infinity: depths near the far end round.
 const INFINITE: f64 = 0.5;
 
-/// How a pass's clip space lies in the eye's.
+/// The transform from a pass's clip space to the eye's space.
 #[derive(Debug, Clone, Copy)]
 pub struct PassSpace {
     curve: DepthCurve,
@@ -21,12 +21,13 @@ pub struct PassSpace {
 }
 
 impl PassSpace {
-    /// Of a pass of the picture.
+    /// Returns the transform of a pass of the picture.
     pub fn new(plan: &FramePlan, pass: &Pass) -> PassSpace {
         PassSpace { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
     }
 
-    /// A vertex as a homogeneous point of view space: w is 1, or 0 where it is a direction. `None` where it is no number.
+    /// Returns a vertex as a homogeneous point of view space: w is 1, or 0 where it is a direction. `None` where it has
+    /// NaN.
     pub fn place(&self, vertex: [f32; 4]) -> Option<DVec4> {
         let [x, y, z, w] = vertex.map(f64::from);
         let [left, top, width, height] = self.viewport.area.map(f64::from);
@@ -41,11 +42,11 @@ impl PassSpace {
         if !place.is_finite() {
             return None;
         }
-        // What is nearly 1 or 0 was that before it was rounded.
+        // A value near 1 or 0 was exactly that before it was rounded.
         Some(if h.abs() > INFINITE { (place / h).truncate().extend(1.0) } else { place.truncate().extend(0.0) })
     }
 
-    /// The vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`].
+    /// Returns the vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`].
     pub fn clip(&self, place: DVec4) -> [f32; 4] {
         let [left, top, width, height] = self.viewport.area.map(f64::from);
         let [columns, rows] = self.size;
@@ -58,18 +59,18 @@ impl PassSpace {
         [x, y, z, w].map(|value| value as f32)
     }
 
-    /// The vertices of a draw's mesh.
+    /// Returns the vertices of a draw's mesh as places of view space.
     pub fn places(&self, plan: &FramePlan, draw: &Draw) -> Vec<Option<DVec4>> {
         plan.meshes[draw.mesh.0].vertices.data().iter().map(|vertex| self.place(*vertex)).collect()
     }
 }
 
-/// A cell and those that touch it: what was rounded may lie next door.
+/// Returns a cell and those that touch it: a place that was rounded may be in the next one.
 pub fn neighbours([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
     (0..27).map(move |index| [x + index % 3 - 1, y + index / 3 % 3 - 1, z + index / 9 - 1])
 }
 
-/// The triangles of a draw whose corners are numbers.
+/// Returns the triangles of a draw whose corners are numbers.
 pub(super) fn triangles<'a>(
     plan: &'a FramePlan,
     draw: &'a Draw,

@@ -6,7 +6,7 @@ const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,fals
 wrong_surface,edge_band,wrong_fraction,wrong_color,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
 triangles,bytes,pareto,adapter,sweep,sweep_value";
 
-/// A heading line, then one line a row; each ends as the standard says, with CR LF.
+/// Returns a heading line, then one line a row; each ends as the standard requires, with CR LF.
 pub fn csv(report: &Report) -> String {
     let lines = report.rows.iter().map(|row| line(row, &report.adapter.name));
     std::iter::once(COLUMNS.to_owned()).chain(lines).map(|line| line + "\r\n").collect()

@@ -1,4 +1,4 @@
-//! What a technique costs and how often it is wrong: the report's rows, and every form they take.
+//! What a technique costs and how often it is wrong: the report's rows, and every format that they are written in.
 //!
 //! ```text
 //! rows ──► Report ──► JSON, CSV, text table, Markdown, page
@@ -27,27 +27,27 @@ use crate::shards::{self, MergeError, ResultsFile, ShardPart};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Version of the JSON form.
+/// Version of the JSON format.
 const SCHEMA: u32 = 1;
 
 /// Error against run time: every technique with every setting that was measured, on one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ReportDocument", into = "ReportDocument")]
 pub struct Report {
-    /// What it was measured on.
+    /// The adapter that it was measured on.
     pub adapter: AdapterInfo,
-    /// One a scene, technique and settings, in the order in which they are listed.
+    /// One row a scene, technique and settings, in the order in which they are listed.
     pub rows: Vec<ReportRow>,
-    /// Which part of a run it is; `None` of a whole one.
+    /// Which part of a run it is; `None` for a whole run.
     pub part: Option<ShardPart>,
 }
 
-/// A report that was measured where not all may have had room.
+/// A report of which some rows may have exceeded the memory budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredReport {
-    /// The rows.
+    /// The report with the rows that were measured.
     pub report: Report,
-    /// What has no row, since it would take too much of this machine's memory: `shadow-map 4096`.
+    /// Names of rows that are left out, since they would take too much of this machine's memory: `shadow-map 4096`.
     pub left_out: Vec<String>,
 }
 
@@ -60,48 +60,48 @@ pub struct ReportRow {
     pub technique: String,
     /// Every setting of the technique.
     pub settings: BTreeMap<String, String>,
-    /// What sets this row apart from others of its technique: `1024`, `1024, slope 0`; may be empty.
+    /// What distinguishes this row from others of its technique: `1024`, `1024, slope 0`; may be empty.
     #[serde(default)]
     pub label: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// At which value of a sweep; `None` without one.
+    /// The value of a sweep; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<SweepValue>,
-    /// Against the truth, summed over lights.
+    /// Numbers of pixels by finding, compared with the truth and summed over lights.
     #[serde(flatten)]
     pub error: ErrorCounts,
-    /// Wrong pixels of those compared, 0 to 1; 0 where nothing was compared.
+    /// Share of the compared pixels that are wrong, 0 to 1; 0 where nothing was compared.
     pub wrong_fraction: f64,
-    /// Pixels, background included, whose colour is not that of the ray-traced picture in the same shading; each counts
-    /// once, however many lights there are. `None` in reports from before it was measured.
+    /// Number of pixels, background included, whose colour differs from the ray-traced picture in the same shading;
+    /// each counts once, however many lights there are. `None` in reports from before it was measured.
     #[serde(default)]
     pub wrong_color: Option<u64>,
     /// Wall time of a frame.
     pub frame_ms: FrameTimes,
-    /// With its set-up, where the scene moves; `None` where it stands still and set-up is done once.
+    /// Frame times including set-up, where the scene moves; `None` where it does not and set-up is done once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moving: Option<MotionCost>,
     /// GPU time of a frame in milliseconds; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
-    /// Planning, geometry, pipelines and uploads of this row alone, milliseconds; opening the scene
-    /// and the GPU, which all rows share, is not in it.
+    /// Time of planning, geometry, pipelines and uploads of this row alone, milliseconds; opening the scene and the
+    /// GPU, which all rows share, is not in it.
     pub setup_ms: f64,
-    /// Triangles submitted a frame.
+    /// Number of triangles submitted in a frame.
     pub triangles: u64,
     /// GPU memory of buffers and attachments, bytes.
     pub bytes: u64,
-    /// No other row of the scene is at least as fast and at least as right, and one of them more:
-    /// see [`Report::mark_pareto`].
+    /// True for rows on the Pareto front: no other row of the scene is at least as fast and at least as right, and one
+    /// of the two more. See [`Report::mark_pareto`].
     pub pareto: bool,
 }
 
-/// What a frame of a scene that moves costs.
+/// Times of a frame of a moving scene.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MotionCost {
-    /// Setting it up: silhouettes, proofs, uploads; median, milliseconds.
+    /// Median time of setting it up (silhouettes, proofs, uploads), milliseconds.
     pub setup_ms: f64,
-    /// That and drawing it; median, milliseconds.
+    /// Median time of setting it up and drawing it, milliseconds.
     pub total_ms: f64,
     /// Set-up's share of all frames' time, 0 to 1.
     pub setup_share: f64,
@@ -110,44 +110,44 @@ pub struct MotionCost {
 /// A value of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepValue {
-    /// What changes: `size`, `lights`, `casters`, `triangles` or `map-size`.
+    /// Name of what changes: `size`, `lights`, `casters`, `triangles` or `map-size`.
     pub name: String,
-    /// The value; of sizes how many pixels.
+    /// The value; for sizes the number of pixels.
     pub value: f64,
-    /// The value as people read it: `1280×720`.
+    /// The value as it is shown: `1280×720`.
     pub text: String,
 }
 
 /// Wall times of equal frames, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
-    /// Half of the frames were faster.
+    /// The median.
     pub median: f64,
-    /// The fastest.
+    /// The shortest time.
     pub min: f64,
-    /// The slowest.
+    /// The longest time.
     pub max: f64,
-    /// How many frames were timed.
+    /// The number of frames that were timed.
     pub runs: u32,
 }
 
-/// What can go wrong with a report's forms.
+/// Why a report can't be read or written in a format.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// Not JSON, or not a report's.
+    /// It is not JSON, or not a report's.
     #[error("the report can't be read or written as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// Written by another version.
+    /// It was written by another version.
     #[error("a report of schema {found} can't be read: make it again, this version knows schema {SCHEMA}")]
     Schema {
-        /// The schema it names.
+        /// The schema that the file names.
         found: u32,
     },
-    /// The plot's SVG was refused, or is too large.
+    /// The plot's SVG can't be rendered, or is too large.
     #[error("the plot can't be drawn as pixels: {0}; save it as .svg instead")]
     #[cfg(feature = "program")]
     Svg(#[from] crate::picture::svg::SvgError),
-    /// The PNG encoder refused.
+    /// The PNG encoder failed.
     #[error("the plot can't be written as PNG: {0}; save it as .svg instead")]
     Png(#[from] png::EncodingError),
 }
@@ -180,7 +180,8 @@ impl TryFrom<ReportDocument> for Report {
 }
 
 impl Report {
-    /// Rows with what follows from them filled in: [`ReportRow::wrong_fraction`] and [`ReportRow::pareto`].
+    /// Returns a report of these rows, computing what follows from them: [`ReportRow::wrong_fraction`] and
+    /// [`ReportRow::pareto`].
     pub fn new(adapter: AdapterInfo, rows: Vec<ReportRow>) -> Report {
         let mut report = Report { adapter, rows, part: None };
         for row in &mut report.rows {
@@ -190,7 +191,7 @@ impl Report {
         report
     }
 
-    /// Reports of all parts of a run, each with its file's name, as of one run.
+    /// Merges the reports of all parts of a run, each with its file's name.
     pub fn merged(parts: Vec<(String, Report)>) -> Result<Report, MergeError> {
         let adapter = parts.first().map(|(_, report)| report.adapter.clone()).ok_or(MergeError::Nothing)?;
         let part = |(name, Report { adapter, rows, part }): (String, Report)| ResultsFile {
@@ -216,12 +217,12 @@ impl Report {
         }
     }
 
-    /// Is it of a sweep?
+    /// Returns whether it is a sweep.
     pub fn is_swept(&self) -> bool {
         self.rows.iter().any(|row| row.sweep.is_some())
     }
 
-    /// Indices of a scene's rows: of a sweep technique by technique, each from value to value.
+    /// Returns the indices of a scene's rows: of a sweep technique by technique, each from value to value.
     pub fn rows_of(&self, scene: &str) -> Vec<usize> {
         let mut rows: Vec<usize> = (0..self.rows.len()).filter(|index| self.rows[*index].scene == scene).collect();
         let names: Vec<String> = rows.iter().map(|index| self.rows[*index].name()).collect();
@@ -232,7 +233,7 @@ impl Report {
         rows
     }
 
-    /// The scenes, in the order in which they first appear.
+    /// The names of the scenes, in the order in which they first appear.
     pub fn scenes(&self) -> Vec<&str> {
         let mut scenes: Vec<&str> = Vec::new();
         for row in &self.rows {
@@ -243,38 +244,38 @@ impl Report {
         scenes
     }
 
-    /// The JSON form, indented.
+    /// Returns the report as indented JSON.
     pub fn to_json(&self) -> Result<String, ReportError> {
         Ok(serde_json::to_string_pretty(self)?)
     }
 
-    /// Reads the JSON form.
+    /// Reads a report from JSON.
     pub fn from_json(text: &str) -> Result<Report, ReportError> {
         Ok(serde_json::from_str(text)?)
     }
 
-    /// One line a row, with a heading line (RFC 4180).
+    /// Returns one line a row, with a heading line (RFC 4180).
     pub fn to_csv(&self) -> String {
         csv::csv(self)
     }
 
-    /// A table for the terminal, below 140 columns.
+    /// Returns a table for the terminal, below 140 columns.
     pub fn to_table(&self) -> String {
         table::text(self)
     }
 
-    /// A table in Markdown.
+    /// Returns a table in Markdown.
     pub fn to_markdown(&self) -> String {
         table::markdown(self)
     }
 
-    /// The plot for paper, as SVG.
+    /// Returns the plot for paper, as SVG.
     #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
         svg::svg(&if self.is_swept() { plot::sweep(self) } else { plot::layout(self, &plot::PlotPage::PAPER) })
     }
 
-    /// The plot for paper, as PNG with two pixels a point.
+    /// Returns the plot for paper, as PNG with two pixels a point.
     #[cfg(feature = "program")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
@@ -282,20 +283,20 @@ impl Report {
 }
 
 impl plot::Plot {
-    /// On paper, as SVG.
+    /// Returns the plot for paper, as SVG.
     #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
         svg::svg(self)
     }
 
-    /// On paper, as PNG with two pixels a point.
+    /// Returns the plot for paper, as PNG with two pixels a point.
     #[cfg(feature = "program")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }
 }
 
-/// Is `one` at least as fast and right as `other`, and one of the two more?
+/// Returns whether `one` is at least as fast and right as `other`, and one of the two more.
 fn beats(one: &ReportRow, other: &ReportRow) -> bool {
     let (time, error) = (one.cost_ms(), one.wrong_fraction);
     let (other_time, other_error) = (other.cost_ms(), other.wrong_fraction);
@@ -303,32 +304,32 @@ fn beats(one: &ReportRow, other: &ReportRow) -> bool {
 }
 
 impl ReportRow {
-    /// Is it of the same scene, at the same value of a sweep?
+    /// Returns whether it is of the same scene, at the same value of a sweep.
     pub fn is_beside(&self, other: &ReportRow) -> bool {
         self.scene == other.scene && self.sweep == other.sweep
     }
 
-    /// What a frame costs, milliseconds: the median, with its set-up where the scene moves.
+    /// Returns the median frame time in milliseconds, with set-up where the scene moves.
     pub fn cost_ms(&self) -> f64 {
         self.moving.map_or(self.frame_ms.median, |moving| moving.total_ms)
     }
 
-    /// Frames a second, by that.
+    /// Returns frames per second, from [`ReportRow::cost_ms`].
     pub fn fps(&self) -> f64 {
         1000.0 / self.cost_ms()
     }
 
-    /// Wrong pixels of all kinds.
+    /// The number of wrong pixels of all kinds.
     pub fn wrong(&self) -> u64 {
         self.error.wrong()
     }
 
-    /// Has it both a usable time and something that was compared?
+    /// Returns whether it has both a usable time and compared pixels.
     pub fn is_measured(&self) -> bool {
         self.problem().is_none()
     }
 
-    /// Why the row can't be ranked or drawn, in a few words.
+    /// Says why the row can't be ranked or drawn, in a few words; `None` where it can.
     pub fn problem(&self) -> Option<&'static str> {
         if self.error.compared == 0 {
             return Some("no pixel was compared");
@@ -340,12 +341,12 @@ impl ReportRow {
         (!is_usable(self.frame_ms.median)).then_some("its time is no number")
     }
 
-    /// Technique and label: `shadow-map 1024`.
+    /// Returns technique and label: `shadow-map 1024`.
     pub fn name(&self) -> String {
         if self.label.is_empty() { self.technique.clone() } else { format!("{} {}", self.technique, self.label) }
     }
 
-    /// The row in a few words: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
+    /// Returns the row in a few words: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
     pub fn summary(&self) -> String {
         let wrong = match self.wrong_fraction {
             0.0 => "none wrong".to_owned(),
@@ -354,7 +355,7 @@ impl ReportRow {
         format!("{}: {wrong}, {} ms", self.name(), numbers::milliseconds(self.frame_ms.median))
     }
 
-    /// The row in a few lines, for people who point at it.
+    /// Returns the row in a few lines, for a tooltip.
     pub fn details(&self) -> String {
         let count = numbers::count;
         let times = self.frame_ms;

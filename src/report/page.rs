@@ -1,26 +1,26 @@
-//! A report as a page in Markdown that stands alone: the command that makes it, the machine, the plot, a table a
+//! A report as a page in Markdown that stands alone: the command that writes it, the machine, the plot, a table a
 //! scene, and how to read them.
 
 use super::{Report, table};
 
-/// What a page says beside the rows.
+/// What a page contains beside the rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PageOrigin<'a> {
     /// The command line that writes the page again.
     pub command: &'a str,
-    /// The plot's file as the page names it, if there is one.
+    /// Path of the plot as the page names it, if there is one.
     pub plot: Option<&'a str>,
 }
 
 impl PageOrigin<'_> {
-    /// The page's beginning: its title, the command, and the plot.
+    /// Returns the page's beginning: its title, the command, and the plot.
     pub(crate) fn opening(&self, title: &str, of_plot: &str) -> String {
         let plot = self.plot.map_or_else(String::new, |file| format!("![{of_plot}]({file})\n\n"));
         format!("# {title}\n\nWritten by\n\n```sh\n{}\n```\n\n{plot}", self.command)
     }
 }
 
-/// How the rows are measured and read.
+/// The section that explains how rows are measured and read.
 const READING: &str = "Every row is a scene rendered by one technique. Each pixel is held against rays that are followed through \
 the scene in double precision, and counts as wrong where the technique says something else of a light, unless the truth itself \
 changes within an eighth of a pixel, or another triangle is visible within 1/256, which is what rasterisers snap to. *Wrong \
@@ -31,7 +31,7 @@ geometry, pipelines and uploads. *MiB* is the memory of buffers and attachments.
 least as fast and at least as right (Pareto front).";
 
 impl Report {
-    /// The page.
+    /// Returns the page.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let adapter = &self.adapter;
         let of_plot = match self.is_swept() {

@@ -1,14 +1,14 @@
-//! The plot's layout as data: where every mark, line and word goes, in points, y downwards.
+//! The plot's layout as data: where every mark, line and text goes, in points, y downwards.
 //!
-//! One small chart a scene, all on the same axes. Across: the median frame time, log. Up: wrong
-//! pixels of those compared, log; as zero has no place on a log axis, rows without a wrong pixel
-//! have a band of their own below it, in lanes so that they do not cover each other. SVG, PNG and
-//! the inspector draw the same layout; each gives [`PlotInk`]s its own colours.
+//! One small chart a scene, all on the same axes. Across: the median frame time, log. Up: wrong pixels of those
+//! compared, log; as zero has no place on a log axis, rows without a wrong pixel have a band of their own below it, in
+//! lanes so that they do not cover each other. SVG, PNG and the inspector draw the same layout; each gives [`PlotInk`]s
+//! its own colours.
 //!
 //! ```text
-//! plot.rs    what a layout is made of; charts in rows on a page
+//! plot.rs    what a layout consists of; charts in rows on a page
 //! around.rs  heading, legend, notes           chart.rs   one scene's chart
-//! scale.rs   log scales and their ticks       labels.rs  words beside points, apart
+//! scale.rs   log scales and their ticks       labels.rs  texts beside points, apart
 //! axes.rs    area, band, grid and ticks       marks.rs   shape and colour of each technique
 //! swept.rs   a sweep's page: time against its value, a line each
 //! ```
@@ -31,7 +31,7 @@ use super::Report;
 use around::{heading, legend, notes, summary};
 use chart::ChartFrame;
 
-/// Size of words in points; titles are larger.
+/// Size of texts in points; titles are larger.
 pub const TEXT_SIZE: f64 = 12.0;
 /// Size of titles in points.
 pub const TITLE_SIZE: f64 = 14.0;
@@ -40,32 +40,31 @@ pub const SMALL_SIZE: f64 = 11.0;
 /// Radius of a mark in points.
 pub const RADIUS: f64 = 4.6;
 
-/// What a report's plot is called.
+/// The title of a report's plot.
 const TITLE: &str = "Wrong pixels against frame time";
-/// Below this a chart is too narrow to be read, points.
+/// The least width of a readable chart, points.
 const LEAST_CHART_WIDTH: f64 = 300.0;
-/// Below this a chart is too low to be read, points.
+/// The least height of a readable chart, points.
 const LEAST_CHART_HEIGHT: f64 = 150.0;
-/// The same where charts are below each other, and the plot is scrolled anyway.
+/// The least height of a chart where charts are below each other and the plot is scrolled anyway, points.
 const LEAST_STACKED_HEIGHT: f64 = 210.0;
-/// How high a chart likes to be, points.
+/// The preferred height of a chart, points.
 const CHART_HEIGHT: f64 = 330.0;
-/// Between charts, points.
+/// Gap between charts, points.
 const GAP: f64 = 20.0;
-/// Height of a line of words, points.
+/// Height of a line of text, points.
 const LINE: f64 = 18.0;
 
-/// A place for a plot.
+/// The size that a plot is laid out for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlotPage {
     /// Width in points.
     pub width: f64,
-    /// Height in points, to be filled where charts need not be lower than they can be; `None`:
-    /// as high as charts like to be.
+    /// Height in points that the charts fill where they are not too low then; `None` gives them their preferred height.
     pub height: Option<f64>,
-    /// Charts side by side at most.
+    /// The largest number of charts side by side.
     pub most_columns: usize,
-    /// Without title, adapter and legend, and with low margins: beside a table that has them.
+    /// True leaves out title, adapter and legend, and makes margins small: for a plot beside a table that has them.
     pub compact: bool,
 }
 
@@ -84,12 +83,12 @@ pub struct PlotRect {
 }
 
 impl PlotRect {
-    /// Do the two share more than an edge?
+    /// Returns whether the two share more than an edge.
     pub fn overlaps(&self, other: &PlotRect) -> bool {
         (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
     }
 
-    /// Does it hold all of `other`?
+    /// Returns whether it contains all of `other`.
     pub fn holds(&self, other: &PlotRect) -> bool {
         (0..2).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
@@ -105,59 +104,59 @@ impl PlotRect {
     }
 }
 
-/// What a thing means, for whoever colours it.
+/// The meaning of a mark, line or text, which decides its colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PlotInk {
-    /// Words that matter.
+    /// Important text.
     Text,
-    /// Words beside them.
+    /// Text that matters less.
     Dim,
-    /// Lines that help the eye.
+    /// Grid lines.
     Grid,
     /// The Pareto front.
     Front,
-    /// A technique's.
+    /// A technique's mark or line.
     Technique(&'static TechniqueStyle),
 }
 
-/// Which side of a text is at its place.
+/// Which part of a text is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextAnchor {
-    /// The left.
+    /// Its left end.
     Start,
-    /// The middle.
+    /// Its middle.
     Middle,
-    /// The right.
+    /// Its right end.
     End,
 }
 
-/// Words.
+/// A text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotText {
-    /// Across: as `anchor` says; down: the middle of the line.
+    /// Position in points: across as `anchor` states; down the middle of the line.
     pub at: [f64; 2],
-    /// The words.
+    /// The characters.
     pub text: String,
     /// Size in points.
     pub size: f64,
-    /// What `at` means.
+    /// Which part of the text is at `at`.
     pub anchor: TextAnchor,
-    /// What it means.
+    /// Its meaning.
     pub ink: PlotInk,
-    /// A title.
+    /// True for titles.
     pub strong: bool,
 }
 
 /// A line through points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotLine {
-    /// Two or more.
+    /// Two or more points.
     pub points: Vec<[f64; 2]>,
     /// Thickness in points.
     pub width: f64,
-    /// What it means.
+    /// Its meaning.
     pub ink: PlotInk,
-    /// Drawn so that marks stand out from it.
+    /// True for a line that marks must stand out from.
     pub faint: bool,
 }
 
@@ -166,47 +165,47 @@ pub struct PlotLine {
 pub struct PlotPoint {
     /// Index of the row in the report.
     pub row: usize,
-    /// Its middle.
+    /// Its centre.
     pub at: [f64; 2],
-    /// From the fastest to the slowest frame, across.
+    /// Horizontal ends of its whisker, from the fastest to the slowest frame.
     pub whisker: [f64; 2],
     /// Shape and colour.
     pub style: &'static TechniqueStyle,
-    /// On the Pareto front; others are hollow.
+    /// True on the Pareto front; others are hollow.
     pub filled: bool,
-    /// For who can't see it: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
+    /// Text for screen readers: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
     pub name: String,
-    /// For who points at it, in lines.
+    /// Text of its tooltip, in lines.
     pub details: String,
 }
 
-/// One scene.
+/// The chart of one scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneChart {
     /// The scene's name.
     pub title: String,
-    /// Where points with wrong pixels are.
+    /// Area of points with wrong pixels.
     pub area: PlotRect,
-    /// Where points without one are.
+    /// Area of points without a wrong pixel.
     pub band: PlotRect,
     /// Grid, joined settings, front: to be drawn in this order, below marks.
     pub lines: Vec<PlotLine>,
     /// Marks, those on the front last.
     pub spots: Vec<PlotPoint>,
-    /// Title and axes.
+    /// Texts of title and axes.
     pub texts: Vec<PlotText>,
-    /// Words beside marks; no two overlap, and none covers a mark.
+    /// Texts beside marks; no two overlap, and none covers a mark.
     pub labels: Vec<PlotText>,
 }
 
 /// A mark of the legend, without a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendKey {
-    /// Its middle.
+    /// Its centre.
     pub at: [f64; 2],
     /// Shape and colour.
     pub style: &'static TechniqueStyle,
-    /// As on the front.
+    /// True where it is drawn like a row on the front.
     pub filled: bool,
 }
 
@@ -215,13 +214,13 @@ pub struct LegendKey {
 pub struct Plot {
     /// Width and height in points.
     pub size: [f64; 2],
-    /// What it is.
+    /// Its title.
     pub title: String,
-    /// In a sentence, for who can't see it.
+    /// A sentence that describes it, for screen readers.
     pub summary: String,
-    /// One a scene.
+    /// One chart a scene.
     pub charts: Vec<SceneChart>,
-    /// Heading, legend, notes.
+    /// Texts of heading, legend and notes.
     pub texts: Vec<PlotText>,
     /// Marks of the legend.
     pub keys: Vec<LegendKey>,
@@ -229,8 +228,8 @@ pub struct Plot {
     pub lines: Vec<PlotLine>,
 }
 
-/// Estimated width of words in points: those of Helvetica and its like, a little more than most
-/// faces need. What is laid out with it stays apart in whichever face it is drawn.
+/// Estimates the width of a text in points: that of Helvetica and similar faces, and a little more than most faces
+/// need. Texts that are laid out with it don't overlap in whichever face they are drawn.
 pub fn text_width(text: &str, size: f64) -> f64 {
     let width = |c: char| match c {
         'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | '!' => 0.28,
@@ -246,12 +245,12 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 }
 
 impl PlotText {
-    /// Words beside the picture's own.
+    /// Returns a small text in a dim colour.
     pub(crate) fn small(at: [f64; 2], text: impl Into<String>) -> PlotText {
         PlotText::new(at, text, SMALL_SIZE, PlotInk::Dim)
     }
 
-    /// A line of words.
+    /// Returns a line of text.
     pub(crate) fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: PlotInk) -> PlotText {
         PlotText { at, text: text.into(), size, anchor: TextAnchor::Start, ink, strong: false }
     }
@@ -264,7 +263,7 @@ impl PlotText {
         PlotText { strong: true, ..self }
     }
 
-    /// What the words cover, by [`text_width`].
+    /// Returns the rectangle that the text covers, by [`text_width`].
     pub fn rect(&self) -> PlotRect {
         let width = text_width(&self.text, self.size);
         let left = match self.anchor {
@@ -278,7 +277,7 @@ impl PlotText {
 }
 
 impl PlotLine {
-    /// A line that helps the eye.
+    /// Returns a grid line.
     pub(crate) fn grid(points: [[f64; 2]; 2]) -> PlotLine {
         PlotLine { points: points.to_vec(), width: 1.0, ink: PlotInk::Grid, faint: false }
     }
@@ -331,14 +330,14 @@ pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     plot
 }
 
-/// How many charts fit side by side; no more than make the rows even.
+/// Returns how many charts fit side by side; no more than make the rows even.
 fn columns(width: f64, most: usize, charts: usize) -> usize {
     let fit = ((width + GAP) / (LEAST_CHART_WIDTH + GAP)).floor() as usize;
     fit.min(most).min(charts).max(1)
 }
 
 impl Plot {
-    /// Without anything, and no height yet.
+    /// Returns a plot with no content, and no height yet.
     pub(crate) fn empty(width: f64) -> Plot {
         Plot {
             size: [width, 0.0],
@@ -351,7 +350,7 @@ impl Plot {
         }
     }
 
-    /// Adds the title and, in lines below it, what was measured; where the page goes on.
+    /// Adds the title and, in lines below it, what was measured; returns the position below them.
     pub(crate) fn add_heading(&mut self, facts: &[String]) -> f64 {
         self.texts.push(PlotText::new([8.0, 18.0], self.title.clone(), TITLE_SIZE + 2.0, PlotInk::Text).strong());
         let mut y = 38.0;
@@ -362,7 +361,7 @@ impl Plot {
         y
     }
 
-    /// Puts a part of the page below `top`.
+    /// Adds a part of the page below `top`.
     fn add(&mut self, part: Plot, top: f64) {
         let down = |[x, y]: [f64; 2]| [x, y + top];
         self.texts.extend(part.texts.into_iter().map(|text| PlotText { at: down(text.at), ..text }));

@@ -3,7 +3,7 @@
 use super::{MotionCost, Report, ReportRow};
 use crate::numbers::{count, mebibytes, per_hundred};
 
-/// Between columns.
+/// Text between columns.
 const GAP: &str = "  ";
 /// Columns of the terminal that a table stays below.
 const MOST_COLUMNS: usize = 140;
@@ -36,12 +36,12 @@ impl ReportColumn {
     }
 }
 
-/// Columns that a terminal gives the text: every character that we write is one wide.
+/// Returns the columns that a terminal gives the text: every character that we write is one wide.
 fn width(text: &str) -> usize {
     text.chars().count()
 }
 
-/// A table for the terminal: a block a scene, numbers right-aligned, units in the heading.
+/// Returns a table for the terminal: a block a scene, numbers right-aligned, units in the heading.
 pub fn text(report: &Report) -> String {
     if report.rows.is_empty() {
         return "Nothing was measured.\n".to_owned();
@@ -67,7 +67,7 @@ pub fn text(report: &Report) -> String {
             colour: pixels unlike those of the ray-traced picture, background included; frame: median, then fastest to slowest\n"
 }
 
-/// The picture sizes that occur: `1280×720`.
+/// Lists the picture sizes that occur: `1280×720`.
 pub(super) fn sizes(sizes: impl Iterator<Item = [u32; 2]>) -> String {
     let mut names: Vec<String> = Vec::new();
     for [width, height] in sizes {
@@ -116,7 +116,7 @@ fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
         columns.insert(10, numbers("+ set-up", &|row| times(setup(row))));
         columns.insert(11, numbers("total", &|row| times(total(row))));
         columns.insert(12, numbers("fps", &fps));
-        // Over frames of a motion it says little.
+        // The spread means little over frames of a motion.
         columns.remove(9);
     }
     if let Some(name) = swept_name(rows) {
@@ -126,12 +126,12 @@ fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
     columns
 }
 
-/// What a sweep changes, if it is one.
+/// Returns the name of what a sweep changes; `None` without one.
 fn swept_name(rows: &[ReportRow]) -> Option<&str> {
     rows.iter().find_map(|row| Some(&*row.sweep.as_ref()?.name))
 }
 
-/// Of the column of a sweep's values, unlike those of other columns.
+/// Returns the heading of the column of a sweep's values, which no other column has.
 fn heading(swept: &str) -> &str {
     if swept == "triangles" { "of casters" } else { swept }
 }
@@ -140,7 +140,7 @@ fn swept_text(row: &ReportRow) -> String {
     row.sweep.as_ref().map_or_else(String::new, |swept| swept.text.clone())
 }
 
-/// Frames a second, in three digits.
+/// Writes frames per second, in three digits.
 fn fps(row: &ReportRow) -> String {
     match row.fps() {
         fps if !fps.is_finite() => "-".to_owned(),
@@ -149,7 +149,7 @@ fn fps(row: &ReportRow) -> String {
     }
 }
 
-/// The text, its end cut where it is too long for a column.
+/// Returns the text, truncated where it is too long for a column.
 fn shortened(text: &str, longest: usize) -> String {
     if width(text) <= longest {
         return text.to_owned();
@@ -157,12 +157,12 @@ fn shortened(text: &str, longest: usize) -> String {
     text.chars().take(longest - 1).chain(['…']).collect()
 }
 
-/// Wrong pixels; a dash where nothing was compared, so that 0 always means "none".
+/// Writes wrong pixels; a dash where nothing was compared, so that 0 always means "none".
 fn wrong(row: &ReportRow) -> String {
     if row.error.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
 }
 
-/// Pixels of a wrong colour; a dash where that was not measured.
+/// Writes pixels of a wrong colour; a dash where that was not measured.
 fn wrong_color(row: &ReportRow) -> String {
     row.wrong_color.map_or_else(|| "-".to_owned(), count)
 }
@@ -171,8 +171,8 @@ fn wrong_percent(row: &ReportRow) -> String {
     if row.error.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
 }
 
-/// Digits after the point that the shortest frame needs, the same for all so that points align; fewer where the longest
-/// takes seconds, whose numbers are wide already.
+/// Returns how many digits after the point the shortest frame needs, the same for all so that points align; fewer where
+/// the longest takes seconds, whose numbers are wide already.
 fn decimals(rows: &[ReportRow]) -> usize {
     let times = || rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0);
     let (shortest, longest) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
@@ -183,7 +183,7 @@ fn milliseconds(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
 }
 
-/// A Markdown table; with several scenes, each under its name.
+/// Returns a Markdown table; with several scenes, each under its name.
 pub fn markdown(report: &Report) -> String {
     let scenes = report.scenes();
     let note = "\nBold: nothing else is both at least as fast and at least as right (Pareto front).\n";
@@ -194,7 +194,7 @@ pub fn markdown(report: &Report) -> String {
     blocks.collect::<Vec<_>>().join("\n")
 }
 
-/// The Markdown table of one scene.
+/// Returns the Markdown table of one scene.
 pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
     let decimals = decimals(&report.rows);
     let swept = swept_name(&report.rows);
@@ -228,7 +228,7 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
     text
 }
 
-/// Text that can't end its cell.
+/// Escapes a text so that it can't end its cell.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }

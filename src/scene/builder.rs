@@ -1,5 +1,5 @@
-//! A scene in code, piece by piece. What is not said is placed as for a scene file: without a camera all
-//! is in view from the front and a little above, and without lights a lamp stands above and in front.
+//! A scene in code, piece by piece. Parts that are not given are placed as for a scene file: without a camera all
+//! objects are in view from the front and a little above, and without lights a lamp stands above and in front.
 
 use super::camera::placement::SceneBounds;
 use super::names::ObjectNames;
@@ -9,7 +9,7 @@ use glam::DVec3;
 /// Ambient light unless set: shadows are dark and not black.
 const AMBIENT: [f32; 3] = [0.15; 3];
 
-/// A [`Scene`] in the making.
+/// Builds a [`Scene`].
 ///
 /// ```
 /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
@@ -22,7 +22,7 @@ const AMBIENT: [f32; 3] = [0.15; 3];
 ///     .build();
 /// assert_eq!((scene.objects.len(), scene.lights.len()), (2, 1));
 ///
-/// // Nobody said where from, or in which light.
+/// // Without a camera and lights.
 /// let alone = SceneBuilder::new("alone").object(Object::of("ball", shapes::sphere(2.0, 24, 12)?)).build();
 /// assert!(alone.camera.eye.length() > 2.0 && alone.lights[0].position.y > 2.0);
 /// # Ok::<(), stencilscope::scene::MeshError>(())
@@ -38,7 +38,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// A scene of that name, without anything in it.
+    /// Returns a builder of a scene of that name, without objects.
     pub fn new(name: impl Into<String>) -> SceneBuilder {
         SceneBuilder {
             name: name.into(),
@@ -50,38 +50,38 @@ impl SceneBuilder {
         }
     }
 
-    /// Linear RGB light that reaches every surface.
+    /// Sets the linear RGB light that reaches every surface.
     #[must_use]
     pub fn ambient(self, ambient: [f32; 3]) -> SceneBuilder {
         SceneBuilder { ambient, ..self }
     }
 
-    /// The eye, in full.
+    /// Sets the camera.
     #[must_use]
     pub fn camera(self, camera: Camera) -> SceneBuilder {
         SceneBuilder { camera: Some(camera), ..self }
     }
 
-    /// An eye as [`Camera::looking`] has it.
+    /// Sets a camera as [`Camera::looking`] returns it.
     #[must_use]
     pub fn seen_from(self, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> SceneBuilder {
         self.camera(Camera::looking(eye, target))
     }
 
-    /// One more light.
+    /// Adds a light.
     #[must_use]
     pub fn light(self, light: Light) -> SceneBuilder {
         self.lights([light])
     }
 
-    /// More lights; none at all is darkness, and none is placed then.
+    /// Adds lights; with an empty iterator the scene is dark, and no lamp is placed.
     #[must_use]
     pub fn lights(mut self, lights: impl IntoIterator<Item = Light>) -> SceneBuilder {
         self.lights.get_or_insert_default().extend(lights);
         self
     }
 
-    /// One more object. Where another has its name already, it gets a number.
+    /// Adds an object. Where another has its name already, it gets a number.
     #[must_use]
     pub fn object(mut self, mut object: Object) -> SceneBuilder {
         object.name = self.names.take_like(&object.name);
@@ -89,13 +89,13 @@ impl SceneBuilder {
         self
     }
 
-    /// More objects.
+    /// Adds objects.
     #[must_use]
     pub fn objects(self, objects: impl IntoIterator<Item = Object>) -> SceneBuilder {
         objects.into_iter().fold(self, SceneBuilder::object)
     }
 
-    /// The scene, at time 0.
+    /// Returns the scene, at time 0.
     pub fn build(self) -> Scene {
         let SceneBuilder { name, ambient, camera, lights, objects, .. } = self;
         let points: Vec<DVec3> = match (&camera, &lights) {

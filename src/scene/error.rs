@@ -1,4 +1,4 @@
-//! Why a scene can't be loaded: one line with the file, the line and the mend.
+//! Why a scene can't be loaded: one line with the file, the line and how to fix it.
 
 use super::MeshError;
 use std::path::Path;
@@ -7,58 +7,58 @@ use std::path::PathBuf;
 /// Why a scene can't be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// A mesh made by code is broken.
+    /// A mesh that code builds is broken.
     #[error("{name}: {source}")]
     Mesh {
-        /// Of the mesh.
+        /// Name of the mesh.
         name: String,
-        /// What is wrong with it.
+        /// The error of the mesh.
         source: MeshError,
     },
     /// The file can't be read.
     #[error("{}: {reason}", file.display())]
     Read {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// What is wrong and how to mend it.
+        /// What is wrong and how to fix it.
         reason: String,
     },
     /// A line of the file is wrong.
     #[error("{}:{line}: {reason}", file.display())]
     Line {
-        /// Which file.
+        /// Path of the file.
         file: PathBuf,
-        /// Counted from 1.
+        /// Number of the line, counted from 1.
         line: usize,
-        /// What is wrong and how to mend it.
+        /// What is wrong and how to fix it.
         reason: String,
     },
-    /// Neither a built-in scene nor a file that can be one.
+    /// The name is neither a built-in scene nor a file that can be one.
     #[error("no scene is called `{name}`: {hint}")]
     Unknown {
-        /// What was asked for.
+        /// The name that was asked for.
         name: String,
-        /// The nearest name, or what there is.
+        /// The nearest name, or all names.
         hint: String,
     },
 }
 
-/// What is wrong with a file, by one who reads its text and does not know its name.
+/// What is wrong with a file, from a reader that knows its text and not its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum FileProblem {
-    /// With a line, counted from 1: what is wrong with it and how to mend it.
+    /// A line, counted from 1, is wrong: what is wrong with it and how to fix it.
     Line(usize, String),
-    /// With all of it.
+    /// The whole file is wrong: what is wrong with it.
     File(String),
 }
 
 impl FileProblem {
-    /// A model of which nothing is left to show.
+    /// A model of which no triangle is left to show.
     pub fn no_triangles() -> FileProblem {
         FileProblem::File("has no triangle with three different corners: export its surface".to_owned())
     }
 
-    /// In this file.
+    /// Returns the error for this file.
     pub fn of(self, file: &Path) -> SceneError {
         let file = file.to_owned();
         match self {
@@ -69,7 +69,7 @@ impl FileProblem {
 }
 
 impl SceneError {
-    /// The same, of this file: what a part of a scene only knows by its name.
+    /// Returns the error for this file, in place of the name that a part of a scene has.
     #[must_use]
     pub(super) fn in_file(self, file: &Path) -> SceneError {
         match self {

@@ -3,7 +3,7 @@
 use super::Motion;
 use glam::{DVec3, DVec4};
 
-/// Lights are bits of one word a triangle; the last bit is taken.
+/// Each light is a bit of one word a triangle; the last bit is used otherwise.
 pub const MOST_LIGHTS: usize = 31;
 
 /// A light. Its colour is linear RGB; without a `range` it does not fall off with distance.
@@ -16,7 +16,7 @@ pub struct Light {
     pub color: [f32; 3],
     /// Factor of `color`, ≥ 0.
     pub intensity: f32,
-    /// Switched on; else it adds nothing. Its passes stay, so that what they do can be seen.
+    /// Switched on; else it adds nothing. Its passes stay, so that they can be examined.
     pub is_on: bool,
     /// Distance in metres at which a point light has faded to nothing.
     pub range: Option<f64>,
@@ -25,12 +25,12 @@ pub struct Light {
 }
 
 impl Light {
-    /// A white point light at `position`.
+    /// Returns a white point light at `position`.
     pub fn point(position: impl Into<DVec3>) -> Light {
         Light::white(position.into().extend(1.0))
     }
 
-    /// A white directional light that shines from the direction `towards`.
+    /// Returns a white directional light that shines from the direction `towards`.
     pub fn directional(towards: impl Into<DVec3>) -> Light {
         Light::white(towards.into().extend(0.0))
     }
@@ -39,18 +39,18 @@ impl Light {
         Light { position, color: [1.0; 3], intensity: 1.0, is_on: true, range: None, motion: Motion::default() }
     }
 
-    /// `w = 0`: shines from one direction everywhere.
+    /// Returns whether `w = 0`: it shines from one direction everywhere.
     pub fn is_directional(&self) -> bool {
         self.position.w == 0.0
     }
 
-    /// What it sends out: linear RGB times intensity; nothing while it is switched off.
+    /// Returns its light: linear RGB times intensity; zero while it is switched off.
     pub fn emitted(&self) -> [f32; 3] {
         if self.is_on { self.color.map(|channel| channel * self.intensity) } else { [0.0; 3] }
     }
 
-    /// The position that geometry is computed with: a direction is scaled by a power of two, which
-    /// rounds nothing, to a length near 1, so that products of it stay in range.
+    /// Returns the position that geometry is computed with: a direction is scaled by a power of two, which rounds
+    /// nothing, to a length near 1, so that products of it stay in range.
     pub fn homogeneous(&self) -> DVec4 {
         if !self.is_directional() {
             return self.position;

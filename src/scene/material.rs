@@ -1,11 +1,11 @@
-//! How a surface answers light.
+//! How a surface reflects light.
 
 use serde::{Deserialize, Serialize};
 
 /// Where lighting is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Shading {
-    /// One normal a triangle.
+    /// One normal for each triangle.
     #[default]
     Flat,
     /// Lit at the vertices with averaged normals, interpolated across the triangle.
@@ -15,10 +15,10 @@ pub enum Shading {
 }
 
 impl Shading {
-    /// All of them.
+    /// All three, in order.
     pub const ALL: [Shading; 3] = [Shading::Flat, Shading::Gouraud, Shading::Phong];
 
-    /// As in scene files and settings.
+    /// Its name in scene files and settings.
     pub const fn name(self) -> &'static str {
         match self {
             Shading::Flat => "flat",
@@ -39,10 +39,9 @@ pub struct Material {
     pub shininess: f32,
     /// Where lighting is computed.
     pub shading: Shading,
-    /// 1 is opaque. Only projective textures look at it: labels count translucent casters as
-    /// opaque.
+    /// 1 is opaque. Only projective textures use it: labels count translucent casters as opaque.
     pub opacity: f32,
-    /// Linear RGB that it sends out by itself, whatever light falls on it; it lights nothing else.
+    /// Linear RGB that it emits, whatever light falls on it; it lights nothing else.
     #[serde(default)]
     pub emission: [f32; 3],
     /// The side of the squares of a checkerboard, along world X and Z in world units: every other one has a third of the
@@ -52,12 +51,12 @@ pub struct Material {
 }
 
 impl Material {
-    /// A dull surface with one normal a triangle.
+    /// Returns a dull surface with one normal for each triangle.
     pub fn matte(color: [f32; 3]) -> Material {
         Material { color, ..Material::default() }
     }
 
-    /// A smooth surface with a highlight.
+    /// Returns a smooth surface with a highlight.
     pub fn glossy(color: [f32; 3]) -> Material {
         Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, ..Material::default() }
     }

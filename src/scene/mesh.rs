@@ -1,11 +1,10 @@
 //! A triangle mesh with bit-identical positions welded.
 //!
-//! Shadow volumes need to know which triangles share an edge, so vertices are identified by
-//! position alone, bit for bit (−0 counts as 0) and never within a tolerance: what a file splits
-//! at material seams is joined again, and what is merely close stays apart. Triangles with two
-//! equal vertices have no area and no edges to share, and are dropped; slivers are kept.
-//! Normals and places in a picture belong to the corners of triangles, so welding cannot blur a crease, and a seam of a
-//! picture opens no mesh.
+//! Shadow volumes need to know which triangles share an edge, so vertices are identified by position alone, bit for bit
+//! (−0 counts as 0) and never within a tolerance: what a file splits at material seams is joined again, and what is
+//! merely close stays apart. Triangles with two equal vertices have no area and no edges to share, and are dropped;
+//! slivers are not. Normals and texture coordinates belong to the corners of triangles, so welding cannot blur a
+//! crease, and a seam of a texture opens no mesh.
 
 use super::{Material, MaterialTexture, Unsupported};
 use foldhash::{fast::RandomState, quality::FixedState};
@@ -14,7 +13,7 @@ use std::collections::HashMap;
 use std::hash::{BuildHasher, Hash, Hasher};
 use std::ops::Range;
 
-/// A welded triangle mesh in object space. Made by [`MeshBuilder`].
+/// A welded triangle mesh in object space. Built by [`MeshBuilder`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     positions: Vec<DVec3>,
@@ -33,18 +32,18 @@ pub struct Mesh {
 pub struct MeshGroup {
     /// The file's name for it; empty where it has none.
     pub name: String,
-    /// Which triangles; groups follow each other without gaps and cover the mesh.
+    /// Its range of triangles; groups follow each other without gaps and cover the mesh.
     pub triangles: Range<usize>,
-    /// From the file's material library; else the object's material holds.
+    /// Material from the file's library; `None` uses the object's material.
     pub material: Option<Material>,
-    /// The picture that this material's colour is multiplied with.
+    /// The texture that this material's colour is multiplied with.
     pub texture: Option<MaterialTexture>,
 }
 
-/// Beyond it, neighbouring texels are one number in single precision.
+/// Beyond this coordinate, adjacent texels are one number in single precision.
 const MOST_UV: f32 = 1e5;
 
-/// Is it a place in a picture that single precision tells from others?
+/// Returns whether single precision distinguishes texels at these coordinates.
 pub(super) fn is_usable_uv(uv: &Vec2) -> bool {
     uv.to_array().iter().all(|part| part.abs() <= MOST_UV)
 }
@@ -55,23 +54,23 @@ pub enum MeshError {
     /// A coordinate is NaN or infinite.
     #[error("vertex {index} is not finite: replace NaN and infinity by numbers")]
     NotFinite {
-        /// Counted from 0, in the order the vertices were given.
+        /// Index of the vertex, in the order the vertices were given.
         index: usize,
     },
     /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} uses vertex {index}, but there are {count}: correct the index")]
     IndexOutOfRange {
-        /// Counted from 0.
+        /// Index of the triangle.
         triangle: usize,
         /// The index that was used.
         index: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         count: usize,
     },
-    /// More vertices than 32-bit indices can name twice over (once near, once at infinity).
+    /// There are more vertices than 32-bit indices can number twice over (once near, once at infinity).
     #[error("{count} vertices are too many: at most {most} fit", most = i32::MAX)]
     TooLarge {
-        /// How many were given.
+        /// The number of vertices that were given.
         count: usize,
     },
 }
@@ -93,50 +92,50 @@ impl Mesh {
         self.corner_normals.as_deref()
     }
 
-    /// Where each triangle's corners lie in a picture, where the file says so: 0, 0 is its lower left corner, 1, 1 its
-    /// upper right.
+    /// Texture coordinates of each triangle's corners, where the file has them: 0, 0 is the picture's lower left
+    /// corner, 1, 1 its upper right.
     pub fn corner_uvs(&self) -> Option<&[Option<[Vec2; 3]>]> {
         self.corner_uvs.as_deref()
     }
 
-    /// Does every one of these triangles know where it lies in a picture?
+    /// Returns whether every one of these triangles has texture coordinates.
     pub fn has_uvs(&self, triangles: &Range<usize>) -> bool {
         let of_these = self.corner_uvs.as_ref().and_then(|uvs| uvs.get(triangles.clone()));
         of_these.is_some_and(|uvs| uvs.iter().all(Option::is_some))
     }
 
-    /// What its file asks for and nothing here does.
+    /// What its file asks for and is not supported.
     pub fn not_taken(&self) -> &[Unsupported] {
         &self.not_taken
     }
 
-    /// The same mesh, of whose file this was not taken.
+    /// Returns the same mesh, with this list of what is not supported of its file.
     pub(super) fn without(self, not_taken: Vec<Unsupported>) -> Mesh {
         Mesh { not_taken, ..self }
     }
 
-    /// At least one, unless the mesh has no triangle.
+    /// Its groups: at least one, unless the mesh has no triangle.
     pub fn groups(&self) -> &[MeshGroup] {
         &self.groups
     }
 
-    /// How many triangles were left out because two of their corners coincide.
+    /// The number of triangles that were left out because two of their corners coincide.
     pub fn dropped_triangles(&self) -> usize {
         self.dropped
     }
 
-    /// Hash of positions and triangles: what was computed from one mesh holds for any other with
-    /// the same hash. Stable within a process only.
+    /// Hash of positions and triangles: what was computed from one mesh is valid for any other with the same hash.
+    /// Stable within a process only.
     pub fn content_hash(&self) -> u64 {
         self.hash
     }
 
-    /// Hash of the corners' own normals, which [`Mesh::content_hash`] does not look at. Stable within a process only.
+    /// Hash of the corners' own normals, which [`Mesh::content_hash`] does not cover. Stable within a process only.
     pub fn normals_hash(&self) -> u64 {
         self.normals_hash
     }
 
-    /// The same mesh with bit-identical positions as one vertex each. Any mesh is so already but one of
+    /// Returns the same mesh with bit-identical positions as one vertex each. Every mesh is so already except those of
     /// [`MeshBuilder::build_unwelded`].
     pub fn welded(&self) -> Result<Mesh, MeshError> {
         let builder = MeshBuilder {
@@ -163,11 +162,11 @@ pub struct MeshBuilder {
     pub positions: Vec<DVec3>,
     /// Indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
-    /// One entry a triangle, or empty when there are no normals.
+    /// One entry for each triangle, or empty when there are no normals.
     pub corner_normals: Vec<[Vec3; 3]>,
-    /// One entry a triangle, or empty where no triangle lies in a picture.
+    /// One entry for each triangle, or empty where no triangle has texture coordinates.
     pub corner_uvs: Vec<Option<[Vec2; 3]>>,
-    /// In order and without gaps; empty for one unnamed group.
+    /// Groups in order and without gaps; empty for one unnamed group.
     pub groups: Vec<MeshGroup>,
 }
 
@@ -177,8 +176,8 @@ impl MeshBuilder {
         self.build_with(false)
     }
 
-    /// The same without welding, as a renderer that trusts a file's indices has it: for showing what that
-    /// does to shadows. Scenes and models never are.
+    /// Builds the mesh without welding, as a renderer that trusts a file's indices has it: for showing what that does
+    /// to shadows. Scenes and models never are.
     pub fn build_unwelded(self) -> Result<Mesh, MeshError> {
         self.build_with(true)
     }
@@ -189,7 +188,7 @@ impl MeshBuilder {
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
         let mut corner_uvs = Vec::with_capacity(self.corner_uvs.len());
-        // How many triangles are kept before each old triangle: where a group's ends move to.
+        // How many triangles remain before each old triangle: where a group's ends move to.
         let mut kept_before = Vec::with_capacity(self.triangles.len() + 1);
         for (old, corners) in self.triangles.iter().enumerate() {
             kept_before.push(triangles.len());
@@ -251,10 +250,10 @@ impl MeshBuilder {
 
 /// Gives every distinct position one index, in the order of first use.
 struct Welder {
-    /// Every vertex that was given stays one of its own.
+    /// True where every vertex that was given stays one of its own.
     keeps_apart: bool,
     positions: Vec<DVec3>,
-    /// Of vertices that were given, where they were used.
+    /// For each vertex that was given, the index where it is used.
     of_given: Vec<Option<u32>>,
     index_of: HashMap<[u64; 3], u32, RandomState>,
 }

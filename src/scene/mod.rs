@@ -1,8 +1,8 @@
 //! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
 //!
-//! A scene comes from a scene file ([`mod@file`]), a glTF file, a model ([`obj`] or PLY, completed by [`model_scene`]) or
-//! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes the name of any of them. Everything that moves is put where
-//! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
+//! A scene comes from a scene file ([`mod@file`]), a glTF file, a model ([`obj`] or PLY, completed by [`model_scene`])
+//! or code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes the name of any of them. Everything
+//! that moves is placed for a time by [`Scene::at`], so nothing downstream knows about time.
 
 mod builder;
 pub mod builtin;
@@ -40,22 +40,22 @@ pub use walking::{Footing, WalkerBody, WallCache, Walls};
 
 use std::collections::BTreeMap;
 
-/// A scene at one moment: what every technique and the ground truth start from.
+/// A scene at one time: the input of every technique and of the ground truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Name for people and manifests: a built-in's name, or the file's.
+    /// Name that is shown and written to manifests: a built-in's name, or the file's.
     pub name: String,
     /// Linear RGB light that reaches every surface.
     pub ambient: [f32; 3],
     /// The eye.
     pub camera: Camera,
-    /// In the order of the scene file; a light's index names its passes and files.
+    /// Lights in the order of the scene file; a light's index names its passes and files.
     pub lights: Vec<Light>,
-    /// In drawing order.
+    /// Objects in drawing order.
     pub objects: Vec<Object>,
     /// The technique that the scene file asks for, if any.
     pub technique: Option<TechniqueRequest>,
-    /// What its file holds beside all this and nothing here shows; what a mesh's file does, the mesh knows.
+    /// Content of its file that is not shown; what a mesh's file has of that, the mesh lists.
     pub not_taken: Vec<Unsupported>,
 }
 
@@ -63,16 +63,16 @@ pub struct Scene {
 /// `technique::Choice::parse` checks it: a scene knows no technique.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TechniqueRequest {
-    /// For example `z-fail`.
+    /// Name of the technique, for example `z-fail`.
     pub name: String,
-    /// Key and value, as in `--set KEY=VALUE`.
+    /// Key and value of each setting, as in `--set KEY=VALUE`.
     pub settings: BTreeMap<String, String>,
 }
 
 impl Scene {
-    /// The scene `seconds` after its start: objects spun, and lights and objects moved along
-    /// their orbits and on their pendulums. Motions are kept, so `scene.at(a)` is not the start of `at(b)`: always
-    /// call it on the scene as loaded.
+    /// Returns the scene `seconds` after its start: objects spun, and lights and objects moved along their orbits and
+    /// on their pendulums. The motions remain, so `scene.at(a)` is not the start of `at(b)`: always call it on the
+    /// scene as loaded.
     pub fn at(&self, seconds: f64) -> Scene {
         let mut moved = self.clone();
         for object in &mut moved.objects {
@@ -84,7 +84,7 @@ impl Scene {
         moved
     }
 
-    /// Does anything move?
+    /// Returns whether anything moves.
     pub fn is_animated(&self) -> bool {
         let objects = self.objects.iter().map(|object| &object.motion);
         let lights = self.lights.iter().map(|light| &light.motion);

@@ -1,11 +1,11 @@
-//! Names that differ.
+//! Unique names.
 
 use std::collections::HashMap;
 
 /// The names of a scene's objects, which are unique.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ObjectNames {
-    /// By name, the number to try next where it is wanted again.
+    /// For each name, the number to try next where it is wanted again.
     taken: HashMap<String, usize>,
 }
 
@@ -19,7 +19,7 @@ impl ObjectNames {
         is_free
     }
 
-    /// Takes the name, with a number behind it where it is taken.
+    /// Takes the name, with a number appended where it is taken.
     pub fn take_like(&mut self, wanted: &str) -> String {
         if self.take(wanted) {
             return wanted.to_owned();

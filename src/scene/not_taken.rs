@@ -1,25 +1,25 @@
-//! What a file holds and nothing here shows.
+//! Content of a file that is not supported.
 
-/// What a model's file asks for and nothing here does.
+/// Something that a model's file asks for and is not supported.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unsupported {
-    /// In the file's words: `map_Kd of brick`.
+    /// Its name in the file's words: `map_Kd of brick`.
     pub what: String,
-    /// Why not.
+    /// The reason, in words.
     pub because: String,
 }
 
-/// Things that are named, of a file that asks for more than anybody reads.
+/// The most entries of a list, for a file that asks for more than anybody reads.
 const MOST_NAMED: usize = 32;
 
-/// A list of such things, each named once.
+/// A list of what is not supported, each once.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct UnsupportedList {
     named: Vec<Unsupported>,
 }
 
 impl UnsupportedList {
-    /// Names something that is not done.
+    /// Adds something that is not supported.
     pub fn refuse(&mut self, what: impl Into<String>, because: impl Into<String>) {
         let refused = Unsupported { what: what.into(), because: because.into() };
         let count = self.named.len();
@@ -31,13 +31,13 @@ impl UnsupportedList {
         }
     }
 
-    /// Names what another list does.
+    /// Adds what another list has.
     #[cfg(feature = "program")]
     pub fn add(&mut self, other: &UnsupportedList) {
         other.named.iter().for_each(|one| self.refuse(one.what.clone(), one.because.clone()));
     }
 
-    /// All that was named.
+    /// Returns all entries.
     pub fn into_list(self) -> Vec<Unsupported> {
         self.named
     }

@@ -11,26 +11,26 @@ use std::sync::Arc;
 pub struct Object {
     /// Unique within its scene.
     pub name: String,
-    /// Shared between instances.
+    /// Its mesh, shared between instances.
     pub mesh: Arc<Mesh>,
-    /// Where it is.
+    /// Its scale, rotation and position.
     pub pose: Pose,
     /// How it moves.
     pub motion: Motion,
-    /// Of every group that has no material of its own.
+    /// Material of every group that has none of its own.
     pub material: Material,
-    /// The picture that this material's colour is multiplied with.
+    /// The texture that this material's colour is multiplied with.
     pub texture: Option<MaterialTexture>,
-    /// Throws shadows.
+    /// True where it casts shadows.
     pub casts: bool,
-    /// Is darkened by shadows; otherwise lit as if nothing stood between.
+    /// True where shadows darken it; otherwise it is lit as if nothing stood between.
     pub receives: bool,
-    /// Is drawn; otherwise it casts without being seen.
+    /// True where it is drawn; otherwise it casts without being visible.
     pub visible: bool,
 }
 
 impl Object {
-    /// An unmoving object at the origin that casts, receives and is visible.
+    /// Returns an unmoving object at the origin that casts, receives and is visible.
     pub fn new(name: impl Into<String>, mesh: Arc<Mesh>, material: Material) -> Object {
         Object {
             name: name.into(),
@@ -45,44 +45,44 @@ impl Object {
         }
     }
 
-    /// As [`Object::new`], of the default material.
+    /// Returns an object as [`Object::new`] does, of the default material.
     pub fn of(name: impl Into<String>, mesh: impl Into<Arc<Mesh>>) -> Object {
         Object::new(name, mesh.into(), Material::default())
     }
 
-    /// The object elsewhere.
+    /// Moves the object to a position.
     #[must_use]
     pub fn at(mut self, translate: impl Into<DVec3>) -> Object {
         self.pose.translate = translate.into();
         self
     }
 
-    /// The object turned about the fixed x, then y, then z axis.
+    /// Rotates the object about the fixed x, then y, then z axis.
     #[must_use]
     pub fn rotated(mut self, rotate_degrees: impl Into<DVec3>) -> Object {
         self.pose.rotate_degrees = rotate_degrees.into();
         self
     }
 
-    /// The object stretched; negative factors mirror, and none may be zero.
+    /// Scales the object; negative factors mirror, and none may be zero.
     #[must_use]
     pub fn scaled(mut self, scale: impl Into<DVec3>) -> Object {
         self.pose.scale = scale.into();
         self
     }
 
-    /// The object as one that casts without being drawn, so that its whole shadow shows.
+    /// Makes the object cast without being drawn, so that its whole shadow shows.
     #[must_use]
     pub fn unseen(self) -> Object {
         Object { visible: false, ..self }
     }
 
-    /// The picture on a group of its mesh: its own material's, or the object's where it has none.
+    /// Returns the texture of a group of its mesh: its own material's, or the object's where it has none.
     pub fn texture_of<'a>(&'a self, group: &'a MeshGroup) -> Option<&'a MaterialTexture> {
         if group.material.is_some() { group.texture.as_ref() } else { self.texture.as_ref() }
     }
 
-    /// The welded vertices in world space. Every user of a vertex reads this one rounding.
+    /// The welded vertices in world space. All users of a vertex get the same rounding.
     pub fn world_positions(&self) -> Vec<DVec3> {
         if self.pose == Pose::default() {
             return self.mesh.positions().to_vec();
@@ -92,14 +92,14 @@ impl Object {
     }
 }
 
-/// Where an object is: scale, then rotations about the fixed x, y and z axes, then translation.
+/// A placement of an object: scale, then rotations about the fixed x, y and z axes, then translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// World units.
+    /// Translation, world units.
     pub translate: DVec3,
-    /// About the fixed x, then y, then z axis.
+    /// Rotations about the fixed x, then y, then z axis, degrees.
     pub rotate_degrees: DVec3,
-    /// No component is zero; negative ones mirror.
+    /// Scale along each axis; no component is zero; negative ones mirror.
     pub scale: DVec3,
 }
 
@@ -113,7 +113,7 @@ impl Default for Pose {
 pub type PoseBits = [[u64; 3]; 3];
 
 impl Pose {
-    /// Its bits; poses that are equal but for the sign of a zero differ.
+    /// Returns its bits; poses that are equal except for the sign of a zero differ.
     pub fn bits(&self) -> PoseBits {
         [self.translate, self.rotate_degrees, self.scale].map(|part| part.to_array().map(f64::to_bits))
     }
@@ -137,14 +137,14 @@ impl Pose {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
     }
 
-    /// Of a scale, a turn and a place.
+    /// Returns the pose of a scale, a rotation and a translation.
     pub(super) fn of(scale: DVec3, rotation: DQuat, translate: DVec3) -> Pose {
         // About fixed x, then y, then z is the same as about moving z, then y, then x.
         let (z, y, x) = rotation.to_euler(EulerRot::ZYX);
         Pose { translate, rotate_degrees: DVec3::new(x, y, z).map(f64::to_degrees), scale }
     }
 
-    /// In the same place, turned so that what was its z axis is up.
+    /// Returns the pose at the same position, rotated so that what was its z axis is up.
     pub fn with_z_up(&self) -> Pose {
         self.rotated_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
     }
@@ -154,21 +154,21 @@ impl Pose {
         DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x)
     }
 
-    /// The same scale, turned and moved as one rigid thing about a point.
+    /// Returns the same scale, rotated and moved as one rigid body about a point.
     fn rotated_about(&self, pivot: DVec3, turn: DQuat) -> Pose {
         Pose::of(self.scale, turn * self.rotation(), pivot + turn * (self.translate - pivot))
     }
 }
 
-/// How an object or a light moves. Still by default. An object spins, then runs along its orbit,
-/// then swings; a light only has a position.
+/// How an object or a light moves. Still by default. An object spins, then runs along its orbit, then swings; a light
+/// only has a position.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion {
-    /// Added to [`Pose::rotate_degrees`] every second.
+    /// Rotation added to [`Pose::rotate_degrees`] every second.
     pub spin_degrees_per_second: DVec3,
-    /// A circle that the position runs along; the object does not turn with it.
+    /// A circle that the position runs along; the object does not rotate with it.
     pub orbit: Option<Orbit>,
-    /// To and fro about an axis, as a pendulum does; the object turns with it.
+    /// To and fro about an axis, as a pendulum does; the object rotates with it.
     pub swing: Option<Swing>,
 }
 
@@ -179,12 +179,12 @@ pub struct Orbit {
     pub center: DVec3,
     /// Direction of the axis, not zero.
     pub axis: DVec3,
-    /// Counter-clockwise seen from the axis' tip.
+    /// Angular speed, counter-clockwise seen from the axis' tip.
     pub degrees_per_second: f64,
 }
 
-/// A pendulum: what hangs on it at second 0 hangs at rest then, and moves fastest. Its angle is a
-/// sine of time, which is what a pendulum's is as long as it stays small.
+/// A pendulum: what hangs on it at second 0 hangs at rest then, and moves fastest. Its angle is a sine of time, which
+/// is what a pendulum's is as long as it stays small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
     /// A point of the axis, world units: where the cord is fixed.
@@ -193,19 +193,19 @@ pub struct Swing {
     pub axis: DVec3,
     /// The largest angle on either side; first counter-clockwise seen from the axis' tip.
     pub degrees: f64,
-    /// Seconds for once to and fro, > 0.
+    /// Period in seconds, > 0.
     pub period_seconds: f64,
 }
 
 impl Motion {
-    /// Neither spins nor orbits nor swings.
+    /// Returns whether it neither spins nor orbits nor swings.
     pub fn is_still(&self) -> bool {
         self.spin_degrees_per_second == DVec3::ZERO
             && self.orbit.is_none_or(|orbit| orbit.degrees_per_second == 0.0)
             && self.swing.is_none_or(|swing| swing.degrees == 0.0)
     }
 
-    /// The pose `seconds` later.
+    /// Returns the pose `seconds` later.
     pub fn apply(&self, pose: &Pose, seconds: f64) -> Pose {
         let translate = self.orbit.map_or(pose.translate, |orbit| orbit.point_at(pose.translate, seconds));
         let rotate_degrees = pose.rotate_degrees + self.spin_degrees_per_second * seconds;
@@ -216,7 +216,7 @@ impl Motion {
         }
     }
 
-    /// The homogeneous light position `seconds` later; a direction turns about the axis.
+    /// Returns the homogeneous light position `seconds` later; a direction rotates about the axis.
     pub fn apply_to_light(&self, position: DVec4, seconds: f64) -> DVec4 {
         let orbited = self.orbit.map_or(position, |orbit| orbit.light_at(position, seconds));
         let Some((pivot, turn)) = self.turn_of_swing(seconds) else { return orbited };
@@ -226,7 +226,7 @@ impl Motion {
         (pivot + turn * (orbited.truncate() - pivot)).extend(orbited.w)
     }
 
-    /// Pivot and rotation; `None` at rest, so that what does not move keeps its very bits.
+    /// Returns pivot and rotation; `None` at rest, so that what does not move has exactly the same bits.
     fn turn_of_swing(&self, seconds: f64) -> Option<(DVec3, DQuat)> {
         let swing = self.swing?;
         let degrees = swing.degrees * (TAU * seconds / swing.period_seconds).sin();

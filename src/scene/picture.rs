@@ -1,10 +1,10 @@
-//! Pictures on surfaces: files decoded to texels, the levels of their pyramid, and how they are looked up.
+//! Textures: files decoded to texels, their mip chain, and how they are looked up.
 //!
-//! A picture is sRGB with eight bits a channel, row 0 at the top; its alpha is not used. Level k of its pyramid has
+//! A picture is sRGB with eight bits a channel, row 0 at the top; its alpha is not used. Level k of its mip chain has
 //! half the texels of level k − 1 along each side: averages of two by two, of linear light. A lookup mixes the four
-//! nearest texels on each of the two levels whose texels are about as large as a pixel is there along its longer side
-//! (Williams 1983): what lies aslant far away blurs, and does not flicker. The GPU does the same with the same levels, and
-//! [`TextureImage::linear_at`] tells what it finds.
+//! nearest texels on each of the two mip levels whose texels are about as large as a pixel is there along its longer
+//! side (Williams 1983): a surface at a grazing angle far away blurs, and does not flicker. The GPU does the same with
+//! the same mip levels, and [`TextureImage::linear_at`] computes its result.
 
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;
@@ -18,12 +18,12 @@ use std::sync::{Arc, OnceLock};
 
 /// Bytes of the largest file.
 pub(super) const MOST_FILE: u64 = 64 << 20;
-/// Texels along a side of the largest picture: what every GPU takes.
+/// Texels along a side of the largest picture: what every GPU supports.
 const MOST_SIDE: u32 = 8192;
-/// Texels of all pictures of a model or a scene file.
+/// The most texels of all pictures of a model or a scene file.
 const MOST_TEXELS: u64 = 1 << 27;
 
-/// A picture that surfaces show.
+/// A picture for textures of surfaces.
 pub struct TextureImage {
     name: String,
     size: [u32; 2],
@@ -32,46 +32,46 @@ pub struct TextureImage {
     levels: OnceLock<Vec<MipLevel>>,
 }
 
-/// A level of a picture's pyramid.
+/// A mip level of a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MipLevel {
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// sRGB and alpha, row by row.
+    /// sRGB and alpha, row by row from the top.
     pub texels: Vec<[u8; 4]>,
 }
 
-/// A picture on a surface, repeated without end unless it is clamped.
+/// A texture on a surface, repeated without end unless it is clamped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialTexture {
-    /// What is shown.
+    /// Its texels.
     pub picture: Arc<TextureImage>,
-    /// Metres of world X and Z that the picture covers; `None`: the mesh says where each corner lies in it.
+    /// Width in metres of world X and Z that the picture covers; `None` uses the mesh's texture coordinates.
     pub side: Option<f32>,
-    /// Beyond the picture its last texels go on.
+    /// True clamps lookups outside of the picture to its edge.
     pub clamps: bool,
 }
 
-/// Why a file is no picture.
+/// Why a file can't be read as a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
-    /// It can't be read.
+    /// The file can't be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Of another kind.
+    /// It is neither a PNG nor a JPEG.
     #[error("is neither PNG nor JPEG: convert it")]
     Kind,
-    /// A JPEG, in a build of the library without its program.
+    /// It is a JPEG, and this build of the library has no JPEG decoder.
     #[cfg(not(feature = "program"))]
     #[error("is a JPEG, which is read with the feature `program`: convert it to PNG, or switch that on")]
     Jpeg,
-    /// It breaks its format's rules.
+    /// It is not valid in its format; the decoder's message.
     #[error("is broken ({0}): write it again")]
     Broken(String),
-    /// Its head claims what no GPU takes.
+    /// Its header states a size that no GPU supports.
     #[error("is {0}x{1} texels, and at most {MOST_SIDE} are taken along a side: scale it down")]
     Size(u64, u64),
-    /// With those before it.
+    /// It has too many texels together with the pictures before it.
     #[error("is one picture too many: together they may have {} million texels", MOST_TEXELS >> 20)]
     TooMany,
 }
@@ -91,7 +91,7 @@ impl PartialEq for TextureImage {
 }
 
 impl TextureImage {
-    /// A picture of these sRGB texels; `None` where their number is not that of the size, or none.
+    /// Returns a picture of these sRGB texels; `None` where their number does not match the size, or is zero.
     pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[u8; 4]>) -> Option<TextureImage> {
         let is_sized = size.iter().all(|side| (1..=MOST_SIDE).contains(side))
             && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]);
@@ -106,7 +106,7 @@ impl TextureImage {
         TextureImage::load_within(path, MOST_TEXELS)
     }
 
-    /// The same of at most so many texels.
+    /// Reads a PNG or a JPEG of at most `most` texels.
     pub fn load_within(path: &Path, most: u64) -> Result<TextureImage, ImageError> {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         TextureImage::decode(name, &read_plain(path, MOST_FILE)?, most)
@@ -121,16 +121,16 @@ impl TextureImage {
         TextureImage::new(name, size, texels).ok_or_else(|| ImageError::Broken("texels are missing".to_owned()))
     }
 
-    /// Texels that the pictures of one frame may have together.
+    /// The most texels of the pictures of one frame together.
     pub const MOST_TOGETHER: u64 = MOST_TEXELS;
 
-    /// The same by another name.
+    /// Returns the same picture under another name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> TextureImage {
         TextureImage { name: name.into(), ..self }
     }
 
-    /// Its file's name, for people.
+    /// Name of its file, as it is shown.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -145,22 +145,22 @@ impl TextureImage {
         &self.texels
     }
 
-    /// Of the texels. Stable within a process only.
+    /// Hash of the texels. Stable within a process only.
     pub fn hash(&self) -> u64 {
         self.hash
     }
 
-    /// Does it have an alpha other than 1, which nobody looks at?
+    /// Returns whether it has an alpha other than 1, which is not used.
     pub fn has_alpha(&self) -> bool {
         self.texels.iter().any(|texel| texel[3] != u8::MAX)
     }
 
-    /// How many levels its pyramid has, itself among them.
+    /// The number of its mip levels, level 0 included.
     pub fn level_count(&self) -> u32 {
         self.size[0].max(self.size[1]).ilog2() + 1
     }
 
-    /// The levels above it, from half its size down to one texel.
+    /// Its mip levels from 1 on, from half its size down to one texel.
     pub fn levels(&self) -> &[MipLevel] {
         self.levels.get_or_init(|| {
             let mut levels: Vec<MipLevel> = Vec::new();
@@ -174,7 +174,7 @@ impl TextureImage {
         })
     }
 
-    /// Size and texels of a level; that of the last beyond it.
+    /// Returns size and texels of a mip level; those of the last for a larger index.
     fn level(&self, index: u32) -> ([u32; 2], &[[u8; 4]]) {
         match index.min(self.level_count() - 1).checked_sub(1).map(|above| &self.levels()[above as usize]) {
             None => (self.size, &self.texels),
@@ -182,8 +182,8 @@ impl TextureImage {
         }
     }
 
-    /// Linear RGB at a place of the picture (0, 0 at its lower left, 1, 1 at its upper right), on a level that may lie
-    /// between two.
+    /// Returns the filtered linear RGB at a place of the picture (0, 0 at its lower left, 1, 1 at its upper right), on
+    /// a mip level that may lie between two.
     pub fn linear_at(&self, uv: [f64; 2], level: f64, clamps: bool) -> [f64; 3] {
         let level = level.clamp(0.0, f64::from(self.level_count() - 1));
         let [near, far] = [level.floor(), level.floor() + 1.0].map(|index| self.smooth_at(uv, index as u32, clamps));
@@ -191,23 +191,23 @@ impl TextureImage {
         [0, 1, 2].map(|channel| near[channel] * (1.0 - share) + far[channel] * share)
     }
 
-    /// Column and row of the texel of the picture itself that a place lies in.
+    /// Returns column and row of the texel of level 0 that a place lies in.
     pub fn texel_at(&self, [u, v]: [f64; 2], clamps: bool) -> [u32; 2] {
         let [width, height] = self.size.map(i64::from);
         let inside = |at: f64, count: i64| wrapped((at * count as f64).floor() as i64, count, clamps) as u32;
         [inside(u, width), inside(1.0 - v, height)]
     }
 
-    /// The average of all of it, linear.
+    /// Returns the average of all texels, linear.
     pub fn mean(&self) -> [f64; 3] {
         self.linear_at([0.5; 2], f64::from(self.level_count()), false)
     }
 
-    /// The four nearest texels of a level, mixed.
+    /// Returns the four nearest texels of a mip level, mixed.
     fn smooth_at(&self, [u, v]: [f64; 2], level: u32, clamps: bool) -> [f64; 3] {
         let ([width, height], texels) = self.level(level);
         let [x, y] = [u * f64::from(width) - 0.5, (1.0 - v) * f64::from(height) - 0.5];
-        // Beyond what an integer holds, any texel is as right as another.
+        // Beyond the range of an integer, any texel is as right as another.
         let [column, row] = [x, y].map(|at| at.floor().clamp(-1e15, 1e15) as i64);
         let [right, down] = [x - x.floor(), y - y.floor()];
         let texel = |column: i64, row: i64| {
@@ -224,11 +224,11 @@ impl TextureImage {
     }
 }
 
-/// Reads pictures once each, broken ones too, and no more than fit.
+/// Reads each picture once, broken ones too, within a budget of texels.
 #[derive(Debug)]
 pub(super) struct ImageLoader {
     known: BTreeMap<PathBuf, Arc<TextureImage>>,
-    /// What is wrong with those that are none.
+    /// Error messages of the files that can't be read.
     broken: BTreeMap<PathBuf, String>,
     left: u64,
 }
@@ -240,7 +240,7 @@ impl Default for ImageLoader {
 }
 
 impl ImageLoader {
-    /// The picture in a file.
+    /// Returns the picture in a file.
     pub fn load(&mut self, path: &Path) -> Result<Arc<TextureImage>, ImageError> {
         if let Some(known) = self.known.get(path) {
             return Ok(Arc::clone(known));
@@ -256,7 +256,8 @@ impl ImageLoader {
         Ok(self.add(path, picture))
     }
 
-    /// The picture in these bytes, which are asked for once; `path` tells it from others, and `described` names it in an error.
+    /// Returns the picture in these bytes, which are read once; `path` identifies it, and `described` names it in an
+    /// error.
     ///
     /// # Errors
     /// As [`ImageLoader::load`], or why there are no bytes; in a few words.
@@ -290,31 +291,32 @@ impl ImageLoader {
     }
 }
 
-/// Where a column or row lies that is beyond the picture.
+/// Returns the column or row in the picture for one that is beyond it.
 fn wrapped(at: i64, count: i64, clamps: bool) -> i64 {
     if clamps { at.clamp(0, count - 1) } else { at.rem_euclid(count) }
 }
 
-/// The linear value of an sRGB value (IEC 61966-2-1).
+/// Returns the linear value of an sRGB value (IEC 61966-2-1).
 fn decoded(value: f64) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The same of a byte.
+/// Returns the linear value of an sRGB byte.
 fn linear(byte: u8) -> f64 {
     static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
     TABLE.get_or_init(|| std::array::from_fn(|byte| decoded(byte as f64 / 255.0)))[usize::from(byte)]
 }
 
-/// The nearest sRGB byte of a linear value.
+/// Returns the nearest sRGB byte of a linear value.
 fn encoded(value: f64) -> u8 {
-    /// Halfway from each byte to the next.
+    /// Linear values halfway from each byte to the next.
     static ENDS: OnceLock<[f64; 255]> = OnceLock::new();
     let ends = ENDS.get_or_init(|| std::array::from_fn(|byte| decoded((byte as f64 + 0.5) / 255.0)));
     ends.partition_point(|end| *end <= value) as u8
 }
 
-/// Half as many texels along each side, and at least one; of an odd number the last are dropped, as GPUs do.
+/// Returns the next mip level: half as many texels along each side, and at least one; of an odd number the last are
+/// dropped, as GPUs do.
 fn halved([width, height]: [u32; 2], texels: &[[u8; 4]]) -> MipLevel {
     let size = [width, height].map(|side| (side / 2).max(1));
     let at = |x: u32, y: u32| texels[(y.min(height - 1) * width + x.min(width - 1)) as usize];
@@ -360,7 +362,7 @@ fn png(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
 fn jpeg(bytes: &[u8], most: u64) -> Result<DecodedImage, ImageError> {
     use zune_jpeg::zune_core::{colorspace::ColorSpace, options::DecoderOptions};
     let broken = |error: zune_jpeg::errors::DecodeErrors| ImageError::Broken(in_a_line(&error.to_string()));
-    // Sizes are ours to refuse.
+    // The limit of sizes is checked here, not by the decoder.
     let options = DecoderOptions::default()
         .set_max_width(usize::from(u16::MAX))
         .set_max_height(usize::from(u16::MAX))
@@ -379,7 +381,7 @@ fn jpeg(_: &[u8], _: u64) -> Result<DecodedImage, ImageError> {
     Err(ImageError::Jpeg)
 }
 
-/// Grey, grey and alpha, RGB or RGBA as RGBA.
+/// Converts grey, grey and alpha, RGB or RGBA to RGBA.
 fn with_alpha(data: &[u8], samples: usize) -> Vec<[u8; 4]> {
     let texel = |of: &[u8]| match *of {
         [grey] => [grey, grey, grey, u8::MAX],
@@ -391,7 +393,7 @@ fn with_alpha(data: &[u8], samples: usize) -> Vec<[u8; 4]> {
     data.chunks_exact(samples.max(1)).map(texel).collect()
 }
 
-/// What a decoder says, short and without line ends.
+/// Returns a decoder's message, short and without line ends.
 fn in_a_line(text: &str) -> String {
     const MOST: usize = 100;
     let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

@@ -1,4 +1,4 @@
-//! Meshes of more triangles and the same shape.
+//! Refinement of meshes: more triangles of the same shape.
 
 use super::mesh::{Mesh, MeshBuilder, MeshError, MeshGroup};
 use glam::{DVec3, Vec2, Vec3};
@@ -6,8 +6,8 @@ use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
 
 impl Mesh {
-    /// The mesh with at least so many triangles: its longest edge is halved, and each triangle beside it, until there are
-    /// enough. What is closed stays closed, and no place moves.
+    /// Returns the mesh with at least `least` triangles: its longest edge is halved, and each triangle beside it, until
+    /// there are enough. A closed mesh stays closed, and no position moves.
     pub fn refined(&self, least: usize) -> Result<Mesh, MeshError> {
         let mut making = Refinement::of(self);
         while making.triangles.len() < least && making.split_longest() {}
@@ -53,7 +53,7 @@ struct RefinedTriangle {
 struct Refinement {
     positions: Vec<DVec3>,
     triangles: Vec<RefinedTriangle>,
-    /// Which triangles are beside an edge.
+    /// The triangles on either side of an edge.
     beside: HashMap<[u32; 2], Vec<u32>>,
     waiting: BinaryHeap<WaitingEdge>,
 }
@@ -62,7 +62,7 @@ fn edge(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The corners with one of them replaced.
+/// Returns the corners with one of them replaced.
 fn with<T: Copy>(mut corners: [T; 3], at: usize, by: T) -> [T; 3] {
     corners[at] = by;
     corners
@@ -106,7 +106,7 @@ impl Refinement {
         let [a, b] = [u, v].map(|end| self.positions[end as usize]);
         let middle = a.midpoint(b);
         if !middle.is_finite() || middle == a || middle == b {
-            // No number is between the two.
+            // No number is between the two ends.
             return true;
         }
         let m = self.positions.len() as u32;
@@ -130,7 +130,7 @@ impl Refinement {
             self.triangles[index as usize] = half(j);
             self.triangles.push(half(i));
             let [ci, cj, ck] = [i, j, k].map(|corner| whole.corners[corner]);
-            // The old one keeps the edge from k to i; that from j to k is the new one's.
+            // The old triangle keeps the edge from k to i; that from j to k is the new one's.
             if let Some(moved) = self.beside.get_mut(&edge(cj, ck)) {
                 moved.iter_mut().filter(|beside| **beside == index).for_each(|beside| *beside = new);
             }
@@ -177,7 +177,7 @@ mod tests {
         mesh.triangles().iter().map(of).sum()
     }
 
-    /// Each edge is met once in each direction.
+    /// Returns whether each edge occurs once in each direction.
     fn is_closed(mesh: &Mesh) -> bool {
         let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
         for [a, b, c] in mesh.triangles() {

@@ -1,33 +1,32 @@
 //! Shapes by their parameters, as meshes.
 //!
-//! Closed shapes are watertight and face outward: corners run counter-clockwise seen from
-//! outside. Poles and seams are shared vertices, not equal ones. Round shapes are turned
-//! profiles: a line in the half-plane (radius, height), followed so that the solid is on its
-//! left, carried around the y axis.
+//! Closed shapes are watertight and face outward: corners run counter-clockwise seen from outside. Poles and seams are
+//! shared vertices, not equal ones. Round shapes are surfaces of revolution of profiles: a line in the half-plane
+//! (radius, height), followed so that the solid is on its left, rotated around the y axis.
 
 use crate::scene::{Mesh, MeshBuilder, MeshError};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// A level rectangle around the origin that faces up, `size` along x and z.
+/// Returns a level rectangle around the origin that faces up, `size` along x and z.
 pub fn quad(size: [f64; 2]) -> Result<Mesh, MeshError> {
     let [x, z] = size.map(|n| n / 2.0);
     triangles(&[[-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z], [-x, 0.0, -z]], &[[0, 1, 2], [0, 2, 3]])
 }
 
-/// A closed box around the origin.
+/// Returns a closed box around the origin.
 pub fn cuboid(size: [f64; 3]) -> Result<Mesh, MeshError> {
     cuboid_builder(size).build()
 }
 
-/// A box around the origin seen from inside: a room.
+/// Returns a box around the origin seen from inside: a room.
 pub fn room(size: [f64; 3]) -> Result<Mesh, MeshError> {
     let mut builder = cuboid_builder(size);
     builder.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     builder.build()
 }
 
-/// A closed ball around the origin, `around` segments along the equator and `rings` from pole to pole.
+/// Returns a closed ball around the origin, `around` segments along the equator and `rings` from pole to pole.
 pub fn sphere(radius: f64, around: u32, rings: u32) -> Result<Mesh, MeshError> {
     let latitude = |ring: u32| PI * (f64::from(ring) / f64::from(rings) - 0.5);
     let between = (1..rings).map(latitude).map(|angle| DVec2::from_angle(angle) * radius);
@@ -37,8 +36,8 @@ pub fn sphere(radius: f64, around: u32, rings: u32) -> Result<Mesh, MeshError> {
     revolve(&profile, false, around)
 }
 
-/// A closed ring around the y axis: its tube's radius is `minor`, and the tube's middle runs
-/// `major` from the axis.
+/// Returns a closed ring around the y axis: its tube's radius is `minor`, and the tube's middle runs `major` from the
+/// axis.
 pub fn torus(major: f64, minor: f64, around: u32, along_tube: u32) -> Result<Mesh, MeshError> {
     let angle = |step: u32| TAU * f64::from(step) / f64::from(along_tube);
     let profile: Vec<DVec2> =
@@ -46,7 +45,7 @@ pub fn torus(major: f64, minor: f64, around: u32, along_tube: u32) -> Result<Mes
     revolve(&profile, true, around)
 }
 
-/// A closed regular tetrahedron around the origin with its corners `radius` away, one of them up.
+/// Returns a closed regular tetrahedron around the origin with its corners `radius` away, one of them up.
 pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
     let base_radius = radius * 8f64.sqrt() / 3.0;
     let base = (0..3).map(|corner| {
@@ -58,16 +57,15 @@ pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
     triangles(&positions, &[[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]])
 }
 
-/// A closed upright cylinder around the origin.
+/// Returns a closed upright cylinder around the origin.
 pub fn cylinder(radius: f64, height: f64, around: u32) -> Result<Mesh, MeshError> {
     let half = height / 2.0;
     let profile = [[0.0, -half], [radius, -half], [radius, half], [0.0, half]].map(DVec2::from_array);
     revolve(&profile, false, around)
 }
 
-/// A profile of (radius, height) points turned around the y axis in `around` steps; `closed`
-/// joins its last point to the first. Points on the axis are poles. The surface faces right of
-/// the profile.
+/// Returns a surface of revolution: a profile of (radius, height) points rotated around the y axis in `around` steps;
+/// `closed` joins its last point to the first. Points on the axis are poles. The surface faces right of the profile.
 pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     let rings: Vec<VertexRing> =
@@ -85,7 +83,7 @@ pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, Mes
     builder.build()
 }
 
-/// A parallelogram with a corner there and these two edges; it faces along their cross product.
+/// Returns a parallelogram with a corner at `corner` and these two edges; it faces along their cross product.
 pub fn parallelogram(corner: DVec3, edges: [DVec3; 2]) -> Result<Mesh, MeshError> {
     let [x, y] = edges;
     let mut builder = MeshBuilder::default();
@@ -172,8 +170,7 @@ pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
     builder.build()
 }
 
-/// Several meshes as one, each moved by an offset. Where they meet in the same vertices they are
-/// joined.
+/// Returns several meshes as one, each moved by an offset. Bit-equal vertices are joined.
 pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     for (mesh, offset) in parts {
@@ -184,13 +181,13 @@ pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<
     builder.build()
 }
 
-/// Points and triangles as given.
+/// Returns a mesh of points and triangles as given.
 pub fn triangles(points: &[[f64; 3]], indices: &[[u32; 3]]) -> Result<Mesh, MeshError> {
     let positions = points.iter().map(|point| DVec3::from_array(*point)).collect();
     MeshBuilder { positions, triangles: indices.to_vec(), ..MeshBuilder::default() }.build()
 }
 
-/// Corners counter-clockwise; equal ones are welded when the mesh is built.
+/// Adds a quad with corners counter-clockwise; equal ones are welded when the mesh is built.
 fn add_quad(builder: &mut MeshBuilder, [a, b, c, d]: [DVec3; 4]) {
     add_triangle(builder, [a, b, c]);
     add_triangle(builder, [a, c, d]);
@@ -215,7 +212,7 @@ fn cuboid_builder(size: [f64; 3]) -> MeshBuilder {
     }
 }
 
-/// The vertices of one profile point on its way around the axis.
+/// The vertices of one profile point at all steps around the axis.
 struct VertexRing {
     first: u32,
     count: u32,

@@ -10,7 +10,7 @@ pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
     rated.filter(|(likeness, _)| *likeness > LIKE).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }
 
-/// A mend for a name that is not known: the nearest one, else all of them.
+/// Suggests how to fix a name that is not known: the nearest one, else all of them.
 pub fn suggestion(word: &str, names: &[&str]) -> String {
     match nearest(word, names) {
         Some(near) => format!("did you mean `{near}`?"),

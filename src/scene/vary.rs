@@ -1,4 +1,4 @@
-//! Scenes with more or fewer lights, casters and triangles, for seeing what that costs.
+//! Scenes with more or fewer lights, casters and triangles, for measuring what that costs.
 
 use super::{Mesh, MeshError, Object, Scene, SceneBounds};
 use glam::{DMat3, DVec3};
@@ -6,24 +6,24 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Parts of a turn from one to the next that never come to lie on each other: the golden section.
+/// Part of a full rotation from one copy to the next, so that none coincide: the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// How far the first copy of a caster is from the middle, in extents of all casters; the fourth is twice as far.
+/// Distance of the first copy of a caster from the centre, in extents of all casters; the fourth is twice as far.
 const SPREAD: f64 = 0.35;
 
-/// Why a scene can't be varied so.
+/// Why a scene can't be varied.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VaryError {
-    /// There is none to begin with.
+    /// It has none of the things that should be more, named in words.
     #[error("it has no {0}")]
     None(&'static str),
-    /// Nothing makes meshes coarser.
+    /// Meshes can't be made coarser.
     #[error("its casters have {has} triangles already: begin there, or choose a scene of fewer")]
     TooFine {
-        /// So many.
+        /// Number of triangles that it has.
         has: usize,
     },
-    /// Too many vertices.
+    /// The meshes would have too many vertices.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
@@ -38,7 +38,8 @@ impl Scene {
         SceneBounds::of(&points).unwrap_or_default()
     }
 
-    /// With so many lights: the first ones; further ones are these in turn, turned about the casters' vertical axis.
+    /// Returns the scene with `count` lights: the first ones; further ones are these in turn, rotated about the
+    /// casters' vertical axis.
     pub fn with_lights(&self, count: usize) -> Result<Scene, VaryError> {
         if self.lights.is_empty() {
             return Err(VaryError::None("light"));
@@ -57,8 +58,8 @@ impl Scene {
         Ok(Scene { lights: (0..count).map(light).collect(), ..self.clone() })
     }
 
-    /// With so many casters: the first ones; further ones are copies of these in turn, on a spiral around them. What
-    /// casts no shadow stays.
+    /// Returns the scene with `count` casters: the first ones; further ones are copies of these in turn, on a spiral
+    /// around them. Objects that cast no shadow stay.
     pub fn with_casters(&self, count: usize) -> Result<Scene, VaryError> {
         let casters: Vec<&Object> = self.casters().collect();
         if casters.is_empty() {
@@ -83,7 +84,7 @@ impl Scene {
         Ok(Scene { objects, ..self.clone() })
     }
 
-    /// With casters of at least so many triangles together, of the same shapes, each in its share.
+    /// Returns the scene with casters of at least `count` triangles together, of the same shapes, each in proportion.
     pub fn with_triangles(&self, count: usize) -> Result<Scene, VaryError> {
         let has: usize = self.casters().map(|object| object.mesh.triangles().len()).sum();
         match has {

@@ -1,4 +1,4 @@
-//! What a frame is made of in space, of a plan that was run.
+//! The anatomy of a frame that was run: its parts as they lie in space.
 
 use super::Session;
 use crate::anatomy::{Anatomy, anatomy};
@@ -7,8 +7,8 @@ use crate::scene::Scene;
 use crate::technique::Choice;
 
 impl Session {
-    /// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says; without one another
-    /// program drew it.
+    /// Returns the parts of the frame of `plan` in space: of `scene` as it was captured, and planned as `choice` says;
+    /// `None` for a frame that another program drew.
     pub fn anatomy(&mut self, scene: &Scene, choice: Option<&Choice>, plan: &FramePlan) -> Anatomy {
         anatomy(scene, choice, plan, &mut self.geometry)
     }

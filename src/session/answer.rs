@@ -1,4 +1,4 @@
-//! Answers to questions about a frame that was run, or about the scene that it is of: one arm a question.
+//! Answers to questions about a frame that was run, or about its scene: one match arm for each question.
 
 use super::{CaptureRequest, InjectedFault, Session, SessionError, median_ms};
 use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, TestsOf, WallsOf, without};
@@ -11,39 +11,40 @@ use crate::scene::{Scene, TechniqueRequest};
 use crate::technique::Choice;
 use std::sync::Arc;
 
-/// Frames that are timed, each with and without snapshots.
+/// How many frames are timed with snapshots, and how many without.
 const TIMED_FRAMES: usize = 5;
 
-/// Bytes that a row of a report, or a mend that a diagnosis tries, may take beyond the frame that is shown, where
-/// the GPU's memory is this program's own: a window that is open for hours shares the machine. A mend that is
-/// applied takes as much again for its snapshots.
+/// Bytes that a row of a report, or a fix that a diagnosis tries, may take beyond the frame that is shown, where the
+/// GPU's memory is this program's own: a window that is open for hours shares the machine. A fix that is applied takes
+/// as much again for its snapshots.
 const MOST_OF_A_TRIAL: u64 = 128 << 20;
 
 /// A frame that was run. It never changes.
 #[derive(Debug, Clone)]
 pub struct RunFrame {
-    /// What was seen.
+    /// The captured attachments.
     pub capture: Arc<Capture>,
-    /// What was run.
+    /// The plan that was run.
     pub plan: Arc<FramePlan>,
-    /// What it was made from, or in another program's frame what its draws tell of that; `None`: they do not.
+    /// The inputs that it was planned from, or for another program's frame what its draws reveal of them; `None` where
+    /// they reveal too little.
     pub source: Option<Arc<FrameSource>>,
 }
 
-/// What a frame was made from.
+/// The inputs that a frame was planned from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSource {
-    /// The scene at the moment that was captured.
+    /// The scene in the state that was captured.
     pub scene: Scene,
-    /// How it was captured; `None`: another program drew it.
+    /// How it was captured; `None` where another program drew it.
     pub request: Option<CaptureRequest>,
 }
 
 impl RunFrame {
-    /// The frame of a capture folder that holds all of it.
+    /// Returns the frame of a capture folder that has plan and scene.
     ///
     /// # Errors
-    /// What the folder holds, where that is the capture alone, or the technique is not known here.
+    /// The folder's content, where it has a capture alone, or its technique is not known here.
     pub fn from_folder(whole: WholeFrame) -> Result<RunFrame, Box<WholeFrame>> {
         let Capture { technique, settings, size, .. } = &whole.capture;
         let choice = Choice::parse(&TechniqueRequest { name: technique.clone(), settings: settings.clone() });
@@ -59,18 +60,18 @@ impl RunFrame {
         }
     }
 
-    /// What it is of.
+    /// The scene that the frame shows.
     pub fn scene(&self) -> Result<&Scene, SessionError> {
         self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoLights)
     }
 
-    /// What it was made from, and how.
+    /// Returns the scene that it was planned from, and the request.
     pub fn made(&self) -> Result<(&Scene, &CaptureRequest), SessionError> {
         let request = self.source.as_ref().and_then(|source| source.request.as_ref()).ok_or(SessionError::NoScene)?;
         Ok((self.scene()?, request))
     }
 
-    /// What a capture folder of it holds.
+    /// Returns what a capture folder of it stores.
     pub fn contents(&self) -> FolderContents<'_> {
         let scene = self.source.as_ref().map(|source| &source.scene);
         FolderContents { capture: &self.capture, plan: Some(&self.plan), scene }
@@ -78,8 +79,8 @@ impl RunFrame {
 }
 
 impl Session {
-    /// Answers a question about `frame`, or about `scene` as it was opened, if there is one. What takes many turns, a report or stress
-    /// cases, is made by who can let other work come between.
+    /// Answers a question about `frame`, or about `scene` as it was opened, if there is one. A report and stress cases
+    /// take many steps: callers run those themselves, so that other work can come between.
     pub fn answer(
         &mut self,
         ask: &Ask,
@@ -152,7 +153,7 @@ impl Session {
         })
     }
 
-    /// Lets no more be tried than there is room for beside the frame of a plan that is shown.
+    /// Limits the memory of trials to what is free beside the frame of `plan`, which is shown.
     pub fn free_memory_for(&mut self, plan: &FramePlan) {
         let shares_memory = self.adapter().kind == "cpu";
         self.set_memory_budget(shares_memory.then(|| plan.bytes() + MOST_OF_A_TRIAL));

@@ -1,4 +1,4 @@
-//! The true count of shadow volumes, beyond what eight bits hold.
+//! The true count of shadow volumes, beyond what eight bits can store.
 
 use super::{CaptureRequest, Session, SessionError};
 use crate::capture::{Capture, Image};
@@ -8,10 +8,11 @@ use crate::technique::Choice;
 use std::sync::Arc;
 
 impl Session {
-    /// The signed count of each light's volumes where the technique counts them in the stencil: the same frame is run
-    /// again with a float target. None of a technique that counts nothing, or on an adapter that can't blend floats.
+    /// Returns the signed count of each light's volumes where the technique counts them in the stencil: the same frame
+    /// is run again with a float target. `None` for each light of a technique that counts nothing, or on an adapter
+    /// that can't blend floats.
     pub fn counts(&mut self, scene: &Scene, capture: &Capture) -> Result<Vec<Option<Arc<Image>>>, SessionError> {
-        // Another program's frame is not ours to run with another counter.
+        // Another program's frame can't be run with another counter.
         if capture.origin.is_some() {
             return Ok(Vec::new());
         }

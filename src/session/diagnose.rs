@@ -1,4 +1,4 @@
-//! Why a frame is wrong: runs it, asks the rules, and has each mend tried (`trials.rs`).
+//! Why a frame is wrong: runs it, applies the rules, and has each fix tried (`trials.rs`).
 
 use super::trials::{JudgedFrame, TrialRuns, judged, labels_of};
 use super::truth::TracedScene;
@@ -22,9 +22,9 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Pixels of a region that are looked at closely.
+/// The number of pixels of a region that are examined closely.
 const SAMPLES: usize = 3;
-/// Objects whose flags are asked about; each costs a truth.
+/// The most objects whose flags are examined; each costs a truth.
 const MOST_FLAGS: usize = 8;
 
 /// A frame that was run.
@@ -37,11 +37,12 @@ struct DiagnosisRun {
 }
 
 impl Session {
-    /// Says where a frame is wrong, why, and what mends it, which it proves by running that. `fault` is made in
-    /// the frame and not in its truth, and nothing but that tells of it; [`InjectedFault::None`] for scenes as they are.
+    /// Says where a frame is wrong, why, and what fixes it, and proves each fix by running the frame with it. `fault`
+    /// is injected into the frame and not into its truth, and no rule reads it; [`InjectedFault::None`] for scenes as
+    /// they are.
     ///
     /// # Errors
-    /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`]. A mend that can't run is no
+    /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`]. A fix that can't run is no
     /// error: its proof says `not run`.
     pub fn diagnose(
         &mut self,
@@ -97,7 +98,7 @@ impl Session {
             settings: request.choice.settings().clone(),
             size,
             error: run.judged.error,
-            // How the mesh of what darkens nothing hangs together is no matter.
+            // Whether the mesh of an object is closed does not matter if it darkens nothing.
             mesh_findings: darkening
                 .into_iter()
                 .zip(&meshes)
@@ -111,7 +112,7 @@ impl Session {
         })
     }
 
-    /// The frame with a mend made, and the plan that left it: to show before and after.
+    /// Returns the frame with a fix applied, and its plan: to show before and after.
     pub fn capture_fixed(
         &mut self,
         scene: &Scene,
@@ -123,7 +124,7 @@ impl Session {
         Ok((self.capture_plan(&scene, &plan)?, plan))
     }
 
-    /// The fault first, then the mend: what is wrong stays wrong but where the mend changes it.
+    /// Plans with the fault first, then the fix: what is wrong stays wrong unless the fix changes it.
     pub(super) fn plan_fixed(
         &mut self,
         scene: &Scene,
@@ -145,7 +146,7 @@ impl Session {
         Ok((given, choice, plan))
     }
 
-    /// Which triangles of each object cast, by light.
+    /// Returns which triangles of each object cast, by light.
     fn casting(&mut self, scene: &Scene, choice: &Choice) -> Vec<Vec<Casters>> {
         let worlds: Vec<_> = scene.objects.iter().map(Object::world_positions).collect();
         let mut of_light = |light: &Light| {
@@ -167,7 +168,7 @@ impl Session {
         scene.objects.iter().map(one).collect()
     }
 
-    /// A close look at some of a region's pixels.
+    /// Examines some of a region's pixels closely.
     fn case<'r>(&mut self, facts: &FrameFacts, region: &'r ConnectedRegion) -> Result<RegionSamples<'r>, SessionError> {
         let light = region.light;
         let has_events = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
@@ -185,9 +186,9 @@ impl Session {
     }
 }
 
-/// Which objects can darken anything: those that cast, but for floors and the like, of which all that receives lies
-/// on the light's side or in their own plane. Each triangle of a floor is held against each corner of what may be a
-/// very large model: it is given up at once when the work is to stop.
+/// Returns which objects can darken anything: those that cast, except floors and the like, for which all receivers lie
+/// on the light's side or in their own plane. Each triangle of a floor is compared with each corner of what may be a
+/// very large model: that is aborted at once when the work is cancelled.
 fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec<bool>, SessionError> {
     let places: Vec<Vec<DVec3>> = scene.objects.iter().map(Object::world_positions).collect();
     let receiving = || {
@@ -201,11 +202,11 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
         object.casts && lights.iter().any(under)
     };
     let darkening = scene.objects.iter().zip(&places).map(darkens).collect();
-    // What was given up is no answer.
+    // An aborted search has no answer.
     if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(darkening) }
 }
 
-/// All wrong regions, the largest first; what is merely too dark comes after what is wrong.
+/// Returns all wrong regions, the largest first; regions that are merely too dark come last.
 fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
     let mut found = Vec::new();
@@ -228,7 +229,7 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
     found
 }
 
-/// What one wrong pixel tells by itself.
+/// Returns what one wrong pixel reveals by itself.
 fn key_of(facts: &FrameFacts, light: usize, kind: RegionKind, pixel: [u32; 2]) -> RegionKey {
     let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));
     let receiver = seen.map(|seen| seen.place.object);
@@ -277,7 +278,7 @@ fn described(facts: &FrameFacts, case: &RegionSamples, causes: Vec<CauseFound>, 
     }
 }
 
-/// What the truth would be with each flag set.
+/// Computes what the truth would be with each flag set.
 fn flags(scene: &Scene, traced: &TracedScene, progress: &Progress) -> Result<Vec<FlagFound>, SessionError> {
     let mut found = Vec::new();
     let mut asked = 0;

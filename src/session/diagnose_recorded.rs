@@ -14,7 +14,7 @@ use glam::DVec4;
 use std::sync::Arc;
 
 impl Session {
-    /// Says where another program's frame is wrong, why, and proves it by running its plan with one thing changed.
+    /// Says where another program's frame is wrong and why, and proves it by running its plan with one thing changed.
     ///
     /// # Errors
     /// Its lights were not found, so that nothing is known to be wrong; a plan that can't run;
@@ -46,7 +46,7 @@ impl Session {
             };
             let proof_of = |left: u64| match left {
                 0 if wrong > 0 => Proof::Proven,
-                // Another rasterizer may do a pixel better.
+                // Another rasterizer may get a pixel right by chance.
                 left if left < wrong.min(same) => Proof::Part,
                 _ => Proof::NotIt,
             };
@@ -85,8 +85,8 @@ impl Session {
         })
     }
 
-    /// The first cause that takes some of the wrong pixels away, and with it, one by one, whatever takes most of the rest
-    /// away; `None` where nothing helps it.
+    /// Finds the first cause that takes some of the wrong pixels away, and with it, one by one, whichever cause takes
+    /// most of the rest away; `None` where no cause helps.
     fn together(
         &mut self,
         plan: &FramePlan,
@@ -117,7 +117,7 @@ impl Session {
         Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
     }
 
-    /// What a recorded plan leaves when it is run from its first pass on.
+    /// Runs a recorded plan again from its first pass on, and returns what it leaves.
     fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare_once(plan)?;
         let output = self.executor.capture(prepared, SnapshotMemory::Shared, false)?;

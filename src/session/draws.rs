@@ -1,11 +1,11 @@
-//! The state after every draw: the plan is run with its passes split at their draws, and the
-//! parts are joined to steps again here, and only here.
+//! The state after every draw: the plan is run with its passes split at their draws, and the parts are joined to steps
+//! again here, and only here.
 //!
-//! Joined steps are those of a capture without draw states: what a pass left is what its last
-//! part left, and it is unchanged where it ended as it began, whatever happened in between. What a
-//! draw did not change shares the picture of the draw before it, and of what it changed the rows that it left alone.
+//! Joined steps are those of a capture without draw states: the attachments after a pass are those after its last part,
+//! and an aspect is unchanged where it ended as it began, whatever happened in between. An aspect that a draw did not
+//! change shares the picture of the draw before it; one that it changed shares the rows that it left alone.
 //!
-//! The draws of one pass can be asked for later ([`Session::step_draws`]).
+//! The draws of one pass can be captured later ([`Session::step_draws`]).
 
 use super::{Session, SessionError};
 use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step, StepDraws};
@@ -30,7 +30,7 @@ impl Session {
         Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
     }
 
-    /// The states after the draws of a step of `capture`, which `plan` left.
+    /// Returns the states after the draws of a step of `capture`, which is the capture of `plan`.
     pub fn step_draws(&mut self, plan: &FramePlan, capture: &Capture, step: usize) -> Result<StepDraws, SessionError> {
         if step >= capture.steps.len() {
             return Err(SessionError::NoSuchStep { step, steps: capture.steps.len() });
@@ -56,7 +56,7 @@ impl Session {
     }
 }
 
-/// What draws of a step may have left just as it was: all that the frame holds around them.
+/// Returns all images of the frame around a step: draws may have left some of them as they were.
 fn known_images(capture: &Capture, step: usize) -> Vec<Arc<Image>> {
     let before = step.checked_sub(1).and_then(|before| capture.frame_at(before)).cloned().map(Snapshot::Frame);
     let snapshots = before.iter().chain([&capture.steps[step].snapshot]);
@@ -68,9 +68,9 @@ fn known_images(capture: &Capture, step: usize) -> Vec<Arc<Image>> {
     known
 }
 
-/// The same state in pictures that are held already, where there are equal ones, and else with the rows of those. `last`
-/// is colour, depth, stencil and the pass's own target after the draw before. The frame that was run anew for it is not
-/// kept alive.
+/// Replaces pictures of a state by equal ones that are in memory already, or else shares equal rows with those. `last`
+/// is colour, depth, stencil and the pass's own target after the draw before. The frame that was run again for it is
+/// then free.
 fn sharing(mut state: DrawState, known: &[Arc<Image>], last: &mut [Option<Arc<Image>>; 4]) -> DrawState {
     let [color, depth, stencil] = frame_aspects(&mut state.snapshot);
     for (aspect, last) in [color, depth, stencil, state.target.as_mut()].into_iter().zip(last) {
@@ -86,7 +86,7 @@ fn sharing(mut state: DrawState, known: &[Arc<Image>], last: &mut [Option<Arc<Im
     state
 }
 
-/// What a pass draws into beside the picture.
+/// A target of a pass other than the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum OwnTarget {
     Labels(usize),
@@ -107,7 +107,7 @@ impl OwnTarget {
     }
 }
 
-/// Colour, depth and stencil, as far as a snapshot has them.
+/// Returns colour, depth and stencil, as far as a snapshot has them.
 fn frame_aspects(snapshot: &mut Snapshot) -> [Option<&mut Aspect>; 3] {
     match snapshot {
         Snapshot::Frame(frame) => [Some(&mut frame.color), Some(&mut frame.depth), frame.stencil.as_mut()],
@@ -115,9 +115,9 @@ fn frame_aspects(snapshot: &mut Snapshot) -> [Option<&mut Aspect>; 3] {
     }
 }
 
-/// What is there while the parts of a frame go by.
+/// The attachments while the parts of a frame are joined.
 struct RunningState {
-    /// Colour, depth and stencil.
+    /// The picture's colour, depth and stencil.
     frame: [Arc<Image>; 3],
     own: BTreeMap<OwnTarget, Arc<Image>>,
 }
@@ -130,7 +130,7 @@ impl RunningState {
         RunningState { frame, own: BTreeMap::new() }
     }
 
-    /// Goes on by one part, which shares what it leaves as it was.
+    /// Advances by one part; aspects that it did not change are shared.
     fn go_on(&mut self, snapshot: &mut Snapshot) {
         for (now, aspect) in self.frame.iter_mut().zip(frame_aspects(snapshot)) {
             match aspect {
@@ -141,7 +141,7 @@ impl RunningState {
         }
     }
 
-    /// The same for a pass's own target.
+    /// Advances a pass's own target by one part.
     fn go_on_with(&mut self, target: OwnTarget, image: Arc<Image>) -> Aspect {
         match self.own.get(&target) {
             Some(now) if *now == image => Aspect { image: now.clone(), unchanged: true },
@@ -152,7 +152,7 @@ impl RunningState {
         }
     }
 
-    /// Ends a pass that began at `before`. What is again as it was then is that picture.
+    /// Ends a pass that began at `before`. An aspect that is again as it was then is that picture.
     fn end(&mut self, before: &[Arc<Image>; 3], snapshot: &mut Snapshot) {
         for ((now, before), aspect) in self.frame.iter_mut().zip(before).zip(frame_aspects(snapshot)) {
             if !Arc::ptr_eq(now, before) && now == before {
@@ -165,8 +165,8 @@ impl RunningState {
     }
 }
 
-/// Joins the parts of the passes that were split. `plan` is the frame before it was split; it may
-/// have more passes than were run.
+/// Joins the parts of the passes that were split. `plan` is the frame before it was split; it may have more passes than
+/// were run.
 fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: ExecutorOutput) -> ExecutorOutput {
     let mut now = RunningState::new(plan.size);
     let mut parts = output.steps.into_iter().zip(output.targets).peekable();
@@ -198,7 +198,7 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: ExecutorOutp
         let Some(mut whole) = whole else { break };
         now.end(&before, &mut whole.snapshot);
         if let Some(DrawState { snapshot, .. }) = whole.draws.last_mut().and_then(|draw| draw.after.as_mut()) {
-            // Its pictures are the step's; what it changed itself it still did.
+            // Its pictures are the step's; whether it changed them is still its own.
             for (aspect, now) in frame_aspects(snapshot).into_iter().zip(&now.frame) {
                 aspect.into_iter().for_each(|aspect| aspect.image.clone_from(now));
             }

@@ -7,29 +7,29 @@ use crate::plan::FramePlan;
 use crate::scene::Scene;
 use std::time::{Duration, Instant};
 
-/// What histories of pixels cost.
+/// Times of histories of pixels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HistoryCost {
     /// Plain frames, for comparison.
     pub frames: Vec<Duration>,
-    /// The first history, with all that is made once.
+    /// The first history, including all that is computed only once.
     pub first: Duration,
-    /// The others, one a pixel.
+    /// The others, one for each pixel.
     pub histories: Vec<Duration>,
-    /// Of each: finding the triangles over the pixel.
+    /// For each history: finding the triangles over the pixel.
     pub geometry: Vec<Duration>,
-    /// Of each: the GPU's log of their fragments.
+    /// For each history: the GPU's log of their fragments.
     pub logs: Vec<Duration>,
-    /// Events of those together.
+    /// The number of events of all histories together.
     pub events: usize,
-    /// Events of the longest.
+    /// The number of events of the longest history.
     pub most_events: usize,
-    /// Did all of them agree with what the GPU stored?
+    /// True where all of them agree with what the GPU stored.
     pub all_agree: bool,
 }
 
 impl Session {
-    /// Everything that happened to `pixel` in the frame of `plan`, which left `capture`.
+    /// Returns everything that happened to `pixel` in the frame of `plan`, of which `capture` is the result.
     pub fn history(
         &mut self,
         plan: &FramePlan,
@@ -67,7 +67,7 @@ impl Session {
         Ok(cost)
     }
 
-    /// With the times of geometry and of the log.
+    /// Returns a history with the times of geometry and of the log.
     fn timed_history(
         &mut self,
         plan: &FramePlan,
@@ -87,7 +87,7 @@ impl Session {
     }
 }
 
-/// Pixels without a pattern that a picture could have too (Roberts 2018, the plastic number's
+/// Returns a sequence of pixels without a pattern that a picture could have too (Roberts 2018, the plastic number's
 /// sequence).
 fn spread(index: usize, size: [u32; 2]) -> [u32; 2] {
     let at = |step: f64, pixels: u32| (((0.5 + step * index as f64).fract()) * f64::from(pixels)) as u32;
@@ -100,7 +100,7 @@ mod tests {
     use crate::scene::{Light, Object, SceneBuilder, shapes};
     use crate::technique::{Choice, Technique};
 
-    /// A log that is too small counts on, and is made again with room for all.
+    /// A log that is too small counts on, and is run again with space for all.
     #[test]
     fn a_full_log_grows() {
         let slab =

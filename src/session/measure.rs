@@ -11,8 +11,8 @@ use crate::technique::{self, Choice, PlanRequest};
 use glam::DQuat;
 use std::time::{Duration, Instant};
 
-/// Bytes of GPU memory that choices may hold together while others are timed. A software GPU's are this
-/// program's own.
+/// Bytes of GPU memory that choices may take together while others are timed. A software GPU's memory is this program's
+/// own.
 const CACHED_BYTES: u64 = 64 << 20;
 
 /// What to measure.
@@ -22,16 +22,16 @@ pub struct Measurement {
     pub choices: Vec<Choice>,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Frames of each that are timed, each after one that is not.
+    /// Frames of each choice that are timed, each after one that is not.
     pub runs: usize,
 }
 
 named_enum! {
     /// What moves from frame to frame.
     pub enum MovingPart {
-        /// What the scene's file or maker says.
+        /// What the scene's file or code moves.
         Scene = "scene",
-        /// Its first light alone, about the vertical axis through what the camera looks at.
+        /// Its first light alone, about the vertical axis through the point that the camera looks at.
         Light = "light",
         /// The eye alone, about the same axis.
         Eye = "eye",
@@ -40,11 +40,11 @@ named_enum! {
     }
 }
 
-/// How far lights and eyes go round in a second, degrees.
+/// Speed of orbiting lights and eyes, degrees per second.
 const DEGREES_PER_SECOND: f64 = 10.0;
 
 impl MovingPart {
-    /// A scene at a moment.
+    /// Returns the scene at a time.
     fn at(self, scene: &Scene, seconds: f64) -> Scene {
         let mut moved = scene.at(if self == MovingPart::Scene { seconds } else { 0.0 });
         let turn = DQuat::from_rotation_y((seconds * DEGREES_PER_SECOND).to_radians());
@@ -72,26 +72,26 @@ pub struct MotionFrames {
     pub from: f64,
     /// Seconds after the start: the last frame.
     pub to: f64,
-    /// How many count, in even steps.
+    /// The number of frames that count, in even steps.
     pub frames: usize,
 }
 
 impl MotionFrames {
-    /// The seconds of each frame that counts.
+    /// Returns the seconds of each frame that counts.
     fn all(self) -> impl Iterator<Item = f64> {
         let MotionFrames { from, to, frames, .. } = self;
         (1..=frames).map(move |frame| from + (to - from) * frame as f64 / frames as f64)
     }
 }
 
-/// How one technique did.
+/// The measurements of one technique.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredTechnique {
     /// Technique and settings.
     pub choice: Choice,
     /// Errors of labels, summed over lights.
     pub error: ErrorCounts,
-    /// Pixels whose colour is not that of the picture that the truth lights in the same shading, background included: see
+    /// Pixels whose colour differs from the picture that the truth lights in the same shading, background included: see
     /// [`wrong_colors`](crate::accuracy::wrong_colors).
     pub wrong_color: u64,
     /// Wall times of frames without capture: recording, submitting, waiting.
@@ -99,21 +99,20 @@ pub struct MeasuredTechnique {
     /// Median of the GPU's time for the frame's passes, measured in frames of their own between
     /// the others; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
-    /// Planning, geometry, pipelines and uploads of this technique.
+    /// Time of planning, geometry, pipelines and uploads for this technique.
     pub setup_ms: f64,
-    /// What each frame of a scene that moves was set up in, of `frames` one each; empty where nothing moves.
+    /// Set-up times of the frames of a moving scene, one for each of `frames`; empty where nothing moves.
     pub setups: Vec<Duration>,
-    /// Submitted in a frame.
+    /// The number of triangles submitted in a frame.
     pub triangles: u64,
-    /// GPU memory of attachments, vertices and indices.
+    /// Bytes of GPU memory for attachments, vertices and indices.
     pub bytes: u64,
 }
 
 impl Session {
-    /// Measures every choice on one scene. Frames are timed in turn, so that whatever slows the
-    /// machine down for a while slows all alike. Not all are held at once: the larger ones are set up
-    /// anew for each of their frames, outside its time. Those for which there is no [room](Session::set_room) are left
-    /// out.
+    /// Measures every choice on one scene. Frames are timed in turn, so that whatever slows the machine down for a
+    /// while slows all alike. Not all are in memory at once: the larger ones are set up again for each of their frames,
+    /// outside its time. Choices that exceed the [memory budget](Session::set_memory_budget) are left out.
     pub fn measure(
         &mut self,
         scene: &Scene,
@@ -123,8 +122,8 @@ impl Session {
         self.measure_between(scene, what, progress, &mut |_| ())
     }
 
-    /// The same, with `between` called while the truth is traced and between any two steps after it:
-    /// what it does is in no measured time.
+    /// Measures every choice on one scene, with `between` called while the truth is traced and between any two steps
+    /// after it: the time of these calls is in no measured time.
     pub fn measure_between(
         &mut self,
         scene: &Scene,
@@ -140,7 +139,7 @@ impl Session {
         progress.start(what.choices.len() * (what.runs + 1));
         let mut reference = ReferencePictures::new(scene, &traced);
         let mut measured = Vec::with_capacity(what.choices.len());
-        // By row: which of the choices it is.
+        // For each row, the index of its choice.
         let mut items = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
@@ -173,7 +172,8 @@ impl Session {
                         &made
                     }
                 };
-                // What only a first frame does is done in one that does not count, of those that were kept too.
+                // Work that only a first frame does is done in a frame that does not count, also for choices that
+                // stayed in memory.
                 self.executor.time(ready, false)?;
                 gpu.extend(self.executor.gpu_ms(ready)?);
                 row.frames.push(self.executor.time(ready, false)?);
@@ -186,8 +186,8 @@ impl Session {
         Ok(measured)
     }
 
-    /// Measures every choice on a scene that moves: what a frame must be set up with anew is timed beside it, and what lasts
-    /// from frame to frame is kept, by each choice for itself. Errors are those of all frames together.
+    /// Measures every choice on a scene that moves: what a frame must set up again is timed beside it, and what stays
+    /// valid from frame to frame is cached, by each choice for itself. Errors are those of all frames together.
     pub fn measure_moving(
         &mut self,
         scene: &Scene,
@@ -208,7 +208,7 @@ impl Session {
             }
             progress.advance();
         }
-        // What lasts is there before the first frame that counts.
+        // What stays valid is cached before the first frame that counts.
         let mut plans = Vec::with_capacity(moving.len());
         for (_, measured, cache) in &mut moving {
             let plan =
@@ -222,7 +222,7 @@ impl Session {
             let scene = motion.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
             let mut reference = ReferencePictures::new(&scene, &traced);
-            // What comes just before slows a frame, or not: each moment begins with another choice, every other one backwards.
+            // The frame just before may slow a frame: each time begins with another choice, every other one backwards.
             let mut order: Vec<usize> = (0..moving.len()).collect();
             order.rotate_left(turn % moving.len().max(1));
             if turn % 2 == 1 {
@@ -234,7 +234,7 @@ impl Session {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                // A frame comes after the one before it, not after rays.
+                // Each frame is timed after another frame, not after ray tracing.
                 let before = self.executor.prepare(prepared_frames)?;
                 self.executor.time(&before, false)?;
                 let mut made = None;
@@ -269,8 +269,8 @@ impl Session {
         Ok(moving.into_iter().map(|(_, measured, _)| measured).collect())
     }
 
-    /// Sets a choice up from nothing and judges its first frame; `None` where it is left out. Nothing is kept from
-    /// one to the next, so that none is set up at another's cost.
+    /// Sets a choice up from nothing and judges its first frame; `None` where it is left out. Nothing is cached from
+    /// one choice to the next, so that none profits from the set-up of another.
     fn first_frame(
         &mut self,
         scene: &Scene,
@@ -303,8 +303,8 @@ impl Session {
         }))
     }
 
-    /// The plans of those that stay set up for all of their frames: the smallest first, until [`CACHED_BYTES`] are
-    /// used.
+    /// Returns the plans of the choices that stay set up for all of their frames: the smallest first, until
+    /// [`CACHED_BYTES`] are used.
     fn prepared_frames(
         &mut self,
         scene: &Scene,

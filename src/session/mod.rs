@@ -1,7 +1,7 @@
 //! The one place that runs things: scene and technique in, data out.
 //!
-//! A session owns the GPU and what is worth keeping between runs (pipelines, buffers, edge
-//! lists). Commands, the window and tests all go through it.
+//! A session owns the GPU and the caches between runs (pipelines, buffers, edge lists). Commands, the window and tests
+//! all go through it.
 
 mod anatomy;
 mod answer;
@@ -47,15 +47,15 @@ use crate::truth::TruthError;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What to capture.
+/// The inputs of a capture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaptureRequest {
-    /// How shadows are made.
+    /// Technique and settings.
     pub choice: Choice,
     /// Width and height in pixels, each at least 1.
     pub size: [u32; 2],
-    /// How often to time the frame with and without snapshots, in turn, after a warm-up;
-    /// 0: not at all, and the timing is left unknown.
+    /// How often to time the frame with and without snapshots, in turn, after a warm-up; 0: not at all, and the timing
+    /// is left unknown.
     pub timing_runs: usize,
     /// How often to take a snapshot.
     pub every: SnapshotInterval,
@@ -64,13 +64,13 @@ pub struct CaptureRequest {
 }
 
 impl CaptureRequest {
-    /// An untimed capture with a snapshot after every pass.
+    /// Returns a request of an untimed capture with a snapshot after every pass.
     pub fn new(choice: Choice, size: [u32; 2]) -> CaptureRequest {
         CaptureRequest { choice, size, timing_runs: 0, every: SnapshotInterval::Pass, external_capture: false }
     }
 }
 
-/// Why nothing came out.
+/// Why a session has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
     /// The settings of a capture are not those of its technique.
@@ -82,93 +82,93 @@ pub enum SessionError {
     /// The GPU is missing, too small or failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// All draws of the frame, or of one of its passes, are too many to keep the state after each.
+    /// All draws of the frame, or of one of its passes, are too many to store the state after each.
     #[error("{0}; or take fewer snapshots (--every pass)")]
     TooManyDraws(GpuError),
     /// No ray can be followed through the scene.
     #[error(transparent)]
     Truth(#[from] TruthError),
-    /// A pixel that the picture does not have.
+    /// The picture does not have this pixel.
     #[error("pixel {},{} is outside the picture of {}x{}: choose one from 0,0 to {},{}", pixel[0], pixel[1], size[0], size[1], size[0].saturating_sub(1), size[1].saturating_sub(1))]
     NoSuchPixel {
-        /// Column and row.
+        /// Column and row of the pixel.
         pixel: [u32; 2],
-        /// Of the picture.
+        /// Width and height of the picture.
         size: [u32; 2],
     },
-    /// A step that the frame does not have.
+    /// The frame does not have this step.
     #[error("there is no step {}: choose one from 1 to {steps}", step + 1)]
     NoSuchStep {
         /// Index of the step.
         step: usize,
-        /// How many there are.
+        /// The number of steps.
         steps: usize,
     },
-    /// A question without an answer.
+    /// The question has no answer, for the reason given in words.
     #[error("{0}")]
     Unanswered(String),
-    /// A frame that is shown no more.
+    /// The question is about a frame that is no longer shown.
     #[error("another picture came meanwhile: diagnose again when it is the one you want")]
     OtherFrame,
-    /// There is nothing to ask about.
+    /// There is no frame to ask about.
     #[error("the open scene was not rendered: mend what the error says, then ask again")]
     NoFrame,
-    /// What is found from lights.
+    /// The answer needs lights that were not found.
     #[error("another program drew this frame, and no shadow volumes tell where its light is")]
     NoLights,
-    /// What only scenes have.
+    /// The answer needs a scene.
     #[error("another program drew this frame, and there is no scene that it could be drawn from anew")]
     NoScene,
-    /// No fragments of a step can be counted.
+    /// The fragments of a step can't be counted.
     #[error("step {} draws no triangles into the picture: select one that does", step + 1)]
     NoTests {
         /// Index of the step.
         step: usize,
     },
-    /// More than there is [room](Session::set_room) for.
+    /// It would take more than the [memory budget](Session::set_memory_budget).
     #[error("it takes {} MiB, and no more than {} MiB are tried here: `stencilscope diagnose` tries it", needed >> 20, most >> 20)]
     OverBudget {
-        /// Bytes of GPU memory.
+        /// Bytes of GPU memory that it needs.
         needed: u64,
-        /// Bytes of GPU memory.
+        /// Bytes of GPU memory that it may take.
         most: u64,
     },
-    /// A mend can't be made.
+    /// A fix can't be applied.
     #[error(transparent)]
-    Mend(#[from] crate::diagnosis::FixError),
-    /// A scene made by code is broken.
+    Fix(#[from] crate::diagnosis::FixError),
+    /// A scene that code builds is broken.
     #[error(transparent)]
     Scene(#[from] crate::scene::SceneError),
-    /// It was asked to stop.
+    /// The work was cancelled.
     #[error("cancelled")]
     Cancelled,
 }
 
 impl SessionError {
-    /// There is no GPU to run on: something to install, not to correct.
+    /// Returns whether there is no GPU to run on: something to install, not to correct.
     pub fn is_missing_adapter(&self) -> bool {
         matches!(self, SessionError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
     }
 }
 
-/// A GPU and what is kept between runs.
+/// A GPU, and what is cached between runs.
 #[derive(Debug)]
 pub struct Session {
     executor: Executor,
     geometry: GeometryCache,
     traced: Option<Arc<truth::TracedScene>>,
-    /// Of the scene to which a stress case converges.
+    /// The truth of the scene to which a stress case converges.
     limit: Option<Arc<truth::TracedScene>>,
     memory_budget: Option<u64>,
     walls: WallCache,
 }
 
-/// A frame's cost, with and without snapshots.
+/// Times of a frame, with and without snapshots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaptureCost {
     /// Frames without snapshots.
     pub frames: Vec<Duration>,
-    /// Frames with a snapshot after every pass, all in memory; none where they don't [fit](Session::hold_at_most).
+    /// Frames with a snapshot after every pass, all in memory; empty where they don't [fit](Session::hold_at_most).
     pub captured: Vec<Duration>,
     /// Bytes that a captured frame copies.
     pub snapshot_bytes: u64,
@@ -188,19 +188,19 @@ impl Session {
         })
     }
 
-    /// Lets a frame hold no more than so many bytes: attachments, pictures of materials, and of a captured frame the
+    /// Limits the bytes that a frame may take: attachments, pictures of materials, and of a captured frame the
     /// snapshots that differ; meshes are not counted. At first 8 GiB.
     pub fn hold_at_most(&mut self, bytes: u64) {
         self.executor.hold_at_most(bytes);
     }
 
-    /// Bytes of GPU memory that a frame may take which nobody asked to see: a row of a report, a mend that is tried.
-    /// `None`, as at first: what the GPU has. For a GPU whose memory is this program's own.
+    /// Limits the bytes of GPU memory of frames that are not shown: rows of a report, and fixes that are tried. `None`,
+    /// as at first, allows what the GPU has. For a GPU whose memory is this program's own.
     pub fn set_memory_budget(&mut self, bytes: Option<u64>) {
         self.memory_budget = bytes;
     }
 
-    /// Forgets all that is kept between runs: meshes' edges and planes, buffers, pipelines, the traced scene.
+    /// Drops all that is cached between runs: meshes' edges and planes, buffers, pipelines, the traced scene.
     pub fn forget(&mut self) {
         self.executor.forget();
         self.geometry = GeometryCache::default();
@@ -213,19 +213,20 @@ impl Session {
         &self.executor.context().info
     }
 
-    /// What the GPU was asked for beyond what every frame uses, in plain words: nothing until a plan needs it.
+    /// Returns which optional features the GPU was asked for, in plain words: none until a plan needs one.
     pub fn features(&self) -> Vec<&'static str> {
         self.executor.features()
     }
 
-    /// The frame as data, without running it; with `occlusion=queries` it runs once to see what shows.
+    /// Returns the frame as data, without running it; with `occlusion=queries` it runs once to find the draws that
+    /// show.
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = PlanRequest { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
         let plan = technique::plan(job)?;
         self.without_unseen(plan, &request.choice)
     }
 
-    /// The plan without the draws that show nothing, where the settings ask for that: it runs once.
+    /// Returns the plan without the draws that show nothing, where the settings ask for that: it runs once.
     fn without_unseen(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
         if !choice.common().asks_what_shows {
             return Ok(plan);
@@ -236,31 +237,31 @@ impl Session {
         Ok(plan.without_unseen(&samples))
     }
 
-    /// How the mesh of each object hangs together, with the object's name.
+    /// Returns the topology of each object's mesh, with the object's name.
     pub fn topologies(&mut self, scene: &Scene) -> Vec<(String, Arc<Topology>)> {
         let one = |object: &Object| (object.name.clone(), self.topology(&object.mesh));
         scene.objects.iter().map(one).collect()
     }
 
-    /// How a mesh hangs together.
+    /// Returns the topology of a mesh: whether it is closed, manifold and consistently wound.
     pub fn topology(&mut self, mesh: &Arc<Mesh>) -> Arc<Topology> {
         self.geometry.topology(mesh)
     }
 
-    /// Renders `scene` and keeps every attachment after every pass, or after every draw. Only the
-    /// frame with a snapshot after every pass is timed.
+    /// Renders `scene` and returns every attachment after every pass, or after every draw. Only the frame with a
+    /// snapshot after every pass is timed.
     pub fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
         Ok(self.capture_with_plan(scene, request)?.0)
     }
 
-    /// Renders a scene, and keeps all that can be asked about.
+    /// Renders a scene, and returns all that questions can be asked about.
     pub fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
         let (capture, plan) = self.capture_with_plan(&scene, &request)?;
         let source = Some(Arc::new(FrameSource { scene, request: Some(request) }));
         Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
     }
 
-    /// The same, with the plan that it ran: what [`Session::history`] asks about.
+    /// Renders `scene` and returns the capture with the plan that was run, which [`Session::history`] needs.
     pub fn capture_with_plan(
         &mut self,
         scene: &Scene,
@@ -288,8 +289,8 @@ impl Session {
         Ok((self.assemble(scene, &plan, output, timing), plan))
     }
 
-    /// Runs an already made plan, such as a good one with one thing changed, and keeps what it
-    /// left. `scene` gives the camera and lights that the capture tells of.
+    /// Runs a finished plan, such as a good one with one thing changed, and returns its capture. `scene` gives the
+    /// camera and lights of the capture.
     pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare(plan)?;
         let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;
@@ -359,12 +360,12 @@ impl Session {
     }
 }
 
-/// The middle of durations in milliseconds (the mean of the middle two); `None` of none.
+/// Returns the median of durations in milliseconds (the mean of the middle two); `None` for none.
 pub fn median_ms(durations: &[Duration]) -> Option<f64> {
     median(durations.iter().copied().map(milliseconds).collect())
 }
 
-/// The middle of numbers (the mean of the middle two); `None` of none.
+/// Returns the median of numbers (the mean of the middle two); `None` for none.
 fn median(mut sorted: Vec<f64>) -> Option<f64> {
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.len() / 2;

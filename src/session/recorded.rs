@@ -1,4 +1,4 @@
-//! Another program's frame held against itself: each draw is computed anew from what was stored before it.
+//! Another program's frame compared with itself: each draw is computed again from what was stored before it.
 
 use super::{Session, SessionError};
 use crate::capture::{Capture, DrawState, FrameSnapshot, Image, RecomputeDifference, Snapshot};
@@ -7,8 +7,8 @@ use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
 
 impl Session {
-    /// Computes each draw of another program's frame anew, from what was stored before it, and notes at how many pixels
-    /// that leaves something else than was stored.
+    /// Computes each draw of another program's frame again, from what was stored before it, and records at how many
+    /// pixels the result differs from what was stored.
     pub fn compared_with_rerun(
         &mut self,
         plan: &FramePlan,
@@ -36,7 +36,7 @@ impl Session {
         Ok(checked)
     }
 
-    /// Where a frame of one draw leaves something else than `after`.
+    /// Returns where a frame of one draw leaves something else than `after`.
     fn differs(
         &mut self,
         alone: &FramePlan,
@@ -64,7 +64,7 @@ impl Session {
     }
 }
 
-/// A frame of one draw, whose targets begin with what was stored before it.
+/// Returns a frame of one draw, whose targets begin with what was stored before it.
 fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, Option<&FrameSnapshot>)) -> FramePlan {
     let mut pass = Pass { draws: vec![Draw { mesh: MeshId(0), ..draw.clone() }], light: None, ..pass.clone() };
     if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
@@ -92,7 +92,7 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, 
     }
 }
 
-/// Rows that are not the same bytes.
+/// Returns the rows that are not the same bytes.
 fn unequal_rows<'a>(made: &'a Image, after: &'a Image) -> impl Iterator<Item = (&'a [u8], &'a [u8])> {
     made.rows().zip(after.rows()).filter(|(made, after)| made != after)
 }

@@ -1,4 +1,4 @@
-//! Frames held against the truth: their labels, and their pictures against the one that the truth lights.
+//! Frames compared with the truth: their labels, and their pictures with the one that the truth lights.
 
 use super::SessionError;
 use super::truth::TracedScene;
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::technique::{self, Choice, PlanRequest};
 use std::sync::Arc;
 
-/// Right pictures of one scene: one for each way to shade it.
+/// Reference pictures of one scene: one for each way to shade it.
 pub(super) struct ReferencePictures<'a> {
     scene: &'a Scene,
     traced: &'a TracedScene,
@@ -19,19 +19,19 @@ pub(super) struct ReferencePictures<'a> {
 
 /// How wrong a frame is.
 pub(super) struct FrameError {
-    /// Of labels, summed over lights.
+    /// Errors of labels, summed over lights.
     pub labels: ErrorCounts,
-    /// Pixels of another colour than the right picture's.
+    /// Pixels of another colour than the reference picture's.
     pub wrong_color: u64,
 }
 
 impl<'a> ReferencePictures<'a> {
-    /// Of a scene and its truth; pictures are made when they are first asked for.
+    /// Returns the references of a scene and its truth; each picture is computed when it is first used.
     pub fn new(scene: &'a Scene, traced: &'a TracedScene) -> ReferencePictures<'a> {
         ReferencePictures { scene, traced, pictures: Vec::new() }
     }
 
-    /// Runs a choice's frame, untimed, and judges it.
+    /// Runs a choice's frame, untimed, and compares it with the truth.
     pub fn judge(
         &mut self,
         executor: &mut Executor,
@@ -49,7 +49,7 @@ impl<'a> ReferencePictures<'a> {
         Ok(FrameError { labels: counts.into_iter().sum(), wrong_color })
     }
 
-    /// The scene lit by the truth's labels, in the shading of `choice`.
+    /// Returns the scene lit by the truth's labels, in the shading of `choice`.
     fn picture(&mut self, executor: &mut Executor, choice: &Choice) -> Result<Arc<Image>, SessionError> {
         let choice = choice.truth_in_same_shading();
         if let Some((_, picture)) = self.pictures.iter().find(|(known, _)| *known == choice) {

@@ -6,8 +6,8 @@ use crate::technique::Choice;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-/// Rows of one scene, in the order measured, labelled by what sets them apart `among` all choices of the run;
-/// [`Report::new`](crate::report::Report::new) fills in what depends on the other rows.
+/// Returns rows of one scene, in the order measured, labelled by what distinguishes them `among` all choices of the
+/// run; [`Report::new`](crate::report::Report::new) fills in what depends on the other rows.
 pub fn report_rows(
     scene: &str,
     what: &Measurement,
@@ -43,7 +43,7 @@ pub fn report_rows(
     measured.iter().map(row).collect()
 }
 
-/// What a frame of a scene that moves took, with its set-up.
+/// Returns the times of a frame of a moving scene, with its set-up.
 fn moving(one: &MeasuredTechnique) -> Option<MotionCost> {
     let ms = |all: &[Duration]| median_ms(all);
     let totals: Vec<Duration> = one.setups.iter().zip(&one.frames).map(|(setup, frame)| *setup + *frame).collect();
@@ -52,8 +52,8 @@ fn moving(one: &MeasuredTechnique) -> Option<MotionCost> {
     Some(MotionCost { setup_ms, total_ms, setup_share: all(&one.setups) / all(&totals) })
 }
 
-/// What sets a choice apart from others of its technique: its size, and other settings that differ
-/// between them where they are not the default.
+/// Returns what distinguishes a choice from others of its technique: its size, and other settings that differ between
+/// them where they are not the default.
 fn label(one: &Choice, among: &[Choice]) -> String {
     let technique = one.technique();
     let peers = among.iter().filter(|other| other.technique() == technique);

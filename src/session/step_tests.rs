@@ -1,11 +1,11 @@
-//! How the fragments of a step fared in the tests: a frame is data, so a changed frame counts them.
+//! Results of the tests for the fragments of a step: a frame is data, so a changed frame counts them.
 //!
-//! The frame is run up to the step. Then the step's draws are run twice, each time over a cleared
-//! stencil in which every fragment that passes counts up: with their own depth test, and with none.
-//! The first leaves how many pass the depth test, the second how many there are; depth is written the
-//! first time only, so both see what the step saw. Nobody tests the stencil meanwhile: what its own
-//! test would say follows from the stencil before the step, as long as the step does not change what
-//! it tests. Where it does, and more than one fragment comes, the verdict is unknown.
+//! The frame is run up to the step. Then the step's draws are run twice, each time over a cleared stencil in which
+//! every fragment that passes counts up: with their own depth test, and with none. The first run leaves how many pass
+//! the depth test, the second how many there are; depth is written the first time only, so both test against the step's
+//! own depth. The stencil test is off meanwhile: what its own test would decide follows from the stencil before the
+//! step, as long as the step does not change the bits that it tests. Where it does, and there is more than one
+//! fragment, the verdict is unknown.
 
 use super::{Session, SessionError};
 use crate::capture::{Image, PixelFormat, Snapshot, StencilVerdict, StepTests};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use wgpu::{CompareFunction, Face, StencilOperation};
 
 impl Session {
-    /// How the fragments of a step of `plan`, or of one of its draws, fare in the tests.
+    /// Returns the test results of the fragments of a step of `plan`, or of one of its draws.
     pub fn step_tests(
         &mut self,
         plan: &FramePlan,
@@ -55,7 +55,7 @@ fn clears_stencil(pass: &Pass) -> Option<u8> {
     pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil)
 }
 
-/// The frame that counts, with the draws whose fragments it counts.
+/// Returns the frame that counts, with the draws whose fragments it counts.
 fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(FramePlan, Vec<Draw>)> {
     let pass = plan.passes.get(step)?;
     let target = pass.depth_stencil.as_ref()?;
@@ -99,7 +99,7 @@ fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(
     if attachment.role != AttachmentRole::DepthStencil {
         return None;
     }
-    // The same depth, with a stencil beside it.
+    // The same depth format, with a stencil added.
     attachment.format = match attachment.depth_steps() {
         Some(0xffff) => return None,
         Some(_) => wgpu::TextureFormat::Depth24PlusStencil8,
@@ -109,7 +109,7 @@ fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(
     Some((counting, counted))
 }
 
-/// Every fragment that passes the depth test counts up in the stencil, and nothing else does.
+/// Changes a state so that every fragment that passes the depth test counts up in the stencil, and nothing else does.
 fn count_up(raster: &mut RasterState) {
     let face = StencilFace {
         compare: CompareFunction::Always,
@@ -120,14 +120,14 @@ fn count_up(raster: &mut RasterState) {
     *raster = raster.clone().with_stencil(face, 0);
 }
 
-/// A [`StencilVerdict`] a pixel, from the stencil that the draws found.
+/// Returns a [`StencilVerdict`] for each pixel, from the stencil before the draws.
 fn verdicts(draws: &[Draw], before: &Image, fragments: &Image) -> Image {
     let rules = rules(draws);
     let verdict = |(stored, fragments): (&u8, &u8)| {
         let rule = rules[usize::from(*stored)];
         let verdict = match rule {
             StencilRule { verdict, lasts: true } => verdict,
-            // The first fragment sees what was there before.
+            // The first fragment is tested against what was stored before.
             StencilRule { verdict, lasts: false } if *fragments <= 1 => verdict,
             StencilRule { .. } => StencilVerdict::Unknown,
         };
@@ -138,15 +138,15 @@ fn verdicts(draws: &[Draw], before: &Image, fragments: &Image) -> Image {
     Image::packed(PixelFormat::U8, before.size(), bytes)
 }
 
-/// What the tests say where the stencil held a value.
+/// The stencil test's result for one stored value.
 #[derive(Debug, Clone, Copy)]
 struct StencilRule {
     verdict: StencilVerdict,
-    /// The fragments leave what is tested as it was.
+    /// True where the fragments leave the tested bits as they were.
     lasts: bool,
 }
 
-/// A rule a stored value. Faces that are culled have no say.
+/// Returns a rule for each stored value. Faces that are culled are ignored.
 fn rules(draws: &[Draw]) -> [StencilRule; 256] {
     std::array::from_fn(|stored| {
         let mut rule: Option<StencilRule> = None;
@@ -155,7 +155,7 @@ fn rules(draws: &[Draw]) -> [StencilRule; 256] {
             rule = Some(match rule {
                 None => one,
                 Some(all) if all.verdict == one.verdict => StencilRule { lasts: all.lasts && one.lasts, ..all },
-                // Faces or draws that the test treats differently: which comes here is not told.
+                // The test treats faces or draws differently, and which of them the fragment is of is not known.
                 Some(_) => StencilRule { verdict: StencilVerdict::Unknown, lasts: true },
             });
         }

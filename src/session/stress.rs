@@ -15,33 +15,33 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// What a light's pixels said at the value before, in a motion.
+/// A light's labels at the value before, in a motion.
 #[derive(Debug)]
 pub(super) struct LabelsBefore {
     entrant: Entrant,
     light: usize,
     labels: Vec<u8>,
     truth: Vec<u8>,
-    /// Do labels and truth differ along an edge?
+    /// For each pixel, whether labels and truth differ along an edge.
     excused: Vec<bool>,
-    /// How many more times each pixel's label has changed than its truth.
+    /// For each pixel, how many more times its label has changed than its truth.
     ahead: Vec<i8>,
 }
 
-/// Something made wrong in what a technique does, while truth and expectation stay: it must be found.
+/// An error that is injected into a technique's inputs or plan, while truth and expectation stay: it must be found.
 #[derive(Clone, Copy)]
 pub enum InjectedFault<'a> {
-    /// Nothing is wrong.
+    /// No error.
     None,
-    /// In the scene, before any geometry is made from it.
+    /// Changes the scene, before any geometry is computed from it.
     Scene(&'a dyn Fn(&mut Scene)),
-    /// In the settings, whatever the row says.
+    /// Changes the settings, whatever the row says.
     Choice(&'a dyn Fn(&mut Choice)),
-    /// In the plan.
+    /// Changes the plan.
     Plan(&'a dyn Fn(&mut FramePlan)),
 }
 
-/// What a row is of.
+/// The inputs of a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StressStep<'a> {
     pub case: &'a StressCase,
@@ -50,18 +50,18 @@ pub(super) struct StressStep<'a> {
     pub size: [u32; 2],
 }
 
-/// The scene of a case at a value.
+/// Returns the scene of a case at a value.
 pub(super) fn scene_of(case: &StressCase, value: f64) -> Result<Scene, SessionError> {
     let named = |source| SceneError::Mesh { name: format!("{} {value}", case.name), source };
     Ok(case.scene(value).map_err(named)?)
 }
 
 impl Session {
-    /// Runs `cases` with pictures of `size` pixels, but for those that have a size of their own; with `only`, no other techniques.
+    /// Runs `cases` with pictures of `size` pixels, except those that have a size of their own; with `only`, no other
+    /// techniques.
     ///
     /// # Errors
-    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU;
-    /// [`SessionError::Cancelled`].
+    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU; [`SessionError::Cancelled`].
     pub fn stress(
         &mut self,
         cases: &[&'static StressCase],
@@ -72,7 +72,7 @@ impl Session {
         self.stress_rows(StressSteps::new(cases, only, size), progress)
     }
 
-    /// Makes all rows that are left.
+    /// Computes all rows that are left.
     pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());
@@ -84,7 +84,7 @@ impl Session {
         Err(SessionError::Cancelled)
     }
 
-    /// Runs values of a case with `fault` in them, judged like any others: shows what would be found.
+    /// Runs values of a case with `fault` in them, judged like any others: shows whether it would be found.
     pub fn stress_faulty(
         &mut self,
         case: &StressCase,
@@ -111,12 +111,12 @@ impl Session {
         Ok(rows)
     }
 
-    /// The truth of the scene to which the case converges.
+    /// Returns the truth of the scene to which the case converges.
     fn limit_of(&mut self, case: &StressCase, size: [u32; 2]) -> Result<Option<Arc<TracedScene>>, SessionError> {
         let Some(ExpectedTrend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
         let named = |source| SceneError::Mesh { name: format!("the limit of {}", case.name), source };
         let scene = limit().map_err(named)?;
-        // Beside the row's own truth, so that neither is traced again for each row.
+        // Cached apart from the row's own truth, so that neither is traced again for each row.
         std::mem::swap(&mut self.traced, &mut self.limit);
         let traced = self.traced(&scene, size, &Progress::default());
         std::mem::swap(&mut self.traced, &mut self.limit);
@@ -131,7 +131,7 @@ impl Session {
         fault: InjectedFault,
     ) -> Result<StressRow, SessionError> {
         let StressStep { case, entrant, value, size } = *step;
-        // Its own progress: the steps of the whole are rows.
+        // It has its own progress: the steps of the whole are rows.
         let traced = self.traced(scene, size, &Progress::default())?;
         let limit = self.limit_of(case, size)?;
         let choice = case.choice(&entrant, value)?;
@@ -140,7 +140,7 @@ impl Session {
         }
         let (scene, used) = fault.applied(scene, &choice);
         let start = Instant::now();
-        // Geometry that another technique has found out would be had for nothing.
+        // An empty cache: the geometry that another technique has cached would cost nothing here.
         let cache = &mut GeometryCache::default();
         let mut plan = technique::plan(PlanRequest { scene: &scene, size, choice: &used, cache })?;
         if let InjectedFault::Plan(change) = fault {
@@ -200,7 +200,7 @@ impl Session {
 }
 
 impl InjectedFault<'_> {
-    /// What the technique is given in place of these.
+    /// Returns the scene and choice that the technique is given in place of these.
     pub(super) fn applied<'a>(self, scene: &'a Scene, choice: &Choice) -> (Cow<'a, Scene>, Choice) {
         let (mut scene, mut choice) = (Cow::Borrowed(scene), choice.clone());
         match self {
@@ -212,12 +212,12 @@ impl InjectedFault<'_> {
     }
 }
 
-/// Pixels whose label has changed there and back although the truth did not.
+/// Counts pixels whose label has changed there and back although the truth did not.
 ///
-/// A label may change a step before the truth or after it: then it is one change ahead or behind for
-/// that time. Two ahead is a flicker. A change does not count where the truth changes beside the pixel:
-/// an edge touches it then. Excused pixels along edges count too, since a flicker can hide there, but
-/// only alone: an edge that lies along a row of pixels moves all of them at once.
+/// A label may change a step before the truth or after it: then it is one change ahead or behind for that time. Two
+/// ahead is a flicker. A change does not count where the truth changes beside the pixel: an edge touches it then.
+/// Excused pixels along edges count too, since a flicker can hide there, but only alone: an edge that lies along a row
+/// of pixels moves all of them at once.
 fn flips_between(last: &LabelsBefore, now: &mut LabelsBefore, width: usize) -> u64 {
     let (count, height) = (now.labels.len(), now.labels.len() / width.max(1));
     let moves = |at: usize| last.truth[at] != now.truth[at];
@@ -247,7 +247,7 @@ fn flips_between(last: &LabelsBefore, now: &mut LabelsBefore, width: usize) -> u
 mod tests {
     use super::*;
 
-    /// Three by three pixels that stand still.
+    /// Three by three pixels that do not change.
     fn nine_pixels() -> LabelsBefore {
         LabelsBefore {
             entrant: Entrant::of(Technique::ZFail),
@@ -259,8 +259,8 @@ mod tests {
         }
     }
 
-    /// Flips of the middle of three by three pixels, step by step; the others stand still, but for
-    /// a corner of the truth.
+    /// Returns the flips of the middle of three by three pixels, step by step; the others do not change, except a
+    /// corner of the truth.
     fn flips(labels: &[u8], truth: &[u8], corner: &[u8]) -> Vec<u64> {
         let at = |step: usize| {
             let mut now = nine_pixels();
@@ -289,7 +289,7 @@ mod tests {
         assert_eq!(flips(&[0, 1, 0, 0, 0], &still, &[0, 1, 0, 0, 0]), [0; 4], "an edge touches it and goes");
     }
 
-    /// Flips where these of three by three pixels change there and back.
+    /// Returns the flips where these of three by three pixels change there and back.
     fn flips_of(pixels: &[usize], is_excused: bool) -> u64 {
         let at = |label: u8| {
             let mut now = nine_pixels();

@@ -8,21 +8,21 @@ use crate::stress::{Entrant, StressCase, StressRow};
 use crate::technique::Technique;
 use std::collections::VecDeque;
 
-/// Stress cases under way: the rows that are still to be made, and what a motion carries from one
-/// value to the next.
+/// The rest of a run of stress cases: the rows that are still to be computed, and what a motion carries from one value
+/// to the next.
 #[derive(Debug)]
 pub struct StressSteps {
-    /// Each with the index of its case and of its value.
+    /// The rows that are left, each with the index of its case and of its value.
     left: VecDeque<([usize; 2], StressStep<'static>)>,
-    /// Case and value of the scene.
+    /// Indices of case and value of the scene.
     place: Option<[usize; 2]>,
     scene: Option<Scene>,
     before: Vec<LabelsBefore>,
 }
 
 impl StressSteps {
-    /// All values of `cases`, with pictures of `size` pixels but for those that have a size of their
-    /// own; with `only`, no other techniques.
+    /// Returns the steps of all values of `cases`, with pictures of `size` pixels except for those that have a size of
+    /// their own; with `only`, no other techniques.
     pub fn new(cases: &[&'static StressCase], only: &[Technique], size: [u32; 2]) -> StressSteps {
         let mut left = VecDeque::new();
         for (case_index, case) in cases.iter().enumerate() {
@@ -37,14 +37,14 @@ impl StressSteps {
         StressSteps { left, place: None, scene: None, before: Vec::new() }
     }
 
-    /// Without those rows that take many seconds and gigabytes: for where other work waits between two.
+    /// Leaves out the rows that take many seconds and gigabytes: for callers that have other work between two rows.
     #[must_use]
     pub fn without_heavy(mut self) -> StressSteps {
         self.left.retain(|(_, step)| step.case.is_light(step.value));
         self
     }
 
-    /// Those of one part of the run: each technique of each case, with all of its values, is made by one.
+    /// Returns the steps of one shard of the run: each technique of each case, with all of its values, is in one shard.
     pub fn of(mut self, shard: Shard) -> (StressSteps, ShardPart) {
         let name = |StressStep { case, entrant, value, size: [width, height] }: &StressStep| {
             format!("{} · {entrant} · {value} · {width}×{height}", case.name)
@@ -69,20 +69,19 @@ impl StressSteps {
         (self, ShardPart::new(shard, places, how, names))
     }
 
-    /// How many rows are still to be made.
+    /// The number of rows that are still to be computed.
     pub fn left(&self) -> usize {
         self.left.len()
     }
 
-    /// Index and name of the case that the next row is of; `None` at the end.
+    /// Index and name of the case of the next row; `None` at the end.
     pub fn next_case(&self) -> Option<(usize, &'static str)> {
         self.left.front().map(|([case, _], step)| (*case, step.case.name))
     }
 }
 
 impl Session {
-    /// Makes the next row; `None` at the end. What the session does between two rows changes none of
-    /// them.
+    /// Computes the next row; `None` at the end. Other work of the session between two rows changes none of them.
     pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
         if steps.place.is_none_or(|[case, _]| case != place[0]) {

@@ -11,12 +11,12 @@ use std::time::Duration;
 
 /// Frames of each technique that are timed, after one that is not.
 const RUNS: usize = 3;
-/// Where the first frame takes as long, one more is timed and no others.
+/// If the first frame takes as long as this, only one more is timed.
 const LONG: Duration = Duration::from_millis(500);
 
 impl Session {
-    /// Runs every candidate on a scene: the right ones first, of these the fastest. What can't draw the scene
-    /// is left out.
+    /// Runs every candidate on a scene, and returns the right ones first, of these the fastest. Those that can't draw
+    /// the scene are left out.
     pub fn suited(
         &mut self,
         scene: &Scene,

@@ -7,11 +7,11 @@ use crate::scene::{Scene, VaryError};
 use crate::technique::Choice;
 use std::str::FromStr;
 
-/// A sweep whose values are given as a range has at most so many.
+/// The most values of a sweep that are given as a range.
 const MOST_OF_RANGE: usize = 7;
-/// And at most so many in all.
+/// The most values in all.
 const MOST: usize = 64;
-/// Most lights, casters and triangles.
+/// The most lights, casters and triangles.
 const MOST_LIGHTS: f64 = 64.0;
 const MOST_CASTERS: f64 = 65_536.0;
 const MOST_TRIANGLES: f64 = 1e7;
@@ -23,7 +23,7 @@ const SIZE: &str = "size";
 /// What changes in a sweep, and its values.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sweep {
-    /// Width and height of the picture.
+    /// Width and height of the picture in pixels.
     Size(Vec<[u32; 2]>),
     /// How many lights there are.
     Lights(Vec<usize>),
@@ -31,14 +31,14 @@ pub enum Sweep {
     Casters(Vec<usize>),
     /// Triangles of all casters together.
     Triangles(Vec<usize>),
-    /// Texels a side, of the techniques that have the setting `size`.
+    /// Texels a side, for the techniques that have the setting `size`.
     MapSize(Vec<usize>),
 }
 
 impl FromStr for Sweep {
     type Err = String;
 
-    /// `size=640x360,1280x720`, `lights=1..4`, `triangles=1e3..1e6`.
+    /// Parses `size=640x360,1280x720`, `lights=1..4`, `triangles=1e3..1e6`.
     fn from_str(text: &str) -> Result<Sweep, String> {
         let (name, values) = text.split_once('=').ok_or("give a name and values, as `lights=1..4`")?;
         let whole = |most: f64| -> Result<Vec<usize>, String> {
@@ -71,7 +71,8 @@ impl FromStr for Sweep {
     }
 }
 
-/// Values of `a,b,c`, each distinct, or steps from `a` to `b`: even ones where few whole numbers are between, else even ratios.
+/// Returns the values of `a,b,c`, each distinct, or steps from `a` to `b`: even ones where few whole numbers are
+/// between, else even ratios.
 fn values_of(text: &str, read: impl Fn(&str) -> Option<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let mut values = match text.split_once("..") {
         None => text.split(',').map(|value| read(value.trim())).collect::<Option<Vec<_>>>()?,
@@ -110,19 +111,19 @@ fn values_of(text: &str, read: impl Fn(&str) -> Option<Vec<f64>>) -> Option<Vec<
     (values.len() <= MOST).then_some(values)
 }
 
-/// What is measured together: rows of one scene at one value.
+/// Measurements of one scene at one value.
 #[derive(Debug, Clone)]
 pub struct SweepBlock {
-    /// The scene, as it is at that value.
+    /// The scene at that value.
     pub scene: Scene,
-    /// What of it.
+    /// What to measure on it.
     pub what: Measurement,
     /// The value; `None` without a sweep.
     pub swept: Option<SweepValue>,
 }
 
 impl Sweep {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     pub fn name(&self) -> &'static str {
         match self {
             Sweep::Size(_) => "size",
@@ -133,7 +134,7 @@ impl Sweep {
         }
     }
 
-    /// A scene at each value. Over map sizes, techniques without maps are left out: nothing changes for them.
+    /// Returns a scene for each value. Over map sizes, techniques without maps are left out: nothing changes for them.
     pub fn blocks(&self, scene: &Scene, what: &Measurement) -> Result<Vec<SweepBlock>, VaryError> {
         let swept = |value: f64, text: String| Some(SweepValue { name: self.name().to_owned(), value, text });
         let counted = |value: &usize| swept(*value as f64, numbers::count(*value as u64));
@@ -168,7 +169,7 @@ impl Sweep {
     }
 }
 
-/// The choices that have maps, with maps of that size, each once.
+/// Returns the choices that have maps, with maps of that size, each once.
 fn with_map_size(choices: &[Choice], size: usize) -> Vec<Choice> {
     let mut sized: Vec<Choice> = Vec::new();
     for choice in choices {

@@ -1,4 +1,4 @@
-//! Mends that are tried: what each leaves wrong, which prove something alone or together, and what that advises.
+//! Trials of fixes: what each leaves wrong, which prove something alone or together, and the advice that follows.
 
 use super::truth::TracedScene;
 use super::{CaptureRequest, InjectedFault, Session, SessionError};
@@ -16,20 +16,20 @@ use crate::technique::Technique;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Mends that are tried at once, for regions that none of them clears alone.
+/// The most fixes that are tried at once, for regions that none of them clears alone.
 const MOST_TOGETHER: usize = 3;
 
-/// What is wrong in a frame.
+/// The wrong pixels of a frame.
 pub(super) struct JudgedFrame {
-    /// By light: a [`Finding`] a pixel.
+    /// For each light, a [`Finding`] for each pixel.
     pub findings: Vec<Vec<u8>>,
-    /// By light: pixels that were darkened twice.
+    /// For each light, the numbers of pixels that were darkened twice.
     pub too_dark: Vec<Vec<usize>>,
     pub error: ErrorCounts,
     pub wrong: WrongPixels,
 }
 
-/// The runs of mends so far; what can't run is kept with the reason.
+/// The runs of fixes so far; for a fix that can't run, the reason.
 pub(super) struct TrialRuns<'a> {
     pub scene: &'a Scene,
     pub request: &'a CaptureRequest,
@@ -40,12 +40,12 @@ pub(super) struct TrialRuns<'a> {
 }
 
 impl Session {
-    /// What a mend leaves wrong. Only its labels are kept, but of techniques that darken in the picture.
+    /// Returns what a fix leaves wrong. Only its labels are captured, except for techniques that darken the picture.
     fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
         let (scene, _, plan) = self.plan_fixed(runs.scene, runs.request, runs.fault, fix)?;
         self.check_memory_budget(&plan)?;
         if planar::darkens_in_the_picture(&plan) {
-            // What is too dark is not told from a larger picture.
+            // A larger picture does not show which pixels are too dark.
             if fix.larger.is_some() {
                 return self.run_fixed(runs, &Fix { larger: None, ..fix.clone() });
             }
@@ -55,7 +55,7 @@ impl Session {
         let ready = self.executor.prepare_once(&plan)?;
         let mut labels = self.executor.labels(ready)?;
         if let Some(times) = fix.larger {
-            // What the middles of the picture's own pixels show.
+            // Take the labels at the centres of the picture's own pixels.
             labels.iter_mut().flatten().for_each(|image| *image = Arc::new(image.every(times)));
         }
         Ok(judged(&plan, runs.traced, &labels, None).wrong)
@@ -69,7 +69,7 @@ impl Session {
         }
     }
 
-    /// Each suspicion with what its mends have shown, the most likely first.
+    /// Returns each suspected cause with what its fixes have shown, the most likely first.
     pub(super) fn proven(
         &mut self,
         runs: &mut TrialRuns,
@@ -101,7 +101,7 @@ impl Session {
                     small = Some((fix, left));
                 }
             }
-            // What another technique mends wholly, this one may mend nearly.
+            // Where another technique fixes the region wholly, this one may fix it nearly.
             let is_other = best.as_ref().is_some_and(|(best, ..)| best.technique.is_some());
             let staying = small.filter(|_| is_other).map(|(fix, pixels_left)| FixWithinTechnique { fix, pixels_left });
             if let Some(FixWithinTechnique { fix, pixels_left }) = &staying {
@@ -119,7 +119,7 @@ impl Session {
         Ok(ranked(tried))
     }
 
-    /// Several causes may be at work at once: then their mends prove something only together.
+    /// Tries fixes together: where several causes are at work at once, their fixes prove something only so.
     fn try_together(
         &mut self,
         runs: &mut TrialRuns,
@@ -149,7 +149,7 @@ impl Session {
                 continue;
             }
             let all = fixes.iter().fold(Fix::default(), |all, fix| all.and(fix));
-            // What can't be run proves nothing; why, each has said of its own mend.
+            // What can't be run proves nothing; each fix has recorded the reason.
             let Ok(after) = self.run_once(runs, &all)? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
             let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
@@ -169,7 +169,7 @@ impl Session {
         Ok(())
     }
 
-    /// What a mend leaves wrong, or why it can't be run. Each is run once for all regions.
+    /// Returns what a fix leaves wrong, or why it can't be run. Each is run once for all regions.
     fn run_once(&mut self, runs: &mut TrialRuns, fix: &Fix) -> Result<Result<WrongPixels, String>, SessionError> {
         if runs.progress.is_cancelled() {
             return Err(SessionError::Cancelled);
@@ -186,7 +186,7 @@ impl Session {
         Ok(done)
     }
 
-    /// What leaves the least wrong in the whole frame.
+    /// Returns the fix that leaves the least wrong in the whole frame.
     pub(super) fn advice(
         &mut self,
         runs: &mut TrialRuns,
@@ -194,7 +194,7 @@ impl Session {
         before: &WrongPixels,
         technique: Technique,
     ) -> Result<Option<Advice>, SessionError> {
-        // Whatever can't be run is no candidate: only what was run is asked below.
+        // A fix that can't be run is no candidate: only those that were run are compared below.
         let before = before.count();
         let proven = |region: &RegionFound| {
             let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
@@ -208,10 +208,10 @@ impl Session {
         }
         let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
         if !regions.iter().all(is_proven) {
-            // Of what no rule explains, much is right there.
+            // Pixels that no rule explains are often right there.
             self.run_once(runs, &Fix::technique(Technique::Auto))?.ok();
         }
-        // For who wants to keep the technique: all that its settings can do.
+        // For readers who want to stay with the technique: all that its settings can do.
         self.run_once(runs, &Fix { technique: None, ..all })?.ok();
         let left = runs.done.iter().filter_map(|(fix, done)| Some((done.as_ref().ok()?.count(), fix.weight(), fix)));
         let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
@@ -230,7 +230,7 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
     capture.lights.iter().map(|light| light.shadow.clone()).collect()
 }
 
-/// Compares labels with the truth; with the capture, also what was darkened in the picture.
+/// Compares labels with the truth; with the capture, also finds what was darkened in the picture.
 pub(super) fn judged(
     plan: &FramePlan,
     traced: &TracedScene,

@@ -1,4 +1,4 @@
-//! The ground truth of a scene, kept while nothing that it depends on changes.
+//! The ground truth of a scene, cached while nothing that it depends on changes.
 
 use super::{Session, SessionError};
 use crate::accuracy::{self, Accuracy};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// While a truth is traced, how often what came in between is looked at.
+/// How often the callback runs while a truth is traced.
 const BETWEEN: Duration = Duration::from_millis(5);
 
 /// A traced scene.
@@ -27,7 +27,7 @@ pub(super) struct TracedScene {
 struct TruthKey {
     size: [u32; 2],
     camera: Camera,
-    /// Where rays of sight end.
+    /// Distance at which view rays end, metres.
     far: Option<f64>,
     lights: Vec<DVec4>,
     objects: Vec<ObjectKey>,
@@ -57,7 +57,7 @@ impl TruthKey {
 }
 
 impl Session {
-    /// The ground truth of a capture of `scene`, and how the technique differs from it.
+    /// Returns the ground truth of a capture of `scene`, and how the technique differs from it.
     pub fn truth(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<FrameTruth, SessionError> {
         let traced = self.traced_for(scene, capture, progress)?;
         let size = capture.size;
@@ -73,16 +73,16 @@ impl Session {
                 CapturedTruth { labels, findings: image(findings), error: counts, worst }
             }));
         }
-        // Where eight bits read a count of 256 as none, the truth alone would not say why.
+        // Where eight bits read a count of 256 as none, the truth alone would not explain it.
         Ok(FrameTruth { size, lights, counts: self.counts(scene, capture)? })
     }
 
-    /// A capture of `scene` with its truth.
+    /// Returns a capture of `scene` with its truth.
     pub fn judged(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<Capture, SessionError> {
         Ok(capture.with_truth(&self.truth(scene, capture, progress)?))
     }
 
-    /// The truth of a scene, traced unless it is the last one traced.
+    /// Returns the truth of a scene, traced unless it is the last one traced.
     pub(super) fn traced(
         &mut self,
         scene: &Scene,
@@ -92,7 +92,8 @@ impl Session {
         self.traced_to(scene, size, None, progress)
     }
 
-    /// The truth that a capture is held against: what lies beyond another program's far plane is not in its picture.
+    /// Returns the truth that a capture is compared with: what lies beyond another program's far plane is not in its
+    /// picture.
     pub(super) fn traced_for(
         &mut self,
         scene: &Scene,
@@ -119,7 +120,7 @@ impl Session {
         Ok(self.keep_truth(key, tracer, truth))
     }
 
-    /// The same on a thread of its own, while `between` is called every now and then.
+    /// Traces on a thread of its own, while `between` is called at intervals.
     pub(super) fn traced_between(
         &mut self,
         scene: &Scene,
@@ -156,7 +157,7 @@ impl Session {
     }
 }
 
-/// What the truth of a scene costs.
+/// Times of the truth of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruthCost {
     /// Sorting the scene's triangles as the eye and each light see them.
@@ -185,7 +186,7 @@ pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCos
 }
 
 impl TracedScene {
-    /// Holds labels of a light against the truth.
+    /// Compares labels of a light with the truth.
     pub fn compare(&self, light: usize, labels: &Image) -> Accuracy {
         let rows: Vec<&[u8]> = labels.rows().collect();
         accuracy::compare(&self.tracer, &self.truth, light, &rows)

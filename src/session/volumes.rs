@@ -9,20 +9,20 @@ use glam::{DQuat, DVec3, DVec4};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// How far lights stand from the mesh, in distances of its farthest corner from the origin.
+/// Distance of the lights from the mesh, in distances of its farthest corner from the origin.
 const LIGHT_DISTANCE: f64 = 4.0;
 
-/// Times of building what a mesh needs once, and of a volume for a light never seen before: sides
-/// and both caps of every triangle.
+/// Times of building what a mesh needs once, and of a volume for a light never seen before: sides and both caps of
+/// every triangle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct VolumeCost {
-    /// Of the mesh.
+    /// Triangles of the mesh.
     pub triangles: usize,
-    /// Of the mesh.
+    /// Edges of the mesh.
     pub edges: usize,
-    /// Edges with sides, and triangles of the volume, for the last light.
+    /// Edges of the last light's volume that have sides.
     pub silhouette_edges: usize,
-    /// For the last light.
+    /// Triangles of the last light's volume.
     pub volume_triangles: usize,
     /// Once a mesh: the edge list.
     pub edge_list: Vec<Duration>,
@@ -30,11 +30,11 @@ pub struct VolumeCost {
     pub planes: Vec<Duration>,
     /// For each light: the exact facing of every triangle.
     pub facing: Vec<Duration>,
-    /// For each light: every edge's multiplicity, keeping those that are not 0.
+    /// For each light: every edge's multiplicity, storing those that are not 0.
     pub multiplicities: Vec<Duration>,
-    /// For each light: indices of sides and caps, into a buffer that is kept.
+    /// For each light: indices of sides and caps, into a buffer that is reused.
     pub indices: Vec<Duration>,
-    /// The last three together.
+    /// Facing, multiplicities and indices together.
     pub new_light: Vec<Duration>,
     /// Not part of it: what a plan adds, hashing and sharing the indices.
     pub hashing: Vec<Duration>,
@@ -92,7 +92,7 @@ fn timed<T>(times: &mut Vec<Duration>, is_timed: bool, work: impl FnOnce() -> T)
     done
 }
 
-/// Point lights all round, no two from the same side.
+/// Returns point lights all round, no two from the same side.
 fn light(run: usize, reach: f64) -> DVec4 {
     // The golden angle about one axis, any other about the next.
     let turn = DQuat::from_rotation_y(2.399_963 * run as f64) * DQuat::from_rotation_x(0.9 * run as f64);

@@ -1,7 +1,7 @@
 //! What is expected of a technique at one value.
 //!
-//! A known [`KnownFailure`] says at which values it shows, what its wrong pixels are, and of how many it
-//! is the reason. Beyond these the technique must be right, so a known failure excuses nothing else.
+//! A [`KnownFailure`] states at which values it shows, of what kind its wrong pixels are, and how many it explains.
+//! Beyond these the technique must be right, so a known failure excuses nothing else.
 
 use super::Entrant;
 use crate::technique::{ComparisonRole, Technique};
@@ -10,15 +10,15 @@ use std::fmt;
 /// A failure that is known.
 #[derive(Debug, Clone, Copy)]
 pub struct KnownFailure {
-    /// Whose.
+    /// The technique that fails.
     pub of: Entrant,
-    /// Why it shows.
+    /// The reason, in words.
     pub because: &'static str,
-    /// At which values.
+    /// Returns whether it shows at a value.
     pub at: fn(f64) -> bool,
-    /// How.
+    /// How it shows.
     pub symptom: FailureSymptom,
-    /// Must it show there? Else it may.
+    /// True where it must show at these values; false where it may.
     pub must_show: bool,
 }
 
@@ -27,24 +27,24 @@ pub struct KnownFailure {
 pub struct FailureSymptom {
     /// Its name, such as `near-plane`.
     pub name: &'static str,
-    /// What its wrong pixels are.
+    /// The kind of its wrong pixels.
     pub kind: WrongPixelKind,
-    /// It makes at most this share of the compared pixels wrong.
+    /// The largest share of the compared pixels that it makes wrong, 0 to 1.
     pub most: f64,
 }
 
-/// What wrong pixels are.
+/// Kinds of wrong pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WrongPixelKind {
     /// Dark, and lit in truth.
     False,
     /// Lit, and dark in truth.
     Missing,
-    /// Either.
+    /// One of both.
     Either,
     /// Some of each.
     Mixed,
-    /// Either, or of another surface than in truth.
+    /// One of both, or another surface than in truth.
     Any,
 }
 
@@ -60,13 +60,13 @@ pub enum ExpectedResult {
 }
 
 named_enum! {
-    /// What came of it.
+    /// The verdict on a row or a summary.
     pub enum StressVerdict {
         /// Nothing is wrong.
         Holds = "holds",
-        /// What is wrong was known to be.
+        /// The wrong pixels are those of a known failure.
         FailsAsKnown = "fails as known",
-        /// Nobody expected this.
+        /// The result is not as expected.
         Unexpected = "unexpected",
     }
 }
@@ -76,7 +76,7 @@ named_enum! {
     pub enum UnexpectedResult {
         /// The truth has too few lit or dark pixels for the row to mean anything.
         LittleToSee = "too few lit or dark pixels to compare",
-        /// Wrong pixels, where none is known.
+        /// There are wrong pixels, where no failure is known.
         Wrong = "wrong where it must be right",
         /// The known failure does not show.
         NotShown = "right where it is known to fail",
@@ -92,54 +92,54 @@ named_enum! {
 }
 
 impl KnownFailure {
-    /// A failure that shows at every value, anyhow.
+    /// Returns a failure that shows at every value, with any kind and share of wrong pixels.
     pub const fn new(of: Entrant, name: &'static str, because: &'static str) -> KnownFailure {
         let symptom = FailureSymptom { name, kind: WrongPixelKind::Either, most: 1.0 };
         KnownFailure { of, because, at: |_| true, symptom, must_show: true }
     }
 
-    /// Another's.
+    /// Returns the same failure of another technique.
     #[must_use]
     pub const fn of(self, of: Entrant) -> KnownFailure {
         KnownFailure { of, ..self }
     }
 
-    /// It shows at these values only.
+    /// Limits it to values for which `at` is true.
     pub const fn at(self, at: fn(f64) -> bool) -> KnownFailure {
         KnownFailure { at, ..self }
     }
 
-    /// Its wrong pixels are false shadow.
+    /// States that its wrong pixels are false shadow.
     #[must_use]
     pub const fn is_false(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::False, ..self.symptom }, ..self }
     }
 
-    /// Its wrong pixels are missing shadow.
+    /// States that its wrong pixels are missing shadow.
     #[must_use]
     pub const fn is_missing(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Missing, ..self.symptom }, ..self }
     }
 
-    /// Its wrong pixels are false shadow and missing shadow, some of each.
+    /// States that its wrong pixels are false shadow and missing shadow, some of each.
     #[must_use]
     pub const fn is_mixed(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Mixed, ..self.symptom }, ..self }
     }
 
-    /// Its wrong pixels may be those of another surface.
+    /// States that its wrong pixels may be those of another surface.
     #[must_use]
     pub const fn is_any(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Any, ..self.symptom }, ..self }
     }
 
-    /// It makes at most this share of the compared pixels wrong.
+    /// States the largest share of the compared pixels that it makes wrong, 0 to 1.
     #[must_use]
     pub const fn at_most(self, most: f64) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { most, ..self.symptom }, ..self }
     }
 
-    /// It need not show.
+    /// States that it need not show.
     #[must_use]
     pub const fn perhaps(self) -> KnownFailure {
         KnownFailure { must_show: false, ..self }
@@ -150,7 +150,7 @@ impl KnownFailure {
     }
 }
 
-/// What texels do along a shadow's edge, for techniques that are never promised to be right.
+/// Returns the failure of texels along a shadow's edge, for techniques that are never promised to be right.
 pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
     let ComparisonRole::Rival { texels, .. } = technique.description().standing else { return None };
     let (most, because) = texels?;
@@ -158,7 +158,7 @@ pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
 }
 
 impl ExpectedResult {
-    /// In JSON and tables.
+    /// Its name in JSON and tables.
     pub fn name(self) -> &'static str {
         self.symptom().map_or("right", |symptom| symptom.name)
     }

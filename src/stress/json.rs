@@ -1,22 +1,20 @@
-//! The machine-readable form: rows, and one entry a case and technique.
+//! The results as JSON: rows, and one entry a case and technique.
 //!
-//! A row and its summary have the same `case` and `entrant`: the technique with the settings that the
-//! case gives it, as the table has it. `settings` are all of a row's, what the number drives included,
-//! and of a summary only those that the entrant changes. In a summary `worst` is the most wrong pixels
-//! at one value and `compared` how many were compared there; a row's `compared` is its own.
-//! `frame_ms` is the median of `timed_frames` frames, and `setup_from_nothing` says that no pipeline of
-//! an earlier row was used; geometry never is.
+//! A row and its summary have the same `case` and `entrant`: the technique with the settings that the case gives it, as
+//! in the table. `settings` are all of a row's, including the one that the number drives, and of a summary only those
+//! that the entrant changes. In a summary `worst` is the most wrong pixels at one value and `compared` how many were
+//! compared there; a row's `compared` is its own. `frame_ms` is the median of `timed_frames` frames, and
+//! `setup_from_nothing` says that no pipeline of an earlier row was used; geometry never is.
 //!
-//! A part of a run, which `shard` is about, has only its rows, and summaries of these.
+//! A part of a run, which `shard` describes, has only its rows, and summaries of these.
 //!
-//! `surprise` says in words why a row is unexpected, and a summary's is that of the first such row, whose
-//! value is `surprise_at`; both are null where nothing is. A summary's `course` tells how the rows of a
-//! case change from value to value, where that is the case's lesson: `text`, and whether it `holds`; one
-//! that does not makes the summary unexpected without a surprise. `breaks_at` is the first value with a
-//! wrong pixel, `too_many_excused_at` the first at which so many pixels differ along edges that excusing
-//! them hides an error: a known failure may show by that alone. Of a row's pixels, summed over lights,
-//! `lit` and `shadow` are so in truth. Expectations are those of pictures of `measured_at` pixels: at
-//! another `size` a failure may not show, or show more.
+//! `surprise` says in words why a row is unexpected, and a summary's is that of the first such row, whose value is
+//! `surprise_at`; both are null where nothing is. A summary's `course` says how the rows of a case change from value to
+//! value, where that is the case's lesson: `text`, and whether it `holds`; one that does not makes the summary
+//! unexpected without a surprise. `breaks_at` is the first value with a wrong pixel, `too_many_excused_at` the first at
+//! which so many pixels differ along edges that excusing them hides an error: a known failure may show by that alone.
+//! Of a row's pixels, summed over lights, `lit` and `shadow` are the numbers in truth. Expectations are those of
+//! pictures of `measured_at` pixels: at another `size` a failure may not show, or show more.
 
 use super::{
     MEASURED_AT, StressCase, StressResults, StressRow, StressSummary, StressVerdict, TechniqueCourse, TruthCounts,
@@ -28,33 +26,33 @@ use crate::shards::ShardPart;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Version of the form.
+/// Version of the format.
 const SCHEMA: u32 = 1;
 
-/// What makes JSON no results of stress cases.
+/// Why JSON can't be read as results of stress cases.
 #[derive(Debug, thiserror::Error)]
 pub enum StressReadError {
     /// Not JSON, or fields are missing.
     #[error("the rows can't be read: {0}")]
     Json(#[from] serde_json::Error),
-    /// Written by another version.
+    /// It was written by another version.
     #[error("rows of schema {found} can't be read: make them again, this version knows schema {SCHEMA}")]
     Schema {
-        /// The schema it names.
+        /// The schema that the file names.
         found: u32,
     },
-    /// Of a case or an entrant that this version does not know.
+    /// It has a case or an entrant that this version does not know.
     #[error("this version has no stress case `{case}` with `{entrant}`: make the rows again")]
     Unknown {
-        /// The case.
+        /// Name of the case.
         case: String,
-        /// The technique, with its settings.
+        /// Name of the technique, with its settings.
         entrant: String,
     },
 }
 
 impl StressResults {
-    /// Machine-readable; `assets/help/json.md` says what each field means.
+    /// Returns the results as JSON; `assets/help/json.md` says what each field means.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let document = Document {
             schema: SCHEMA,
@@ -68,7 +66,7 @@ impl StressResults {
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
 
-    /// Reads what [`Stress::to_json`] writes.
+    /// Reads what [`StressResults::to_json`] writes.
     pub fn from_json(text: &str) -> Result<StressResults, StressReadError> {
         let Document { schema, adapter, size, shard: part, rows, .. } = serde_json::from_str(text)?;
         if schema != SCHEMA {
@@ -79,7 +77,7 @@ impl StressResults {
     }
 }
 
-/// What of it follows from its rows is worked out anew when it is read.
+/// The document. What follows from its rows is computed again when it is read.
 #[derive(Serialize, Deserialize)]
 struct Document {
     schema: u32,

@@ -1,4 +1,4 @@
-//! Rows, and what they say of each case and technique.
+//! Rows, and the summary of each case and technique.
 
 use super::expect::{ExpectedResult, StressVerdict, UnexpectedResult};
 use super::row::StressRow;
@@ -7,7 +7,7 @@ use super::{Entrant, StressCase};
 use crate::capture::AdapterInfo;
 use crate::shards::{self, MergeError, ResultsFile, ShardPart};
 
-/// How a technique did in a case.
+/// The summary of a technique in a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressSummary {
     /// Name of the case.
@@ -18,37 +18,37 @@ pub struct StressSummary {
     pub breaks_at: Option<f64>,
     /// The first value with too many pixels excused along edges; `None` where there is none.
     pub blurred_at: Option<f64>,
-    /// Most wrong pixels at one value, of how many compared.
+    /// The most wrong pixels at one value, and how many were compared there.
     pub worst: (u64, u64),
-    /// Flips over the whole motion.
+    /// Number of flips over the whole motion; `None` where the case is no motion.
     pub flips: Option<u64>,
-    /// The failure that must show at some value, else the one that may, else to be right.
+    /// The failure that must show at some value, else the one that may, else that the technique is right.
     pub expected: ExpectedResult,
-    /// The failures that showed, by name, each with its first value.
+    /// The failures that showed, by name, each with the first value at which it did.
     pub shown: Vec<(f64, &'static str)>,
-    /// The first value at which something was unexpected.
+    /// The first value with an unexpected result, and why it is unexpected.
     pub surprise: Option<(f64, UnexpectedResult)>,
-    /// What became of the rows from value to value, where the case asks for it.
+    /// How the rows change from value to value, where the case states that.
     pub course: Option<TechniqueCourse>,
-    /// Of the whole.
+    /// The verdict on all values together.
     pub verdict: StressVerdict,
 }
 
-/// What was run.
+/// The results of a run of stress cases.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressResults {
-    /// Where.
+    /// The adapter that it ran on.
     pub adapter: AdapterInfo,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Case by case, value by value, technique by technique.
+    /// Rows by case, then value, then technique.
     pub rows: Vec<StressRow>,
-    /// Which part of a run it is; `None` of a whole one.
+    /// Which part of a run it is; `None` for a whole run.
     pub part: Option<ShardPart>,
 }
 
 impl StressResults {
-    /// Those of all parts of a run, each with its file's name, as of one run.
+    /// Merges the results of all parts of a run, each with its file's name.
     pub fn merged(parts: Vec<(String, StressResults)>) -> Result<StressResults, MergeError> {
         let (adapter, size) = parts.first().map(|(_, of)| (of.adapter.clone(), of.size)).ok_or(MergeError::Nothing)?;
         let part = |(name, StressResults { adapter, rows, part, .. }): (String, StressResults)| ResultsFile {
@@ -61,18 +61,18 @@ impl StressResults {
         Ok(StressResults { adapter, size, rows, part: None })
     }
 
-    /// One entry a case and technique, in the order of the rows.
+    /// Returns one entry a case and technique, in the order of the rows.
     pub fn summary(&self) -> Vec<StressSummary> {
         summary(&self.rows)
     }
 
-    /// Is anything unexpected?
+    /// Returns whether any result is unexpected.
     pub fn is_unexpected(&self) -> bool {
         self.summary().iter().any(|summary| summary.verdict == StressVerdict::Unexpected)
     }
 }
 
-/// One entry a case and technique, in the order of the rows.
+/// Returns one entry a case and technique, in the order of the rows.
 pub fn summary(rows: &[StressRow]) -> Vec<StressSummary> {
     let mut groups: Vec<Vec<&StressRow>> = Vec::new();
     for row in rows {
@@ -86,7 +86,7 @@ pub fn summary(rows: &[StressRow]) -> Vec<StressSummary> {
 }
 
 impl StressSummary {
-    /// Of one technique's rows in one case: at least one.
+    /// Summarises one technique's rows in one case: at least one.
     fn new(rows: &[&StressRow]) -> StressSummary {
         let wrong = |row: &&&StressRow| row.error.wrong() > 0;
         let mut worst = rows[0];
@@ -126,28 +126,28 @@ impl StressSummary {
     }
 }
 
-/// Rows of stress cases with what they come to, as they are shown.
+/// Rows of stress cases with their summaries, as they are shown.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StressRows {
-    /// Case by case.
+    /// Rows, case by case.
     pub rows: Vec<StressRow>,
-    /// One entry a case and technique.
+    /// One entry for each case and technique.
     pub summaries: Vec<StressSummary>,
 }
 
 impl StressRows {
-    /// Of these rows.
+    /// Returns these rows with their summaries.
     pub fn new(rows: Vec<StressRow>) -> StressRows {
         StressRows { summaries: summary(&rows), rows }
     }
 
-    /// These, and `newer`: rows of a case that was run again go.
+    /// Adds `newer` rows: earlier rows of a case that was run again are dropped.
     pub fn followed_by(&self, newer: &StressRows) -> StressRows {
         let is_again = |row: &&StressRow| newer.rows.iter().any(|new| new.case == row.case);
         StressRows::new(self.rows.iter().filter(|row| !is_again(row)).chain(&newer.rows).cloned().collect())
     }
 
-    /// What a case came to, technique by technique.
+    /// Returns the summaries of a case, technique by technique.
     pub fn of<'a>(&'a self, case: &'a StressCase) -> impl Iterator<Item = &'a StressSummary> {
         self.summaries.iter().filter(|summary| summary.case == case.name)
     }

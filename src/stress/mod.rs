@@ -1,14 +1,14 @@
 //! Stiff and extreme cases: every technique is driven until it breaks, and the robust ones must not.
 //!
 //! ```text
-//! Case (scenes, a parameter, who is known to fail) ─► session ─► rows ─► Stress: verdicts, where it breaks
-//!                                                                          └─► table, JSON, plot, tab
+//! Case (scenes, a parameter, known failures) ─► session ─► rows ─► Stress: verdicts, where it breaks
+//!                                                                    └─► table, JSON, plot, tab
 //! ```
 //!
-//! A case is data ([`cases`]): a scene for each value of one number, and for each technique and value
-//! what is expected: to be right, or a failure by name. What is not said is expected to be right, but
-//! for techniques whose texels may show ([`ExpectedResult::MayFail`]). A failure that nobody expected is a
-//! bug; so is a known one that does not show, since then the lesson or our knowledge is wrong.
+//! A case is data ([`cases`]): a scene for each value of one number, and for each technique and value what is expected:
+//! to be right, or a failure by name. Without a failure a technique is expected to be right, except for those whose
+//! texels may show ([`ExpectedResult::MayFail`]). A failure that is not expected is a bug; so is a known one that does
+//! not show, since then the lesson or our knowledge is wrong.
 
 pub mod cases;
 mod expect;
@@ -30,45 +30,45 @@ use crate::scene::{MeshError, Scene};
 use crate::technique::{Choice, ChoiceError, ComparisonRole, Technique};
 use std::fmt;
 
-/// Width and height of the pictures at which expectations were measured: at another size a failure of
-/// few pixels may not show, or a larger share be wrong.
+/// Width and height of the pictures at which expectations were measured: at another size a failure of few pixels may
+/// not show, or a larger share be wrong.
 pub const MEASURED_AT: [u32; 2] = [320, 240];
 
-/// Timed frames of each row where times are the point.
+/// Timed frames of each row in cases about times.
 const TIMED_FRAMES: usize = 3;
 
 /// A scene that one number makes harder and harder.
 #[derive(Debug, Clone, Copy)]
 pub struct StressCase {
-    /// On the command line.
+    /// Its name on the command line.
     pub name: &'static str,
     /// What it shows, in one line.
     pub lesson: &'static str,
     /// The number that changes, with its unit.
     pub parameter: &'static str,
-    /// From easy to extreme; a single extreme has one.
+    /// Values from easy to extreme; a single extreme has one.
     pub values: &'static [f64],
     /// What the number changes.
     pub drives: CaseNumber,
-    /// Width and height of the picture, where these are the point.
+    /// Width and height of the picture, where the case is about these.
     pub size: Option<[u32; 2]>,
-    /// Its times are the point: every row is set up from nothing, and several frames are timed.
+    /// The case is about times: every row is set up from nothing, and several frames are timed.
     pub timed: bool,
-    /// Forms of techniques that run beside the usual ones.
+    /// Variants of techniques that run beside the usual ones.
     pub also: &'static [Entrant],
     /// Usual techniques that are left out, with the reason.
     pub without: &'static [(Technique, &'static str)],
-    /// Forms that run up to a value only, with the reason.
+    /// Variants that run only up to a value, with the reason.
     pub up_to: &'static [(Entrant, f64, &'static str)],
-    /// Above this value a row takes many seconds and gigabytes: where other work waits for it and shares the
-    /// memory, as in the window, it is left out.
+    /// Above this value a row takes many seconds and gigabytes: where other work waits for it and shares the memory, as
+    /// in the window, it is left out.
     pub heavy_above: Option<f64>,
-    /// Who fails, where, how, and why; of several at one value the first counts. Everyone else is
-    /// expected to be right.
+    /// Which techniques fail, where, how, and why; of several at one value the first counts. All others are expected to
+    /// be right.
     pub failures: &'static [KnownFailure],
-    /// What there must be to compare.
+    /// The least shares of lit and dark pixels at a value.
     pub least: fn(f64) -> LeastShares,
-    /// What must become of the rows from value to value.
+    /// How the rows must change from value to value.
     pub trend: Option<ExpectedTrend>,
 }
 
@@ -79,32 +79,31 @@ pub enum CaseNumber {
     Scene(fn(f64) -> Result<Scene, MeshError>),
     /// A setting, of the techniques that have it, in one scene.
     Setting(&'static str, fn() -> Result<Scene, MeshError>),
-    /// The moments of a motion: what flips from one to the next, though it does not in truth, is
-    /// counted too.
+    /// The times of a motion: pixels that flip from one to the next, though they do not in truth, are counted too.
     Motion(fn(f64) -> Result<Scene, MeshError>),
 }
 
-/// A technique in one form.
+/// A technique with some settings: a variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Entrant {
     /// The technique.
     pub technique: Technique,
-    /// Settings that are not its defaults.
+    /// Settings that differ from its defaults.
     pub settings: &'static [(&'static str, &'static str)],
 }
 
 impl Entrant {
-    /// A technique with its defaults.
+    /// Returns a technique with its defaults.
     pub const fn of(technique: Technique) -> Entrant {
         Entrant { technique, settings: &[] }
     }
 
-    /// A technique with other settings.
+    /// Returns a technique with other settings.
     pub const fn with(technique: Technique, settings: &'static [(&'static str, &'static str)]) -> Entrant {
         Entrant { technique, settings }
     }
 
-    /// As the session wants it.
+    /// Returns the technique and settings as the session takes them.
     pub fn choice(&self) -> Result<Choice, ChoiceError> {
         let mut choice = Choice::new(self.technique);
         self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
@@ -119,7 +118,7 @@ impl fmt::Display for Entrant {
     }
 }
 
-/// Why a technique is expected to be right where no failure of it is known.
+/// Says why a technique is expected to be right where no failure of it is known.
 pub fn right_because(technique: Technique) -> &'static str {
     match technique.description().standing {
         ComparisonRole::Rival { right_because, .. } => right_because,
@@ -128,29 +127,29 @@ pub fn right_because(technique: Technique) -> &'static str {
 }
 
 impl StressCase {
-    /// The case of that name.
+    /// Returns the case of that name.
     pub fn named(name: &str) -> Option<&'static StressCase> {
         cases::all().find(|case| case.name == name)
     }
 
-    /// Is a row at this value quick and small enough to share a machine with other work?
+    /// Returns whether a row at this value is quick and small enough to share a machine with other work.
     pub fn is_light(&self, value: f64) -> bool {
         self.heavy_above.is_none_or(|most| value <= most)
     }
 
-    /// The values at which it is.
+    /// The values at which rows are quick and small.
     pub fn light_values(&self) -> Vec<f64> {
         self.values.iter().copied().filter(|value| self.is_light(*value)).collect()
     }
 
-    /// Who runs, in the order of the table.
+    /// Returns the entrants, in the order of the table.
     pub fn entrants(&self) -> Vec<Entrant> {
         let is_left_out = |technique: &Technique| self.without.iter().any(|(without, _)| without == technique);
         let usual = Technique::rivals().into_iter().filter(|technique| !is_left_out(technique)).map(Entrant::of);
         usual.chain(self.also.iter().copied()).collect()
     }
 
-    /// The scene of a value.
+    /// Returns the scene of a value.
     pub fn scene(&self, value: f64) -> Result<Scene, MeshError> {
         match self.drives {
             CaseNumber::Scene(scene) | CaseNumber::Motion(scene) => scene(value),
@@ -158,7 +157,7 @@ impl StressCase {
         }
     }
 
-    /// A technique as this case runs it at a value.
+    /// Returns a technique as this case runs it at a value.
     pub fn choice(&self, entrant: &Entrant, value: f64) -> Result<Choice, ChoiceError> {
         let mut choice = entrant.choice()?;
         if let CaseNumber::Setting(key, _) = self.drives
@@ -169,24 +168,24 @@ impl StressCase {
         Ok(choice)
     }
 
-    /// How many frames of a row are timed, after a warm-up.
+    /// The number of frames of a row that are timed, after a warm-up.
     pub fn timed_frames(&self) -> usize {
         if self.timed { TIMED_FRAMES } else { 1 }
     }
 
-    /// Does a technique run at a value?
+    /// Returns whether a technique runs at a value.
     pub fn runs(&self, entrant: &Entrant, value: f64) -> bool {
         self.up_to.iter().all(|(other, last, _)| other != entrant || value <= *last)
     }
 
-    /// Why that is expected of a technique, in one line.
+    /// Says why a technique is expected to do what is expected, in one line.
     pub fn because(&self, entrant: &Entrant) -> &'static str {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant);
         let texels = || expect::texels(entrant.technique).map(|(_, because)| because);
         failure.map(|failure| failure.because).or_else(texels).unwrap_or(right_because(entrant.technique))
     }
 
-    /// What is expected of a technique at a value.
+    /// Returns what is expected of a technique at a value.
     pub fn expected_at(&self, entrant: &Entrant, value: f64) -> ExpectedResult {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant && (failure.at)(value));
         match (failure, expect::texels(entrant.technique)) {
@@ -196,8 +195,8 @@ impl StressCase {
         }
     }
 
-    /// What is expected of a technique at some value: the failure that must show, else the one that
-    /// may, else to be right.
+    /// Returns what is expected of a technique at some value: the failure that must show, else the one that may, else
+    /// that it is right.
     pub fn expected(&self, entrant: &Entrant) -> ExpectedResult {
         let at = || self.values.iter().map(|value| self.expected_at(entrant, *value));
         let must = at().find(|expected| matches!(expected, ExpectedResult::Fails(_)));

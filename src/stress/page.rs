@@ -1,18 +1,18 @@
-//! The results as a page in Markdown that stands alone: the command that makes it, the plot, the table, how to read
+//! The results as a page in Markdown that stands alone: the command that writes it, the plot, the table, how to read
 //! it, and what each case is.
 
 use super::{StressCase, StressResults, StressVerdict};
 use crate::numbers;
 use crate::report::PageOrigin;
 
-/// How the table is read.
+/// The section that explains the table.
 const READING: &str = "A case is a scene with one number, from easy to extreme. A technique is expected to be right, or to fail in a way \
 that has a name; a failure that nobody expected is unexpected, and so is a known one that does not show. The table says at which \
 value each technique first has a wrong pixel, and what that failure is called. A dot: it has none. Empty: it was not run, for a \
 reason that the case tells. *Other forms* are techniques with other settings.";
 
 impl StressResults {
-    /// The page.
+    /// Returns the page.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let opening = origin.opening("Driven to the extreme", "Share of wrong pixels against the number of each sweep");
         let [width, height] = self.size;

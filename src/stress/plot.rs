@@ -1,9 +1,8 @@
 //! The plot: how the share of wrong pixels grows with a sweep's number, one chart a sweep.
 //!
-//! Across: the number, from easy on the left to extreme on the right, log where it spans decades.
-//! Up: wrong pixels of those compared, log. Zero has no place there: it has a band below, with a
-//! lane for each who runs, so that lines without an error do not cover each other. The first wrong
-//! value, where the line leaves the band, has a filled mark.
+//! Across: the number, from easy on the left to extreme on the right, log where it spans decades. Up: wrong pixels of
+//! those compared, log. Zero has no place there: it has a band below, with a lane for each entrant, so that lines
+//! without an error do not cover each other. The first wrong value, where the line leaves the band, has a filled mark.
 
 use super::{CaseNumber, Entrant, StressCase, StressResults, StressRow, value_text};
 use crate::numbers;
@@ -18,24 +17,24 @@ use crate::report::plot::{
 /// Width of the page and of its two charts, and height of a chart, points.
 const PAGE: f64 = 900.0;
 const CHART: [f64; 2] = [440.0, 300.0];
-/// Around a chart's area: title and caption above, ticks and parameter below, points.
+/// Space around a chart's area: title and caption above, ticks and parameter below, points.
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 38.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 20.0;
 /// Height of a lane of the band, points.
 const LANE: f64 = 9.0;
-/// A sweep has at least so many values.
+/// The least number of values that a sweep has.
 const LEAST_VALUES: usize = 6;
-/// A number that grows by less is shown on an even scale.
+/// The least ratio of the ends of a logarithmic scale.
 const LEAST_DECADES: f64 = 20.0;
-/// Above it a sweep is not drawn mark by mark: only where it breaks.
+/// A sweep of more values is drawn with marks only where it breaks.
 const MOST_MARKS: usize = 16;
-/// More values that are no motion are a heap of scenes.
+/// More values that are no motion are a collection of scenes, not a sweep.
 const MOST_VALUES: usize = 100;
 
 impl StressResults {
-    /// All sweeps that were run, in charts.
+    /// Returns the charts of all sweeps that were run.
     pub fn to_plot(&self) -> Plot {
         let mut cases: Vec<&'static StressCase> =
             self.rows.iter().filter_map(|row| StressCase::named(row.case)).collect();
@@ -60,7 +59,7 @@ impl StressResults {
         plot
     }
 
-    /// Each technique's mark, in a line.
+    /// Adds each technique's mark, in a line.
     fn legend(&self, plot: &mut Plot, y: f64) {
         let mut names: Vec<&str> = Vec::new();
         for row in &self.rows {
@@ -122,7 +121,7 @@ impl StressResults {
                 must: breaks.is_some(),
             }));
         }
-        // Those that must be shown and need most room first.
+        // Those that must be shown and need most space first.
         wishes.sort_by_key(|wish: &LabelRequest| std::cmp::Reverse((wish.must, wish.text.len())));
         let obstacles = LabelObstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
         let (labels, leaders) = labels::words_and_leaders(&wishes, &obstacles);
@@ -133,7 +132,7 @@ impl StressResults {
     }
 }
 
-/// A technique's name; of a form what sets it apart: shape and colour are the technique's.
+/// Returns a technique's name, or what distinguishes a variant: shape and colour are the technique's.
 fn caption(entrant: &Entrant) -> String {
     let settings: Vec<String> = entrant.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
     if settings.is_empty() { entrant.technique.name().to_owned() } else { settings.join(" ") }
@@ -147,20 +146,20 @@ fn spot(row: &StressRow, at: [f64; 2], filled: bool) -> PlotPoint {
     PlotPoint { row: 0, at, whisker: [at[0]; 2], style, filled, name, details }
 }
 
-/// From a case's number to points across.
+/// Scale from a case's number to points across.
 enum Across {
     /// The number spans decades.
     Log {
-        /// Of them.
+        /// Scale of the values.
         scale: LogScale,
-        /// The lowest value but zero, where there is a zero: that is a decade below it.
+        /// The lowest value above zero, where zero occurs: zero is placed a decade below it.
         above_zero: Option<f64>,
     },
-    /// It does not.
+    /// The number does not span decades.
     Even {
         /// First and last value.
         values: [f64; 2],
-        /// Where these are.
+        /// First and last position in points.
         points: [f64; 2],
     },
 }

@@ -1,11 +1,11 @@
-//! One technique at one value of one case: what was seen, and whether that is what was expected.
+//! One technique at one value of one case: what was measured, and whether that is as expected.
 
 use super::expect::{ExpectedResult, FailureSymptom, StressVerdict, UnexpectedResult, WrongPixelKind, texels};
 use super::{Entrant, StressCase};
 use crate::accuracy::ErrorCounts;
 use std::collections::BTreeMap;
 
-/// The edge band may excuse so large a share of what is compared; more of it hides an error.
+/// The largest share of compared pixels that the edge band may excuse; more of them hide an error.
 const MOST_EXCUSED: f64 = 0.02;
 
 /// One technique at one value of one case.
@@ -17,44 +17,44 @@ pub struct StressRow {
     pub parameter: (&'static str, f64),
     /// The technique.
     pub entrant: Entrant,
-    /// All settings.
+    /// All settings of the technique.
     pub settings: BTreeMap<String, String>,
-    /// Against the truth, summed over lights.
+    /// Numbers of pixels by finding, compared with the truth and summed over lights.
     pub error: ErrorCounts,
-    /// What there is to compare.
+    /// Numbers of pixels by their label in truth.
     pub seen: TruthCounts,
-    /// Pixels that have now changed there and back although the truth did not; `None` where the case is
-    /// no motion, and at its first value.
+    /// Number of pixels that have changed there and back at this value although the truth did not; `None` where the
+    /// case is no motion, and at its first value.
     pub flips: Option<u64>,
-    /// Wrong pixels if the truth is that of the scene to which the case converges, where it does.
+    /// Number of wrong pixels compared with the truth of the scene to which the case converges, where it does.
     pub off_limit: Option<u64>,
     /// What is expected of the technique at this value.
     pub expected: ExpectedResult,
     /// Wall time of a frame, ms.
     pub frame_ms: f64,
-    /// Planning, geometry, pipelines and uploads, ms.
+    /// Time of planning, geometry, pipelines and uploads, ms.
     pub setup_ms: f64,
 }
 
-/// What the truth shows, summed over lights.
+/// Numbers of pixels by their label in truth, summed over lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct TruthCounts {
     /// All pixels.
     pub pixels: u64,
-    /// Lit ones.
+    /// Lit pixels.
     pub lit: u64,
-    /// Those in shadow.
+    /// Pixels in shadow.
     pub shadow: u64,
 }
 
-/// Shares of all pixels that must be lit and in shadow, or a row says nothing.
+/// The least shares of all pixels that must be lit and in shadow for a row to mean anything, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeastShares {
-    /// Lit ones.
+    /// Share of lit pixels.
     pub lit: f64,
-    /// Those in shadow.
+    /// Share of pixels in shadow.
     pub shadow: f64,
-    /// Why they are fewer than usual.
+    /// Why they are lower than usual.
     pub because: &'static str,
 }
 
@@ -62,29 +62,29 @@ impl LeastShares {
     /// Enough for an edge between light and shadow of some length.
     pub const USUAL: LeastShares = LeastShares { lit: 0.01, shadow: 0.002, because: "" };
 
-    /// Nothing need be lit.
+    /// Returns shares where no pixel need be lit.
     pub const fn all_dark(because: &'static str) -> LeastShares {
         LeastShares { lit: 0.0, because, ..LeastShares::USUAL }
     }
 
-    /// Nothing need be in shadow.
+    /// Returns shares where no pixel need be in shadow.
     pub const fn all_lit(because: &'static str) -> LeastShares {
         LeastShares { shadow: 0.0, because, ..LeastShares::USUAL }
     }
 
-    /// There may be nothing to compare.
+    /// Returns shares where there may be nothing to compare.
     pub const fn nothing(because: &'static str) -> LeastShares {
         LeastShares { lit: 0.0, shadow: 0.0, because }
     }
 }
 
 impl StressRow {
-    /// Do so many pixels differ along edges that excusing them hides an error?
+    /// Returns whether so many pixels differ along edges that excusing them hides an error.
     pub fn is_blurred(&self) -> bool {
         self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
     }
 
-    /// Why this is not what was expected.
+    /// Returns why this is not what was expected; `None` where it is.
     pub fn surprise(&self) -> Option<UnexpectedResult> {
         if self.is_little_to_see() {
             return Some(UnexpectedResult::LittleToSee);
@@ -106,7 +106,7 @@ impl StressRow {
             WrongPixelKind::Either | WrongPixelKind::Mixed | WrongPixelKind::Any => 0,
         };
         let is_one_sided = error.false_shadow == 0 || error.missing_shadow == 0;
-        // Beside what is known of them, texels show in these techniques.
+        // Texels show in these techniques, beside their known failures.
         let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
         if !shows && matches!(self.expected, ExpectedResult::Fails(_)) {
             Some(UnexpectedResult::NotShown)
@@ -122,7 +122,7 @@ impl StressRow {
         }
     }
 
-    /// What came of it.
+    /// Returns the verdict on the row.
     pub fn verdict(&self) -> StressVerdict {
         match (self.surprise(), self.expected, self.error.wrong()) {
             (Some(_), ..) => StressVerdict::Unexpected,
@@ -131,7 +131,7 @@ impl StressRow {
         }
     }
 
-    /// Has the truth too few lit or dark pixels? Then a row can't be wrong, and must not hold.
+    /// Returns whether the truth has too few lit or dark pixels. Then a row can't be wrong, and must not pass as right.
     fn is_little_to_see(&self) -> bool {
         let Some(case) = StressCase::named(self.case) else { return false };
         let least = (case.least)(self.parameter.1);
@@ -143,9 +143,9 @@ impl StressRow {
     }
 }
 
-/// A parameter's value: short, and in powers of ten where it is far from 1.
+/// Writes a parameter's value: short, and in powers of ten where it is far from 1.
 pub fn value_text(value: f64) -> String {
-    // Steps of a motion are sums of tenths: what is beyond six digits is their rounding.
+    // Steps of a motion are sums of tenths: digits beyond six are their rounding.
     let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };
     match rounded {
         0.0 => "0".to_owned(),

@@ -6,7 +6,7 @@ use crate::technique::Technique;
 use std::fmt;
 
 impl StressResults {
-    /// Case by case: who holds, who breaks where, and whether that was known.
+    /// Returns a table by case: which techniques are right, which break where, and whether that was known.
     pub fn to_table(&self) -> String {
         let summaries = self.summary();
         let width = summaries.iter().map(|summary| summary.entrant.to_string().len()).max().unwrap_or(0);
@@ -33,8 +33,8 @@ impl StressResults {
         text
     }
 
-    /// Cases down, the usual techniques across: a dot where one holds, else where it breaks and how
-    /// that is called. Other forms stand in a last column.
+    /// Returns a table of cases down and the usual techniques across: a dot where one is right, else where it breaks
+    /// and the name of the failure. Variants are in the last column.
     pub fn to_markdown(&self) -> String {
         let summaries = self.summary();
         let mut names: Vec<&str> = summaries.iter().map(|summary| summary.case).collect();
@@ -62,7 +62,7 @@ impl StressResults {
         text
     }
 
-    /// Where the pictures are of another size than expectations were measured at.
+    /// Says that the pictures have another size than expectations were measured at, where they do.
     fn size_note(&self) -> Option<String> {
         let [width, height] = MEASURED_AT;
         (self.size != MEASURED_AT).then(|| {
@@ -73,7 +73,7 @@ impl StressResults {
     }
 }
 
-/// The parameter and its ends.
+/// Says what the parameter of a case is, and its ends.
 fn range(case: &str) -> String {
     let Some(case) = StressCase::named(case) else { return String::new() };
     match case.values {
@@ -83,7 +83,7 @@ fn range(case: &str) -> String {
 }
 
 impl StressSummary {
-    /// Where it breaks.
+    /// Says where it breaks.
     pub fn found_text(&self) -> String {
         let breaks = self.breaks_at.map(|at| format!("breaks at {}", value_text(at)));
         let blurred = self.blurred_at.filter(|at| self.breaks_at != Some(*at));
@@ -96,7 +96,7 @@ impl StressSummary {
         }
     }
 
-    /// What came of it: why it is unexpected, or by which failures it was known to fail.
+    /// Says why the result is unexpected, or by which known failures it fails.
     pub fn verdict_text(&self) -> String {
         let shown: Vec<&str> = self.shown.iter().map(|(_, name)| *name).collect();
         match (self.surprise, &shown[..]) {

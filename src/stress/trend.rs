@@ -4,10 +4,10 @@ use super::{ExpectedResult, StressRow, value_text};
 use crate::numbers;
 use crate::scene::{MeshError, Scene};
 
-/// What must become of the rows of a case.
+/// How the rows of a case must change.
 #[derive(Debug, Clone, Copy)]
 pub enum ExpectedTrend {
-    /// They come to be those of another scene.
+    /// They converge to those of another scene.
     ConvergesTo(fn() -> Result<Scene, MeshError>),
     /// The error falls as the number grows.
     Falls,
@@ -15,22 +15,22 @@ pub enum ExpectedTrend {
     Grows(f64),
 }
 
-/// What became of one technique's rows.
+/// How one technique's rows changed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct TechniqueCourse {
-    /// In words and numbers.
+    /// The change in words and numbers.
     pub text: String,
-    /// Is it as it must be?
+    /// True where it is as it must be.
     pub holds: bool,
 }
 
-/// One step up may be caught by texels that happen to lie well at the size before.
+/// A step up by fewer pixels may come from texels that happen to lie well at the size before.
 const NOISE: u64 = 3;
-/// Below it times are those of a frame, not of its triangles.
+/// Below this value times are those of a frame, not of its triangles.
 const LEAST_TIMED: f64 = 1e4;
 
 impl ExpectedTrend {
-    /// Of one technique's rows, in the order of their values; `None` where they are too few to tell.
+    /// Returns how one technique's rows changed, in the order of their values; `None` where they are too few to decide.
     pub fn course(&self, rows: &[&StressRow]) -> Option<TechniqueCourse> {
         match self {
             ExpectedTrend::ConvergesTo(_) => converges(rows),
@@ -40,8 +40,8 @@ impl ExpectedTrend {
     }
 }
 
-/// What differs from the other scene's truth must fall to nothing, but for techniques that are not
-/// right in the end.
+/// Checks that the difference from the other scene's truth falls to nothing, except for techniques that are not right
+/// in the end.
 fn converges(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     let off: Vec<u64> = rows.iter().filter_map(|row| row.off_limit).collect();
     let [first, .., last] = off[..] else { return None };
@@ -52,7 +52,7 @@ fn converges(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     Some(TechniqueCourse { text, holds: !is_promised || (is_falling && first > 0 && last == 0) })
 }
 
-/// Pixels that differ from the truth, excused or not: of maps finer than pixels all are excused.
+/// Checks that fewer pixels differ from the truth, excused or not: of maps finer than pixels all are excused.
 fn falls(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     let errors: Vec<(f64, u64)> =
         rows.iter().map(|row| (row.parameter.1, row.error.wrong() + row.error.edge_band)).collect();
@@ -84,7 +84,7 @@ fn grows(rows: &[&StressRow], most: f64) -> Option<TechniqueCourse> {
     Some(TechniqueCourse { text, holds })
 }
 
-/// The factor for ten times the number.
+/// Returns the factor by which `of` grows for ten times the number.
 fn growth([from, to]: [&StressRow; 2], of: fn(&StressRow) -> f64) -> f64 {
     (of(to) / of(from)).powf(1.0 / (to.parameter.1 / from.parameter.1).log10())
 }

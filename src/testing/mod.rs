@@ -1,5 +1,5 @@
 //! Readback tests of shadows: render a scene or a plan, then assert on stencil, count, depth, colour, label
-//! and history of a pixel, and on what a shadow map holds there. A failed assertion panics with the
+//! and history of a pixel, and on what a shadow map stores there. A failed assertion panics with the
 //! pixel's history, so that the log of a CI run says what happened to it.
 //!
 //! Runs without a window on whatever adapter there is; Debian's `mesa-vulkan-drivers` brings a
@@ -45,7 +45,7 @@ use crate::technique::Choice;
 use glam::{DVec2, DVec3};
 use places::CameraProjection;
 
-/// A rendered scene, to be asked about its pixels.
+/// A rendered scene, with assertions on its pixels.
 #[derive(Debug)]
 pub struct Rendered {
     session: Session,
@@ -59,7 +59,7 @@ impl Rendered {
         Rendered::on(Session::new(None)?, scene, &CaptureRequest::new(choice, size))
     }
 
-    /// The same on a session of your own, which [`Rendered::into_session`] gives back.
+    /// Renders `scene` on a session of your own, which [`Rendered::into_session`] returns.
     pub fn on(mut session: Session, scene: &Scene, request: &CaptureRequest) -> Result<Rendered, SessionError> {
         let (capture, plan) = session.capture_with_plan(scene, request)?;
         Ok(Rendered { session, plan, capture })
@@ -68,7 +68,7 @@ impl Rendered {
     /// Runs a plan as it is, such as a good one with one thing changed, or that of a technique of your own.
     ///
     /// ```
-    /// use stencilscope::plan::Part;
+    /// use stencilscope::plan::DrawPart;
     /// use stencilscope::scene::builtin::Builtin;
     /// use stencilscope::session::{CaptureRequest, Session};
     /// use stencilscope::technique::{Choice, Technique};
@@ -80,7 +80,7 @@ impl Rendered {
     /// let mut plan = session.plan(&scene, &request)?;
     ///
     /// // Without light caps the volume is open, and the tetrahedron itself is in shadow.
-    /// plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::LightCap));
+    /// plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != DrawPart::LightCap));
     /// let mut broken = Rendered::of_plan(session, &scene, plan)?;
     /// broken.at([160, 120]).label(0, PixelLabel::Shadow).agrees();
     ///
@@ -93,13 +93,13 @@ impl Rendered {
         Ok(Rendered { session, plan, capture })
     }
 
-    /// A frame that another program drew: what `record` or an import made of it, or a capture folder holds.
-    /// Its world is that of its clip space, so that it is asked about pixels, not about points.
+    /// Returns a frame that another program drew: from `record`, an import, or a capture folder. Its world is that of
+    /// its clip space, so that assertions are about pixels, not about points.
     pub fn recorded(plan: FramePlan, capture: Capture) -> Result<Rendered, SessionError> {
         Ok(Rendered { session: Session::new(None)?, plan, capture })
     }
 
-    /// The session, for the next scene.
+    /// Returns the session, for the next scene.
     pub fn into_session(self) -> Session {
         self.session
     }
@@ -114,7 +114,7 @@ impl Rendered {
         &self.plan
     }
 
-    /// A pixel to assert on: column and row from the top left.
+    /// Returns a pixel to assert on: column and row from the top left.
     ///
     /// # Panics
     /// If it is outside the picture, or the GPU is lost.
@@ -126,8 +126,8 @@ impl Rendered {
         }
     }
 
-    /// The pixel that shows a point of the world, or what hides it: column and row from the top left; `None` where the
-    /// point is outside of the picture, or nearer than the near plane.
+    /// Returns the pixel that shows a point of the world, or what hides it: column and row from the top left; `None`
+    /// where the point is outside of the picture, or nearer than the near plane.
     pub fn pixel_of(&self, point: impl Into<DVec3>) -> Option<[u32; 2]> {
         let (view, camera) = (CameraProjection::of(&self.capture), &self.capture.camera);
         let (at, distance) = view.pixel_and_distance(point.into());
@@ -136,7 +136,7 @@ impl Rendered {
         (is_inside && is_in_reach).then_some([at.x as u32, at.y as u32])
     }
 
-    /// The pixel that shows a point of the world, to assert on.
+    /// Returns the pixel that shows a point of the world, to assert on.
     ///
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
@@ -169,7 +169,7 @@ impl Rendered {
         shown
     }
 
-    /// Where a point of the world falls into a light's shadow map; `None` where there is no such map, or it does not
+    /// Returns where a point of the world falls into a light's shadow map; `None` where there is no such map, or it does not
     /// show the point.
     ///
     /// ```
@@ -184,7 +184,7 @@ impl Rendered {
     ///     .seen_from([0.0, 5.0, 0.0], [0.0; 3])
     ///     .build();
     /// let frame = Rendered::new(&scene, Choice::new(Technique::ShadowMap), [65, 65])?;
-    /// // The map holds the board, a metre nearer to the light than this point of the floor.
+    /// // The map shows the board, a metre nearer to the light than this point of the floor.
     /// let texel = frame.map_texel_of(0, [0.1, 0.0, 0.1]).expect("the map shows it");
     /// assert!((texel.gap.expect("metres") - 1.0).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -193,7 +193,7 @@ impl Rendered {
         places::texel_of(&self.capture, light, point.into())
     }
 
-    /// The first pixel, row by row, that has a label under a light.
+    /// Returns the first pixel, row by row, that has a label under a light.
     pub fn first_labelled(&self, light: usize, label: PixelLabel) -> Option<[u32; 2]> {
         let labels = self.capture.lights.get(light)?.shadow.as_ref()?;
         let find = |(y, row): (u32, &[u8])| {

@@ -8,7 +8,7 @@ use crate::numbers;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// A pixel of a rendered scene. Assertions give it back, so that they can be chained.
+/// A pixel of a rendered scene. Assertions return it, so that they can be chained.
 #[derive(Debug)]
 pub struct Pixel<'a> {
     pub(super) capture: &'a Capture,
@@ -21,7 +21,7 @@ impl Pixel<'_> {
         &self.history
     }
 
-    /// Asserts that its history makes what the GPU stored, after every pass and bit for bit.
+    /// Asserts that its history ends in what the GPU stored, after every pass and bit for bit.
     ///
     /// # Panics
     /// If it does not: a bug of this program or of the driver.
@@ -33,7 +33,7 @@ impl Pixel<'_> {
         self
     }
 
-    /// Asserts on the stencil by the end of the frame.
+    /// Asserts on the stencil at the end of the frame.
     ///
     /// # Panics
     /// If it is another.
@@ -178,7 +178,7 @@ impl Pixel<'_> {
         texel_of(self.capture, light, self.surface()?)
     }
 
-    /// Asserts on the depth that a light's shadow map holds where the visible surface falls into it, bit for bit; see
+    /// Asserts on the depth that a light's shadow map stores where the visible surface falls into it, bit for bit; see
     /// [`Pixel::map_texel`], which has an example.
     ///
     /// # Panics
@@ -195,9 +195,9 @@ impl Pixel<'_> {
         }
     }
 
-    /// Asserts on how much nearer to a light what its shadow map holds is than the visible surface, in metres along the
+    /// Asserts on how much nearer to a light its shadow map's depth is than the visible surface, in metres along the
     /// map's axis: 0 where that is the surface itself, more where something is before it. See [`ShadowMapTexel::gap`]. A map
-    /// is no larger than its casters: beside them it holds nothing, and shows no surface.
+    /// is no larger than its casters: beside them it is empty, and shows no surface.
     ///
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
@@ -218,7 +218,7 @@ impl Pixel<'_> {
     /// ```
     ///
     /// # Panics
-    /// If it is farther than `tolerance` from `expected`, the map holds nothing there, or does not show the surface.
+    /// If it is farther than `tolerance` from `expected`, the map is empty there, or does not show the surface.
     #[track_caller]
     pub fn map_gap(&self, light: usize, expected: f64, tolerance: f64) -> &Self {
         let name = numbers::light(light);
@@ -235,7 +235,7 @@ impl Pixel<'_> {
         }
     }
 
-    /// Asserts on the stored depth by the end of the frame, bit for bit.
+    /// Asserts on the stored depth at the end of the frame, bit for bit.
     ///
     /// # Panics
     /// If it is another.
@@ -263,10 +263,10 @@ impl Pixel<'_> {
         }
     }
 
-    /// Asserts on what the technique says of a light.
+    /// Asserts on the technique's label of a light.
     ///
     /// # Panics
-    /// If it says something else, or the scene has no such light.
+    /// If it is another, or the scene has no such light.
     #[track_caller]
     pub fn label(&self, light: usize, expected: PixelLabel) -> &Self {
         let mask = self.capture.lights.get(light).and_then(|light| light.shadow.as_ref());
@@ -367,7 +367,7 @@ impl Pixel<'_> {
         let (_, distance) = view.pixel_and_distance(point);
         let [x, y] = self.history.pixel;
         let Some(found) = self.surface_distance([x, y]) else { return };
-        // Over a flat surface it is one over the distance that changes evenly: by so much from here to the next pixel.
+        // Over a flat surface one over the distance changes evenly: by this much from here to the next pixel.
         let next = |neighbours: [[u32; 2]; 2]| {
             let steps =
                 neighbours.into_iter().filter_map(|at| Some((1.0 / self.surface_distance(at)? - 1.0 / found).abs()));
@@ -381,7 +381,7 @@ impl Pixel<'_> {
         }
     }
 
-    /// How far the visible surface of a pixel is; `None` where there is none.
+    /// The distance of the visible surface of a pixel, metres; `None` where there is none.
     fn surface_distance(&self, pixel: [u32; 2]) -> Option<f64> {
         let last = self.capture.frame_at(self.capture.steps.len().saturating_sub(1))?;
         self.capture.depth.distance(last.depth.image.depth_at(pixel)?)
@@ -394,7 +394,7 @@ impl Pixel<'_> {
         Some(CameraProjection::of(self.capture).point(DVec2::new(x, y), distance))
     }
 
-    /// Index of the first pass of the picture that has this name, and is of this light where one is given.
+    /// Index of the first pass of the picture that has this name, and belongs to this light where one is given.
     #[track_caller]
     fn pass_of(&self, name: &str, light: Option<usize>) -> usize {
         let is_meant = |step: &&Step| light.is_none() || step.light == light;
@@ -429,7 +429,7 @@ impl Pixel<'_> {
         }
     }
 
-    /// Panics, and tells what happened to the pixel.
+    /// Panics with a message that says what happened to the pixel.
     #[track_caller]
     fn fail(&self, what: &str) -> ! {
         panic!(

@@ -8,20 +8,20 @@ use glam::{DMat3, DVec2, DVec3, DVec4};
 /// The texel of a light's shadow map that a pixel's surface falls in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadowMapTexel {
-    /// Which face of the map.
+    /// Index of the map's face.
     pub face: usize,
     /// Column and row from the top left.
     pub texel: [u32; 2],
-    /// The depth that it holds, as stored.
+    /// The depth that the map stores there.
     pub stored: f32,
     /// The depth that the surface has there, before any bias.
     pub surface: f64,
-    /// How much nearer to the light what the map holds is than the surface, metres along the map's axis; `None` where
-    /// it holds nothing.
+    /// How much nearer to the light the map's depth is than the surface, metres along the map's axis; `None` where the
+    /// map shows nothing there.
     pub gap: Option<f64>,
 }
 
-/// Where a light's shadow map shows a point of the world.
+/// Returns the texel of a light's shadow map that a point of the world falls into.
 pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<ShadowMapTexel> {
     let map = capture.lights.get(light)?.map.as_ref().filter(|map| !map.holds_colors())?;
     let in_light = map.light_from_world * point.extend(1.0);
@@ -42,9 +42,9 @@ pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<ShadowM
     map.clip_from_light.iter().enumerate().find_map(on_face)
 }
 
-/// How the camera sees the world.
+/// The projection of a frame's camera.
 pub struct CameraProjection {
-    /// Of the picture, in pixels.
+    /// Width and height of the picture, in pixels.
     pub size: DVec2,
     camera: Camera,
     rays: CameraRays,
@@ -52,7 +52,7 @@ pub struct CameraProjection {
 }
 
 impl CameraProjection {
-    /// Of the camera of a frame.
+    /// Returns the projection of a frame's camera.
     pub fn of(capture: &Capture) -> CameraProjection {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
@@ -64,24 +64,25 @@ impl CameraProjection {
         }
     }
 
-    /// Where a point is in the picture, in pixels from its top left corner, and how far along the view axis, metres.
+    /// Returns where a point is in the picture, in pixels from its top left corner, and its distance along the view
+    /// axis, metres.
     pub fn pixel_and_distance(&self, point: DVec3) -> (DVec2, f64) {
         let in_view = self.view_from_world * (point - self.camera.eye);
         let distance = -in_view.z;
-        // The line of sight through the middle is there at this distance.
+        // The view ray through the picture's centre is there at this distance.
         let middle = self.view_from_world * self.rays.through(DVec2::ZERO).at(distance);
         let half = self.camera.half_height_at(distance);
         let at = (in_view - middle).truncate() / DVec2::new(half * self.size.x / self.size.y, half);
         ((at * DVec2::new(0.5, -0.5) + 0.5) * self.size, distance)
     }
 
-    /// The point at this place of the picture, so far along the view axis.
+    /// Returns the point at this place of the picture, so far along the view axis.
     pub fn point(&self, at: DVec2, distance: f64) -> DVec3 {
         let at = (at / self.size - 0.5) * DVec2::new(2.0, -2.0);
         self.camera.eye + self.rays.through(at).at(distance)
     }
 
-    /// How wide a pixel is so far away, metres.
+    /// Returns the width of a pixel at a distance, metres.
     pub fn pixel_width(&self, distance: f64) -> f64 {
         2.0 * self.camera.half_height_at(distance) / self.size.y
     }

@@ -7,8 +7,8 @@ use std::pin::Pin;
 use std::sync::Arc;
 use wgpu::custom::{AdapterInterface, DispatchDevice, DispatchQueue, DispatchSurface, RequestDeviceFuture};
 
-/// What recording needs, where the adapter has it: vertices that write down where they land, fragments that write down
-/// which triangle they are of.
+/// Features that recording needs, where the adapter has them: vertex shaders that log positions, fragment shaders that
+/// log their triangle.
 const WANTED: wgpu::Features = wgpu::Features::VERTEX_WRITABLE_STORAGE.union(wgpu::Features::PRIMITIVE_INDEX);
 
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub struct Adapter {
 }
 
 impl Adapter {
-    /// The limits asked for, with room for one bind group and two storage buffers of our own.
+    /// Returns the limits asked for, with space for one bind group and two storage buffers of our own.
     fn with_margin(&self, asked: &wgpu::Limits) -> wgpu::Limits {
         let most = self.inner.limits();
         let more = |by: u32, asked: u32, most: u32| asked.max(most.min(asked.saturating_add(by)));

@@ -39,7 +39,7 @@ impl PipelineLayout {
 #[derive(Debug)]
 pub struct BindGroup {
     pub inner: wgpu::BindGroup,
-    /// What it binds, so that the same can be bound for a pipeline whose layout is its own.
+    /// The resources that it binds, so that the same can be bound for a pipeline whose layout wgpu derives.
     pub entries: Arc<[(u32, BoundResource)]>,
 }
 
@@ -73,11 +73,11 @@ pub enum BoundResource {
     External(wgpu::ExternalTexture),
 }
 
-/// Is it an array, were it of one?
+/// Whether it is an array.
 type ArrayCheck = bool;
 
 impl BoundResource {
-    /// Of what the program binds; `None` of a kind that wgpu has gained since.
+    /// Returns what the program binds; `None` of a kind that wgpu has gained since.
     fn of(resource: &Resource<'_>) -> Option<BoundResource> {
         fn real<T: WrappedObject>(all: &[&T]) -> Vec<T::Object>
         where
@@ -100,7 +100,7 @@ impl BoundResource {
     }
 }
 
-/// What arrays of bindings borrow while a group is made.
+/// What arrays of bindings borrow while a group is created.
 enum Borrowed<'a> {
     Buffers(Vec<wgpu::BufferBinding<'a>>),
     Samplers(Vec<&'a wgpu::Sampler>),
@@ -140,7 +140,7 @@ impl<'a> Borrowed<'a> {
     }
 }
 
-/// A real group that binds `entries`.
+/// Creates a real group that binds `entries`.
 pub fn real_group(
     device: &wgpu::Device,
     label: Option<&str>,

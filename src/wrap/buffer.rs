@@ -6,10 +6,10 @@ pub struct Buffer {
     pub inner: wgpu::Buffer,
 }
 
-/// What a buffer is made with, so that a recorded draw's indices and counts can be read.
+/// Returns the usage that a buffer is created with, so that a recorded draw's indices and counts can be read.
 pub fn usage(asked: wgpu::BufferUsages) -> wgpu::BufferUsages {
     let is_read = asked.intersects(wgpu::BufferUsages::INDEX | wgpu::BufferUsages::INDIRECT);
-    // Mappable buffers take a copy's part only in their own direction.
+    // Mappable buffers can be copied from or to only in their own direction.
     let can_be_copied = !asked.contains(wgpu::BufferUsages::MAP_READ);
     if is_read && can_be_copied { asked | wgpu::BufferUsages::COPY_SRC } else { asked }
 }
@@ -20,7 +20,7 @@ impl BufferInterface for Buffer {
     }
 
     fn get_mapped_range(&self, range: Range<u64>) -> Result<DispatchBufferMappedRange, wgpu::MapRangeError> {
-        // Whether it is for reading or writing is told later: what may go wrong does so now.
+        // Whether it is for reading or writing is not known yet: errors must show now.
         let view = self.inner.get_mapped_range(range.clone())?;
         Ok(DispatchBufferMappedRange::custom(MappedRange {
             buffer: self.inner.clone(),
@@ -49,7 +49,7 @@ struct MappedRange {
 enum MappedView {
     Read(wgpu::BufferView),
     Write(wgpu::BufferViewMut),
-    /// The buffer was taken away in between: what is written goes nowhere.
+    /// The buffer was unmapped in between: what is written is discarded.
     Gone(Vec<u8>),
 }
 
@@ -75,7 +75,7 @@ impl BufferMappedRangeInterface for MappedRange {
 
     unsafe fn write_slice(&mut self) -> wgpu::WriteOnly<'_, [u8]> {
         if matches!(self.view, MappedView::Read(_)) {
-            // One view at a time may be of these bytes: the first goes before the second comes.
+            // Only one view of these bytes may exist at a time: the first is dropped before the second is created.
             self.view = MappedView::Gone(Vec::new());
             let view = self.buffer.get_mapped_range_mut(self.range.clone());
             self.view = view.map_or_else(|_| MappedView::Gone(vec![0; self.length()]), MappedView::Write);

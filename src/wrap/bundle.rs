@@ -15,7 +15,7 @@ pub struct RenderBundle {
 
 impl RenderBundleInterface for RenderBundle {}
 
-/// A real encoder stays on its thread, and this one need not: it is made, and fed, once all is there.
+/// Stores its calls: a real encoder stays on its thread, and this one need not, so the real one is created at the end.
 #[derive(Debug)]
 pub struct RenderBundleEncoder {
     device: wgpu::Device,

@@ -1,4 +1,4 @@
-//! What a recorded frame was told, kept so that it can be done draw by draw.
+//! The calls of a recorded frame, stored so that it can be run draw by draw.
 
 use super::binding::{BindGroup, BoundResource};
 use super::pipeline::{PipelineSource, RenderPipeline};
@@ -8,7 +8,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What an encoder was told, in order. Its passes write into it too.
+/// The calls of an encoder, in order. Its passes write into it too.
 #[derive(Debug, Clone, Default)]
 pub struct CommandList(Arc<Mutex<Vec<EncoderCommand>>>);
 
@@ -17,18 +17,18 @@ impl CommandList {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(command);
     }
 
-    /// All of it.
+    /// Takes all commands.
     pub fn take(&self) -> Vec<EncoderCommand> {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// What an encoder has made: the real commands, and the list of a recorded frame.
+/// The result of an encoder: the real commands, and the list of a recorded frame.
 #[derive(Debug)]
 pub struct FinishedCommands {
     pub inner: wgpu::CommandBuffer,
     pub list: Option<CommandList>,
-    /// Render passes are among them.
+    /// True where it has render passes.
     pub has_passes: bool,
 }
 
@@ -42,7 +42,7 @@ pub enum EncoderCommand {
     },
     PushGroup(String),
     PopGroup,
-    /// A copy, a clear, a query: done as it was.
+    /// A copy, a clear, a query: encoded again as it was.
     Encode(Box<dyn Fn(&mut wgpu::CommandEncoder) + Send + Sync>),
 }
 
@@ -88,7 +88,7 @@ impl fmt::Debug for ComputeCommand {
     }
 }
 
-/// When a pass writes timestamps.
+/// The timestamps that a pass writes.
 #[derive(Debug, Clone)]
 pub struct TimestampWrites {
     pub queries: wgpu::QuerySet,
@@ -106,7 +106,7 @@ impl TimestampWrites {
     }
 }
 
-/// What a render pass draws into.
+/// The targets of a render pass.
 #[derive(Debug, Clone)]
 pub struct PassTargets {
     pub label: Option<String>,
@@ -117,7 +117,7 @@ pub struct PassTargets {
     multiview: Option<std::num::NonZeroU32>,
 }
 
-/// A target of colours.
+/// A colour target.
 #[derive(Debug, Clone)]
 pub struct ColorAttachment {
     pub view: wgpu::TextureView,
@@ -127,7 +127,7 @@ pub struct ColorAttachment {
     pub ops: wgpu::Operations<wgpu::Color>,
 }
 
-/// The target of depth and stencil.
+/// The depth-stencil target.
 #[derive(Debug, Clone)]
 pub struct DepthStencilAttachment {
     pub view: wgpu::TextureView,
@@ -137,7 +137,7 @@ pub struct DepthStencilAttachment {
 }
 
 impl PassTargets {
-    /// Of what the program asks for.
+    /// Returns the targets that a descriptor of the program's names.
     pub fn of(descriptor: &wgpu::RenderPassDescriptor<'_>) -> PassTargets {
         let color = |color: &wgpu::RenderPassColorAttachment<'_>| {
             let (view, part) = view_of(color.view);
@@ -163,14 +163,14 @@ impl PassTargets {
         }
     }
 
-    /// Has it targets that hold nothing between passes?
+    /// Returns whether it has targets whose content is lost between passes.
     pub fn are_transient(&self) -> bool {
         let colors = self.colors.iter().flatten().map(|color| &color.view);
         let mut all = colors.chain(self.depth_stencil.as_ref().map(|depth| &depth.view));
         all.any(|view| view.texture().usage().contains(wgpu::TextureUsages::TRANSIENT_ATTACHMENT))
     }
 
-    /// Begins the pass, or a part of it: what the first part loads or clears the next ones find, and all but the last
+    /// Begins the pass, or a part of it: what the first part loads or clears the next ones load, and all but the last
     /// store what they leave.
     pub fn begin<'e>(
         &self,
@@ -200,7 +200,7 @@ impl PassTargets {
             beginning_of_pass_write_index: writes.begin.filter(|_| is_first),
             end_of_pass_write_index: writes.end.filter(|_| is_last),
         });
-        // A pass that writes none must not say that it writes some.
+        // A pass that writes no timestamps must not have an entry that says it does.
         let writes_some = |writes: &wgpu::RenderPassTimestampWrites<'_>| {
             (is_first && is_last)
                 || writes.beginning_of_pass_write_index.is_some()
@@ -271,7 +271,7 @@ pub enum PassCommand {
         real: wgpu::RenderBundle,
         commands: Arc<[PassCommand]>,
     },
-    /// What a bundle finds and leaves: no pipeline, nothing bound. Never encoded.
+    /// The state before and after a bundle: no pipeline, nothing bound. Never encoded.
     Unbound,
     Marker(String),
     PushGroup(String),
@@ -293,7 +293,7 @@ impl PassCommand {
         PassCommand::BindGroup { index, group: group.map(bound), offsets: offsets.to_vec() }
     }
 
-    /// One by one what it is, so that there is a state after each draw.
+    /// Returns the commands one by one, with those of bundles, so that there is a state after each draw.
     pub fn one_by_one(&self) -> impl Iterator<Item = &PassCommand> {
         let (around, within) = match self {
             PassCommand::Bundle { commands, .. } => (Some(&PassCommand::Unbound), &**commands),
@@ -302,7 +302,7 @@ impl PassCommand {
         around.into_iter().chain(within).chain(around)
     }
 
-    /// Must what it begins end in the same pass?
+    /// Returns whether what it begins must end in the same pass.
     pub fn spans(&self) -> bool {
         matches!(self, PassCommand::BeginOcclusion(_) | PassCommand::BeginStatistics(..))
     }
@@ -340,7 +340,7 @@ impl PassCommand {
         }
     }
 
-    /// The same for a bundle; what bundles don't have never comes here.
+    /// Encodes it into a bundle; commands that bundles don't have never come here.
     pub fn encode_bundle<'a>(&'a self, bundle: &mut wgpu::RenderBundleEncoder<'a>) {
         match self {
             PassCommand::Pipeline { real, .. } => bundle.set_pipeline(real),

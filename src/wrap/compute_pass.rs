@@ -7,12 +7,12 @@ use wgpu::custom::{
 
 #[derive(Debug)]
 pub struct ComputePass {
-    /// `None` where the encoder had been finished.
+    /// `None` where the encoder was finished before.
     inner: Option<wgpu::ComputePass<'static>>,
     commands: Option<ComputePassCommands>,
 }
 
-/// What is written beside.
+/// The list that is written beside the real pass.
 #[derive(Debug)]
 struct ComputePassCommands {
     list: CommandList,
@@ -58,7 +58,7 @@ impl ComputePass {
 
 impl Drop for ComputePass {
     fn drop(&mut self) {
-        // The real pass ends here.
+        // Dropping the real pass ends it.
         self.inner = None;
         if let Some(ComputePassCommands { list, label, timestamps, commands }) = self.commands.take() {
             list.push(EncoderCommand::ComputePass { label, timestamps, commands });

@@ -25,7 +25,7 @@ static NEXT_SCOPE: AtomicU32 = AtomicU32::new(0);
 #[derive(Debug)]
 pub struct Device {
     pub inner: wgpu::Device,
-    /// As the program asked for them.
+    /// The features that the program asked for.
     pub features: wgpu::Features,
     pub limits: wgpu::Limits,
     pub shared: Arc<SharedDevice>,

@@ -33,7 +33,7 @@ impl CommandEncoder {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does it, and keeps it to be done again.
+    /// Encodes a command, and stores it to be encoded again.
     fn call(&self, command: impl Fn(&mut wgpu::CommandEncoder) + Send + Sync + 'static) {
         if let Some(encoder) = self.lock().as_mut() {
             command(encoder);
@@ -44,7 +44,7 @@ impl CommandEncoder {
     }
 }
 
-/// One end of a copy that is kept: the texture, and where in it.
+/// A stored end of a copy: the texture, and where in it.
 #[derive(Debug, Clone)]
 struct TextureEnd {
     texture: wgpu::Texture,
@@ -65,7 +65,7 @@ impl TextureEnd {
     }
 }
 
-/// One end of a copy that is kept: the buffer, and how texels lie in it.
+/// A stored end of a copy: the buffer, and the layout of texels in it.
 #[derive(Debug, Clone)]
 struct BufferEnd {
     buffer: wgpu::Buffer,
@@ -189,7 +189,7 @@ impl CommandEncoderInterface for CommandEncoder {
         offset: u64,
     ) {
         let (queries, target) = (queries.real().clone(), target.real().clone());
-        // A sum that is too large is wgpu's to refuse.
+        // A sum that is too large is refused by wgpu.
         let range = first..first.saturating_add(count);
         self.call(move |encoder| encoder.resolve_query_set(&queries, range.clone(), &target, offset));
     }
@@ -237,7 +237,7 @@ pub struct CommandBuffer {
 }
 
 impl CommandBuffer {
-    /// What is submitted; once.
+    /// Takes the result for submission; it can be taken once.
     pub fn take(&self) -> Option<FinishedCommands> {
         self.finished.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

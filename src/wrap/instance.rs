@@ -13,7 +13,7 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// An instance whose devices have such recorders.
+    /// Returns an instance whose devices have recorders from `recorder`.
     pub fn recorded_by(descriptor: wgpu::InstanceDescriptor, recorder: MakeRecorder) -> Instance {
         Instance { inner: wgpu::Instance::new(descriptor), recorder }
     }

@@ -1,10 +1,11 @@
-//! A backend of wgpu that holds the real objects and hands every call on: one file an interface, as `wgpu::custom` has them.
+//! A backend of wgpu that wraps the real objects and forwards every call: one file for each interface of
+//! `wgpu::custom`.
 //!
 //! What is not a plain forward:
 //! - targets, index and indirect buffers can be copied from (`texture.rs`, `buffer.rs`);
 //! - a device has one more bind group and two more storage buffers than were asked for, where the adapter has them (`adapter.rs`);
-//! - pipelines, bind groups and bundles keep what they were made from;
-//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and who records the device does that instead.
+//! - pipelines, bind groups and bundles store their descriptors;
+//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and the recorder runs that list instead.
 
 mod adapter;
 mod binding;
@@ -41,10 +42,12 @@ use wgpu::custom::{
     DispatchTextureView,
 };
 
-/// The real object within one that the program holds.
+/// An object that wraps a real one for the program.
 pub(crate) trait WrappedObject {
     type Object;
 
+    /// The real object.
+    ///
     /// # Panics
     /// The object is of an instance that is not recorded: wgpu's own backends can't mix those either.
     fn real(&self) -> &Self::Object;
@@ -91,7 +94,7 @@ real! {
     DispatchTextureView: texture::TextureView => wgpu::TextureView;
 }
 
-/// What the program's object keeps beside the real one.
+/// The wrapper of the program's pipeline.
 pub(crate) fn pipeline_of(pipeline: &DispatchRenderPipeline) -> &RenderPipeline {
     pipeline.as_custom().expect(FOREIGN)
 }
@@ -108,19 +111,19 @@ fn module_of(module: &wgpu::ShaderModule) -> &ShaderModule {
     module.as_custom().expect(FOREIGN)
 }
 
-/// An end of a copy, real.
+/// Returns an end of a copy with the real texture.
 fn copy_end<'a>(end: wgpu::TexelCopyTextureInfo<'a>) -> wgpu::TexelCopyTextureInfo<'a> {
     let wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect } = end;
     wgpu::TexelCopyTextureInfo { texture: texture.real(), mip_level, origin, aspect }
 }
 
-/// A real view, and where it begins.
+/// Returns a real view, and the subresource where it begins.
 pub(crate) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, ViewSubresource) {
     let texture::TextureView { inner, part } = view.as_custom().expect(FOREIGN);
     (inner.clone(), *part)
 }
 
-/// The bytes of a buffer from an offset on, of a size or to its end.
+/// Returns the bytes of a buffer from an offset on, of a size or to its end.
 pub(crate) fn slice(buffer: &wgpu::Buffer, offset: u64, size: Option<wgpu::BufferSize>) -> wgpu::BufferSlice<'_> {
     match size {
         Some(size) => buffer.slice(offset..offset + size.get()),
@@ -128,7 +131,7 @@ pub(crate) fn slice(buffer: &wgpu::Buffer, offset: u64, size: Option<wgpu::Buffe
     }
 }
 
-/// An instance that hands every call on, and keeps nothing.
+/// Returns an instance that forwards every call, and records nothing.
 pub(crate) fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
     wgpu::Instance::from_custom(<Instance as wgpu::custom::InstanceInterface>::new(descriptor))
 }

@@ -12,11 +12,11 @@ pub struct RenderPipeline {
     pub described: Arc<PipelineSource>,
 }
 
-/// What a render pipeline was made from.
+/// The descriptor that a render pipeline was created from.
 #[derive(Debug)]
 pub struct PipelineSource {
     pub label: String,
-    /// `None` where wgpu made it from the shaders.
+    /// `None` where wgpu derives it from the shaders.
     pub layout: Option<PipelineLayoutSource>,
     pub vertex: ProgrammableStage,
     pub buffers: Vec<Option<VertexBufferSource>>,
@@ -28,12 +28,12 @@ pub struct PipelineSource {
     pub multiview_mask: Option<std::num::NonZeroU32>,
 }
 
-/// A layout that the program made.
+/// A layout that the program created.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PipelineLayoutSource {
     pub real: wgpu::PipelineLayout,
     pub groups: Vec<Option<wgpu::BindGroupLayout>>,
-    /// Bytes.
+    /// Bytes of immediates.
     pub immediate_size: u32,
 }
 
@@ -60,7 +60,7 @@ impl ProgrammableStage {
     }
 }
 
-/// How a vertex buffer is read.
+/// The layout of a vertex buffer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VertexBufferSource {
     pub stride: u64,
@@ -111,7 +111,7 @@ impl RenderPipeline {
         RenderPipeline { inner, described: Arc::new(PipelineSource::of(asked)) }
     }
 
-    /// Of mesh shaders: no device has their feature, and wgpu says so.
+    /// Creates a pipeline of mesh shaders: no device has their feature, and wgpu reports that.
     pub fn of_meshlets(device: &wgpu::Device, asked: &wgpu::MeshPipelineDescriptor<'_>) -> RenderPipeline {
         let fragment = asked.fragment.clone();
         let inner = device.create_mesh_pipeline(&wgpu::MeshPipelineDescriptor {

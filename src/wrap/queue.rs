@@ -30,7 +30,7 @@ impl QueueInterface for Queue {
         let is_aligned = [offset, size.get()].iter().all(|bytes| bytes.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT));
         let fits = is_aligned && offset.checked_add(size.get()).is_some_and(|end| end <= buffer.size());
         if !fits || !buffer.usage().contains(wgpu::BufferUsages::COPY_DST) {
-            // The same call on the real queue says what is wrong, and gives no view.
+            // The same call on the real queue reports the error, and gives no view.
             return self.inner.write_buffer_with(buffer, offset, size).map(drop);
         }
         Some(())
@@ -79,7 +79,7 @@ impl QueueInterface for Queue {
     }
 }
 
-/// Bytes on their way into a buffer.
+/// Bytes that are written into a buffer later.
 #[derive(Debug)]
 struct StagingBytes(Vec<u8>);
 

@@ -1,4 +1,4 @@
-//! Acceleration structures. What builds them can't be handed on (wgpu keeps an instance's parts to itself), so that
+//! Acceleration structures. Calls that build them can't be forwarded (wgpu makes an instance's parts private), so that
 //! adapters hide the features that need it.
 
 use wgpu::custom::{BlasCompactCallback, BlasInterface, TlasInterface};

@@ -9,7 +9,7 @@ use wgpu::custom::{
 
 #[derive(Debug)]
 pub struct RenderPass {
-    /// `None` where the encoder had been finished.
+    /// `None` where the encoder was finished before.
     inner: Option<wgpu::RenderPass<'static>>,
     recorded: Option<(CommandList, PassTargets, Vec<PassCommand>)>,
 }
@@ -24,7 +24,7 @@ impl RenderPass {
         RenderPass { inner, recorded: list.map(|list| (list.clone(), targets, Vec::new())) }
     }
 
-    /// Does it, and keeps it to be done again.
+    /// Encodes a command, and stores it to be encoded again.
     fn call(&mut self, command: impl FnOnce() -> PassCommand, on: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
         if let Some(pass) = &mut self.inner {
             on(pass);
@@ -46,7 +46,7 @@ impl RenderPass {
 
 impl Drop for RenderPass {
     fn drop(&mut self) {
-        // The real pass ends here.
+        // Dropping the real pass ends it.
         self.inner = None;
         if let Some((list, targets, commands)) = self.recorded.take() {
             list.push(EncoderCommand::RenderPass(targets, commands));

@@ -10,7 +10,7 @@ pub struct ShaderModule {
     pub source: ShaderSource,
 }
 
-/// What a module was made from; it is read once a frame is recorded that draws with it.
+/// The source of a module; it is parsed once a frame is recorded that draws with it.
 #[derive(Debug, Clone)]
 pub enum ShaderSource {
     Wgsl(Arc<str>, Arc<OnceLock<Option<Arc<naga::Module>>>>),
@@ -19,7 +19,7 @@ pub enum ShaderSource {
     Unread,
 }
 
-/// The same module, not one that says the same.
+/// Equal is only the same module, not another of the same source.
 impl PartialEq for ShaderSource {
     fn eq(&self, other: &ShaderSource) -> bool {
         match (self, other) {
@@ -40,7 +40,7 @@ impl ShaderSource {
         }
     }
 
-    /// The module, if it can be read.
+    /// Returns the module, if it can be parsed.
     pub fn module(&self) -> Option<Arc<naga::Module>> {
         match self {
             ShaderSource::Wgsl(text, read) => {

@@ -1,4 +1,4 @@
-//! What a device, its queue, its encoders and its surfaces have in common.
+//! What a device, its queue, its encoders and its surfaces share.
 
 use super::command::FinishedCommands;
 use std::any::Any;
@@ -7,19 +7,19 @@ use std::fmt::Debug;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Who may keep what a device is told.
+/// Records the calls of a device.
 pub trait CallRecorder: Any + Debug + Send + Sync {
-    /// Do encoders keep lists now?
+    /// Returns whether encoders write lists now.
     fn is_recording(&self) -> bool;
 
-    /// Does what encoders have made.
+    /// Submits the results of encoders.
     fn submit(&self, shared: &SharedDevice, buffers: Vec<FinishedCommands>) -> wgpu::SubmissionIndex;
 
-    /// A picture was shown.
+    /// Called where a picture was presented.
     fn presented(&self, shared: &SharedDevice);
 }
 
-/// Nobody keeps anything.
+/// Records nothing.
 #[derive(Debug)]
 pub struct NoRecorder;
 
@@ -35,10 +35,10 @@ impl CallRecorder for NoRecorder {
     fn presented(&self, _: &SharedDevice) {}
 }
 
-/// Makes the recorder of a device.
+/// Creates the recorder of a device.
 pub type MakeRecorder = fn() -> Box<dyn CallRecorder>;
 
-/// What a device, its queue and its encoders have in common.
+/// What a device, its queue and its encoders share.
 #[derive(Debug)]
 pub struct SharedDevice {
     pub device: wgpu::Device,
@@ -66,22 +66,22 @@ impl SharedDevice {
         }
     }
 
-    /// From now on a frame ends where it is shown, not where it is submitted.
+    /// From now on a frame ends where it is presented, not where it is submitted.
     pub fn has_surface(&self) {
         self.is_presented.store(true, Ordering::Relaxed);
     }
 
-    /// Does a frame end where it is shown?
+    /// Returns whether a frame ends where it is presented.
     pub fn is_presented(&self) -> bool {
         self.is_presented.load(Ordering::Relaxed)
     }
 
-    /// The program's number of a submission.
+    /// Stores a real submission; returns the program's number of it.
     pub fn submitted(&self, index: wgpu::SubmissionIndex) -> u64 {
         self.submissions().add(index)
     }
 
-    /// The real submission of the program's number.
+    /// Returns the real submission of the program's number.
     pub fn submission(&self, number: u64) -> Option<wgpu::SubmissionIndex> {
         self.submissions().real(number)
     }
@@ -91,11 +91,12 @@ impl SharedDevice {
     }
 }
 
-/// Submissions that a program may wait for. What is older than all that are kept is waited for with the oldest: it ends no later.
+/// Submissions that a program may wait for. Waiting for one that is older than all that are stored waits for the
+/// oldest, which ends no earlier.
 #[derive(Debug, Default)]
 struct Submissions {
     waiting: VecDeque<wgpu::SubmissionIndex>,
-    /// The number of the first that is kept.
+    /// The number of the first that is stored.
     first: u64,
 }
 

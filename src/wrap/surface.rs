@@ -45,14 +45,14 @@ impl SurfaceInterface for Surface {
     }
 }
 
-/// A picture that is shown, or dropped.
+/// A picture that is presented, or dropped.
 #[derive(Debug)]
 pub struct SurfaceOutput {
     inner: Mutex<Option<wgpu::SurfaceTexture>>,
 }
 
 impl SurfaceOutput {
-    /// The real picture; once.
+    /// Takes the real picture; it can be taken once.
     pub fn take(&self) -> Option<wgpu::SurfaceTexture> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

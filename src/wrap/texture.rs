@@ -9,7 +9,7 @@ pub struct Texture {
     pub inner: wgpu::Texture,
 }
 
-/// What a texture is made with, so that what passes draw into it can be copied afterwards.
+/// Returns the usage that a texture is created with, so that what passes draw into it can be copied afterwards.
 pub fn usage(asked: &wgpu::TextureDescriptor<'_>) -> wgpu::TextureUsages {
     use wgpu::TextureUsages as Usages;
     let is_target = asked.usage.contains(Usages::RENDER_ATTACHMENT);
@@ -30,7 +30,7 @@ impl TextureInterface for Texture {
     }
 }
 
-/// Which level and layer a view begins at.
+/// The mip level and layer where a view begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ViewSubresource {
     pub mip: u32,

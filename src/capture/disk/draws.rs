@@ -1,8 +1,8 @@
 //! The states after draws in a folder: `draws_captured` of a pass, with the same keys as a pass.
 //!
-//! A draw's files are named after its pass: `002-volumes.draw003.stencil.npy`. The files of passes
-//! and lights are those of a capture without draws; a draw that left the same names them. What a
-//! draw left of a face of a map has a file of that face alone, where it is not the map's last state.
+//! A draw's files are named after its pass: `002-volumes.draw003.stencil.npy`. The files of passes and lights are those
+//! of a capture without draws; a draw that left the same content names those files. A face of a map after a draw has a
+//! file of its own, unless it is the map's last state.
 
 use super::super::manifest::{DrawStateEntry, StateFiles};
 use super::super::{Aspect, Capture, CapturedLight, DrawState, DrawSummary, FrameTarget, PixelFormat, Snapshot, Step};
@@ -25,7 +25,7 @@ pub(super) fn write(
     written: &mut WrittenImages,
 ) -> Result<Option<Vec<DrawStateEntry>>, CaptureError> {
     let states: Option<Vec<&DrawState>> = step.draws.iter().map(|draw| draw.after.as_ref()).collect();
-    // Of a step without draws nobody can say whether they were asked for.
+    // For a step without draws it is not known whether they were asked for.
     let Some(states) = states.filter(|states| !states.is_empty()) else { return Ok(None) };
     let mut entries = Vec::with_capacity(states.len());
     for (index, (draw, state)) in step.draws.iter().zip(states).enumerate() {
@@ -92,7 +92,7 @@ fn state_files(
 }
 
 impl FolderReader<'_> {
-    /// Reads the states after the draws of a step that left `snapshot`.
+    /// Reads the states after the draws of a step whose own state after it is `snapshot`.
     pub(super) fn draw_states(
         &mut self,
         entries: &[DrawStateEntry],
@@ -140,7 +140,7 @@ impl FolderReader<'_> {
         Ok(DrawState { snapshot, target })
     }
 
-    /// A face of a map after a draw: that of the light's map, or from a file of its own.
+    /// Returns a face of a map after a draw: the light's map, or the content of its own file.
     fn face(
         &mut self,
         files: &StateFiles,

@@ -1,4 +1,5 @@
-//! The frame as data: `frame.json` is the plan, but for meshes and pictures from the CPU, which are arrays beside it.
+//! The frame as data: `frame.json` is the plan, except for meshes and pictures from the CPU, which are arrays beside
+//! it.
 //!
 //! What is read is not trusted: indexes, sizes and lengths are checked before anything runs it.
 
@@ -20,56 +21,56 @@ use std::sync::Arc;
 
 pub(super) const FRAME: &str = "frame.json";
 
-/// Layers of the largest attachment that is read.
+/// The most layers of an attachment that are read.
 const MOST_LAYERS: u32 = 2048;
 
 #[derive(Serialize, Deserialize)]
 struct FrameEntry<P> {
     plan: P,
     meshes: Vec<MeshEntry>,
-    /// Pictures on surfaces.
+    /// Textures on surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     textures: Vec<TextureEntry>,
-    /// Of passes whose picture comes from the CPU.
+    /// Pictures that passes get from the CPU.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     images: Vec<ImageEntry>,
-    /// Of passes whose targets hold something before.
+    /// Content of passes' targets before the passes begin.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     starts: Vec<StartEntry>,
 }
 
-/// A mesh and the files of its arrays. What two meshes share is one file.
+/// A mesh and the files of its arrays. An array that two meshes share is one file.
 #[derive(Serialize, Deserialize)]
 struct MeshEntry {
     name: String,
-    /// Homogeneous: (vertices, 4), `<f4`.
+    /// Homogeneous positions: (vertices, 4), `<f4`.
     vertices: String,
-    /// (triangles, 3), `<u4`.
+    /// Vertex indices: (triangles, 3), `<u4`.
     indices: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     surface: Option<SurfaceEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     extruded: Option<ExtrudedEntry>,
-    /// Pixels and triangles: (fragments, 2), `<u4`.
+    /// Pixels and triangles of retained fragments: (fragments, 2), `<u4`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<String>,
 }
 
-/// What the vertices are made of by a vertex shader.
+/// The input of a vertex shader that computes the vertices.
 #[derive(Serialize, Deserialize)]
 struct ExtrudedEntry {
-    /// Of each vertex where it is before, and the plane that decides: (vertices, 8), `<f4`.
+    /// For each vertex its position before extrusion, and the plane that decides about it: (vertices, 8), `<f4`.
     corners: String,
     carry: Carry,
 }
 
 #[derive(Serialize, Deserialize)]
 struct SurfaceEntry {
-    /// Of each corner of each triangle: (3 · triangles, 4), `<f4`.
+    /// Normals of each corner of each triangle: (3 · triangles, 4), `<f4`.
     normals: String,
-    /// A word a triangle, `<u4`.
+    /// A word for each triangle, `<u4`.
     sides: String,
-    /// Of each corner of each triangle: (3 · triangles, 2), `<f4`.
+    /// Texture coordinates of each corner of each triangle: (3 · triangles, 2), `<f4`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     uvs: Option<String>,
 }
@@ -77,7 +78,7 @@ struct SurfaceEntry {
 #[derive(Serialize, Deserialize)]
 struct TextureEntry {
     name: String,
-    /// RGBA with 8 bits a channel.
+    /// PNG file of RGBA with 8 bits a channel.
     file: String,
     clamps: bool,
 }
@@ -86,11 +87,11 @@ struct TextureEntry {
 struct ImageEntry {
     pass: usize,
     name: String,
-    /// The texels as bytes.
+    /// File of the texels as bytes.
     file: String,
 }
 
-/// A value a pixel, row by row.
+/// Content of a pass's depth-stencil target before it begins: a value a pixel, row by row.
 #[derive(Serialize, Deserialize)]
 struct StartEntry {
     pass: usize,
@@ -100,7 +101,7 @@ struct StartEntry {
     stencil: Option<String>,
 }
 
-/// Writes a plan.
+/// Writes a plan, and the arrays that it names, to a capture folder.
 pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
     let mut written = BTreeMap::new();
     let mut entry =
@@ -161,12 +162,12 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
 struct ArrayWriter<'a> {
     folder: &'a Path,
     stem: String,
-    /// By its kind, its hash and its length.
+    /// File of each array by its kind, its hash and its length.
     written: &'a mut BTreeMap<(&'static str, u64, usize), String>,
 }
 
 impl ArrayWriter<'_> {
-    /// As numbers, so many a row.
+    /// Writes an array as numbers, `columns` of them a row, and returns the file's name.
     fn blob<N: Element, T: bytemuck::Pod>(
         &mut self,
         kind: &'static str,
@@ -184,7 +185,7 @@ impl ArrayWriter<'_> {
     }
 }
 
-/// The plan of a folder; `None` where it has none, as of schema 1.
+/// Reads the plan of a folder; `None` where it has none, as of schema 1.
 pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>, CaptureError> {
     let file = folder.join(FRAME);
     if !file.exists() {
@@ -239,7 +240,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     }
 }
 
-/// Only plain names: a frame can't point out of its folder.
+/// Returns the path of a plain name: a frame can't point out of its folder.
 fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> {
     match super::is_plain(file) {
         true => Ok(folder.join(file)),
@@ -255,7 +256,7 @@ struct ArrayReader<'a> {
     folder: &'a Path,
     blobs: BTreeMap<String, Box<dyn Any>>,
     pictures: BTreeMap<String, Arc<TextureImage>>,
-    /// How many more they may have.
+    /// The number of texels that the pictures still to be read may have.
     texels_left: u64,
 }
 
@@ -269,7 +270,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Of a file of numbers, so many a row.
+    /// Reads an array from a file of numbers, `columns` of them a row.
     fn blob<N: Element, T: bytemuck::Pod>(&mut self, file: &str, columns: u64) -> Result<Blob<T>, CaptureError> {
         if let Some(known) = self.blobs.get(file).and_then(|known| known.downcast_ref::<Blob<T>>()) {
             return Ok(known.clone());
@@ -280,7 +281,8 @@ impl ArrayReader<'_> {
         Ok(blob)
     }
 
-    /// The fragments that a shader has kept; they are searched, so that their order counts.
+    /// Reads the fragments that a shader did not discard; they are searched by bisection, so that their order is
+    /// checked.
     fn retained_fragments(&mut self, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
         let retained = self.blob::<u32, [u32; 2]>(file, 2)?;
         match retained.data().is_sorted() {
@@ -292,7 +294,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// By the name that it was asked for by first.
+    /// Reads a picture, under the name by which it was first asked for.
     fn picture(&mut self, name: String, file: &str) -> Result<Arc<TextureImage>, CaptureError> {
         if let Some(known) = self.pictures.get(file) {
             return Ok(Arc::clone(known));
@@ -307,7 +309,7 @@ impl ArrayReader<'_> {
     }
 }
 
-/// A picture that was made before.
+/// A picture that was computed before the folder was written.
 #[derive(Debug)]
 struct StoredImage {
     texels: Vec<u8>,
@@ -319,7 +321,7 @@ impl MakeImage for StoredImage {
     }
 }
 
-/// What a plan may say that can't be run, or is not the capture's.
+/// Returns what a plan states that can't be run, or that does not fit the capture; `None` where nothing.
 fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
     let has_light = |light: LightId| light.0 < plan.lights.len();
     let has_attachment = |id: AttachmentId| id.0 < plan.attachments.len();

@@ -1,4 +1,4 @@
-//! Reads a capture folder. What it says is not trusted: every file, size and index is checked.
+//! Reads a capture folder. Its content is not trusted: every file, size and index is checked.
 
 use super::super::manifest::{self, LightEntry, Manifest, PassEntry, StateFiles};
 use super::super::{
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads a capture folder with the frame that it is of.
+/// Reads a capture folder with the frame's plan and scene.
 pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     let capture = read(folder)?;
     let plan = frame::read(folder, &capture)?;
@@ -22,7 +22,7 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     Ok(WholeFrame { capture, plan, scene })
 }
 
-/// Reads a capture folder, but for the frame that it is of.
+/// Reads a capture folder without the frame's plan and scene.
 pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let file = folder.join(MANIFEST);
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
@@ -59,13 +59,13 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     }
 }
 
-/// The plan's text, where there is one.
+/// Reads the plan's text; empty where there is none.
 fn read_plan(folder: &Path) -> Result<String, CaptureError> {
     let file = folder.join(PLAN);
     if file.exists() { files::read_text(&file) } else { Ok(String::new()) }
 }
 
-/// What a manifest may say that no frame leaves behind.
+/// Returns what a manifest states that no frame leaves behind; `None` where nothing.
 fn inconsistency(capture: &Capture) -> Option<&'static str> {
     let light = |index: usize| capture.lights.get(index);
     let is_consistent = |step: &Step| match &step.snapshot {
@@ -95,7 +95,7 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
     }
 }
 
-/// Reads each file once: what the manifest names twice is shared again.
+/// Reads each file once: content that the manifest names twice is shared again.
 pub(super) struct FolderReader<'a> {
     folder: &'a Path,
     size: [u32; 2],
@@ -132,7 +132,7 @@ impl FolderReader<'_> {
         Ok(image)
     }
 
-    /// Only plain names: a manifest can't point out of its folder.
+    /// Returns the path of a plain name: a manifest can't point out of its folder.
     fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
         if !super::is_plain(file) {
             return Err(self.wrong(MANIFEST, "it names a file outside its folder"));

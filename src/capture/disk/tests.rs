@@ -158,7 +158,7 @@ fn what_is_written_is_read_back() {
     assert_eq!(names(parent.path()), ["out"]);
 }
 
-/// A pinhole's manifest is what it was before there were others.
+/// The manifest of a perspective camera is what it was before there were other kinds.
 #[test]
 fn a_parallel_camera_is_read_back_and_a_folder_without_one_has_a_pinhole() {
     let parent = tempfile::tempdir().expect("a folder");
@@ -303,7 +303,7 @@ fn a_link_to_a_capture_is_followed() {
     }
 }
 
-/// What reading says after `change` to the manifest's text.
+/// Returns the result of reading the example after `change` to the manifest's text.
 fn reading_after(change: impl Fn(&str) -> String) -> String {
     let (_parent, folder) = written();
     let path = folder.join(MANIFEST);

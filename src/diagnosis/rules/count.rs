@@ -1,4 +1,4 @@
-//! What eight bits do to counts.
+//! Faults of counting in eight bits.
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount};
@@ -9,7 +9,8 @@ use crate::technique::CountOperations;
 
 pub(crate) const RULES: &[CauseRule] = &[clamped, wrap_256, few_bits, parity, operation_order];
 
-/// The first step of a light's count that was lost at a limit: what the count was, and how many were lost.
+/// Finds the first step of a light's count that was lost at a limit: returns the count before it, and how many steps
+/// were lost.
 fn first_lost(sample: &PixelSample, light: usize) -> Option<(u8, u64)> {
     let is_lost = |(event, _): &(&crate::history::PixelEvent, _)| event.step() != 0 && event.counted() == 0;
     let mut lost = sample.volume_events(light).filter(is_lost);
@@ -17,7 +18,7 @@ fn first_lost(sample: &PixelSample, light: usize) -> Option<(u8, u64)> {
     Some((first, 1 + lost.count() as u64))
 }
 
-/// What the count was cleared to, and of all steps together, as no limit would have them.
+/// Returns the value that the count was cleared to plus all steps, as if counts had no limits.
 fn true_count(sample: &PixelSample, light: usize) -> i32 {
     let start = sample.history.as_ref().map_or(0, |history| history.cleared_to(light));
     start + sample.volume_events(light).map(|(event, _)| event.step()).sum::<i32>()
@@ -61,7 +62,7 @@ fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
         if lost == 1 { "was" } else { "were" },
     );
     let mut fixes = vec![Fix::setting("operations", "wrap")];
-    // Where passes stand in the wrong order, that alone is to be turned round.
+    // Where passes are in the wrong order, only their order is to be changed.
     if facts.volumes().is_some_and(|settings| settings.two_pass && settings.takes_away_first) {
         fixes.push(Fix::setting("order", "add-first"));
     }
@@ -82,7 +83,7 @@ fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::Wrap256, evidence, vec![Fix::setting("counter", "float")], shown_by)
 }
 
-/// Fewer bits than a stencil has, by its masks.
+/// Finds counts of fewer bits than a stencil has, by the masks of their draws.
 fn few_bits(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let settings = facts.volumes().filter(|settings| settings.operations != CountOperations::Inverting)?;
     let bits = CountBits::of_mask(settings.mask().into());

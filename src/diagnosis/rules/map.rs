@@ -1,7 +1,8 @@
-//! Shadow maps: what the texel holds, and what it should hold.
+//! Shadow maps: compares what the texel stores with what it should store.
 //!
-//! The texel's own ray is followed through the truth's scene: what it meets first is what the map would hold
-//! without a bias. Wrong with that as well, the texel is too coarse; else the bias is too small or too large.
+//! The texel's own ray is followed through the truth's scene: its first hit is the depth that the map would store
+//! without a bias. If the pixel is wrong with that depth as well, the texel is too coarse; else the bias is too small
+//! or too large.
 
 use super::planar::larger;
 use crate::accuracy::Finding;
@@ -21,22 +22,22 @@ pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, aliasing, outside_
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MapComparison {
     pub cause: Cause,
-    /// Whose texel it is, or would be.
+    /// Index of the object that the texel shows, or would show.
     pub caster: Option<usize>,
     /// Width of a texel there, metres.
     texel: f64,
     /// How much farther from the light the receiver gets over one texel, metres.
     slope: f64,
-    /// How far behind what the texel's ray meets the receiver lies, metres: its plane, or for a shadow that begins
-    /// too late the depth that is looked up.
+    /// How far the receiver lies behind the first hit of the texel's ray, metres: the receiver's plane, or for a shadow
+    /// that begins too late the depth that is looked up.
     gap: f64,
-    /// How far the map holds it to be away from where it is, metres.
+    /// How far the bias moves the map's depth from the true one, metres.
     bias: f64,
     /// Distance from the map's middle, in halves of its width.
     place: f64,
 }
 
-/// Why the map's answer is wrong at a surface point; `None` where there is no map of depths.
+/// Says why the map's answer is wrong at a surface point; `None` where there is no map of depths.
 pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapComparison> {
     if facts.technique() != Technique::ShadowMap {
         return None;
@@ -60,7 +61,7 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     texel_look(facts, light, kind, seen, (map, face, device), nothing)
 }
 
-/// The face that a point is on, and where.
+/// Returns the face that a point is on, and where on it.
 fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
     map.clip_from_relative.iter().enumerate().find_map(|(face, matrix)| {
         let clip = matrix.as_dmat4() * relative.extend(1.0);
@@ -100,7 +101,7 @@ fn texel_look(
     let width = (beside - target).length();
     let origin_side = facts.tracer.light_distance(light, target);
     let drawn = |name: &str| facts.draws(light, DrawPart::Map).any(|draw| draw.caster.as_deref() == Some(name));
-    // From the light on, in order.
+    // Hits in order, from the light on.
     let mut met = facts.tracer.along(light, target);
     met.retain(|met| met.towards_light < origin_side && drawn(facts.tracer.name(met.place)));
     let first = met.last();
@@ -108,7 +109,7 @@ fn texel_look(
     let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
     let cosine = normal.dot(towards).abs().max(1e-9);
     let slope = width * (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
-    // Where the texel's ray meets the receiver's plane, towards the light from the target.
+    // Where the texel's ray hits the receiver's plane, towards the light from the target.
     let receiver = normal.dot(seen.point - target) / normal.dot(towards);
     let is_reversed = map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0);
     let clear = map.lookup.map_or(0.0, |lookup| f64::from(lookup.clear_depth));
@@ -139,7 +140,7 @@ fn texel_look(
         }
         _ => Cause::Aliasing,
     };
-    // What misses a shadow was looked up at the target, which the bias has to pass.
+    // A missing shadow was looked up at the target, which the bias has to pass.
     let gap = match (cause, first) {
         (Cause::PeterPanning, Some(first)) => first.towards_light,
         _ => look.gap,
@@ -147,7 +148,7 @@ fn texel_look(
     Some(MapComparison { cause, gap, ..look })
 }
 
-/// The look of the first sample that shows a cause, and how many do.
+/// Returns the comparison of the first sample that shows a cause, and how many samples do.
 fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapComparison, usize)> {
     case.shown(|sample| {
         let look = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
@@ -155,7 +156,7 @@ fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapC
     })
 }
 
-/// Biases as they are by default, and some that are more or less.
+/// Returns a fix that sets the biases.
 fn bias(constant: i32, slope: f64) -> Fix {
     let mut fix = Fix::setting("bias-slope", &format!("{slope}"));
     fix.settings.insert("bias-constant".to_owned(), constant.to_string());

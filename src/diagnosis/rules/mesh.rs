@@ -11,7 +11,7 @@ use crate::technique::CasterRule;
 pub(crate) const RULES: &[CauseRule] =
     &[light_inside, split_vertices, near_vertices, inconsistent_winding, non_manifold, open_mesh];
 
-/// A caster that is at fault at a sample.
+/// A caster whose shadow is wrong at a sample.
 struct Suspect<'f> {
     index: usize,
     mesh: &'f MeshFacts,
@@ -20,7 +20,7 @@ struct Suspect<'f> {
     shown_by: usize,
 }
 
-/// Casters whose casting triangles alone do not make their shadow here.
+/// Returns the casters whose casting triangles alone do not give their shadow here.
 fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>> {
     let light = case.light();
     let way = match facts.volumes().map(|settings| settings.casters) {
@@ -64,7 +64,7 @@ fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>>
     found
 }
 
-/// The rule of a cause: `measure` tells what is the matter with a mesh and how often.
+/// Applies the rule of a cause: `measure` returns what is wrong with a mesh and how often.
 fn rule(
     facts: &FrameFacts,
     case: &RegionSamples,

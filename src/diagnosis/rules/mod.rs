@@ -1,7 +1,7 @@
-//! One rule a cause: evidence in numbers, or none.
+//! One rule for each cause: it returns evidence in numbers, or nothing.
 //!
-//! Several causes share a mend (z-fail mends much), so a rule that speaks without evidence would be proven for
-//! nothing. Each looks at the region's samples, and keeps silent where they do not show what it is about.
+//! Several causes share a fix (z-fail fixes many), so a rule without evidence would be proven for nothing. Each
+//! examines the region's samples, and returns nothing where they do not show its cause.
 
 pub(crate) mod count;
 pub(crate) mod map;
@@ -13,11 +13,11 @@ pub(crate) mod volume;
 
 use super::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
 
-/// All of them.
+/// All rules.
 pub(crate) const ALL: &[&[CauseRule]] =
     &[volume::RULES, count::RULES, mesh::RULES, planar::RULES, map::RULES, projective::RULES, number::RULES];
 
-/// What may be the cause of a region.
+/// Returns what may be the cause of a region.
 pub(crate) fn suspicions(facts: &FrameFacts, case: &RegionSamples) -> Vec<SuspectedCause> {
     ALL.iter().flat_map(|rules| rules.iter()).filter_map(|rule| rule(facts, case)).collect()
 }

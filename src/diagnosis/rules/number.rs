@@ -1,4 +1,4 @@
-//! What single precision and parts of a pixel can't tell.
+//! Faults of single precision and of subpixel snapping.
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
@@ -15,27 +15,27 @@ pub(crate) const RULES: &[CauseRule] = &[f32_limit, subpixel_edges];
 
 /// Half a unit in the last place of 24 bits, as a part of the number.
 const ROUNDING: f64 = 6e-8;
-/// Edges that rounding moves by so many pixels are wrong without an excuse.
+/// Shadow edges that rounding moves by this many pixels are wrong without an excuse.
 const PIXELS: f64 = 0.5;
 
-/// Of edges as long as this many pixels, few have sides so narrow in the picture that snapping tilts them far.
+/// Edges at least this many pixels long rarely have sides so narrow in the picture that snapping tilts them far.
 const SHORT_EDGE: f64 = 2.0;
-/// Times as large as pictures are drawn that show whether corners of sides were snapped away. Odd, so that the middle of
-/// each pixel stays the middle of one.
+/// Factors by which pictures are enlarged to show whether corners of sides were snapped away. Odd, so that the centre
+/// of each pixel stays the centre of one.
 const LARGER: [u32; 3] = [3, 5, 15];
 /// Pixels along a side of the largest picture that every GPU draws.
 const MOST_SIDE: u32 = 8192;
 
-/// What 24 bits round away. Nothing that could be run proves it, so the numbers must.
+/// Finds errors of rounding to 24 bits. Nothing that could be run proves them, so the numbers must.
 fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
-    // Only what counts volumes has sides that pass a pixel, or faces that it can miss.
+    // Only techniques that count volumes have sides that pass near a pixel, or faces that it can miss.
     let looks: &[CauseRule] =
         if facts.counts_volumes(case.light()) { &[grazed, cut_at_border, side_through_middle] } else { &[grazed] };
     looks.iter().find_map(|look| look(facts, case))
 }
 
-/// Positions are rounded when they go to the GPU; where light grazes, that moves a shadow's edge by the
-/// rounding over the tangent of the light's height, for a lamp farther the nearer the caster is to it.
+/// Positions are rounded when they go to the GPU; where light grazes, that moves a shadow's edge by the rounding over
+/// the tangent of the light's height, for a lamp farther the nearer the caster is to it.
 fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let is_geometric = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
@@ -71,8 +71,9 @@ fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
 /// depth there and the surface's.
 const ROUNDINGS: f64 = 4.0;
 
-/// A side that meets the surface in the very middle of a pixel, as near as positions are rounded, is counted or not by
-/// chance. Where a shadow ends there, the truth's edge excuses that; where another shadow begins, a hole is left in both.
+/// A side that intersects the surface at the very centre of a pixel, as near as positions are rounded, is counted or
+/// not by chance. Where a shadow ends there, the truth's edge excuses that; where another shadow begins, a hole is left
+/// in both.
 fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, at, pixels, rounding), shown_by) = case.shown(|sample| {
@@ -93,12 +94,12 @@ fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspe
          {column},{row}, and rounding positions to 24 bits moves it by {} each time",
         numbers::digits(rounding)
     );
-    // By chance one pixel of many lies so: what is wrong all over a region has another cause.
+    // By chance one pixel of many is at such a place: a whole wrong region has another cause.
     (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
 }
 
-/// The GPU cuts what reaches beyond the picture where that ends, and rounds the place by the length of what it cuts: pixels
-/// along the border miss faces that cover them.
+/// The GPU cuts triangles that reach beyond the picture where it ends, and rounds positions by the length of what it
+/// cuts: pixels along the border miss faces that cover them.
 fn cut_at_border(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, length, away, at, moved), shown_by) = case.shown(|sample| {
@@ -133,16 +134,16 @@ fn longest_edge(object: &Object) -> f64 {
     object.mesh.triangles().iter().map(longest).fold(0.0, f64::max)
 }
 
-/// How near a side of a volume passes.
+/// How near a side of a volume passes to a point.
 #[derive(Clone, Copy)]
 struct NearSide {
-    /// Square to the light's way.
+    /// Distance at right angles to the light's direction, metres.
     metres: f64,
-    /// How far one rounding of its corners moves it there.
+    /// How far one rounding of its corners moves it there, metres.
     rounding: f64,
 }
 
-/// The side of an object's volume that passes a point that is seen nearer than roundings move it.
+/// Returns the side of an object's volume that passes the point `seen` within the distance that roundings move it.
 fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) -> Option<NearSide> {
     let to_light = light.truncate() - seen * light.w;
     let towards = to_light.normalize_or_zero();
@@ -166,7 +167,7 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
             let lever = if reach.is_finite() { reach / (reach - above) } else { 1.0 };
             (above >= -tiny && above < reach).then_some(((away - towards * above) * lever, lever))
         };
-        // Just short of the light's own height nothing is thrown any more.
+        // Points just short of the light's own height cast no shadow any more.
         let shorter = ends.map(|end| end + (0.5 - end) * 1e-9);
         let ((start, lever), (end, other)) = (thrown(shorter[0])?, thrown(shorter[1])?);
         let along = end - start;
@@ -184,8 +185,8 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
     if found.is_empty() {
         return None;
     }
-    // How often more the triangles around an edge, turned towards the light, run along it to than fro: where it is as often,
-    // the lit sheet goes on and has no side there.
+    // For each edge, how many more of its triangles, oriented towards the light, run along it one way than the other:
+    // where both numbers are equal, the lit sheet continues and has no side there.
     let mut bounds: HashMap<[u32; 2], i32> = HashMap::new();
     for corners in triangles {
         for edge in edges_of(*corners).into_iter().filter(|edge| found.contains_key(&low_first(*edge))) {
@@ -197,8 +198,8 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
     sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
-/// Corners snap to 1/256 of a pixel. Where a caster's edges are two pixels long or less, its volume's sides are narrow strips
-/// that reach far: as their corners snap, their depth tilts, and they meet a surface beside their place.
+/// Corners snap to 1/256 of a pixel. Where a caster's edges are two pixels long or less, its volume's sides are narrow
+/// strips that reach far: as their corners snap, their depth tilts, and they intersect a surface beside their place.
 fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     if !facts.counts_volumes(light) {
@@ -219,7 +220,7 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     SuspectedCause::new(Cause::SubpixelEdges, evidence, fixes, shown_by)
 }
 
-/// The median length of an object's edges, in pixels where its nearest corner is.
+/// Returns the median length of an object's edges, in pixels at the distance of its nearest corner.
 fn usual_edge(facts: &FrameFacts, object: &Object) -> Option<f64> {
     let world = object.world_positions();
     let nearest = world.iter().map(|point| facts.tracer.depth_of(*point)).fold(f64::INFINITY, f64::min);

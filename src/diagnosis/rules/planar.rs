@@ -1,4 +1,4 @@
-//! Casters flattened onto planes, or drawn into their textures.
+//! Faults of casters that are flattened onto planes, or drawn into their textures.
 
 use crate::capture::{Aspect, Capture, Snapshot};
 use crate::diagnosis::cause::Cause;
@@ -17,14 +17,14 @@ use std::collections::BTreeSet;
 pub(crate) const RULES: &[CauseRule] =
     &[double_blend, z_fighting, off_receiver, anti_shadow, false_shadow, not_planar, texture_aliasing];
 
-/// As many flat pieces have a shadow of their own.
+/// The largest number of flat pieces that get a shadow of their own.
 const MOST_PIECES: usize = 64;
-/// Part of a surface's distance from the eye by which it may lie off a plane that it lies in.
+/// How far a surface may lie off its own plane, as a part of its distance from the eye.
 const OFF_PLANE: f64 = 1e-3;
-/// Planes whose normals have a larger cosine are one, as far as single precision tells.
+/// Planes whose normals have a larger cosine are one, as far as single precision can distinguish them.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
-/// Does a pass darken what the picture holds?
+/// Returns whether a pass darkens the picture itself.
 pub(crate) fn darkens_in_the_picture(plan: &FramePlan) -> bool {
     plan.passes.iter().any(is_blend)
 }
@@ -33,7 +33,7 @@ fn is_blend(pass: &Pass) -> bool {
     pass.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
 }
 
-/// Pixels that a pass of a light has darkened more than one flattened triangle would, by number.
+/// Returns the numbers of the pixels that a pass of a light has darkened more than one flattened triangle would.
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
     let mut found = BTreeSet::new();
     for (index, pass) in plan.passes.iter().enumerate() {
@@ -53,14 +53,14 @@ pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec
     found.into_iter().collect()
 }
 
-/// Pixels of which less than a part is left, as bright as that can be told.
+/// Returns the numbers of the pixels of which less than `part` is left, where they are bright enough to decide that.
 fn darkened_below(before: &Aspect, after: &Aspect, part: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let width = before.image.size()[0] as usize;
     for (y, (before, after)) in before.image.rows().zip(after.image.rows()).enumerate() {
         for (x, (before, after)) in before.chunks_exact(4).zip(after.chunks_exact(4)).enumerate() {
             let brightest = (0..3).max_by_key(|channel| before[*channel]).unwrap_or(0);
-            // Below that, eight bits can't tell once from twice.
+            // Below that, eight bits can't distinguish once from twice.
             let is_bright = before[brightest] >= 40;
             if is_bright && linear(after[brightest]) < linear(before[brightest]) * part {
                 found.push(y * width + x);
@@ -70,7 +70,7 @@ fn darkened_below(before: &Aspect, after: &Aspect, part: f64) -> Vec<usize> {
     found
 }
 
-/// Light from an sRGB byte.
+/// Returns the linear light of an sRGB byte.
 fn linear(byte: u8) -> f64 {
     let value = f64::from(byte) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
@@ -92,10 +92,10 @@ fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::DoubleBlend, evidence, fixes, shown_by)
 }
 
-/// The flattened triangles of a light over a sample.
+/// Returns the flattened triangles of a light over a sample.
 fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
     let all = sample.history.iter().flat_map(|history| history.triangles());
-    // What writes labels runs the same triangles again.
+    // The pass that writes labels draws the same triangles again.
     all.filter(move |(event, one)| {
         event.light == Some(light)
             && one.part == DrawPart::PlanarShadow
@@ -103,13 +103,13 @@ fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&Pixel
     })
 }
 
-/// The plane of a flattened triangle, world space; `None` where its corners tell none. Corners may be at
+/// Returns the plane of a flattened triangle, world space; `None` where its corners define none. Corners may be at
 /// infinity, or beyond it.
 fn plane_of(facts: &FrameFacts, one: &TriangleEvent) -> Option<Plane> {
     through(one.corners, facts.scene.camera.eye)
 }
 
-/// The plane through homogeneous corners relative to the eye.
+/// Returns the plane through homogeneous corners relative to the eye.
 fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
     let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
@@ -122,7 +122,7 @@ fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     })
 }
 
-/// How far a seen surface lies off a flattened triangle's plane, if it does.
+/// Returns how far a visible surface lies off a flattened triangle's plane; `None` where it lies in it.
 fn off_plane(facts: &FrameFacts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
     let off = plane_of(facts, one)?.at(seen.point.extend(1.0)).abs();
     (off > OFF_PLANE * (seen.point - facts.scene.camera.eye).length()).then_some(off)
@@ -170,7 +170,7 @@ fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
     SuspectedCause::new(Cause::ZFighting, evidence, fixes, shown_by)
 }
 
-/// What a pixel of planar shadows alone tells: what lies on the light's line, but not between.
+/// Returns the cause that a single pixel of planar shadows suggests: a caster on the light's line, but not between.
 pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<Cause> {
     if !is_unclipped(facts) {
         return None;
@@ -183,10 +183,10 @@ pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
     }
 }
 
-/// Names of casters, each with how far it is, metres.
+/// Names of casters, each with its distance in metres.
 type CasterDistances = Vec<(String, f64)>;
 
-/// Casters on the line from a light to a surface that lie beyond the light, and below the surface.
+/// Returns the casters on the line from a light to a surface that lie beyond the light, and those below the surface.
 fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterDistances, CasterDistances) {
     let distance = facts.tracer.light_distance(light, seen.point);
     let plane =
@@ -220,7 +220,7 @@ fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
     let light_height = over_plane(source);
     let flipped = if light_height < 0.0 { -1.0 } else { 1.0 };
     let over_light = |point: &DVec3| flipped * (over_plane(*point) - light_height);
-    // On the line of light and corner, where it meets the plane; a corner level with the light goes to infinity.
+    // On the line of light and corner, where it intersects the plane; a corner level with the light goes to infinity.
     let flattened = |point: &DVec3| {
         let under = light_height - over_plane(*point);
         let away = *point - source;
@@ -243,7 +243,7 @@ fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
     None
 }
 
-/// Does a triangle of homogeneous corners, `w >= 0`, hold a point of its plane?
+/// Returns whether a triangle of homogeneous corners, `w >= 0`, contains a point of its plane.
 fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
     let from_point = corners.map(|corner| corner.truncate() - point * corner.w);
     let side = |from: usize, to: usize| normal.dot(from_point[from].cross(from_point[to]));
@@ -251,12 +251,12 @@ fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }
 
-/// What planar shadows were told; `None` of another technique.
+/// The settings of planar shadows; `None` for another technique.
 fn settings(facts: &FrameFacts) -> Option<PlanarSettings> {
     (facts.technique() == Technique::Planar).then(|| PlanarSettings::read(facts.choice.settings()))
 }
 
-/// Are casters flattened whole, with what lies beyond the light or below the receiver?
+/// Returns whether casters are flattened whole, with what lies beyond the light or below the receiver.
 fn is_unclipped(facts: &FrameFacts) -> bool {
     settings(facts).is_some_and(|settings| settings.clip == FlattenClip::Off)
 }
@@ -304,7 +304,7 @@ fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
     SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")], shown_by)
 }
 
-/// How many flat pieces an object shows, by the exact planes of its triangles; `None` of unknown objects.
+/// Returns how many flat pieces an object has, by the exact planes of its triangles; `None` for unknown objects.
 fn flat_pieces(facts: &FrameFacts, name: &str) -> Option<usize> {
     let (_, object) = facts.object(name)?;
     let mesh = &object.mesh;
@@ -313,7 +313,7 @@ fn flat_pieces(facts: &FrameFacts, name: &str) -> Option<usize> {
     Some(crate::geometry::planar::receivers(mesh.positions(), &world, mesh.triangles(), &edges).len())
 }
 
-/// Does the plan serve the flat piece that a triangle lies in?
+/// Returns whether the plan draws shadows on the flat piece that a triangle lies in.
 fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let eye = facts.scene.camera.eye;
     let distance = (seen.point - eye).length();
@@ -336,7 +336,7 @@ fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
         facts.draws(light, DrawPart::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
     match marks.peek() {
         Some(_) => marks.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane))),
-        // Without marks, receivers are known by what falls on them.
+        // Without receiver marks, receivers are known by the shadows on them.
         None => {
             let suffix = format!(" on {name},");
             let mut onto = facts.draws(light, DrawPart::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
@@ -345,7 +345,7 @@ fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     }
 }
 
-/// Is a triangle's flat piece among those that have a texture?
+/// Returns whether a triangle's flat piece is among those that have a texture.
 fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
@@ -408,7 +408,7 @@ fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     SuspectedCause::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }
 
-/// A map of twice the size, one of four times, and what needs none.
+/// Returns fixes: a map of twice the size, one of four times, and a technique that needs none.
 pub(crate) fn larger(size: f64, most: f64) -> Vec<Fix> {
     let mut sizes = vec![size];
     for larger in [size * 2.0, size * 4.0].map(|larger| larger.min(most)) {

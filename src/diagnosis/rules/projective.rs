@@ -1,4 +1,4 @@
-//! Silhouettes that are projected with no regard to distance.
+//! Faults of silhouettes that are projected with no regard to distance.
 
 use super::planar::larger;
 use crate::accuracy::Finding;
@@ -14,7 +14,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 pub(crate) const RULES: &[CauseRule] = &[reverse_projection, between, edge_smear, self_shadow, aliasing, no_fit];
 
-/// Why a silhouette's answer is wrong at a surface point, with the caster and a distance that tells.
+/// Says why a silhouette's answer is wrong at a surface point, with the caster and a distance as evidence.
 pub(crate) fn look(
     facts: &FrameFacts,
     light: usize,
@@ -60,14 +60,15 @@ pub(crate) fn look(
     }
 }
 
-/// Where a surface point is in the picture of a caster's silhouette: from −1 to 1 across it. `None` behind the light.
+/// Returns where a surface point is in the picture of a caster's silhouette: from −1 to 1 across it. `None` behind the
+/// light.
 fn place_in_picture(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurface) -> Option<DVec2> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let clip = *map.clip_from_light.get(layer_of(facts, light, caster)?)? * seen.point.extend(1.0);
     (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
 }
 
-/// Which layer of a light's map is a caster's picture.
+/// Returns the layer of a light's map that is a caster's picture.
 fn layer_of(facts: &FrameFacts, light: usize, caster: usize) -> Option<usize> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let name = &facts.scene.objects.get(caster)?.name;
@@ -78,7 +79,7 @@ fn is_outside(place: DVec2) -> bool {
     place.abs().max_element() > 1.0
 }
 
-/// The caster whose picture's last texels, or what goes on beyond them, darken this place, with the place across it.
+/// Returns the caster whose picture's last texels, repeated beyond it, darken this place, with the place across it.
 fn smearing(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
     facts.plan.lights.get(light)?.map.as_ref().filter(|map| map.repeats_edge)?;
     let last_texel = 1.0 - 2.0 / facts.texels();
@@ -91,14 +92,15 @@ fn smearing(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(usi
     places.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Does the caster's silhouette cover a texel of its picture that is read at a place: the nearest, or one beside it?
+/// Returns whether the caster's silhouette covers a texel of its picture that is read at a place: the nearest, or one
+/// beside it.
 fn is_covered(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurface, place: DVec2) -> bool {
     let layer = layer_of(facts, light, caster);
     let Some((map, layer)) = facts.plan.lights.get(light).and_then(|light| light.map.as_ref()).zip(layer) else {
         return false;
     };
-    // Where the line of a place in the picture meets the plane across the light's ray through what is seen: two planes
-    // of that line, as clip coordinates have it, and this one.
+    // Where the line of a place in the picture intersects the plane across the light's ray through the visible point:
+    // two planes of that line, as clip coordinates have it, and this one.
     let rows = map.clip_from_light[layer].transpose();
     let towards = facts.tracer.towards(light, seen.point);
     let line_at = |place: DVec2| {
@@ -117,7 +119,7 @@ fn is_covered(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurfac
     points.any(|point| facts.tracer.along(light, point).iter().any(|met| met.place.object == caster))
 }
 
-/// The caster's name and the distance of the first sample that shows a cause, and how many do.
+/// Returns the caster's name and the distance of the first sample that shows a cause, and how many samples do.
 fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<((String, f64), usize)> {
     case.shown(|sample| {
         let (found, caster, far) = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
@@ -180,7 +182,7 @@ fn no_fit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
             "the surface is at {} of half the width of {caster}'s picture, which ends at 1",
             numbers::digits(place)
         );
-        // Fitted pictures end beyond their casters, but for rounding.
+        // Fitted pictures end beyond their casters, except for rounding.
         let is_fitted = facts.plan.settings.get("fit").is_none_or(|fit| fit == "on");
         let fix = if is_fitted { Fix::technique(Technique::ZFail) } else { Fix::setting("fit", "on") };
         return SuspectedCause::new(Cause::OutsideMap, evidence, vec![fix], shown_by);

@@ -1,4 +1,4 @@
-//! Where volumes are counted from, and whether they are closed.
+//! Faults of where volumes are counted from, and of volumes that are not closed.
 
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
@@ -25,24 +25,24 @@ pub(crate) const RULES: &[CauseRule] = &[
     cap_fighting,
 ];
 
-/// Counting in front of surfaces begins at the near plane with one number, whatever is there.
+/// Returns whether counting in front of surfaces begins at the near plane with one number for all pixels.
 fn begins_with_one_number(facts: &FrameFacts, light: usize) -> bool {
     let has_near_count = facts.passes(light).any(Pass::counts_at_near_plane);
     matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
 }
 
-/// Is that number the count of volumes around the eye?
+/// Returns whether that number is the count of volumes around the eye.
 fn starts_at_eye(facts: &FrameFacts) -> bool {
     facts.volumes().is_some_and(|settings| settings.starts_at_eye)
 }
 
-/// What draws the caps again: the setting that leaves them out, or the plan itself.
+/// Returns the fix that draws the caps again: by the setting that leaves them out, or in the plan itself.
 fn draw_caps(facts: &FrameFacts, light_or_dark: usize, edit: PlanEdit) -> Fix {
     let is_set = facts.volumes().is_some_and(|settings| !settings.caps[light_or_dark]);
     if is_set { Fix::setting("caps", "both") } else { Fix::plan(edit) }
 }
 
-/// Casters whose volumes hold a point, with how many volumes those are.
+/// Returns the casters whose volumes contain a point, with how many volumes those are.
 fn holding(facts: &FrameFacts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
     let mut met = facts.tracer.between_points(light, point);
     met.retain(|met| facts.casts(light, met));
@@ -51,7 +51,7 @@ fn holding(facts: &FrameFacts, light: usize, point: DVec3) -> (BTreeSet<String>,
 
 fn eye_in_volume(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
-    // Parallel lines of sight begin at the near plane, each in volumes of its own.
+    // Parallel view rays begin at the near plane, each in volumes of its own.
     let has_eye = !facts.scene.camera.is_parallel();
     if !has_eye || !begins_with_one_number(facts, light) || starts_at_eye(facts) {
         return None;
@@ -109,7 +109,7 @@ fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-/// Casters that meet the space between near rectangle and light.
+/// Returns the casters that intersect the space between near rectangle and light.
 fn meeting_near_clip(facts: &FrameFacts, light: usize) -> Vec<String> {
     let camera = &facts.scene.camera;
     let [width, height] = facts.plan.size.map(f64::from);
@@ -154,17 +154,17 @@ fn near_plane_crack(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     SuspectedCause::new(Cause::NearPlaneCrack, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-/// Draws of a part of a caster's volume.
+/// Returns the draws of a part of a caster's volume.
 fn part_of<'f>(facts: &'f FrameFacts, light: usize, caster: &'f str, part: DrawPart) -> impl Iterator<Item = &'f Draw> {
     facts.draws(light, part).filter(move |draw| draw.caster.as_deref() == Some(caster) && !draw.triangles.is_empty())
 }
 
-/// The plan says why a caster does without something.
+/// Returns whether the plan states why a caster does without something.
 fn is_excused(facts: &FrameFacts, caster: &str, decision: Decision) -> bool {
     facts.plan.left_out.iter().any(|left| left.is(decision, caster) || left.is(Decision::Caps, caster))
 }
 
-/// The first caster counted wrongly at a sample of which `lacks` says so.
+/// Returns the first caster that is counted wrongly at a sample and for which `lacks` is true.
 fn lacking(
     facts: &FrameFacts,
     case: &RegionSamples,
@@ -233,7 +233,7 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
     SuspectedCause::new(Cause::MissingLightCap, evidence, vec![Fix::setting("light-caps", "tested")], shown_by)
 }
 
-/// `1 of its triangles lies`.
+/// Writes `1 of its triangles lies`.
 fn lie(count: i32) -> String {
     match count {
         0 => "none of its triangles lies".to_owned(),
@@ -276,7 +276,7 @@ fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::FarClip, evidence, fixes, shown_by)
 }
 
-/// Clamped depth cuts no volume, but a surface beyond the far plane is at the depth of what was not drawn.
+/// Clamped depth cuts no volume, but a surface beyond the far plane has the same depth as the background.
 fn beyond_clamped(facts: &FrameFacts, case: &RegionSamples, far: f64) -> Option<SuspectedCause> {
     let (distance, shown_by) = case.shown(|sample| {
         let distance = facts.tracer.depth_of(sample.seen?.point);
@@ -293,7 +293,7 @@ fn beyond_clamped(facts: &FrameFacts, case: &RegionSamples, far: f64) -> Option<
 
 fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
-    // Of a light that is not added back: as far as its volumes would reach if it were.
+    // For a light that is not added back: as far as its volumes would reach if it were.
     let (Extrusion::Finite(factor) | Extrusion::FromOrigin(factor)) = facts.volumes()?.extrusion else { return None };
     if !case.is_missing() {
         return None;
@@ -303,7 +303,7 @@ fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
         let distance = facts.tracer.light_distance(light, seen.point);
         let mut casting = sample.between.iter().filter(|met| facts.casts(light, met)).peekable();
         casting.peek()?;
-        // How far the volume goes on behind the caster, and how far it would have to.
+        // How far the volume continues behind the caster, and how far it would have to.
         let reaches = casting.map(|met| {
             let caster = facts.tracer.name(met.place);
             let reach = match distance.is_finite() {
@@ -324,17 +324,17 @@ fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     SuspectedCause::new(Cause::FiniteExtrusion, evidence, vec![Fix::setting("extrusion", "infinite")], shown_by)
 }
 
-/// What single precision makes of a volume that a vertex shader carries.
+/// Errors of single precision in a volume that a vertex shader carries.
 struct ExtrusionInF32 {
-    /// Triangles that are told to face another way than they do.
+    /// Number of triangles that are computed to face another way than they do.
     misfaced: usize,
     triangles: usize,
-    /// How far the farthest vertex goes beside its way, radians.
+    /// How far the farthest vertex is carried beside its exact direction, radians.
     beside: f64,
 }
 
 impl ExtrusionInF32 {
-    /// `None` where the CPU carries it.
+    /// Measures the errors; `None` where the CPU carries the volume.
     fn of(facts: &FrameFacts, light: usize, caster: &str) -> Option<ExtrusionInF32> {
         let draw = part_of(facts, light, caster, DrawPart::Side).next()?;
         let extruded = facts.plan.meshes.get(draw.mesh.0)?.extruded.as_ref()?;
@@ -343,12 +343,12 @@ impl ExtrusionInF32 {
         let extruder = Extruder::new(&world, position, facts.volumes()?.extrusion);
         let origin = facts.plan.views.first()?.origin;
         let triangles = object.mesh.triangles();
-        // Of each a front, or a front and a back.
+        // Each triangle has a front, or a front and a back.
         let copies = if extruded.corners.len() == triangles.len() * 3 { 3 } else { 6 };
         let mut carried = ExtrusionInF32 { misfaced: 0, triangles: triangles.len(), beside: 0.0 };
         for (triangle, corners) in triangles.iter().zip(extruded.corners.data().chunks_exact(copies)) {
             let places = triangle.map(|vertex| world[vertex as usize]);
-            // Of one whose back alone casts the front has no plane.
+            // A triangle whose back alone casts has no plane in its front's corners.
             let is_back = corners[0].plane == [0.0; 4];
             let (at, casts) = if is_back { (copies - 1, Sign::Negative) } else { (0, Sign::Positive) };
             let stays = side_of_triangle(places, position) == casts;
@@ -370,7 +370,7 @@ fn carried_in_f32(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     facts.volumes().filter(|settings| settings.by_vertex_shader)?;
     let (found, shown_by) = case.shown(|sample| {
         let miscounted = sample.miscounted(facts, light).into_iter();
-        // What goes beside its way by less moves no edge by a pixel.
+        // A smaller deviation of the direction moves no edge by a pixel.
         let is_off = |of: &ExtrusionInF32| of.misfaced > 0 || of.beside > facts.pixel_angle() / 2.0;
         let carried = |caster: String| Some((ExtrusionInF32::of(facts, light, &caster).filter(is_off)?, caster));
         miscounted.map(|(caster, ..)| caster).find_map(carried)
@@ -406,7 +406,7 @@ fn light_not_added(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
     SuspectedCause::new(Cause::LightNotAdded, evidence, vec![Fix::setting("far-vertices", "from-light")], shown_by)
 }
 
-/// The diagonal of an object's bounding box, world space.
+/// Returns the diagonal of an object's bounding box, world space, metres.
 fn size_of(facts: &FrameFacts, name: &str) -> f64 {
     let Some((_, object)) = facts.object(name) else { return 0.0 };
     AxisBox::around(object.world_positions()).diagonal()

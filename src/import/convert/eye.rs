@@ -1,26 +1,28 @@
-//! How the eye of a recorded frame sees, as far as its vertices say.
+//! The projection of a recorded frame's eye, as far as its vertices determine it.
 //!
-//! A perspective makes w the distance along the view axis, and z = a·w + b for all that is not at infinity: two numbers,
-//! fitted over the vertices of the surfaces. The field of view can't be known, as clip space is view space stretched: it
-//! is taken as 90 degrees with square pixels, which keeps every straight line, every "between" and every silhouette.
+//! In a perspective w is the distance along the view axis, and z = a·w + b for all that is not at infinity: two
+//! numbers, fitted over the vertices of the surfaces. The field of view can't be known, as clip space is view space
+//! stretched: it is taken as 90 degrees with square pixels, which preserves every straight line, every "between" and
+//! every silhouette.
 
 use crate::math::depth::{DepthCurve, DepthMapping, LengthUnit};
 use crate::plan::{Draw, DrawPart, FramePlan, Pass};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3};
 
-/// Degrees; its tangent's half is 1.
+/// Field of view in degrees; the tangent of its half is 1.
 const FIELD_OF_VIEW: f64 = 90.0;
 /// How far a vertex may be off the fit, in parts of its w.
 const RESIDUAL: f64 = 1e-3;
 
-/// How depths of a plan's picture come from distances; `None` where its surfaces do not tell, as without a perspective.
+/// Returns how depths of a plan's picture follow from distances; `None` where its surfaces do not determine it, as
+/// without a perspective.
 pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
     let picture = || plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
     let is_reversed = is_reversed(picture().flat_map(|pass| &pass.draws));
     let surfaces = picture().flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)));
     let surfaces = surfaces.filter(|(_, draw)| draw.part == DrawPart::Surface && draw.raster.depth_write);
-    // A sky, an interface or a hand-held thing may have a projection of its own: most vertices decide.
+    // A sky, a user interface or a weapon in hand may have a projection of its own: most vertices decide.
     let fits: Vec<(usize, [f64; 2])> = surfaces
         .filter_map(|(pass, draw)| {
             let points = points(plan, pass, draw);
@@ -40,9 +42,9 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
     };
     match best {
         Some([a, b]) => {
-            // Where depth is 1, or 0 where it is reversed.
+            // Distance at which depth is 1, or 0 where it is reversed.
             let far = if is_reversed { -b / a } else { b / (1.0 - a) };
-            // Depth that is clamped shows what lies beyond, too.
+            // Clamped depth also shows what lies beyond the far plane.
             let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == DrawPart::Surface);
             let is_clipped = is_clipped.filter(|draw| draw.raster.depth_write).all(|draw| !draw.raster.unclipped_depth);
             let far = Some(far).filter(|far| far.is_finite() && *far > 0.0 && is_clipped);
@@ -59,14 +61,14 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
     }
 }
 
-/// What is taken where nothing is known: depth from 0 to 1, as if there were no far plane.
+/// Returns the curve that is assumed where nothing is known: depth from 0 to 1, as if there were no far plane.
 pub(super) fn unknown(plan: &FramePlan) -> DepthCurve {
     let is_reversed = is_reversed(plan.passes.iter().flat_map(|pass| &pass.draws));
     let mapping = if is_reversed { DepthMapping::ReversedInfinite } else { DepthMapping::StandardInfinite };
     DepthCurve { unit: LengthUnit::Unknown, ..mapping.curve(1.0, 0.0, 0.0) }
 }
 
-/// Is greater nearer? As most depth tests say.
+/// Returns whether greater depth is nearer, by the majority of depth tests.
 fn is_reversed<'a>(draws: impl Iterator<Item = &'a Draw>) -> bool {
     use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
     let votes = draws.map(|draw| match draw.raster.depth_compare {
@@ -77,7 +79,7 @@ fn is_reversed<'a>(draws: impl Iterator<Item = &'a Draw>) -> bool {
     votes.sum::<i64>() > 0
 }
 
-/// z and w of a draw's vertices, z as the depth range has it.
+/// Returns z and w of a draw's vertices, with z mapped to the depth range.
 fn points(plan: &FramePlan, pass: &Pass, draw: &Draw) -> Vec<[f64; 2]> {
     let [near, far] = pass.viewport(plan.size).depth.map(f64::from);
     let place = |[_, _, z, w]: &[f32; 4]| {
@@ -88,7 +90,7 @@ fn points(plan: &FramePlan, pass: &Pass, draw: &Draw) -> Vec<[f64; 2]> {
     vertices.iter().map(place).filter(|[z, w]| z.is_finite() && w.is_finite()).collect()
 }
 
-/// a and b of z = a·w + b by least squares; `None` where w is the same everywhere or points lie off the line.
+/// Returns a and b of z = a·w + b by least squares; `None` where w is the same everywhere or points lie off the line.
 fn fitted(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
@@ -105,7 +107,7 @@ fn fitted(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     (b != 0.0 && points.iter().all(is_near)).then_some([a, b])
 }
 
-/// An eye at the origin that looks along −z, for which clip space is view space.
+/// Returns an eye at the origin that looks along −z, for which clip space is view space.
 pub(super) fn camera(curve: &DepthCurve) -> Camera {
     let plane = |depth: f64| Some(curve.scale / (depth - curve.offset)).filter(|at| at.is_finite() && *at > 0.0);
     let near = plane(if curve.mapping.is_reversed() { 1.0 } else { 0.0 }).unwrap_or(1.0).clamp(1e-30, 1e30);
@@ -120,7 +122,7 @@ pub(super) fn camera(curve: &DepthCurve) -> Camera {
     }
 }
 
-/// Clip space from the view space of that camera.
+/// Returns the matrix from that camera's view space to clip space.
 pub(super) fn clip_from_view(curve: &DepthCurve, size: [u32; 2]) -> DMat4 {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let row = curve.z_row();

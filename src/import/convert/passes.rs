@@ -21,18 +21,18 @@ struct DrawRun {
     role: DrawRole,
 }
 
-/// Passes and steps in the making.
+/// Builds passes and steps from a frame's events.
 pub(super) struct PassBuilder<'a> {
     frame: &'a RawFrame,
     stage: &'a FollowedTargets,
     contents: BTreeMap<RawTarget, RawContents>,
-    /// Places whose depth or stencil something other than a draw has set since: a clear, a load, a copy.
+    /// Targets whose depth or stencil something other than a draw has set since: a clear, a load, a copy.
     written: BTreeMap<DrawTarget, [bool; 2]>,
     run: Option<DrawRun>,
-    /// What the steps last showed: colour, depth, stencil.
+    /// Content of the last steps: colour, depth, stencil.
     shown: [Option<Arc<Image>>; 3],
     counting_light: Option<LightId>,
-    /// The stencil was set by something other than a draw since volumes were counted in it.
+    /// True where the stencil was set by something other than a draw since volumes were counted in it.
     is_emptied: bool,
     pub passes: Vec<Pass>,
     pub steps: Vec<Step>,
@@ -63,14 +63,14 @@ impl<'a> PassBuilder<'a> {
         making
     }
 
-    /// What each face of a depth map holds now, where that is known.
+    /// Returns the current content of a face of a depth map, where that is known.
     pub fn face(&self, map: usize, layer: u32) -> Option<Arc<Image>> {
         self.contents.get(&self.stage.target(DrawTarget::Map(map, layer)))?.depth.clone()
     }
 
     pub fn event(&mut self, event: &RawEvent) {
         if let RawKind::Draw(draw) = &event.kind {
-            // What a pass begins with is what is held before.
+            // A pass begins with the content that is current before it.
             match self.begin_for(event, draw) {
                 Ok((place, cull)) => {
                     self.note(event);
@@ -79,13 +79,13 @@ impl<'a> PassBuilder<'a> {
                 Err(why) => self.leave_out(event, why),
             }
         }
-        // What it leaves is there when the next pass begins, whatever it was.
+        // Its result is current when the next pass begins, whatever it was.
         let before = event.depth_target.and_then(|target| self.contents.get(&target).cloned()).unwrap_or_default();
         self.note(event);
         let Some(target) = event.depth_target else { return };
         let (Some(place), Some(after)) = (self.stage.place(target), self.contents.get(&target)) else { return };
         let changed = [before.depth != after.depth, before.stencil != after.stencil];
-        // A clear is one even where it changes nothing: what is counted from then on is another light's.
+        // A clear counts even where it changes nothing: counts from then on are another light's.
         let clears = matches!(event.kind, RawKind::Clear { stencil: true, .. });
         self.is_emptied |= place == DrawTarget::Picture && (clears || changed[1]);
         let changed = [changed[0], changed[1] || clears];
@@ -96,7 +96,7 @@ impl<'a> PassBuilder<'a> {
         }
     }
 
-    /// Notes what an event left.
+    /// Records what an event left.
     fn note(&mut self, event: &RawEvent) {
         let after = &event.after;
         if let Some(target) = event.depth_target {
@@ -107,7 +107,7 @@ impl<'a> PassBuilder<'a> {
         }
     }
 
-    /// Notes what a target holds, as far as that is known.
+    /// Records the content of a target, as far as that is known.
     fn hold(&mut self, target: RawTarget, RawContents { depth, stencil, color }: RawContents) {
         let size = size_of(self.frame, target);
         let of_size = |image: Option<Arc<Image>>| image.filter(|image| image.size() == size);
@@ -117,7 +117,7 @@ impl<'a> PassBuilder<'a> {
         contents.color = of_size(color).or(contents.color.take());
     }
 
-    /// Begins a pass for a draw, unless it goes on with the one before; or says why the draw can't be followed.
+    /// Begins a pass for a draw, unless it continues the one before; or says why the draw can't be followed.
     fn begin_for(
         &mut self,
         event: &RawEvent,
@@ -153,8 +153,8 @@ impl<'a> PassBuilder<'a> {
         });
     }
 
-    /// The light of a pass: a map's own, or that whose volumes were counted last. A stencil that is emptied and counted
-    /// in again is another light's.
+    /// Returns the light of a pass: a map's own, or the one whose volumes were counted last. A stencil that is cleared
+    /// and counted in again is another light's.
     fn light(&mut self, run: &DrawRun) -> Option<LightId> {
         if let DrawTarget::Map(map, _) = run.place {
             return Some(LightId(map));
@@ -172,7 +172,7 @@ impl<'a> PassBuilder<'a> {
         } else {
             self.written.remove(&run.place).unwrap_or_default()
         };
-        // What it held before its first draw: what is held now may be what that left.
+        // Content before its first draw: the current content may be the result of that draw.
         let (content, clears) = self.content(run.place, written);
         let light = self.light(&run);
         let (attachment, layer) = match run.place {
@@ -204,7 +204,7 @@ impl<'a> PassBuilder<'a> {
         self.run = Some(run);
     }
 
-    /// What depth and stencil of a place were set to since its last pass: content, or one value everywhere.
+    /// Returns the depth and stencil that were set since the target's last pass: content, or one value everywhere.
     fn content(
         &self,
         place: DrawTarget,
@@ -227,7 +227,7 @@ impl<'a> PassBuilder<'a> {
 
     fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: DrawTarget, cull: Option<wgpu::Face>) {
         let is_of_picture = !matches!(place, DrawTarget::Map(..));
-        // Of draws that are not taken apart it is not known.
+        // It is not known for draws that are not followed one by one.
         let is_known = is_of_picture && event.after != RawContents::default();
         let after = is_known.then(|| DrawState { snapshot: Snapshot::Frame(self.snapshot()), target: None });
         let (Some(pass), Some(step)) = (self.passes.last_mut(), self.steps.last_mut()) else { return };
@@ -254,7 +254,7 @@ impl<'a> PassBuilder<'a> {
         pass.draws.push(Draw { program, ..Draw::of_positions(name, part, mesh, triangles, raster) });
     }
 
-    /// What the picture holds now.
+    /// Returns the picture's current content.
     fn snapshot(&mut self) -> FrameSnapshot {
         let size = self.stage.size(self.frame);
         let of_depth = self.contents.get(&self.stage.depth).cloned().unwrap_or_default();
@@ -279,7 +279,7 @@ impl<'a> PassBuilder<'a> {
     }
 }
 
-/// A draw's triangles. Where it is known which of their fragments were kept, the shader that draws them anew tells a
+/// Returns a draw's triangles. Where its retained fragments are known, the shader that draws them again identifies a
 /// triangle by its corners: none is shared.
 fn mesh_of(draw: &RawDraw, name: String) -> DrawMesh {
     let (vertices, indices) = (states::vertices(draw), draw.triangles.as_flattened());
@@ -292,7 +292,8 @@ fn mesh_of(draw: &RawDraw, name: String) -> DrawMesh {
     DrawMesh { retained: Some(Blob::new(retained)), ..DrawMesh::of_positions(name, corners, all) }
 }
 
-/// The state after draws that left `before`, and one more that left `after`: what none of them changed is unchanged.
+/// Returns the state after draws that left `before`, and one more that left `after`: aspects that none of them changed
+/// are unchanged.
 fn after_all(before: &FrameSnapshot, mut after: FrameSnapshot) -> FrameSnapshot {
     after.color.unchanged &= before.color.unchanged;
     after.depth.unchanged &= before.depth.unchanged;
@@ -302,7 +303,7 @@ fn after_all(before: &FrameSnapshot, mut after: FrameSnapshot) -> FrameSnapshot 
     after
 }
 
-/// The one texel that is everywhere, if it is.
+/// Returns the one texel that is everywhere, if there is one.
 fn uniform(image: &Image) -> Option<Vec<u8>> {
     let texel = image.format().texel_bytes();
     let first = image.rows().next()?.get(..texel)?.to_vec();

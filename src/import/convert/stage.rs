@@ -6,14 +6,14 @@ use crate::plan::{Attachment, AttachmentRole, PlanMap};
 use std::collections::BTreeMap;
 use wgpu::TextureFormat;
 
-/// Where a draw goes.
+/// What a draw draws into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum DrawTarget {
-    /// Into the picture, with its depth.
+    /// The picture, with its depth.
     Picture,
-    /// Into the picture's colours alone.
+    /// The picture's colours alone.
     Colors,
-    /// Into a layer of a depth map.
+    /// A layer of a depth map.
     Map(usize, u32),
 }
 
@@ -24,12 +24,13 @@ pub(super) struct FollowedTargets {
     pub depth: RawTarget,
     /// The picture's colours, if it has any.
     pub color: Option<RawTarget>,
-    /// Textures of depth maps, each with its level, in the order of their first draws.
+    /// Textures of depth maps, each with its mip level, in the order of their first draws.
     pub maps: Vec<RawTarget>,
 }
 
 impl FollowedTargets {
-    /// The picture is where most triangles are drawn with depth and colours; other depth buffers are maps.
+    /// Chooses the targets: the picture is where most triangles are drawn with depth and colours; other depth buffers
+    /// are maps.
     pub fn of(frame: &RawFrame) -> Result<FollowedTargets, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
@@ -69,7 +70,7 @@ impl FollowedTargets {
         size_of(frame, self.depth)
     }
 
-    /// What a depth target is.
+    /// Returns what a depth target is: the picture or a map.
     pub fn place(&self, target: RawTarget) -> Option<DrawTarget> {
         if target == self.depth {
             return Some(DrawTarget::Picture);
@@ -78,7 +79,7 @@ impl FollowedTargets {
         (target.layer < PlanMap::MOST_FACES as u32).then_some(DrawTarget::Map(map, target.layer))
     }
 
-    /// The target of a place.
+    /// Returns the target of a place.
     pub fn target(&self, place: DrawTarget) -> RawTarget {
         match place {
             DrawTarget::Picture | DrawTarget::Colors => self.depth,
@@ -86,7 +87,7 @@ impl FollowedTargets {
         }
     }
 
-    /// The attachment of a place's depth and stencil.
+    /// Returns the attachment of a place's depth and stencil.
     pub fn attachment(&self, frame: &RawFrame, place: DrawTarget, role: AttachmentRole) -> Attachment {
         let target = self.target(place);
         let texture = &frame.textures[target.texture];
@@ -101,7 +102,7 @@ impl FollowedTargets {
     }
 }
 
-/// Width and height of a level.
+/// Returns width and height of a mip level.
 pub(super) fn size_of(frame: &RawFrame, target: RawTarget) -> [u32; 2] {
     frame.textures[target.texture].size.map(|side| (side >> target.mip.min(31)).max(1))
 }

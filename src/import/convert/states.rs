@@ -1,7 +1,7 @@
-//! A draw's states in wgpu's words, its vertices as wgpu's clip space has them, and what it is for.
+//! A draw's states in wgpu's terms, its vertices in wgpu's clip space, and its purpose.
 //!
-//! wgpu's clip space has y up and z from 0 to w, and its viewport has the smaller depth first: y and z are turned where
-//! the program's are not so. Which way round a triangle runs was told as it is seen, so that stays.
+//! wgpu's clip space has y up and z from 0 to w, and its viewport has the smaller depth first: y and z are reversed
+//! where the program's are not so. A triangle's winding is recorded as it is seen on the picture, so that stays.
 
 use super::stage::DrawTarget;
 use crate::import::raw::{RawBlend, RawCull, RawDepth, RawDraw, RawStencilFace};
@@ -9,9 +9,9 @@ use crate::plan::{ColorWrite, CountedSide, RasterState, Viewport};
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
 
 named_enum! {
-    /// What a run of draws is for, as its states say.
+    /// The purpose of a run of draws, as its states suggest.
     pub enum DrawRole(
-        /// One sentence for the learner.
+        /// One sentence that explains it to a learner.
         purpose
     ) {
         /// Draws surfaces: depth is written.
@@ -20,18 +20,18 @@ named_enum! {
         Counts = "volumes" ("Faces add to the stencil or take away from it, as those of shadow volumes do."),
         /// Marks the stencil with a value.
         Marks = "marks" ("The stencil is set to a value where these draws show."),
-        /// Draws where the stencil test passes, as what a light adds.
+        /// Draws where the stencil test passes, as a light's pass does.
         Tests = "light" (
             "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
         ),
         /// Fills a depth map.
         FillsMap = "map" ("Depth alone is drawn into a picture of its own: a shadow map."),
-        /// Draws over what is there.
+        /// Draws over what is stored.
         Overlays = "overlay" ("Colours are drawn over what is there; no depth is left."),
     }
 }
 
-/// What a draw is for.
+/// Returns the purpose of a draw.
 pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     if matches!(place, DrawTarget::Map(..)) {
         return DrawRole::FillsMap;
@@ -43,7 +43,8 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     let counts = writes.iter().any(|operation| counts(*operation));
     let tests = |compare: CompareFunction| !matches!(compare, CompareFunction::Always | CompareFunction::Never);
     let tests = faces.iter().any(|face| tests(face.face.compare));
-    // What is drawn where a test lets it, and steps there so that nothing is drawn twice, is light and no volume.
+    // A draw that writes colour where a test passes, and counts there so that nothing is drawn twice, is light and no
+    // volume.
     let draws = draw.blend.as_ref().is_some_and(|blend| blend.write.contains(&true));
     let counts = counts && !(tests && draws);
     let writes_depth = draw.depth.is_some_and(|depth| depth.write);
@@ -56,7 +57,7 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     }
 }
 
-/// Does an operation add, or take away?
+/// Returns whether an operation adds or subtracts.
 fn counts(operation: StencilOperation) -> bool {
     matches!(
         operation,
@@ -67,7 +68,7 @@ fn counts(operation: StencilOperation) -> bool {
     )
 }
 
-/// On which side of the surface a counting state counts.
+/// Returns on which side of the surface a counting state counts.
 pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
     let faces = [&raster.stencil.front, &raster.stencil.back];
     let behind = faces.iter().any(|face| counts(face.depth_fail_op)).then_some(CountedSide::Behind);
@@ -75,7 +76,7 @@ pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
     behind.into_iter().chain(in_front).collect()
 }
 
-/// The faces that are culled, if its triangles can be drawn as they are.
+/// Returns the faces that are culled, if its triangles can be drawn as they are.
 ///
 /// # Errors
 /// Why they can't, in words.
@@ -106,7 +107,7 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static st
     }
 }
 
-/// Vertices as wgpu's clip space has them.
+/// Returns the vertices in wgpu's clip space.
 pub(super) fn vertices(draw: &RawDraw) -> Vec<[f32; 4]> {
     let is_reversed = draw.view.depth_range[0] > draw.view.depth_range[1];
     let place = |[x, y, z, w]: &[f32; 4]| {
@@ -117,13 +118,13 @@ pub(super) fn vertices(draw: &RawDraw) -> Vec<[f32; 4]> {
     draw.positions.iter().map(place).collect()
 }
 
-/// Where clip space lands.
+/// Returns the viewport in wgpu's terms.
 pub(super) fn viewport(draw: &RawDraw) -> Viewport {
     let [near, far] = draw.view.depth_range;
     Viewport { area: draw.view.viewport, depth: [near.min(far).clamp(0.0, 1.0), near.max(far).clamp(0.0, 1.0)] }
 }
 
-/// The scissor inside of a target; `None` where all of it may be drawn.
+/// Returns the scissor inside of a target; `None` where all of it may be drawn.
 pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
     let [left, top, columns, rows] = draw.view.scissor?.map(i64::from);
     let [width, height] = size.map(i64::from);
@@ -134,7 +135,7 @@ pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
     (area != [0, 0, size[0], size[1]]).then_some(area)
 }
 
-/// The raster state.
+/// Returns the raster state.
 pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool) -> RasterState {
     let shape = &draw.shape;
     let [constant, slope_scale, clamp] = shape.bias;

@@ -1,9 +1,9 @@
-//! What each API has unless it is told otherwise. Lines as [`super::lines`] writes them: what is not among them was set.
+//! The default state of each API, in lines as [`super::lines`] writes them: a line that is not among them was set.
 
 use super::RasterApi;
 
-/// A pipeline's descriptor without these members. It has no default for depthCompare and depthWriteEnabled: where there is
-/// a depth format, one must say.
+/// A pipeline's descriptor without these members. It has no default for depthCompare and depthWriteEnabled: where there
+/// is a depth format, both are required.
 const WEB_GPU: &[&str] = &[
     "depthBias: 0,",
     "depthBiasSlopeScale: 0,",
@@ -18,7 +18,7 @@ const WEB_GPU: &[&str] = &[
     "blend: undefined,",
 ];
 
-/// A context's first state.
+/// The state of a new context.
 const OPEN_GL: &[&str] = &[
     "glDepthFunc(GL_LESS);",
     "glDepthMask(GL_TRUE);",
@@ -38,7 +38,7 @@ const OPEN_GL: &[&str] = &[
     "glDisable(GL_BLEND);",
 ];
 
-/// As `d3dx12.h` fills in `D3D12_DEFAULT`, and a command list that was just reset.
+/// The values of `D3D12_DEFAULT` in `d3dx12.h`, and of a command list that was just reset.
 const DIRECT_3D: &[&str] = &[
     "DepthFunc = D3D12_COMPARISON_FUNC_LESS;",
     "DepthWriteMask = D3D12_DEPTH_WRITE_MASK_ALL;",
@@ -62,7 +62,7 @@ const DIRECT_3D: &[&str] = &[
     "BlendEnable = FALSE;",
 ];
 
-/// The lines that need not be said.
+/// Returns the lines that say no more than the API's default.
 pub fn defaults(api: RasterApi) -> &'static [&'static str] {
     match api {
         RasterApi::WebGpu => WEB_GPU,

@@ -1,4 +1,4 @@
-//! What is around the charts: heading, legend, notes.
+//! The parts around the charts: heading, legend, notes.
 
 use super::{
     LINE, LegendKey, Plot, PlotInk, PlotLine, PlotText, SMALL_SIZE, STYLES, TEXT_SIZE, TechniqueStyle, style_of,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::report::{Report, ReportRow, table};
 
-/// The plot in a sentence, for who can't see it.
+/// Describes the plot in a sentence, for screen readers.
 pub fn summary(report: &Report) -> String {
     let (rows, scenes) = (report.rows.len(), report.scenes());
     let front: Vec<String> = report.rows.iter().filter(|row| row.pareto).map(ReportRow::summary).collect();
@@ -17,7 +17,7 @@ pub fn summary(report: &Report) -> String {
     )
 }
 
-/// Title and what it was measured on; where the charts begin.
+/// Adds the title and what it was measured on; returns where the charts begin.
 pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
     let adapter = &report.adapter;
     let sizes = table::sizes(report.rows.iter().map(|row| row.size));
@@ -27,7 +27,7 @@ pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
     plot.add_heading(&lines) + 4.0
 }
 
-/// Words in lines of at most `width` points.
+/// Wraps a text into lines of at most `width` points.
 fn wrapped(text: &str, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -42,7 +42,7 @@ fn wrapped(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
-/// Each technique's mark, and what filled marks, lines and whiskers mean.
+/// Returns the legend: each technique's mark, and what filled marks, lines and whiskers mean.
 pub fn legend(report: &Report, width: f64) -> Plot {
     let mut legend = Plot::empty(width);
     let mut used: Vec<(&'static TechniqueStyle, &str)> = Vec::new();
@@ -76,7 +76,7 @@ pub fn legend(report: &Report, width: f64) -> Plot {
     legend
 }
 
-/// Entries of a legend, in lines.
+/// Lays out entries of a legend in lines.
 struct LegendFlow<'a> {
     legend: &'a mut Plot,
     at: [f64; 2],
@@ -84,7 +84,7 @@ struct LegendFlow<'a> {
 }
 
 impl LegendFlow<'_> {
-    /// An entry: a sign of 14 points, then its words.
+    /// Adds an entry: a sign of 14 points, then its text.
     fn add(&mut self, words: &str, ink: PlotInk, sign: &dyn Fn(&mut Plot, [f64; 2])) {
         let taken = 18.0 + text_width(words, SMALL_SIZE) + 14.0;
         if self.at[0] > 8.0 && self.at[0] + taken > self.width {
@@ -100,7 +100,7 @@ impl LegendFlow<'_> {
     }
 }
 
-/// What is not in the plot, or not where it belongs.
+/// Returns notes about rows that are not in the plot, or not at their own position.
 pub fn notes(report: &Report, width: f64) -> Vec<String> {
     let mut notes = Vec::new();
     for row in &report.rows {

@@ -1,36 +1,36 @@
-//! Axes of a chart of wrong pixels: its area and band, ticks along both, and the lines and words that follow.
+//! Axes of a chart of wrong pixels: its area and band, ticks along both, and the lines and texts that follow.
 
 use super::scale::{self, LogScale};
 use super::{PlotInk, PlotLine, PlotRect, PlotText, TITLE_SIZE, TextAnchor};
 use crate::numbers;
 
-/// Between area and band, points: a gap that no line of the axis crosses.
+/// Gap between area and band that no line of the axis crosses, points.
 pub(crate) const BREAK: f64 = 7.0;
-/// Between the band's edges and its lanes, points.
+/// Distance between the band's edges and its lanes, points.
 const BAND_EDGE: f64 = 3.0;
-/// The axis that goes up where no row has a place on it, per cent.
+/// The range of the vertical axis where no row has a position on it, per cent.
 const NO_ERRORS: [f64; 2] = [0.01, 10.0];
-/// What the band says on the axis.
+/// The tick text of the band.
 pub(crate) const NONE_WRONG: &str = "none wrong";
 
 /// A value on an axis.
 #[derive(Debug)]
 pub(crate) struct Tick {
-    /// Where it is along the axis, points.
+    /// Position along the axis, points.
     pub at: f64,
-    /// Its words.
+    /// Its text.
     pub text: String,
 }
 
 impl Tick {
-    /// Ticks at `values` of a scale.
+    /// Returns ticks at `values` of a scale.
     pub fn along(scale: &LogScale, values: impl IntoIterator<Item = f64>, unit: &str) -> Vec<Tick> {
         let tick = |value| Tick { at: scale.position(value), text: format!("{}\u{a0}{unit}", number(value)) };
         values.into_iter().map(tick).collect()
     }
 }
 
-/// A tick's number: as short as it is exact.
+/// Writes a tick's number: as short as it is exact.
 fn number(value: f64) -> String {
     match value {
         1e-5..1e3 => value.to_string(),
@@ -42,21 +42,21 @@ fn number(value: f64) -> String {
 /// The axes of a chart, relative to its corner.
 #[derive(Debug)]
 pub(crate) struct Axes {
-    /// Where points with wrong pixels are.
+    /// Area of points with wrong pixels.
     pub area: PlotRect,
-    /// Where points without one are.
+    /// Area of points without a wrong pixel.
     pub band: PlotRect,
     /// Height of a lane of the band, points.
     lane_height: f64,
-    /// Per cent of wrong pixels.
+    /// The vertical scale, per cent of wrong pixels.
     up: LogScale,
     x_ticks: Vec<Tick>,
     y_ticks: Vec<Tick>,
 }
 
 impl Axes {
-    /// Axes within `outer` that hold all `percents`, with ticks at least `apart` points from one to the next and a band
-    /// of `lanes` below.
+    /// Returns axes within `outer` that contain all `percents`, with ticks at least `apart` points from one to the next
+    /// and a band of `lanes` below.
     pub fn new(
         outer: PlotRect,
         (lanes, lane_height): (usize, f64),
@@ -68,12 +68,12 @@ impl Axes {
         let band = PlotRect { min: [outer.min[0], band_top], max: outer.max };
         let area = PlotRect { min: outer.min, max: [outer.max[0], band_top - BREAK] };
         let up = LogScale::new(scale::range(percents, NO_ERRORS), [area.max[1], area.min[1]]);
-        // The scale may go on above all there is.
+        // The scale may continue above the largest value.
         let y_ticks = Tick::along(&up, up.ticks(apart).into_iter().filter(|percent| *percent <= 100.0), "%");
         Axes { area, band, lane_height, up, x_ticks, y_ticks }
     }
 
-    /// How far down a share of wrong pixels is; none is in its lane of the band.
+    /// Returns the vertical position of a share of wrong pixels; without a wrong pixel it is in its lane of the band.
     pub fn height(&self, percent: f64, lane: usize) -> f64 {
         if percent > 0.0 {
             self.up.position(percent)
@@ -82,7 +82,7 @@ impl Axes {
         }
     }
 
-    /// A line at each tick.
+    /// Returns a line at each tick.
     pub fn grid(&self) -> Vec<PlotLine> {
         let [left, right] = [self.area.min[0], self.area.max[0]];
         let level = self.y_ticks.iter().map(|tick| PlotLine::grid([[left, tick.at], [right, tick.at]]));
@@ -92,7 +92,7 @@ impl Axes {
         level.chain(upright).collect()
     }
 
-    /// A title, and what goes up and across.
+    /// Returns the texts of the title and of both axes.
     pub fn captions(&self, title: &str, across: &str) -> Vec<PlotText> {
         vec![
             PlotText::new([8.0, 10.0], title, TITLE_SIZE, PlotInk::Text).strong(),
@@ -101,7 +101,7 @@ impl Axes {
         ]
     }
 
-    /// The words of all ticks, and of the band.
+    /// Returns the texts of all ticks, and of the band.
     pub fn tick_texts(&self) -> impl Iterator<Item = PlotText> {
         let beside = |y, text: &str| PlotText::small([self.area.min[0] - 6.0, y], text).anchored(TextAnchor::End);
         let none = beside((self.band.min[1] + self.band.max[1]) / 2.0, NONE_WRONG);

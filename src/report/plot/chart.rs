@@ -9,42 +9,42 @@ use super::{
 use crate::report::{Report, ReportRow};
 use std::collections::BTreeMap;
 
-/// Above the area: title and caption of the axis that goes up, points; in one line where compact.
+/// Space above the area for title and caption of the vertical axis, points; in one line where compact.
 const TOP: f64 = 40.0;
 const COMPACT_TOP: f64 = 24.0;
-/// Below the band: ticks and caption of the axis that goes across, points; ticks only where compact.
+/// Space below the band for ticks and caption of the horizontal axis, points; ticks only where compact.
 const BOTTOM: f64 = 38.0;
 const COMPACT_BOTTOM: f64 = 22.0;
-/// Right of the area, points: half of the last tick's words.
+/// Space right of the area, points: half of the last tick's text.
 const RIGHT: f64 = 22.0;
 /// Height of a lane of the band, points.
 const LANE: f64 = 18.0;
-/// The axis that goes across where no row has a place on it, milliseconds.
+/// The range of the horizontal axis where no row has a position on it, milliseconds.
 pub(super) const NO_TIMES: [f64; 2] = [1.0, 100.0];
 
-/// What all charts of a plot share: size and axes, relative to the chart's corner.
+/// Size and axes that all charts of a plot share, relative to the chart's corner.
 #[derive(Debug)]
 pub struct ChartFrame {
     /// Width and height in points.
     pub size: [f64; 2],
     axes: Axes,
-    /// Milliseconds.
+    /// The horizontal scale, milliseconds.
     across: LogScale,
     lanes: usize,
     compact: bool,
 }
 
 impl ChartFrame {
-    /// Axes that hold the rows of all `scenes`, in charts of `size`.
+    /// Returns axes that contain the rows of all `scenes`, in charts of `size`.
     pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2], compact: bool) -> ChartFrame {
         let [top, below] = if compact { [COMPACT_TOP, COMPACT_BOTTOM] } else { [TOP, BOTTOM] };
         let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
         let times = rows().flat_map(|row| [row.frame_ms.median, row.frame_ms.min, row.frame_ms.max]);
         let times = scale::range(times, NO_TIMES);
         let height = size[1] - top - below - BREAK;
-        // More than half of the chart is not for rows that are all equally right.
+        // At most 55 % of the chart's height is for rows without a wrong pixel.
         let most_lanes = ((height * 0.55 / LANE) as usize).max(1);
-        // The widest words that the axis may have.
+        // The widest texts that the axis may have.
         let left = 8.0 + text_width(NONE_WRONG, SMALL_SIZE).max(text_width("0.00001 %", SMALL_SIZE)) + 6.0;
         let [x0, x1] = [left, size[0] - RIGHT];
         let across = LogScale::new(times, [x0, x1]);
@@ -84,7 +84,7 @@ impl ChartFrame {
     }
 }
 
-/// The chart of `rows` at a place of the page.
+/// Returns the chart of `rows` at a position of the page.
 pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, corner: [f64; 2]) -> SceneChart {
     let captions = captions(report, rows);
     let Axes { area, band, .. } = frame.axes;
@@ -92,7 +92,7 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, c
     let lanes = lanes(&band_rows(report, rows), &captions, &frame.across, sides, frame.lanes);
     let place = |index: usize| frame.place(&report.rows[index], lanes.get(&index));
     let mut spots: Vec<PlotPoint> = rows.iter().map(|index| spot(report, *index, place(*index), frame)).collect();
-    // Height in the band says nothing, so a line between two of its rows would say something wrong.
+    // Height in the band has no meaning, so a line between two of its rows would mislead.
     let is_apart = |pair: &&[usize]| pair.iter().any(|index| report.rows[*index].wrong_fraction > 0.0);
     let chains = chains(report, rows);
     let joins = chains.iter().flat_map(|chain| chain.windows(2)).filter(is_apart).map(|pair| PlotLine {
@@ -116,7 +116,7 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, c
     SceneChart { texts: frame.texts(&title), title, area, band, lines, spots, labels }.moved(corner)
 }
 
-/// Rows without a wrong pixel, those on the front first: they are nearest to the chart's area.
+/// Returns rows without a wrong pixel, those on the front first: they are nearest to the chart's area.
 fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a ReportRow)> {
     let rows = rows.iter().map(|index| (*index, &report.rows[*index]));
     let mut rows: Vec<_> = rows.filter(|(_, row)| row.wrong_fraction == 0.0).collect();
@@ -124,8 +124,8 @@ fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a ReportRo
     rows
 }
 
-/// A lane for each row of the band, so that marks with their labels stay apart; beyond `most`
-/// lanes they may meet.
+/// Returns a lane for each row of the band, so that marks with their labels stay apart; beyond `most` lanes they may
+/// overlap.
 fn lanes(
     rows: &[(usize, &ReportRow)],
     captions: &BTreeMap<usize, MarkCaption>,
@@ -162,7 +162,7 @@ fn lanes(
     found
 }
 
-/// How far the fastest and the slowest frame are from the median, which is at `x`.
+/// Returns the ends of the whisker from the fastest to the slowest frame around the median, which is at `x`.
 fn whiskers(row: &ReportRow, x: f64, across: &LogScale) -> [f64; 2] {
     let length = |ms: f64| if ms.is_finite() { (across.position(ms) - x).abs() } else { 0.0 };
     [length(row.frame_ms.min), length(row.frame_ms.max)]
@@ -182,15 +182,15 @@ fn spot(report: &Report, index: usize, at: [f64; 2], frame: &ChartFrame) -> Plot
     }
 }
 
-/// What stands beside a row's mark.
+/// The text beside a row's mark.
 #[derive(Debug)]
 struct MarkCaption {
     text: String,
-    /// It names its technique, and no other in the chart does.
+    /// True where it is the only one in the chart that names its technique.
     names_technique: bool,
 }
 
-/// Words for each row: one row of a technique carries its name, the others what sets them apart.
+/// Returns a text for each row: one row of a technique has its name, the others what distinguishes them.
 fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, MarkCaption> {
     let caption = |index: &usize| {
         let row = &report.rows[*index];
@@ -207,8 +207,8 @@ fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, MarkCaption> {
     rows.iter().map(caption).collect()
 }
 
-/// Rows of one technique that differ in one number only, in its order. Where several numbers
-/// vary, the one that joins most rows counts.
+/// Returns rows of one technique that differ in one number only, in its order. Where several numbers vary, the one that
+/// joins most rows is taken.
 fn chains(report: &Report, rows: &[usize]) -> Vec<Vec<usize>> {
     let mut techniques: Vec<&str> = rows.iter().map(|index| report.rows[*index].technique.as_str()).collect();
     techniques.sort_unstable();
@@ -247,7 +247,7 @@ fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
     keys.into_iter().map(along).rev().max_by_key(longest).unwrap_or_default()
 }
 
-/// The front as a staircase: right of it and above it, everything is beaten.
+/// Returns the front as a staircase: right of it and above it, every row is beaten.
 fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<PlotLine> {
     let mut on_front: Vec<[f64; 2]> =
         rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();
@@ -266,8 +266,7 @@ fn segments(lines: &[PlotLine]) -> impl Iterator<Item = [[f64; 2]; 2]> {
     lines.iter().flat_map(|line| line.points.windows(2).map(|pair| [pair[0], pair[1]]))
 }
 
-/// Words beside marks, and lines to those that are far away. Names of techniques go first, then
-/// the front.
+/// Places texts beside marks, and lines to those that are far away. Names of techniques go first, then the front.
 fn label(
     report: &Report,
     spots: &[PlotPoint],
@@ -294,7 +293,7 @@ fn label(
 }
 
 impl SceneChart {
-    /// The same chart at another corner of the page.
+    /// Returns the same chart at another position of the page.
     pub(crate) fn moved(self, [right, down]: [f64; 2]) -> SceneChart {
         let to = |[x, y]: [f64; 2]| [x + right, y + down];
         let rect = |rect: PlotRect| PlotRect { min: to(rect.min), max: to(rect.max) };

@@ -1,51 +1,50 @@
-//! Words beside points, so that none covers another, or a point.
+//! Placement of texts beside points, so that none covers another, or a point.
 //!
-//! Labels are placed one by one, those that matter most first; each takes the best free place
-//! around its point. One that must be shown goes further away where nothing is free nearby, with
-//! a thin line back; any other is left out.
+//! Labels are placed one by one, those that matter most first; each takes the best free place around its point. One
+//! that must be shown goes further away where nothing is free nearby, with a thin line back; any other is left out.
 
 use super::{PlotInk, PlotLine, PlotRect, PlotText, RADIUS, SMALL_SIZE, TextAnchor, text_width};
 
 /// A label to be placed.
 #[derive(Debug, Clone)]
 pub struct LabelRequest {
-    /// The middle of its point.
+    /// Centre of its point.
     pub at: [f64; 2],
-    /// How far its whiskers reach to the left and to the right of it.
+    /// How far its whiskers reach to the left and to the right of it, points.
     pub whiskers: [f64; 2],
-    /// The words.
+    /// The text.
     pub text: String,
-    /// Their colour.
+    /// Its colour.
     pub ink: PlotInk,
-    /// Where they may be.
+    /// The area that it must stay in.
     pub area: PlotRect,
-    /// Never left out.
+    /// True where it must not be left out.
     pub must: bool,
 }
 
-/// What labels keep away from.
+/// What labels avoid.
 #[derive(Debug, Default)]
 pub struct LabelObstacles {
-    /// Middles of marks: never covered.
+    /// Centres of marks: never covered.
     pub marks: Vec<[f64; 2]>,
     /// Lines: covered only where there is no other place.
     pub segments: Vec<[[f64; 2]; 2]>,
 }
 
-/// A label in its place.
+/// A label at its position.
 #[derive(Debug, Clone)]
 pub struct PlacedLabel {
-    /// The words.
+    /// The text.
     pub text: PlotText,
-    /// A line from the mark to words that are far away.
+    /// A line from the mark to a text that is far away.
     pub leader: Option<[[f64; 2]; 2]>,
 }
 
-/// Between a mark and its label, points.
+/// Distance between a mark and its label, points.
 const AWAY: f64 = RADIUS + 4.0;
-/// Whiskers up to this long are left free by words beside them, points.
+/// Texts leave whiskers up to this long uncovered, points.
 const LONGEST_FREE: f64 = 26.0;
-/// Directions around a point with what each costs: right is read most easily.
+/// Directions around a point with the cost of each: right is read most easily.
 const AROUND: [([f64; 2], f64); 8] = [
     ([1.0, 0.0], 0.0),
     ([-1.0, 0.0], 1.0),
@@ -56,12 +55,12 @@ const AROUND: [([f64; 2], f64); 8] = [
     ([0.75, 0.9], 2.5),
     ([-0.75, 0.9], 3.0),
 ];
-/// What a covered line costs.
+/// The cost of covering a line.
 const LINE_COST: f64 = 2.6;
-/// What is left free between words and a line, points.
+/// Gap between a text and a line, points.
 const LINE_GAP: f64 = 2.0;
 
-/// The words of [`place`], and the lines back from those that are far away.
+/// Returns the texts of [`place`], and the lines back from those that are far away.
 pub fn words_and_leaders(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> (Vec<PlotText>, Vec<PlotLine>) {
     let placed: Vec<PlacedLabel> = place(wishes, obstacles).into_iter().flatten().collect();
     let leader = |placed: &PlacedLabel| {
@@ -89,7 +88,7 @@ pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<
         .collect()
 }
 
-/// The best free place at a distance.
+/// Returns the best free position at a distance.
 fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[PlotRect]) -> Option<PlotText> {
     let candidates = AROUND.iter().filter_map(|(direction, cost)| {
         let text = beside(wish, *direction, away);
@@ -106,7 +105,7 @@ fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[Plo
     candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, text)| text)
 }
 
-/// The words in a direction from their point.
+/// Returns the text in a direction from its point.
 fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     let anchor = if right > 0.0 {
         TextAnchor::Start
@@ -118,12 +117,12 @@ fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     let free = |whisker: f64| if down == 0.0 { away.max(whisker.min(LONGEST_FREE) + 3.0) } else { away };
     let [left_away, right_away] = wish.whiskers.map(free);
     let across = if right < 0.0 { right * left_away } else { right * right_away };
-    // Above and below, the words' half height is between them and the mark too.
+    // Above and below, half of the text's height is between it and the mark too.
     let at = [wish.at[0] + across, wish.at[1] + down * (away + SMALL_SIZE * 0.3)];
     PlotText::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
 }
 
-/// What a mark covers.
+/// Returns the rectangle that a mark covers.
 fn around([x, y]: [f64; 2]) -> PlotRect {
     PlotRect { min: [x - RADIUS, y - RADIUS], max: [x + RADIUS, y + RADIUS] }
 }
@@ -136,7 +135,7 @@ fn leader(from: [f64; 2], rect: &PlotRect) -> [[f64; 2]; 2] {
     [start, to]
 }
 
-/// Does a segment touch the rectangle (Liang and Barsky 1984)?
+/// Returns whether a segment touches the rectangle (Liang and Barsky 1984).
 fn crosses([from, to]: &[[f64; 2]; 2], rect: &PlotRect) -> bool {
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {
@@ -155,7 +154,7 @@ fn crosses([from, to]: &[[f64; 2]; 2], rect: &PlotRect) -> bool {
     enters <= leaves
 }
 
-/// What a label takes beside a point with such a whisker, points: for those that are laid out in
+/// Returns the width that a label takes beside a point with such a whisker, points: for those that are laid out in
 /// lanes.
 pub fn reach(text: &str, whisker: f64) -> f64 {
     AWAY.max(whisker.min(LONGEST_FREE) + 3.0) + text_width(text, SMALL_SIZE)

@@ -1,8 +1,7 @@
 //! Shape and colour of each technique: the one table that paper and screen share.
 //!
-//! Hues are Okabe and Ito's (2008), darkened for paper and lightened for the dark panels until
-//! words in them pass a contrast of 4.5 : 1. No two techniques share a shape, so a grey print
-//! tells them apart too.
+//! Hues are Okabe and Ito's (2008), darkened for paper and lightened for the dark panels until texts in them pass a
+//! contrast of 4.5 : 1. No two techniques share a shape, so a grey print distinguishes them too.
 
 use crate::technique::Technique;
 
@@ -11,9 +10,9 @@ use crate::technique::Technique;
 pub enum MarkShape {
     /// A disc.
     Circle,
-    /// On its side.
+    /// A square with horizontal sides.
     Square,
-    /// On its corner.
+    /// A square that stands on a corner.
     Diamond,
     /// Point up.
     TriangleUp,
@@ -23,13 +22,13 @@ pub enum MarkShape {
     TriangleRight,
     /// Point left.
     TriangleLeft,
-    /// Five points.
+    /// A star of five points.
     Star,
     /// Two thick bars, upright.
     Plus,
     /// Two thick bars, slanted.
     Cross,
-    /// Six sides.
+    /// A hexagon.
     Hexagon,
 }
 
@@ -40,9 +39,9 @@ pub struct TechniqueStyle {
     pub technique: &'static str,
     /// Its shape.
     pub mark: MarkShape,
-    /// sRGB on white paper.
+    /// Colour on white paper, sRGB.
     pub paper: [u8; 3],
-    /// sRGB on the inspector's panels.
+    /// Colour on the inspector's panels, sRGB.
     pub screen: [u8; 3],
 }
 
@@ -77,17 +76,17 @@ const fn look(technique: Technique) -> TechniqueStyle {
     style(technique.name(), mark, paper, screen)
 }
 
-/// How a technique looks that is not in the table.
+/// Style of a technique that is not in the table.
 pub static UNKNOWN: TechniqueStyle = style("", MarkShape::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
 
-/// The look of a technique; a neutral one for a name that is not known.
+/// Returns the style of a technique; a neutral one for a name that is not known.
 pub fn style_of(technique: &str) -> &'static TechniqueStyle {
     STYLES.iter().find(|style| style.technique == technique).unwrap_or(&UNKNOWN)
 }
 
 impl MarkShape {
-    /// Corners of the shape around the origin, y downwards; all shapes have about the area of a
-    /// disc of this radius, and every corner is seen from the middle.
+    /// Returns corners of the shape around the origin, y downwards; all shapes have about the area of a disc of this
+    /// radius, and every corner is visible from the centre.
     pub fn outline(self, radius: f64) -> Vec<[f64; 2]> {
         let regular = |corners: u32, turn: f64, size: f64| {
             let corner = move |index: u32| {
@@ -118,11 +117,11 @@ impl MarkShape {
     }
 }
 
-/// Two upright bars.
+/// Returns the outline of two upright bars.
 fn bars(radius: f64) -> Vec<[f64; 2]> {
     let [short, long] = [0.4 * radius, 1.25 * radius];
     let arm = [[-short, -short], [-short, -long], [short, -long]];
-    // The same corner and arm, turned by quarters.
+    // The same corner and arm, rotated by quarters.
     let quarter = |turns: usize| arm.map(|point| (0..turns).fold(point, |[x, y], _| [-y, x]));
     (0..4).flat_map(quarter).collect()
 }
@@ -131,7 +130,7 @@ fn bars(radius: f64) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// Contrast of two colours (WCAG 2.1).
+    /// Returns the contrast of two colours (WCAG 2.1).
     fn contrast(one: [u8; 3], other: [u8; 3]) -> f64 {
         let linear = |byte: u8| {
             let value = f64::from(byte) / 255.0;

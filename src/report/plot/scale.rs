@@ -1,6 +1,6 @@
 //! Logarithmic scales and their ticks at 1, 2 and 5 times powers of ten.
 
-/// Values from `low` to `high` on points from `start` to `end`.
+/// A logarithmic scale of values from `low` to `high` on points from `start` to `end`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogScale {
     low: f64,
@@ -12,7 +12,7 @@ pub struct LogScale {
 /// The least ratio of a scale's ends: two ticks are always inside.
 const LEAST_RATIO: f64 = 8.0;
 
-/// The range of positive, finite values with some room around them; `fallback` where there are none.
+/// Returns the range of positive, finite values with a margin around them; `fallback` where there are none.
 pub fn range(values: impl Iterator<Item = f64>, fallback: [f64; 2]) -> [f64; 2] {
     const MARGIN: f64 = 1.35;
     let usable = values.filter(|value| value.is_finite() && *value > 0.0);
@@ -22,25 +22,25 @@ pub fn range(values: impl Iterator<Item = f64>, fallback: [f64; 2]) -> [f64; 2] 
     let Some([low, high]) = ends else { return fallback };
     let [low, high] = [low / MARGIN, high * MARGIN];
     let missing = (LEAST_RATIO * low / high).max(1.0).sqrt();
-    // The smallest and largest numbers there are have no room around them.
+    // The smallest and largest numbers there are leave no margin.
     [(low / missing).max(f64::MIN_POSITIVE), (high * missing).min(f64::MAX)]
 }
 
 impl LogScale {
-    /// `range` from `start` to `end`, which may run backwards.
+    /// Returns a scale of this range from `start` to `end`, which may run backwards.
     pub fn new([low, high]: [f64; 2], [start, end]: [f64; 2]) -> LogScale {
         LogScale { low, high, start, end }
     }
 
-    /// Where a value is; values beyond an end are at it.
+    /// Returns the position of a value; values beyond an end are at it.
     pub fn position(&self, value: f64) -> f64 {
         let [low, high] = [self.low.log10(), self.high.log10()];
         let share = (value.max(self.low).log10() - low) / (high - low);
         self.start + share.clamp(0.0, 1.0) * (self.end - self.start)
     }
 
-    /// Ticks inside, at least `apart` points from one to the next: 1, 2, 5, 10 …, or powers of
-    /// ten only, or every second, third … of them.
+    /// Returns ticks inside, at least `apart` points from one to the next: 1, 2, 5, 10 …, or powers of ten only, or
+    /// every second, third … of them.
     pub fn ticks(&self, apart: f64) -> Vec<f64> {
         let [low, high] = [self.low.log10(), self.high.log10()];
         let decade = (self.end - self.start).abs() / (high - low);
@@ -52,7 +52,7 @@ impl LogScale {
     }
 }
 
-/// `step` times ten to the `power`, as exact as its decimal form: ticks are printed.
+/// Returns `step` times ten to the `power`, as exact as its decimal form: ticks are printed.
 fn scaled(step: f64, power: i32) -> f64 {
     format!("{step}e{power}").parse().unwrap_or(f64::NAN)
 }

@@ -11,17 +11,17 @@ use crate::report::{Report, ReportRow, SweepValue};
 /// Width of the page, unless names need more, and height of a chart, points.
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 400.0;
-/// Above a chart's area and below it, points.
+/// Space above a chart's area and below it, points.
 const TOP: f64 = 44.0;
 const BOTTOM: f64 = 44.0;
-/// Beside it: milliseconds on the left, frames a second and names on the right, points.
+/// Space beside it: milliseconds on the left, frames per second and names on the right, points.
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = 210.0;
-/// Where frames a second stand, right of the area, points.
+/// Where numbers of frames per second begin, right of the area, points.
 const FPS: f64 = 8.0;
 /// Where names begin, right of the area, points.
 const NAMES: f64 = 58.0;
-/// From a name to the next below it, points.
+/// Distance from a name to the next below it, points.
 const NAME_HEIGHT: f64 = 13.0;
 
 /// Lays out the page of a report that is a sweep.
@@ -43,7 +43,7 @@ pub fn sweep(report: &Report) -> Plot {
     plot
 }
 
-/// A line of the chart: the rows of a technique with its settings, from value to value.
+/// Returns the lines of the chart: the rows of a technique with its settings, from value to value.
 fn lines_of(report: &Report, scene: &str) -> Vec<(String, Vec<usize>)> {
     let mut lines: Vec<(String, Vec<usize>)> = Vec::new();
     for index in report.rows_of(scene) {
@@ -101,7 +101,7 @@ fn chart(report: &Report, scene: &str, name: &str) -> SceneChart {
             lines.push(PlotLine { points, width: 1.3, ink: PlotInk::Technique(style), faint: false });
         }
     }
-    // Values that are measured, as far as their words have room.
+    // Values that were measured, as far as there is space for their texts.
     values_shown.sort_by(|a, b| a.value.total_cmp(&b.value));
     let mut free_from = f64::NEG_INFINITY;
     for swept in values_shown {

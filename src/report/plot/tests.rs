@@ -27,7 +27,7 @@ fn crowd(count: usize) -> Report {
     report(rows.collect())
 }
 
-/// What holds of every layout.
+/// Checks what must be true of every layout.
 fn check(plot: &Plot) {
     let page = PlotRect { min: [0.0, 0.0], max: plot.size };
     for text in &plot.texts {
@@ -67,7 +67,7 @@ fn points_are_at_the_logarithms_of_time_and_error() {
     let plot = layout(&report(rows), &PAGE);
     let chart = chart(&plot);
     let at = |technique: &str| chart.spots.iter().find(|spot| spot.style.technique == technique).expect("a spot").at;
-    // The axis has a room of 1.35 at both ends: log10(1.35) of log10(100 · 1.35²) in all.
+    // The axis has a margin of a factor of 1.35 at both ends: log10(1.35) of log10(100 · 1.35²) in all.
     let margin = 1.35_f64.log10();
     let place = |decades: f64| chart.area.min[0] + (decades + margin) / (2.0 + 2.0 * margin) * chart.area.width();
     for (technique, decades) in [("none", 0.0), ("planar", 1.0), ("z-fail", 2.0)] {
@@ -135,7 +135,7 @@ fn every_technique_is_named_in_a_crowd() {
     }
 }
 
-/// However long the names of its lines are, a sweep's page holds them, and its charts are as wide as ever.
+/// However long the names of its lines are, a sweep's page contains them, and its charts are as wide as ever.
 #[test]
 fn a_sweep_s_page_holds_the_names_of_its_lines() {
     let swept = |label: &str, value: f64| {

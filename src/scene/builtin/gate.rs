@@ -1,9 +1,8 @@
 //! `gate`: 300 closed boxes, each inside the last, so that up to 300 shadow volumes overlap.
 //!
-//! A closed box counts one: behind all of them the count is 300, which eight bits keep as 44, still a
-//! shadow. Behind exactly 256 it is one that they keep as 0: a bright frame inside the shadow, where
-//! no light can be. The sizes leave room between the 250th, the 256th and the last box, so that all
-//! three counts are wide enough to be seen.
+//! A closed box counts one: behind all of them the count is 300, which eight bits store as 44, still a shadow. Behind
+//! exactly 256 it is one that they store as 0: a bright frame inside the shadow, where no light can be. The sizes leave
+//! space between the 250th, the 256th and the last box, so that all three counts are wide enough to be seen.
 
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -13,9 +12,9 @@ const FLOOR: [f32; 3] = [0.55, 0.52, 0.47];
 const WALL: [f32; 3] = [0.44, 0.47, 0.53];
 const GATE: [f32; 3] = [0.62, 0.23, 0.10];
 
-/// Of the outermost box.
+/// Size of the outermost box, metres.
 const SIZE: [f64; 3] = [1.7, 2.6, 0.5];
-/// How many boxes, from which to which size relative to the outermost, from outside to inside.
+/// Numbers of boxes, and from which to which size relative to the outermost, from outside to inside.
 const GROUPS: [(u32, f64, f64); 3] = [(250, 1.0, 0.85), (6, 0.8, 0.79), (44, 0.6, 0.55)];
 
 /// The floor is at height 0, the wall behind the gate at z = −1.6.

@@ -1,8 +1,7 @@
 //! `glass`: coloured panes and a solid ball, and a wall and a floor that catch their shadows.
 //!
-//! A projective shadow texture is a picture of the casters as the light sees them: it holds the
-//! panes' colours, overlaps included. Every technique that only asks whether something stands
-//! between takes a pane for solid.
+//! A projective shadow texture is a picture of the casters as the light sees them: it stores the panes' colours,
+//! overlaps included. Every technique that only decides whether something is between takes a pane for solid.
 
 use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -13,18 +12,18 @@ const WALL: [f32; 3] = [0.62, 0.62, 0.62];
 const BALL: [f32; 3] = [0.30, 0.32, 0.36];
 const WOOD: [f32; 3] = [0.33, 0.20, 0.11];
 
-/// A pane on the floor: colour, where it stands, and how it is turned.
+/// Panes on the floor: colour, position, and rotation.
 const PANES: [(&str, [f32; 3], [f64; 2], f64); 3] = [
     ("red pane", [0.80, 0.10, 0.06], [-1.6, 0.5], 8.0),
     ("yellow pane", [0.90, 0.72, 0.05], [-0.55, -0.1], 8.0),
     ("blue pane", [0.07, 0.33, 0.82], [0.5, 0.4], 8.0),
 ];
 const PANE_SIZE: [f64; 3] = [0.95, 1.3, 0.04];
-/// How much of what is behind a pane it hides.
+/// How much of the light from behind a pane it blocks.
 const PANE_OPACITY: f32 = 0.4;
 
-/// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one
-/// cone and their shadows are thrown to the right, where the eye sees them.
+/// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one cone and their shadows
+/// fall to the right, where the eye sees them.
 pub fn build() -> Result<Scene, MeshError> {
     let floor = Arc::new(shapes::quad([15.0, 6.0])?);
     let wall = Arc::new(shapes::parallelogram(DVec3::new(-7.5, 0.0, -1.8), [DVec3::X * 15.0, DVec3::Y * 3.4])?);
@@ -40,7 +39,7 @@ pub fn build() -> Result<Scene, MeshError> {
     objects.extend(PANES.iter().map(|(name, color, [x, z], degrees)| {
         let glass =
             Material { color: *color, specular: 0.4, shininess: 60.0, opacity: PANE_OPACITY, ..Material::default() };
-        // A hair above the floor, whose plane stays the floor's alone.
+        // Slightly above the floor, so that no other surface is in the floor's plane.
         let mut object = Object::new(*name, pane.clone(), glass).at(DVec3::new(*x, PANE_SIZE[1] / 2.0 + 0.005, *z));
         object.pose.rotate_degrees.y = *degrees;
         object

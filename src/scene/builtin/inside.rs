@@ -1,8 +1,8 @@
 //! `inside`: under a pergola, in the shadow of one of its slats.
 //!
-//! The eye is in the shadow volume of the slat above it, and the near plane, 0.8 away, cuts those of
-//! both neighbours: z-pass begins to count too late in different ways across the picture. Z-fail
-//! counts from the other end and does not care where the eye is.
+//! The eye is in the shadow volume of the slat above it, and the near plane, 0.8 away, cuts those of both neighbours:
+//! z-pass begins to count too late in different ways across the picture. Z-fail counts from the other end and does not
+//! depend on where the eye is.
 
 use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -19,7 +19,7 @@ const GLAZE: [f32; 3] = [0.07, 0.33, 0.70];
 const SLATS: i32 = 11;
 const SLAT_SPACING: f64 = 0.5;
 const SLAT_HEIGHT: f64 = 2.6;
-/// Towards the sun. At the eye's height a slat's shadow is a quarter metre left of the slat.
+/// Direction towards the sun. At the eye's height a slat's shadow is a quarter metre left of the slat.
 const SUN: DVec3 = DVec3::new(0.25, 1.0, 0.12);
 const EYE: [f64; 3] = [-0.25, 1.6, 4.0];
 

@@ -1,4 +1,4 @@
-//! Scenes made by code, each small and for one lesson.
+//! Scenes that code builds, each small and for one lesson.
 
 mod gate;
 mod glass;
@@ -16,10 +16,10 @@ mod two_lights;
 
 use super::{MeshError, Scene, SceneError};
 
-/// A scene made by code.
+/// A scene that code builds.
 #[derive(Debug, Clone, Copy)]
 pub struct Builtin {
-    /// On the command line.
+    /// Its name on the command line.
     pub name: &'static str,
     /// What it shows, in one line.
     pub lesson: &'static str,
@@ -96,12 +96,12 @@ pub const ALL: &[Builtin] = &[
 ];
 
 impl Builtin {
-    /// The one of that name.
+    /// Returns the scene of that name.
     pub fn named(name: &str) -> Option<&'static Builtin> {
         ALL.iter().find(|builtin| builtin.name == name)
     }
 
-    /// Makes the scene.
+    /// Builds the scene.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         (self.build)().map_err(|source| SceneError::Mesh { name: self.name.to_owned(), source })
     }

@@ -7,7 +7,7 @@ use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuild
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A corner, two edges; its lit side is where their cross product points.
+/// A parallelogram: a corner and two edges; its lit side is where their cross product points.
 struct Panel {
     name: &'static str,
     color: [f32; 3],
@@ -42,7 +42,7 @@ const PARALLELOGRAMS: [Panel; 9] = [
     panel("purple panel", [0.60, 0.19, 0.38], [14.0, -72.0, -440.0], [60.0, -8.0, 22.0], [-16.0, 56.0, -10.0]),
 ];
 
-/// Figures of room and light from the source that founded the scene.
+/// Measures of room and light are those of the source that the scene is from.
 pub fn build() -> Result<Scene, MeshError> {
     let objects = PARALLELOGRAMS.iter().map(Panel::object).collect::<Result<Vec<Object>, _>>()?;
     Ok(SceneBuilder::new("panels")

@@ -1,7 +1,7 @@
 //! `rings`: a plane and three tori, one on it, one beyond the light and one under the plane.
 //!
-//! Flattened onto the plane without clipping, the torus beyond the light gives an anti-shadow and
-//! the one under the plane a false shadow: neither is there in truth.
+//! Flattened onto the plane without clipping, the torus beyond the light gives an anti-shadow and the one under the
+//! plane a false shadow: neither exists in truth.
 
 use crate::scene::{Camera, Light, Material, MeshError, Motion, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -12,7 +12,7 @@ const BLUE: [f32; 3] = [0.09, 0.40, 0.78];
 const ORANGE: [f32; 3] = [0.78, 0.35, 0.02];
 const PURPLE: [f32; 3] = [0.60, 0.19, 0.38];
 
-/// Figures from the source that founded the scene; its tori turn, and the one on the plane dips into it.
+/// Measures are those of the source that the scene is from; its tori rotate, and the one on the plane dips into it.
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.5, 0.2, 64, 32)?);
     let turning = |name: &str, color, at: [f64; 3]| {

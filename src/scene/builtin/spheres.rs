@@ -1,7 +1,7 @@
 //! `spheres`: one ball in 200, 450 and 16 200 triangles, on a checkered floor beside a lamp that glows.
 //!
-//! Flat, Gouraud and Phong shading of them are told apart by eye (`shading`), and so are black and blended shadows over
-//! a pattern.
+//! The differences of flat, Gouraud and Phong shading (`shading`) are visible on them, and so are those of black and
+//! blended shadows over a pattern.
 
 use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, Shading, shapes};
 use glam::DVec3;
@@ -12,7 +12,7 @@ const FLOOR: [f32; 3] = [0.72, 0.70, 0.66];
 /// Slices and stacks: twice the slices, times the stacks less one, are triangles.
 const FINENESS: [[u32; 2]; 3] = [[10, 11], [15, 16], [90, 91]];
 
-/// Balls of radius 0.5 in a row, and a small one that sends out light's colour where the lamp is, and casts nothing.
+/// Balls of radius 0.5 in a row, and a small one that emits light's colour where the lamp is, and casts nothing.
 pub fn build() -> Result<Scene, MeshError> {
     let lamp = DVec3::new(0.9, 2.1, 1.3);
     let floor = Material { checks: 0.5, ..Material::matte(FLOOR) };

@@ -1,7 +1,7 @@
 //! `steps`: two flights of stairs, balls and a wall, each of which shadows the others.
 //!
-//! Every step is a flat receiver, the balls have none: flattening casters onto planes takes a pass
-//! over all of them for each step, and leaves the balls without shadows.
+//! Every step is a flat receiver, and the balls have no flat surface: flattening casters onto planes takes a pass over
+//! all of them for each step, and leaves the balls without shadows.
 
 use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;

@@ -8,8 +8,8 @@ const SLAB: [f32; 3] = [0.55, 0.52, 0.47];
 const TORUS: [f32; 3] = [0.79, 0.35, 0.03];
 const SPHERE: [f32; 3] = [0.09, 0.40, 0.72];
 
-/// Figures from the source that founded the scene: a slab 3×0.15×3 with its middle at the
-/// origin, a torus (0.2, 0.5) at height 0.5, spheres of 0.2 at (±0.45, 1, ±0.45).
+/// Measures are those of the source that the scene is from: a slab 3×0.15×3 with its centre at the origin, a torus
+/// (0.2, 0.5) at height 0.5, spheres of 0.2 at (±0.45, 1, ±0.45).
 pub fn build() -> Result<Scene, MeshError> {
     let slab = Arc::new(shapes::cuboid([3.0, 0.15, 3.0])?);
     let torus = Arc::new(shapes::torus(0.5, 0.2, 64, 32)?);

@@ -1,9 +1,8 @@
 //! `teapot-like`: a pot that is an open sheet, with a spout and a handle that run through its wall.
 //!
-//! The pot is a turned line without thickness and without a bottom; lid, spout and handle are
-//! open, too, and cut the body. A silhouette of the faces towards the light is wrong
-//! here. Multiplicities of all triangles, turned towards the light, are not: an edge of the sheet's
-//! border counts once, one inside the sheet twice or not at all.
+//! The pot is a surface of revolution without thickness and without a bottom; lid, spout and handle are open, too, and
+//! cut the body. A silhouette of the faces towards the light is wrong here. Multiplicities of all triangles, oriented
+//! towards the light, are not: an edge of the sheet's border counts once, one inside the sheet twice or not at all.
 
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Scene, SceneBuilder, Shading, shapes};
 use glam::{DVec2, DVec3};
@@ -37,7 +36,7 @@ pub fn build() -> Result<Scene, MeshError> {
         .build())
 }
 
-/// All parts in one mesh: one caster.
+/// Returns all parts in one mesh: one caster.
 fn pot() -> Result<Mesh, MeshError> {
     let mut outline = curve([[0.62, 0.0], [1.15, 0.12], [1.25, 0.85], [0.66, 1.2]], 18);
     outline.push(DVec2::new(0.62, 1.26));
@@ -52,7 +51,7 @@ fn pot() -> Result<Mesh, MeshError> {
     shapes::joined([(&body, DVec3::ZERO), (&lid, raised), (&spout, DVec3::ZERO), (&handle, DVec3::ZERO)])
 }
 
-/// A cubic Bézier curve as points, both ends included.
+/// Returns a cubic Bézier curve as points, both ends included.
 fn curve(control: [[f64; 2]; 4], pieces: u32) -> Vec<DVec2> {
     let [a, b, c, d] = control.map(DVec2::from_array);
     let at = |step: u32| {
@@ -64,7 +63,7 @@ fn curve(control: [[f64; 2]; 4], pieces: u32) -> Vec<DVec2> {
     (0..pieces).map(at).chain([d]).collect()
 }
 
-/// A tube around such a curve in the plane z = 0; `radius` by how far along it is, 0 to 1.
+/// Returns a tube around such a curve in the plane z = 0; `radius` by the position along it, 0 to 1.
 fn tube(control: [[f64; 2]; 4], radius: impl Fn(f64) -> f64) -> Result<Mesh, MeshError> {
     const PIECES: u32 = 16;
     let points = curve(control, PIECES).into_iter().zip(0..);

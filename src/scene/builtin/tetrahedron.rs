@@ -1,7 +1,7 @@
-//! `tetrahedron`: a turning tetrahedron in a shaft, the smallest caster that is closed.
+//! `tetrahedron`: a rotating tetrahedron in a shaft, the smallest caster that is closed.
 //!
-//! Four triangles and six edges: its silhouette has three or four of them, so that every side and
-//! cap of its shadow volume can be told apart in the pictures and named in the plan.
+//! Four triangles and six edges: its silhouette has three or four of them, so that every side and cap of its shadow
+//! volume can be distinguished in the pictures and named in the plan.
 
 use crate::scene::{Camera, Light, Material, MeshError, Motion, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -10,9 +10,9 @@ use std::sync::Arc;
 const SHAFT: [f32; 3] = [0.30, 0.33, 0.40];
 const ORANGE: [f32; 3] = [0.78, 0.35, 0.02];
 
-/// Figures from the source that founded the scene: a tetrahedron at (0, 0, −6) in the box ±2, ±2, ±10, a light at
-/// (1, 1, −4). The source's has the corners (0, 0, 0), (1, 0, 0), (0, 1, 0) and (0, 0, 1); this one is regular, its
-/// corners 1 from its middle, so that no side is unlike the others as it turns.
+/// Measures are those of the source that the scene is from: a tetrahedron at (0, 0, −6) in the box ±2, ±2, ±10, a light
+/// at (1, 1, −4). The source's has the corners (0, 0, 0), (1, 0, 0), (0, 1, 0) and (0, 0, 1); this one is regular, its
+/// corners 1 from its centre, so that all sides look alike as it rotates.
 pub fn build() -> Result<Scene, MeshError> {
     let shaft = Object::new("shaft", Arc::new(shapes::room([4.0, 4.0, 20.0])?), Material::matte(SHAFT));
     let tetrahedron = Arc::new(shapes::tetrahedron(1.0)?);

@@ -1,11 +1,11 @@
 //! `tiger-cage`: a prison block of small cells with barred ceilings, under a lamp that swings.
 //!
-//! After the model of the prison of Côn Đảo in a museum: two rows of cells along a corridor; guards
-//! went on a walkway above and looked down through the bars. Metres; the corridor runs along z, the
-//! walkway over it, stairs lead up at its near end. Every wall is an object with thickness.
+//! After the model of the prison of Côn Đảo in a museum: two rows of cells along a corridor; guards went on a walkway
+//! above and looked down through the bars. Metres; the corridor runs along z, the walkway over it, stairs lead up at
+//! its near end. Every wall is an object with thickness.
 //!
-//! The light hangs below a shade, so bars throw their stripes into the cells, rails and planks
-//! theirs into the corridor, and all of them move when the lamp does.
+//! The light hangs below a shade, so bars cast their stripes into the cells, rails and planks theirs into the corridor,
+//! and all of them move when the lamp does.
 
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Scene, SceneBuilder, Swing, shapes};
 use glam::{DVec2, DVec3};
@@ -18,10 +18,10 @@ const WOOD: [f32; 3] = [0.30, 0.18, 0.10];
 const IRON: [f32; 3] = [0.13, 0.13, 0.14];
 const ENAMEL: [f32; 3] = [0.05, 0.22, 0.16];
 
-/// Cells of each row, and how far one is from the next.
+/// Cells of each row, and the distance from one to the next.
 const CELLS: u32 = 6;
 const CELL_PITCH: f64 = 1.8;
-/// From the corridor's middle to the cells' fronts, and on to the outer wall.
+/// Distances from the corridor's middle to the cells' fronts, and on to the outer wall.
 const CORRIDOR_HALF: f64 = 1.1;
 const CELL_DEPTH: f64 = 2.5;
 const CELL_HEIGHT: f64 = 2.4;
@@ -30,17 +30,17 @@ const WALL: f64 = 0.2;
 /// Walls reach this far under the floor, so that no light slips through underneath.
 const SUNK: f64 = 0.1;
 const ROOF: f64 = 5.4;
-/// Where the cells end; the corridor goes on towards the stairs' foot.
+/// Distance from the origin to the ends of the rows of cells; the corridor continues towards the stairs' foot.
 const HALF_LENGTH: f64 = CELLS as f64 * CELL_PITCH / 2.0;
 const LANDING: f64 = 3.2;
-/// The walkway's upper side.
+/// Height of the walkway's upper side.
 const DECK: f64 = 2.6;
 const DECK_HALF: f64 = 0.55;
 
 const PIVOT: DVec3 = DVec3::new(0.0, ROOF, -0.6);
-/// Under the pivot.
+/// Length of the cord under the pivot.
 const CORD: f64 = 0.8;
-/// As an ideal pendulum of that length swings.
+/// The swing of an ideal pendulum of that length.
 const SWING: Swing = Swing { pivot: PIVOT, axis: DVec3::new(0.35, 0.0, 1.0), degrees: 20.0, period_seconds: 1.8 };
 
 /// The floor is at height 0, the origin in the middle of the cells.
@@ -147,7 +147,7 @@ fn bars() -> Result<Mesh, MeshError> {
     shapes::joined(along.chain([(&across, DVec3::Y * -0.04)]))
 }
 
-/// Planks with gaps on beams over the corridor, narrower than it; rails on posts, and the stairs up.
+/// Returns planks with gaps on beams over the corridor, narrower than it; rails on posts, and the stairs up.
 fn walkway() -> Result<Vec<Object>, MeshError> {
     const PLANK: f64 = 0.28;
     const GAP: f64 = 0.07;

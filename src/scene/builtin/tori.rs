@@ -14,14 +14,14 @@ const LIGHT: DVec3 = DVec3::new(0.0, 0.4, 0.0);
 
 const PLASTER: [f32; 3] = [0.30, 0.33, 0.40];
 
-/// One torus on its way around the light.
+/// One torus on its orbit around the light.
 struct Orbiting {
     name: &'static str,
     color: [f32; 3],
-    /// From the light's axis, and where on the circle it starts.
+    /// Distance from the light's axis, and where on the circle it starts.
     radius: f64,
     azimuth_degrees: f64,
-    /// Above the light.
+    /// Height above the light.
     height: f64,
     rotate_degrees: DVec3,
     spin_degrees_per_second: DVec3,
@@ -71,7 +71,7 @@ const TORI: [Orbiting; 4] = [
     },
 ];
 
-/// The room's origin is its middle.
+/// The room's origin is its centre.
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.66, 0.22, 64, 28)?);
     let plaster = Material { color: PLASTER, ..Material::default() };

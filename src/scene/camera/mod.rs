@@ -1,7 +1,7 @@
-//! The eye: a camera by eye point, target and up, with the projection that makes its picture.
+//! The eye: a camera by eye point, target and up, with its projection.
 //!
-//! A pinhole's lines of sight meet in the eye. Those of a parallel projection have one direction: they meet at
-//! infinity, and the eye point only says where distances are measured from.
+//! View rays of a perspective camera begin at the eye. Those of a parallel projection have one direction: they meet at
+//! infinity, and the eye point only is where distances are measured from.
 
 pub(super) mod placement;
 
@@ -11,47 +11,47 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How what lies before a camera comes into its picture.
+/// How points before a camera are projected into its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Projection {
-    /// Lines of sight meet in the eye; the field of view says how wide they open.
+    /// View rays begin at the eye; the field of view is the angle between them.
     #[default]
     Perspective,
-    /// Lines of sight are parallel and meet the picture at right angles.
+    /// View rays are parallel and perpendicular to the picture.
     Orthographic {
-        /// From the picture's middle to its upper edge, metres, > 0.
+        /// Distance from the picture's centre to its upper edge, metres, > 0.
         half_height: f64,
     },
-    /// Lines of sight are parallel and meet the picture aslant: what is square to the view keeps its shape, and what
+    /// View rays are parallel and oblique to the picture: a plane perpendicular to the view is not distorted, and what
     /// lies behind it moves along a line of the picture. Cavalier projection with a factor of 1, cabinet with ½.
     Oblique {
-        /// From the picture's middle to its upper edge, metres, > 0.
+        /// Distance from the picture's centre to its upper edge, metres, > 0.
         half_height: f64,
-        /// Of the line along which things recede, degrees, from the right and counter-clockwise.
+        /// Angle of the line along which things recede, degrees, from the right and counter-clockwise.
         angle_degrees: f64,
-        /// How far a metre of depth moves things along it, metres, at least 0.
+        /// How far a metre of depth moves things along that line, metres, at least 0.
         factor: f64,
     },
 }
 
-/// A line of sight: `from + along · distance` for distances along the view's axis.
+/// A view ray: `from + along · distance` for distances along the view's axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// At distance 0, world space, relative to the eye.
+    /// Its point at distance 0, world space, relative to the eye.
     pub from: DVec3,
-    /// World space; its part along the view's axis is 1.
+    /// Its direction, world space; the part along the view's axis is 1.
     pub along: DVec3,
 }
 
-/// All lines of sight of a picture.
+/// The view rays of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraRays {
     world_from_view: DMat3,
-    /// From the picture's middle to its edges, at distance 1 of a pinhole.
+    /// Distances from the picture's centre to its edges, at distance 1 of a perspective camera.
     half: DVec2,
     shear: DVec2,
-    /// The distance at which nothing is sheared.
+    /// The distance at which an oblique projection shears nothing.
     in_place: f64,
     is_parallel: bool,
 }
@@ -59,25 +59,25 @@ pub struct CameraRays {
 /// A camera in world space. View space is right-handed and looks down −z.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
-    /// Where the eye is, world units (metres).
+    /// Position of the eye, world units (metres).
     pub eye: DVec3,
-    /// The point in the middle of the picture; differs from `eye`.
+    /// The point at the centre of the picture; differs from `eye`.
     pub target: DVec3,
     /// Roughly up; not parallel to `target − eye`.
     pub up: DVec3,
-    /// How its picture is made.
+    /// How it projects.
     #[serde(default, skip_serializing_if = "Projection::is_pinhole")]
     pub projection: Projection,
-    /// Vertical field of view in degrees, in (0, 180); of a pinhole alone.
+    /// Vertical field of view in degrees, in (0, 180); only for a perspective camera.
     pub fov_y_degrees: f64,
     /// Distance of the near plane, > 0.
     pub near: f64,
-    /// Distance of the far plane; only finite depth mappings look at it.
+    /// Distance of the far plane; only finite depth mappings use it.
     pub far: Option<f64>,
 }
 
 impl Camera {
-    /// An eye that looks at a target with a field of view of 45 degrees, its near plane 5 cm away and no far
+    /// Returns an eye that looks at a target with a field of view of 45 degrees, its near plane 5 cm away and no far
     /// plane. Y is up, or −z where it looks straight down or up.
     pub fn looking(eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Camera {
         let (eye, target) = (eye.into(), target.into());
@@ -113,22 +113,22 @@ impl Camera {
         }
     }
 
-    /// Are lines of sight parallel?
+    /// Returns whether view rays are parallel.
     pub fn is_parallel(&self) -> bool {
         !self.projection.is_pinhole()
     }
 
-    /// World space from view space, directions only.
+    /// The rotation from view space to world space, for directions.
     pub fn world_from_view(&self) -> DMat3 {
         projection::view_from_world_rotation(self.target - self.eye, self.up).transpose()
     }
 
-    /// Where lines of sight meet, homogeneous, world space: the eye, or where they are parallel the direction towards it.
+    /// Where view rays begin, homogeneous, world space: the eye, or where they are parallel the direction towards it.
     pub fn eye_position(&self) -> DVec4 {
         self.relative_eye() + (self.eye * self.relative_eye().w).extend(0.0)
     }
 
-    /// The same relative to the eye point.
+    /// Where view rays begin, homogeneous, relative to the eye point.
     pub fn relative_eye(&self) -> DVec4 {
         match self.projection {
             Projection::Perspective => DVec4::W,
@@ -136,18 +136,18 @@ impl Camera {
         }
     }
 
-    /// Where a count may be taken for all lines of sight: the eye, or of a parallel camera, whose lines begin at the near
-    /// plane, the middle of that.
+    /// A point whose count is valid for all view rays: the eye, or the centre of the near plane of a parallel camera,
+    /// whose rays begin there.
     pub fn counting_place(&self) -> DVec3 {
         if self.is_parallel() { self.eye + self.rays(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
     }
 
-    /// The name of [`Camera::counting_place`], for people.
+    /// The name of [`Camera::counting_place`], as it is shown.
     pub fn counting_place_name(&self) -> &'static str {
         if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
     }
 
-    /// The lines of sight of a picture of this width over height.
+    /// Returns the view rays of a picture of this width over height.
     pub fn rays(&self, aspect: f64) -> CameraRays {
         let half = self.half_height();
         CameraRays {
@@ -159,7 +159,8 @@ impl Camera {
         }
     }
 
-    /// Half of what the picture shows upwards, metres: at distance 1 of a pinhole, at any of a parallel projection.
+    /// Half of the height that the picture shows, metres: at distance 1 of a perspective camera, at any of a parallel
+    /// projection.
     pub fn half_height(&self) -> f64 {
         match self.projection {
             Projection::Perspective => (self.fov_y_degrees.to_radians() / 2.0).tan(),
@@ -167,17 +168,18 @@ impl Camera {
         }
     }
 
-    /// Half of what the picture shows upwards at a distance along the view's axis, metres.
+    /// Half of the height that the picture shows at a distance along the view's axis, metres.
     pub fn half_height_at(&self, distance: f64) -> f64 {
         self.half_height() * if self.is_parallel() { 1.0 } else { distance }
     }
 
-    /// The same where the target is.
+    /// Half of the height that the picture shows at the target's distance, metres.
     pub fn half_height_at_target(&self) -> f64 {
         self.half_height_at((self.target - self.eye).length())
     }
 
-    /// How depth is measured: of a parallel projection it grows with the distance, from `near` to `far`.
+    /// Returns clip space from view space. Depth of a parallel projection is linear in the distance, from `near` to
+    /// `far`.
     pub fn clip_from_view(&self, aspect: f64, depth: &DepthCurve) -> DMat4 {
         match self.projection {
             Projection::Perspective => projection::perspective(self.fov_y_degrees, aspect, depth),
@@ -189,9 +191,9 @@ impl Camera {
         }
     }
 
-    /// The same camera somewhere else, for tests and benchmarks of what must hold from any place: eye,
-    /// target and near plane are moved by up to 1.2 and 0.3 of their distance, and to between a tenth and ten
-    /// times. One `seed` always gives one place.
+    /// Returns the same camera elsewhere, for tests and benchmarks of what must be true from any position: eye, target
+    /// and near plane are moved by up to 1.2 and 0.3 of their distance, and to between a tenth and ten times. One
+    /// `seed` always gives one position.
     pub fn anywhere(&self, seed: u64) -> Camera {
         // Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators".
         let mut state = seed;
@@ -210,7 +212,7 @@ impl Camera {
 }
 
 impl CameraRays {
-    /// The one through a point of the picture, by x and y from −1 to 1, right and up.
+    /// Returns the ray through a point of the picture, by x and y from −1 to 1, right and up.
     #[inline]
     pub fn through(&self, at: DVec2) -> Ray {
         let place = at * self.half;
@@ -228,28 +230,28 @@ impl CameraRays {
 }
 
 impl Ray {
-    /// The point at a distance along the view's axis, relative to the eye.
+    /// Returns the point at a distance along the view's axis, relative to the eye.
     pub fn at(&self, distance: f64) -> DVec3 {
         self.from + self.along * distance
     }
 }
 
 impl Projection {
-    /// The names of its kinds, in the order in which they are offered.
+    /// The names of the projections, in the order in which they are offered.
     pub const NAMES: [&str; 3] = ["perspective", "orthographic", "oblique"];
-    /// The angle that drawings are made with, degrees.
+    /// The usual angle of an oblique projection, degrees.
     pub const USUAL_ANGLE: f64 = 45.0;
     /// Cabinet projection's factor.
     pub const CABINET: f64 = 0.5;
     /// Cavalier projection's factor.
     pub const CAVALIER: f64 = 1.0;
 
-    /// Do lines of sight meet in the eye?
+    /// Returns whether it is the perspective projection.
     pub fn is_pinhole(&self) -> bool {
         *self == Projection::Perspective
     }
 
-    /// Which kind it is: one of [`Projection::NAMES`].
+    /// Returns its name: one of [`Projection::NAMES`].
     pub fn name(self) -> &'static str {
         match self {
             Projection::Perspective => "perspective",
@@ -258,7 +260,7 @@ impl Projection {
         }
     }
 
-    /// How far to the right and up in the picture a metre of depth moves things, metres.
+    /// Returns how far to the right and up in the picture a metre of depth moves things, metres.
     pub fn shear(self) -> DVec2 {
         match self {
             Projection::Oblique { angle_degrees, factor, .. } => DVec2::from_angle(angle_degrees.to_radians()) * factor,
@@ -266,7 +268,7 @@ impl Projection {
         }
     }
 
-    /// As [`Camera::check`], of its own numbers.
+    /// Checks its own numbers, as [`Camera::check`] does.
     fn check(self) -> Result<(), &'static str> {
         let is_usable = |half_height: f64| (1e-30..=1e30).contains(&half_height);
         match self {
@@ -287,7 +289,7 @@ impl Projection {
     }
 }
 
-/// With all its numbers.
+/// Its name with all its numbers.
 impl fmt::Display for Projection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -324,7 +326,8 @@ mod tests {
         }
     }
 
-    /// The two descriptions of a camera agree: a point of a line of sight comes to the line's place.
+    /// The two descriptions of a camera agree: the matrix projects a point of a view ray to the ray's place in the
+    /// picture.
     #[test]
     fn lines_of_sight_are_the_matrixs() {
         for camera in cameras() {

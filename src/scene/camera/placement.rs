@@ -1,28 +1,27 @@
-//! Where light and camera go when nobody says so.
+//! Where light and camera are placed when neither is given.
 //!
-//! The eye looks from the front, a quarter round and a little from above, so near that the
-//! objects fill a good part of the picture's height. The light stands above and to the other
-//! side in front, so that lit, shadowed and turned-away parts all show and the shadow falls to
-//! where the eye sees the floor.
+//! The eye looks from the front, a quarter round and a little from above, so near that the objects fill a good part of
+//! the picture's height. The light stands above and to the other side in front, so that lit parts, shadowed ones and
+//! those that face away all show and the shadow falls to where the eye sees the floor.
 
 use crate::scene::{Camera, Light};
 use glam::DVec3;
 
-/// From the middle of what is looked at towards the eye.
+/// Direction from the scene's centre towards the eye.
 const TOWARDS_EYE: DVec3 = DVec3::new(0.42, 0.44, 0.8);
-/// From the middle of what is looked at towards the light.
+/// Direction from the scene's centre towards the light.
 const TOWARDS_LIGHT: DVec3 = DVec3::new(0.9, 1.15, 0.12);
 /// Distance of the light, in sums of the bounding box's extents.
 const LIGHT_DISTANCE: f64 = 1.25;
-/// How much of the picture's height the objects fill.
+/// The part of the picture's height that the objects fill.
 const HEIGHT_FILLED: f64 = 0.62;
-/// How much wider than that they may spread to the sides.
+/// How much wider than that height they may be.
 const WIDTH_OVER_HEIGHT: f64 = 1.35;
-/// The near plane, in distances from the eye to its target.
+/// Distance of the near plane, in distances from the eye to its target.
 const NEAR: f64 = 0.01;
 const FOV_Y_DEGREES: f64 = 45.0;
 
-/// What is looked at.
+/// The bounding box of a scene's objects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneBounds {
     low: DVec3,
@@ -37,7 +36,7 @@ impl Default for SceneBounds {
 }
 
 impl SceneBounds {
-    /// Of these points; `None` where there are none, or where their extents can't be measured.
+    /// Returns the bounds of these points; `None` where there are none, or where their extents can't be measured.
     pub fn of<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<SceneBounds> {
         let mut points = points.into_iter();
         let first = *points.next()?;
@@ -45,8 +44,8 @@ impl SceneBounds {
         (high - low).element_sum().is_finite().then_some(SceneBounds { low, high })
     }
 
-    /// The sum of the bounding box's three extents, the measure of every distance here; 1 where
-    /// the points are all in one place.
+    /// Returns the sum of the bounding box's three extents, the unit of every distance here; 1 where the points are all
+    /// in one place.
     pub fn extent(&self) -> f64 {
         let sum = (self.high - self.low).element_sum();
         if sum > 0.0 { sum } else { 1.0 }
@@ -57,18 +56,18 @@ impl SceneBounds {
         self.low.y
     }
 
-    /// The middle of the bounding box.
+    /// The centre of the bounding box.
     pub fn middle(&self) -> DVec3 {
         self.low / 2.0 + self.high / 2.0
     }
 
-    /// A white point light above in front.
+    /// Returns a white point light above in front.
     pub fn light(&self) -> Light {
         let towards_light = TOWARDS_LIGHT.normalize();
         Light::point(self.middle() + towards_light * LIGHT_DISTANCE * self.extent())
     }
 
-    /// A camera that has all of `points` in view, in a picture wider than high.
+    /// Returns a camera that has all of `points` in view, in a picture wider than high.
     pub fn camera<'a>(&self, points: impl IntoIterator<Item = &'a DVec3>) -> Camera {
         let back = TOWARDS_EYE.normalize();
         let right = DVec3::Y.cross(back).normalize();

@@ -1,11 +1,11 @@
 //! Scene files (TOML); `assets/help/scene-file.md` explains every key.
 //!
-//! The text becomes plain tables (`tables`) that know where each value stands; those are
-//! checked and become a [`Scene`] (`build`), meshes by `shape`. Whatever is wrong ends as one
-//! line: file, line, what, mend. [`save()`] goes the other way.
+//! The text becomes plain tables (`tables`) with the position of each value; those are checked and become a [`Scene`]
+//! (`build`), meshes by `shape`. Every error is one line: file, line, what is wrong, how to fix it. [`save()`] goes the
+//! other way.
 //!
-//! Objects and lights move by keys of their tables, all optional. A lamp that hangs and swings is
-//! an object and a light with the same `swing`:
+//! Objects and lights move by keys of their tables, all optional. A lamp that hangs and swings is an object and a light
+//! with the same `swing`:
 //!
 //! ```toml
 //! spin_degrees_per_second = [0, 20, 0]                                    # objects only
@@ -13,8 +13,8 @@
 //! swing = { pivot = [0, 5, 0], axis = [0, 0, 1], degrees = 12, period_seconds = 2.4 }
 //! ```
 //!
-//! An orbit carries a thing along a circle without turning it; a swing turns it with its cord, as
-//! far as `degrees` to either side, from rest at second 0.
+//! An orbit carries a thing along a circle without rotating it; a swing rotates it with its cord, as far as `degrees`
+//! to either side, from rest at second 0.
 
 mod build;
 mod problem;
@@ -32,7 +32,7 @@ use crate::scene::{Scene, SceneError};
 use problem::SceneFileProblem;
 use std::path::{Path, PathBuf};
 
-/// The models and pictures that a scene file names; none where it can't be read, which loading it tells.
+/// Returns the models and pictures that a scene file names; empty where it can't be read, which loading reports.
 pub fn models_of(path: &Path) -> Vec<PathBuf> {
     let table = read_text(path, "scene file").ok().and_then(|text| text.parse::<toml::Table>().ok());
     let objects = table.as_ref().and_then(|table| table.get("objects")?.as_array());
@@ -47,11 +47,11 @@ pub fn models_of(path: &Path) -> Vec<PathBuf> {
     models
 }
 
-/// Loads a scene file; meshes are looked for relative to it.
+/// Loads a scene file; paths of meshes are relative to it.
 ///
 /// # Errors
-/// A file that can't be read; an unknown key, a wrong type, a value that can't be used, a mesh
-/// that can't be loaded, with its line.
+/// A file that can't be read; an unknown key, a wrong type, a value that can't be used, a mesh that can't be loaded,
+/// with its line.
 pub fn load(file: &Path) -> Result<Scene, SceneError> {
     let text = read_text(file, "scene file")?;
     let folder = file.parent().unwrap_or(Path::new(""));

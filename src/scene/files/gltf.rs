@@ -1,11 +1,11 @@
-//! glTF 2.0 scenes (`.gltf`, `.glb`): meshes, materials, lights, the first camera, and turns.
+//! glTF 2.0 scenes (`.gltf`, `.glb`): meshes, materials, lights, the first camera, and rotations.
 //!
-//! [`load`] reads the file's JSON and buffers (`document`), places its nodes in double precision (`nodes`) and makes one
-//! object of every node with a mesh: at a pose where the node's place is one, else with its vertices in world space, as
-//! those of skins always are. What the file holds and nothing here shows is a list ([`Unsupported`]), not silence.
+//! [`load`] reads the file's JSON and buffers (`document`), places its nodes in double precision (`nodes`) and makes
+//! one object of every node with a mesh: at a pose where the node's matrix is one, else with its vertices in world
+//! space, as those of skins always are. Content that is not shown is listed ([`Unsupported`]), not dropped in silence.
 //!
-//! A scene file names one mesh of it by a JSON pointer: `model.glb#/meshes/2`, in its own space, or `model.glb#/nodes/5`, in
-//! world space.
+//! A scene file names one mesh of it by a JSON pointer: `model.glb#/meshes/2`, in its own space, or
+//! `model.glb#/nodes/5`, in world space.
 
 mod accessor;
 mod document;
@@ -35,25 +35,25 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Vertices of all objects together, each instance counted: each has its own place in every frame.
+/// The most vertices of all objects together, each instance counted: each has its own position in every frame.
 const MOST_VERTICES: usize = 1 << 23;
 
-/// What a file says.
+/// The content of a file.
 #[derive(Debug)]
 pub struct LoadedGltf {
-    /// In the order of the file's tree.
+    /// Objects in the order of the file's tree.
     pub objects: Vec<Object>,
-    /// The part of the file that is each object's mesh: `/meshes/2`.
+    /// JSON pointer of each object's mesh: `/meshes/2`.
     pub pointers: Vec<String>,
-    /// Empty where the file has none.
+    /// Lights; empty where the file has none.
     pub lights: Vec<Light>,
-    /// The first of the file's.
+    /// The first of the file's cameras.
     pub camera: Option<Camera>,
-    /// What else it holds.
+    /// Content that is not shown.
     pub not_taken: Vec<Unsupported>,
 }
 
-/// A name of the file as people and other files can have it: in one line, and not too long.
+/// Returns a name of the file's as it can be shown and written to other files: in one line, and not too long.
 fn named(given: Option<&str>, otherwise: impl FnOnce() -> String) -> String {
     const MOST: usize = 80;
     let plain: String =
@@ -67,15 +67,15 @@ pub fn load(file: &Path) -> Result<LoadedGltf, SceneError> {
     read(&document, file).map_err(|reason| SceneError::Read { file: file.to_owned(), reason })
 }
 
-/// A file that was opened for one of its meshes, and may be asked for another.
+/// A file that was opened for one of its meshes, and may be read again for another.
 #[derive(Debug)]
 pub(in crate::scene) struct OpenedGltf {
     document: GltfDocument,
     nodes: GltfNodes,
 }
 
-/// One mesh of a file among others, which share what room pictures have; the file's only one without a pointer. `last`
-/// is the file that was opened last.
+/// Reads one mesh of a file among others, which share the budget for pictures; the file's only mesh without a pointer.
+/// `last` is the file that was opened last.
 pub(in crate::scene) fn load_mesh(
     file: &Path,
     pointer: Option<&str>,
@@ -134,7 +134,7 @@ fn mesh_at(
     }
 }
 
-/// Without a skin, is a node without volume?
+/// Returns whether a node without a skin has no volume.
 fn is_flat(document: &GltfDocument, nodes: &GltfNodes, node: usize) -> bool {
     document.root.nodes[node].skin.is_none() && nodes.world[node].determinant() == 0.0
 }
@@ -187,7 +187,7 @@ fn read(document: &GltfDocument, file: &Path) -> GltfResult<LoadedGltf> {
         object.pose = pose.unwrap_or_default();
         let motion = match &pose {
             Some(pose) => turns.of_object(&nodes, node, pose),
-            // What stands in world space can't be turned by its pose.
+            // A mesh in world space can't be rotated by its pose.
             None if turns.moves(node) => {
                 Err("it is skinned, sheared or mirrored: it stands as at the start".to_owned())
             }
@@ -227,7 +227,7 @@ fn read(document: &GltfDocument, file: &Path) -> GltfResult<LoadedGltf> {
     Ok(LoadedGltf { objects, pointers, lights, camera: camera.map(|eye| eye.it), not_taken: refusals.into_list() })
 }
 
-/// The mesh of a node in world space: with its skin, or where the node is.
+/// Returns the mesh of a node in world space: with its skin, or by the node's matrix.
 fn in_world(
     document: &GltfDocument,
     nodes: &GltfNodes,
@@ -255,7 +255,7 @@ fn in_world(
     meshes.mesh(index, VertexTransform::Skinned(&joints))
 }
 
-/// The meshes of a file as its scene has them, each with the pointer that names it.
+/// Returns the meshes of a file as its scene has them, each with the pointer that names it.
 pub fn named_meshes(file: &Path) -> Vec<(Arc<Mesh>, String)> {
     let Ok(loaded) = load(file) else { return Vec::new() };
     let all = loaded.pointers.into_iter().zip(loaded.objects.into_iter().map(|object| object.mesh));

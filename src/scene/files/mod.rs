@@ -7,8 +7,8 @@
 //!         └► builtin
 //! ```
 //!
-//! Files are read without trust: sizes are bounded before memory is taken, and every error names the file, the place and
-//! how to fix it.
+//! Files are read without trust: sizes are bounded before memory is allocated, and every error names the file, the
+//! place and how to fix it.
 
 pub mod file;
 #[cfg(feature = "program")]

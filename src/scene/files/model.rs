@@ -1,6 +1,6 @@
-//! Models: what reads a file, by its name's ending.
+//! Models: the reader for each file name's ending.
 //!
-//! glTF and PLY are read in builds with the program alone; others say so.
+//! glTF and PLY are read only in builds with the feature of the program; others report that.
 
 use super::model_scene::{self, UpAxis};
 use super::obj;
@@ -12,17 +12,17 @@ use crate::scene::{Mesh, Scene, SceneError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a model's file is.
+/// The format of a model's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelFormat {
     Obj,
     Ply,
-    /// A scene of its own: it says which axis is up, and may have lights and a camera.
+    /// A scene of its own: its up axis is defined, and it may have lights and a camera.
     Gltf,
 }
 
 impl ModelFormat {
-    /// By the name's ending; `None` of any other.
+    /// Returns the format by the name's ending; `None` for any other.
     pub fn of(file: &Path) -> Option<ModelFormat> {
         let ending = file.extension()?.to_ascii_lowercase();
         match ending.to_str()? {
@@ -34,7 +34,7 @@ impl ModelFormat {
     }
 }
 
-/// The file and the pointer of `model.glb#/meshes/2`; no pointer of anything else.
+/// Splits `model.glb#/meshes/2` into file and pointer; any other name has no pointer.
 pub fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
         Some((file, pointer)) if ModelFormat::of(Path::new(file)) == Some(ModelFormat::Gltf) => (file, Some(pointer)),
@@ -42,8 +42,8 @@ pub fn split(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// Reads meshes for a scene file: they share what room pictures have, and one glTF file is opened once for all that stand
-/// together.
+/// Reads meshes for a scene file: they share the budget for pictures, and one glTF file is opened once for consecutive
+/// meshes of it.
 #[derive(Debug, Default)]
 pub struct ModelReader {
     pub pictures: ImageLoader,
@@ -52,7 +52,8 @@ pub struct ModelReader {
 }
 
 impl ModelReader {
-    /// The mesh in a file, of a glTF file the one that `pointer` names. A name without a known ending is an OBJ's.
+    /// Reads the mesh in a file, of a glTF file the one that `pointer` names. A name without a known ending is an
+    /// OBJ's.
     #[cfg_attr(not(feature = "program"), expect(unused_variables, reason = "only glTF files have pointers"))]
     pub fn mesh(&mut self, file: &Path, pointer: Option<&str>) -> Result<Mesh, SceneError> {
         match ModelFormat::of(file) {
@@ -63,7 +64,7 @@ impl ModelReader {
     }
 }
 
-/// Of a file that is one mesh.
+/// Reads a file that is one mesh.
 fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneError> {
     match ModelFormat::of(file) {
         #[cfg(feature = "program")]
@@ -74,7 +75,7 @@ fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneErr
     }
 }
 
-/// The scene of a model: completed by light, camera and floor where its file has none.
+/// Returns the scene of a model: completed by light, camera and floor where its file has none.
 pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let scene = match ModelFormat::of(file) {
         #[cfg(feature = "program")]
@@ -84,7 +85,7 @@ pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> 
     scene.map_err(|error| error.in_file(file))
 }
 
-/// The other files that a model is made of; none of what can't be read, which loading tells.
+/// Returns the other files that a model consists of; empty where it can't be read, which loading reports.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     match ModelFormat::of(file) {
         Some(ModelFormat::Obj) => obj::files_of(file),
@@ -94,7 +95,8 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
     }
 }
 
-/// The meshes of a file as its scene has them, each with the name that a scene file gives it where the file is `called` so.
+/// Returns the meshes of a file as its scene has them, each with the name that a scene file gives it where the file is
+/// named `called`.
 pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
     match ModelFormat::of(file) {
         #[cfg(feature = "program")]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Half the floor's width, in sums of the model's three extents.
 const FLOOR_REACH: f64 = 5.0;
-/// The floor's distance below the model, in the same unit: enough to tell their depths apart.
+/// The floor's distance below the model, in the same unit: enough to distinguish their depths.
 const FLOOR_GAP: f64 = 0.01;
 /// Positions become `f32` beyond this file, and products of three of them must stay finite.
 const MOST_EXTENT: f64 = 1e12;
@@ -24,15 +24,15 @@ const AMBIENT: [f32; 3] = [0.13, 0.13, 0.14];
 /// Which axis of a model is up. Many programs have z up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum UpAxis {
-    /// As it is here.
+    /// Y, as in this program.
     #[default]
     Y,
-    /// The model is turned.
+    /// Z: the model is rotated.
     Z,
 }
 
-/// Completes a model to a scene: a point light, a camera and, with `floor`, a level square that
-/// casts and receives like any object. One whose z axis is up is turned before.
+/// Completes a model to a scene: a point light, a camera and, with `floor`, a level square that casts and receives like
+/// any object. A model whose z axis is up is rotated first.
 pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
     let material = Material { color: TERRACOTTA, specular: 0.12, shininess: 24.0, shading, ..Material::default() };
@@ -43,7 +43,8 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
     completed(name, vec![model], floor)
 }
 
-/// The scene of a glTF file. One without lights or a camera gets them, and one that has neither is a bare model.
+/// Returns the scene of a glTF file. One without lights or a camera gets them, and one that has neither is a bare
+/// model.
 #[cfg(feature = "program")]
 pub(super) fn gltf_scene(name: &str, loaded: gltf::LoadedGltf, floor: bool) -> Result<Scene, SceneError> {
     let gltf::LoadedGltf { objects, lights, camera, not_taken, .. } = loaded;
@@ -57,7 +58,7 @@ pub(super) fn gltf_scene(name: &str, loaded: gltf::LoadedGltf, floor: bool) -> R
     })
 }
 
-/// These objects with a light, a camera and, with `floor`, a floor.
+/// Returns these objects with a light, a camera and, with `floor`, a floor.
 fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene, SceneError> {
     let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
     let positions: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
@@ -87,7 +88,7 @@ fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene,
     })
 }
 
-/// Around the model's own origin, facing up.
+/// Returns a floor around the model's own origin, facing up.
 fn floor_under(model: &SceneBounds) -> Result<Object, SceneError> {
     let half = FLOOR_REACH * model.extent();
     let y = model.lowest() - FLOOR_GAP * model.extent();

@@ -1,8 +1,8 @@
 //! OBJ models.
 //!
 //! [`load`] reads and checks every line (`text`), lets `tobj` read the material libraries, and cuts faces into
-//! triangles (`polygon`). The whole file is one mesh, whatever groups it has, so that what is closed stays closed. The
-//! parts between `o`, `g` and `usemtl` stay known as [`MeshGroup`]s; where they lie in a picture, their corners know.
+//! triangles (`polygon`). The whole file is one mesh, whatever groups it has, so that a closed one stays closed. The
+//! parts between `o`, `g` and `usemtl` are stored as [`MeshGroup`]s; texture coordinates belong to corners.
 
 mod materials;
 mod text;
@@ -27,14 +27,15 @@ pub fn load(file: &Path) -> Result<Mesh, SceneError> {
     load_among(file, &mut ImageLoader::default())
 }
 
-/// The same of a model among others, which share what room pictures have.
+/// Loads a model among others, which share the budget for pictures.
 pub(in crate::scene) fn load_among(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneError> {
     let raw = read_old_text(file, "OBJ model")?;
     let folder = file.parent().unwrap_or(Path::new(""));
     parse(&raw, folder, pictures).map_err(|problem| problem.of(file))
 }
 
-/// The libraries of a model, and the pictures that they show; none of what can't be read, which loading tells.
+/// Returns the libraries of a model, and the pictures that they show; empty where it can't be read, which loading
+/// reports.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     let Ok(raw) = read_old_text(file, "OBJ model") else { return Vec::new() };
     let named = raw.lines().filter_map(|line| line.trim().strip_prefix("mtllib"));
@@ -46,7 +47,7 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Material libraries are looked for in `folder`.
+/// Parses a model. Material libraries are read from `folder`.
 fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, FileProblem> {
     let mut contents =
         text::read(raw).map_err(|text::ObjLineProblem { line, reason }| FileProblem::Line(line, reason))?;
@@ -64,7 +65,7 @@ fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, F
     Ok(mesh.without(libraries.refusals.into_list()))
 }
 
-/// All but the positions: adds face after face, and what stands between them.
+/// Adds all but the positions: face after face, and the statements between them.
 fn assemble(contents: &ObjContents, folder: &Path, libraries: &mut MaterialLibraries) -> MeshBuilder {
     let faces = || {
         let mut rest = contents.corners.as_slice();
@@ -98,12 +99,12 @@ struct ObjAssembly<'a, 'b> {
     contents: &'a ObjContents,
     folder: &'a Path,
     libraries: &'a mut MaterialLibraries<'b>,
-    /// Has any face normals, and any a place in a picture?
+    /// Whether any face has normals, and any has texture coordinates.
     is_smooth: bool,
     has_uvs: bool,
     builder: MeshBuilder,
     part: ObjGroup,
-    /// Room for those of a face.
+    /// Buffer for the positions of a face's corners.
     corners: Vec<DVec3>,
 }
 
@@ -111,12 +112,12 @@ struct ObjAssembly<'a, 'b> {
 #[derive(Default)]
 struct ObjGroup {
     name: String,
-    /// In the libraries.
+    /// Index in the libraries.
     material: Option<usize>,
     map: Option<ObjTexture>,
-    /// Its first triangle.
+    /// Index of its first triangle.
     start: usize,
-    /// Does some triangle lie in no picture?
+    /// True where some triangle has no texture coordinates.
     is_unplaced: bool,
 }
 
@@ -167,7 +168,7 @@ impl ObjAssembly<'_, '_> {
         });
     }
 
-    /// Makes the faces since the last one a group, if there are any. Name and material go on.
+    /// Makes the faces since the last group a group, if there are any. The name and material still apply.
     fn end_part(&mut self) {
         let triangles = self.part.start..self.builder.triangles.len();
         let from = self.part.material.map(|material| self.libraries.material(material));

@@ -1,4 +1,4 @@
-//! A scene by whatever names it: a built-in name, a scene file or a model.
+//! Opens a scene by any name: a built-in name, a scene file or a model.
 
 use super::file;
 use super::model::{self, ModelFormat};
@@ -12,22 +12,22 @@ use std::path::{Path, PathBuf};
 pub struct OpenSpec {
     /// A built-in name, or the path of a scene file (`.toml`), a glTF file (`.gltf`, `.glb`) or a model (`.obj`, `.ply`).
     pub name: String,
-    /// Puts a floor under a bare model, and under what a glTF file shows without camera and lights; other scenes are taken as
-    /// they are.
+    /// Adds a floor under a bare model, and under what a glTF file shows without camera and lights; other scenes are
+    /// not changed.
     pub floor: bool,
-    /// Which axis of a bare model is up; the others say so themselves.
+    /// Which axis of a bare model is up; other scenes define that themselves.
     pub up: UpAxis,
 }
 
 impl OpenSpec {
-    /// `name` with a floor under it if it is a model, whose y axis is up.
+    /// Returns a spec of `name`, with a floor under it if it is a model, whose y axis is up.
     pub fn new(name: impl Into<String>) -> OpenSpec {
         OpenSpec { name: name.into(), floor: true, up: UpAxis::Y }
     }
 }
 
-/// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models, and their
-/// libraries and pictures.
+/// Returns the files that a scene consists of: none for a built-in one, a model, or a scene file with its models, and
+/// their libraries and pictures.
 pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     if Builtin::named(&spec.name).is_some() {
         return Vec::new();
@@ -40,7 +40,7 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     files.into_iter().chain(of_models).collect()
 }
 
-/// What kind of file a scene is in, by its name's ending.
+/// The kind of file that a scene is in, by its name's ending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum SceneFileKind {
     SceneFile,
@@ -54,12 +54,12 @@ impl SceneFileKind {
     }
 }
 
-/// Does this path end as those of files that scenes are read from?
+/// Returns whether this path has the ending of a file that scenes are read from.
 pub fn is_scene_file(path: &Path) -> bool {
     SceneFileKind::of(path).is_some()
 }
 
-/// Does this name a bare model, whose up axis is anybody's guess? A glTF file's is y.
+/// Returns whether this names a bare model, whose up axis is not defined. A glTF file's is y.
 pub fn is_model(name: &str) -> bool {
     let format = ModelFormat::of(Path::new(name)).filter(|_| Builtin::named(name).is_none());
     matches!(format, Some(ModelFormat::Obj | ModelFormat::Ply))
@@ -68,8 +68,8 @@ pub fn is_model(name: &str) -> bool {
 /// Opens a scene. The result is at time 0.
 ///
 /// # Errors
-/// An unknown name, with the nearest one; a file that is missing or broken, with the line where
-/// there is one, and the mend.
+/// An unknown name, with the nearest one; a file that is missing or broken, with the line where there is one, and how
+/// to fix it.
 pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
     if let Some(builtin) = Builtin::named(&spec.name) {
         return builtin.scene();

@@ -1,9 +1,9 @@
 //! PLY models (`.ply`), as text or binary: one mesh of the elements `vertex`, `face` and `tristrips`.
 //!
-//! The header is split off first, since its comments may be in any encoding; `ply_rs_bw` reads it. What is looked for in
-//! each element is decided by it, types and all ([`PlyProperties`]). Then row after row becomes a vertex or the corners of a face:
-//! binary ones are read by `ply_rs_bw`, those of text here, as it takes no `.5` and no `nan`. What else a file holds is named
-//! ([`NotTaken`](super::NotTaken)).
+//! The header is split off first, since its comments may be in any encoding; `ply_rs_bw` reads it. It decides which
+//! properties of each element are read, types and all ([`PlyProperties`]). Then row after row becomes a vertex or the
+//! corners of a face: binary ones are read by `ply_rs_bw`, those of text here, as it accepts no `.5` and no `nan`. What
+//! else a file contains is listed ([`Unsupported`](crate::scene::Unsupported)).
 
 use super::polygon;
 use super::read_text::{MOST_TEXT, decoded, quoted};
@@ -19,15 +19,15 @@ use ply_rs_bw::ply::{
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// How far the end of a header is looked for, bytes.
+/// Bytes within which the end of a header is searched for.
 const MOST_HEADER: usize = 1 << 20;
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
-/// Texture coordinates of vertices, by the programs that write them.
+/// Names of vertices' texture coordinates, by the programs that write them.
 const UVS: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
-/// The list that faces and strips have of their corners.
+/// Names of the list of corners of faces and strips.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
-/// Texture coordinates of a face's corners.
+/// Name of the texture coordinates of a face's corners.
 const CORNER_UVS: &str = "texcoord";
 const COLORS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
@@ -60,7 +60,7 @@ fn read(file: &Path) -> Result<Mesh, FileProblem> {
     Ok(mesh.without(not_taken(&header, &wanted).into_list()))
 }
 
-/// The header with its last line, and what follows it.
+/// Splits off the header with its last line.
 fn split_header(bytes: &[u8]) -> Result<(&[u8], &[u8]), &'static str> {
     if bytes.is_empty() {
         return Err("is empty: give a PLY model with content");
@@ -89,7 +89,7 @@ fn header(text: &str) -> Result<Header, FileProblem> {
     let header = Parser::<PlyRow>::new()
         .read_header(&mut parser::Reader::new(text.as_bytes()))
         .map_err(|error| error.line().map_or_else(no_format, wrong))?;
-    // Of two with one name only one is kept, and the rows would be cut wrongly.
+    // Of two properties with one name `ply_rs_bw` stores only one, and the rows would be read wrongly.
     let begin = |word: &str| text.lines().filter(|line| line.split_ascii_whitespace().next() == Some(word)).count();
     let properties = header.elements.values().map(|element| element.properties.len()).sum();
     if [begin("element"), begin("property")] != [header.elements.len(), properties] {
@@ -98,10 +98,10 @@ fn header(text: &str) -> Result<Header, FileProblem> {
     Ok(header)
 }
 
-/// What is looked for in a file: all of it is there, and of a type that can be used.
+/// The properties that are read from a file: all of them exist, and have a type that can be used.
 struct PlyProperties {
     has_normals: bool,
-    /// Which of [`UVS`].
+    /// Index in [`UVS`].
     uvs: Option<usize>,
     has_corner_uvs: bool,
 }
@@ -133,7 +133,7 @@ impl PlyProperties {
         })
     }
 
-    /// Is this property one of them?
+    /// Returns whether this property is read.
     fn takes(&self, element: &str, property: &str) -> bool {
         match element {
             "vertex" => {
@@ -152,7 +152,7 @@ fn is_fraction(of: &ScalarType) -> bool {
     matches!(of, ScalarType::Float | ScalarType::Double)
 }
 
-/// What the file holds and no mesh does.
+/// Returns what the file contains and no mesh stores.
 fn not_taken(header: &Header, wanted: &PlyProperties) -> UnsupportedList {
     let mut refusals = UnsupportedList::default();
     for element in header.elements.values().filter(|element| element.count > 0) {
@@ -179,21 +179,21 @@ fn not_taken(header: &Header, wanted: &PlyProperties) -> UnsupportedList {
     refusals
 }
 
-/// What one element says of what may be wanted: a vertex, a face or a strip.
+/// The values of one element, whichever are read: a vertex, a face or a strip.
 #[derive(Debug, Default)]
 struct PlyRow {
     place: [f64; 3],
     normal: [f64; 3],
-    /// As [`UVS`] are.
+    /// In the order of [`UVS`].
     uvs: [[f64; 2]; 3],
     /// −1 ends a strip.
     corners: Vec<i64>,
-    /// Two numbers a corner of a face.
+    /// Two numbers for each corner of a face.
     corner_uvs: Vec<f64>,
 }
 
 impl PlyRow {
-    /// Where a number of this name goes.
+    /// Returns where a number of this name is stored.
     fn number(&mut self, name: &str) -> Option<&mut f64> {
         let at = |names: &[&str]| names.iter().position(|known| *known == name);
         if let Some(axis) = at(&PLACE) {
@@ -228,7 +228,7 @@ impl PropertyAccess for PlyRow {
     }
 }
 
-/// An element of which nothing is wanted.
+/// An element of which nothing is read.
 struct SkippedElement;
 
 impl PropertyAccess for SkippedElement {
@@ -237,7 +237,7 @@ impl PropertyAccess for SkippedElement {
     }
 }
 
-/// `None` of a list.
+/// Returns the property's number; `None` for a list.
 fn number(property: &Property) -> Option<f64> {
     match property {
         Property::Char(number) => Some(f64::from(*number)),
@@ -252,7 +252,7 @@ fn number(property: &Property) -> Option<f64> {
     }
 }
 
-/// Nothing of anything but a list of whole numbers.
+/// Returns the property's list of whole numbers; empty for anything else.
 fn integers(property: Property) -> Vec<i64> {
     fn of<T: Into<i64>>(numbers: Vec<T>) -> Vec<i64> {
         numbers.into_iter().map(T::into).collect()
@@ -272,12 +272,12 @@ fn integers(property: Property) -> Vec<i64> {
 struct PlyRows<'a> {
     encoding: &'a Encoding,
     rest: &'a [u8],
-    /// Lines that were read, where there are lines.
+    /// The number of lines that were read, where there are lines.
     line: usize,
 }
 
 impl<'a> PlyRows<'a> {
-    /// The next element, the one `at` this place among its kind.
+    /// Reads the next element, number `at` of its kind.
     fn next<E: PropertyAccess>(
         &mut self,
         element: &ElementDef,
@@ -313,7 +313,7 @@ impl<'a> PlyRows<'a> {
         })
     }
 
-    /// The next line with anything on it.
+    /// Returns the next line with anything on it.
     fn line(&mut self) -> Option<&'a [u8]> {
         while !self.rest.is_empty() {
             let end = self.rest.iter().position(|byte| *byte == b'\n').map_or(self.rest.len(), |end| end + 1);
@@ -326,7 +326,7 @@ impl<'a> PlyRows<'a> {
         None
     }
 
-    /// What is wrong with the element that was read last: with its line, where there are lines.
+    /// Returns the error of the element that was read last: with its line, where there are lines.
     fn wrong(&self, what: &str, at: usize, reason: &str) -> FileProblem {
         match self.encoding {
             Encoding::Ascii => FileProblem::Line(self.line, format!("the {what} {reason}")),
@@ -335,7 +335,7 @@ impl<'a> PlyRows<'a> {
     }
 }
 
-/// A line of text as an element; `None` where it does not hold what the header says.
+/// Parses a line of text as an element; `None` where it does not match the header.
 fn row_of_text(line: &str, element: &ElementDef) -> Option<PlyRow> {
     let mut row = PlyRow::default();
     let mut words = line.split_ascii_whitespace();
@@ -375,9 +375,9 @@ struct PlySurface {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
-    /// Of all runs, one after the other.
+    /// Corners of all runs, one after the other.
     corners: Vec<u32>,
-    /// Parallel to `corners`, or empty; what can't be used is where the vertex is.
+    /// Texture coordinates parallel to `corners`, or empty; unusable ones are replaced by the vertex's.
     corner_uvs: Vec<Vec2>,
     runs: Vec<PlyCorners>,
 }
@@ -386,7 +386,7 @@ impl PlySurface {
     fn read(header: &Header, wanted: &PlyProperties, rows: &mut PlyRows) -> Result<PlySurface, FileProblem> {
         let mut surface = PlySurface::default();
         for element in header.elements.values().filter(|element| !element.properties.is_empty()) {
-            // Each takes a byte or more: this many are not there.
+            // Each takes a byte or more: the file can't contain so many.
             if element.count > rows.rest.len() {
                 let (count, name) = (element.count, quoted(&element.name));
                 return Err(FileProblem::File(format!("is too short for {count} elements {name}: export it again")));
@@ -435,7 +435,7 @@ impl PlySurface {
         self.positions.push(DVec3::from_array(row.place));
         if wanted.has_normals {
             let normal = DVec3::from_array(row.normal).as_vec3();
-            // One that is none is the triangle's own.
+            // A normal that is not finite is replaced by the triangle's own.
             self.normals.push(if normal.is_finite() { normal } else { Vec3::ZERO });
         }
         if let Some(pair) = wanted.uvs {

@@ -1,13 +1,14 @@
-//! Faces of model files as triangles: cutting one with any number of corners, strips, and normals where a file has none.
+//! Faces of model files as triangles: cutting one with any number of corners, strips, and normals where a file has
+//! none.
 //!
-//! The face is looked at along its Newell normal (which exists for corners that are not quite
-//! coplanar, too), by dropping the axis in which that normal is longest. Convex faces become a
-//! fan, others are cut ear by ear. Triangles run the way the face does.
+//! The face is projected along its Newell normal (which exists for corners that are not quite coplanar, too), by
+//! dropping the axis in which that normal is longest. Convex faces become a fan, others are cut ear by ear. Triangles
+//! have the winding of the face.
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Corners of the largest face whose ears are cut: where it crosses itself that takes time by their square. A larger one is
-/// a fan, of the same outline.
+/// Corners of the largest face whose ears are cut: where it crosses itself that takes time by their square. A larger
+/// one is a fan, of the same outline.
 const MOST_EARS: usize = 1 << 14;
 
 /// Adds the triangles of a face, as indices into its corners, of which there are at least three.
@@ -22,13 +23,13 @@ pub fn triangulate(corners: &[DVec3], add: impl FnMut([usize; 3])) {
     }
 }
 
-/// Triangles of a strip, as indices into its corners, all turned as the first.
+/// Returns triangles of a strip, as indices into its corners, all with the winding of the first.
 #[cfg(feature = "program")]
 pub fn strip(count: usize) -> impl Iterator<Item = [usize; 3]> {
     (2..count).map(|last| if last % 2 == 0 { [last - 2, last - 1, last] } else { [last - 2, last, last - 1] })
 }
 
-/// The normal of a triangle, of unit length; zero where it has no area.
+/// Returns the normal of a triangle, of unit length; zero where it has no area.
 pub fn normal([a, b, c]: [DVec3; 3]) -> Vec3 {
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }
@@ -37,7 +38,7 @@ fn fan(count: usize) -> impl Iterator<Item = [usize; 3]> {
     (2..count).map(|last| [0, last - 1, last])
 }
 
-/// The corners in the plane, counter-clockwise; `None` where the face has no area.
+/// Returns the corners in the plane, counter-clockwise; `None` where the face has no area.
 fn projected(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     // Scaled to about 1, so that no product overflows.
     let first = *corners.first()? / 2.0;
@@ -54,7 +55,7 @@ fn projected(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     (normal[axis] != 0.0).then(|| scaled.iter().map(|p| DVec2::new(p[u], p[v])).collect())
 }
 
-/// Turns left at every corner and goes round once.
+/// Returns whether it turns left at every corner and goes round once.
 fn is_convex(flat: &[DVec2]) -> bool {
     let edge = |i: usize| flat[(i + 1) % flat.len()] - flat[i % flat.len()];
     let turns_left = (0..flat.len()).all(|i| edge(i).perp_dot(edge(i + 1)) >= 0.0);
@@ -64,7 +65,7 @@ fn is_convex(flat: &[DVec2]) -> bool {
     turns_left && reversals <= 2
 }
 
-/// `None` where no triangle comes out, as for a face that crosses itself.
+/// Cuts a face ear by ear; `None` where that fails, as for a face that crosses itself.
 fn cut_ears(flat: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     let no_holes: [usize; 0] = [];
     let mut indices: Vec<usize> = Vec::new();

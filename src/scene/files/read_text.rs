@@ -1,4 +1,4 @@
-//! Reading a text file whole, with the ways in which that fails told apart.
+//! Reading a text file whole, with a separate error for each way in which that fails.
 
 use crate::files::{ReadError, read_plain};
 use crate::scene::SceneError;
@@ -7,22 +7,22 @@ use std::path::Path;
 /// Bytes of the largest text that is read.
 pub const MOST_TEXT: u64 = 2 << 30;
 
-/// The text of `file`, a byte order mark removed.
+/// Returns the text of `file`, a byte order mark removed.
 ///
 /// # Errors
 /// A missing or unreadable file, a folder, a device, a text that is too long, bytes that are no UTF-8 text, an empty
-/// file. `kind` says what was expected: `OBJ model`.
+/// file. `kind` is what was expected, for the message: `OBJ model`.
 pub fn read_text(file: &Path, kind: &str) -> Result<String, SceneError> {
     read(file, kind, |bytes| String::from_utf8(bytes).ok())
 }
 
-/// The same of a file in any encoding that has ASCII's letters where ASCII has them, as files of old programs are: what is
-/// no UTF-8 is read as Latin-1, which tells names apart as the file does.
+/// Returns the text of a file in any encoding that extends ASCII, as files of old programs are: what is not UTF-8 is
+/// read as Latin-1, in which different names stay different.
 pub fn read_old_text(file: &Path, kind: &str) -> Result<String, SceneError> {
     read(file, kind, |bytes| Some(decoded(bytes)))
 }
 
-/// UTF-8, or else Latin-1.
+/// Decodes UTF-8, or else Latin-1.
 pub fn decoded(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect())
 }
@@ -46,7 +46,7 @@ fn read(file: &Path, kind: &str, decode: impl FnOnce(Vec<u8>) -> Option<String>)
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
-/// A word of a file as it may stand in an error line: short, and no control characters.
+/// Returns a word of a file as it may be in an error line: short, and no control characters.
 pub fn quoted(word: &str) -> String {
     const MOST: usize = 40;
     let shown: String = word.chars().take(MOST).flat_map(char::escape_debug).collect();
@@ -54,7 +54,7 @@ pub fn quoted(word: &str) -> String {
     format!("`{shown}{rest}`")
 }
 
-/// A file's name without folder and ending.
+/// Returns a file's name without folder and ending.
 pub(in crate::scene) fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }

@@ -77,7 +77,7 @@ fn a_jpeg_becomes_rgba_and_half_of_one_is_refused() {
     }
 }
 
-/// A PNG of 100 000 texels each way, in 45 bytes: its head, and nothing.
+/// A PNG of 100 000 texels each way, in 45 bytes: its header, and nothing else.
 fn claims(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR".to_vec();
     bytes.extend([width.to_be_bytes(), height.to_be_bytes()].concat());

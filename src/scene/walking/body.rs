@@ -1,10 +1,10 @@
-//! A walker that weighs something: an upright body that goes over the ground, climbs steps, is stopped by what is higher,
-//! falls where nothing is under it, and lands.
+//! A walker with weight: an upright body that goes over the ground, climbs steps, is stopped by what is higher, falls
+//! where nothing is under it, and lands.
 //!
-//! Its feet stand on what vertical rays under it meet first, from the height of a step down. What is higher stops it:
+//! Its feet stand on the first hits of vertical rays under it, from the height of a step down. What is higher stops it:
 //! a capsule from there to its head is pushed aside, sideways only, out of the triangles that it is in (the nearest
-//! point of its axis is found by a search for the least of a convex function). A move is made in short steps of
-//! equal length, each with the way that gravity adds to it, `v t + g t² / 2`, so that equal moves end alike.
+//! point of its axis is found by a search for the least of a convex function). A move is made in short steps of equal
+//! length, each with the distance that gravity adds to it, `v t + g t² / 2`, so that equal moves end alike.
 
 use super::collision::{MOST_STEPS, PUSHES, SLACK, closest};
 use super::wall_tree::Wall;
@@ -12,56 +12,57 @@ use crate::math::AxisBox;
 use crate::scene::Walls;
 use glam::{DVec2, DVec3};
 
-/// Metres a second squared.
+/// Acceleration by gravity, metres per second squared.
 const GRAVITY: f64 = 9.81;
 /// The highest step that is climbed, metres.
 const STEP: f64 = 0.4;
-/// From the feet to the eye, metres, of a body that is not wider than that.
+/// Height of the eye above the feet, metres, of a body that is not wider than that.
 const EYE: f64 = 1.7;
-/// What is moved at once lasts so long at most, seconds.
+/// Longest time of one step of a move, seconds.
 const TIME_STEP: f64 = 1.0 / 120.0;
-/// Who is so far below all that there is falls for ever, metres.
+/// A body this far below all walls falls for ever, metres.
 const BEYOND: f64 = 5.0;
-/// Heights that differ by less are one: rounding, metres.
+/// Heights that differ by less are equal: rounding, metres.
 const LEVEL: f64 = 1e-9;
-/// Halvings of the search along the axis: a metre comes down to rounding.
+/// Halvings of the search along the axis: a metre is halved down to rounding.
 const SEARCHES: usize = 48;
-/// Under the middle, and round it at half the radius: where feet are looked for.
+/// Offsets where ground is searched for under the feet: under the middle, and round it at half the radius.
 const FOOTPRINT: [[f64; 2]; 9] =
     [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.7, 0.7], [0.7, -0.7], [-0.7, 0.7], [-0.7, -0.7]];
 
-/// What a walker is made of, metres.
+/// Measures of a walker, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WalkerBody {
     radius: f64,
     eye: f64,
 }
 
-/// How a body stands or falls.
+/// The state of a body: where it stands, or how it falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footing {
-    /// Where its feet are, world space.
+    /// Position of its feet, world space.
     pub feet: DVec3,
-    /// How fast it falls, metres a second.
+    /// Falling speed, metres per second.
     pub falls_by: f64,
-    /// Something is under its feet.
+    /// True where something is under its feet.
     pub is_on_ground: bool,
-    /// It has left all that there is behind, below which is nothing to land on.
+    /// True where it is below all walls, with nothing to land on.
     pub is_beyond: bool,
 }
 
 impl WalkerBody {
-    /// Of this radius, metres.
+    /// Returns a body of this radius, metres.
     pub fn new(radius: f64) -> WalkerBody {
         WalkerBody { radius, eye: EYE.max(STEP + radius * 1.5) }
     }
 
-    /// Where the eye of a body is.
+    /// Returns the position of the body's eye.
     pub fn eye_of(&self, feet: DVec3) -> DVec3 {
         feet + DVec3::Y * self.eye
     }
 
-    /// The body whose eye is here: on its feet where the ground is nearer to the eye than they would be, else in the air.
+    /// Returns the state of a body whose eye is here: on its feet where the ground is nearer to the eye than they would
+    /// be, else in the air.
     pub fn under(&self, eye: DVec3, walls: &Walls) -> Footing {
         let feet = eye - DVec3::Y * self.eye;
         let ground = self.ground(walls, feet, [feet.y, eye.y]);
@@ -73,8 +74,8 @@ impl WalkerBody {
         }
     }
 
-    /// How a body stands that wishes to go by `by` over the ground, some seconds later; with `collides` off, walls do not
-    /// stop it, and only the ground holds it. What is no number moves nobody.
+    /// Returns the state of a body that should move by `by` over the ground, some seconds later; with `collides` off,
+    /// walls do not stop it, and only the ground supports it. A move that is not finite moves nothing.
     pub fn walk(&self, from: Footing, by: DVec3, seconds: f64, (walls, collides): (&Walls, bool)) -> Footing {
         let by = by.with_y(0.0);
         if !(by.is_finite() && from.feet.is_finite() && seconds.is_finite() && seconds > 0.0) {
@@ -82,7 +83,7 @@ impl WalkerBody {
         }
         let lengths = by.length() / (self.radius / 2.0);
         let steps = (seconds / TIME_STEP).max(lengths).ceil().clamp(1.0, MOST_STEPS as f64);
-        // Of a way that is longer than all steps, what is left is not gone.
+        // The rest of a move that is longer than all steps is dropped.
         let way = by / steps.max(lengths);
         let time = seconds / steps;
         let mut now = from;
@@ -97,14 +98,14 @@ impl WalkerBody {
         let aside = self.gone(walls, from.feet, by, collides);
         let gone = self.settled(walls, (from, aside), step);
         let head_meets = gone.feet.y > from.feet.y + LEVEL && collides && self.is_blocked(walls, gone.feet);
-        // A step up that the head has no room for is not made, and what is under the feet holds them still.
+        // A step up that leaves no space for the head is not made, and the ground under the feet stops their fall.
         if head_meets { self.settled(walls, (from, from.feet), step) } else { gone }
     }
 
-    /// On its feet over a place, or a moment farther down.
+    /// Returns the state on its feet over a place, or a step of time farther down.
     fn settled(&self, walls: &Walls, (from, at): (Footing, DVec3), step: f64) -> Footing {
         let fallen = at.y - from.falls_by * step - GRAVITY * step * step / 2.0;
-        // Who walks goes down steps on their feet.
+        // A body on the ground goes down steps on its feet.
         let lowest = if from.is_on_ground { at.y - STEP } else { fallen };
         match self.ground(walls, at, [lowest, at.y + STEP]) {
             Some(height) => Footing { feet: at.with_y(height), falls_by: 0.0, is_on_ground: true, ..from },
@@ -117,10 +118,10 @@ impl WalkerBody {
         }
     }
 
-    /// Where feet get that would go by a short way, height unchanged.
+    /// Returns where feet get that should go by a short distance, height unchanged.
     fn gone(&self, walls: &Walls, feet: DVec3, by: DVec3, collides: bool) -> DVec3 {
         let far = feet + by;
-        // Who can't be got out of a wall walks out of it.
+        // A body that can't be pushed out of a wall walks out of it.
         if !collides || self.is_blocked(walls, feet) && self.pushed_aside(walls, feet).is_none() {
             return far;
         }
@@ -130,7 +131,7 @@ impl WalkerBody {
         if is_through { feet } else { next }
     }
 
-    /// The ends of the capsule's axis: from above the height of a step to below the eye.
+    /// Returns the ends of the capsule's axis: from above the height of a step to below the eye.
     fn axis(&self, feet: DVec3) -> [DVec3; 2] {
         [STEP + self.radius, self.eye - self.radius / 2.0].map(|height| feet + DVec3::Y * height)
     }
@@ -139,7 +140,8 @@ impl WalkerBody {
         self.deepest(walls, feet).is_some()
     }
 
-    /// The place beside walls at which the capsule is in none; `None` where it is not found, or only up or down.
+    /// Returns the place beside walls at which the capsule is in none; `None` where it is not found, or only up or
+    /// down.
     fn pushed_aside(&self, walls: &Walls, feet: DVec3) -> Option<DVec3> {
         let mut at = feet;
         for _ in 0..PUSHES {
@@ -152,14 +154,15 @@ impl WalkerBody {
         self.deepest(walls, at).is_none().then_some(at)
     }
 
-    /// The point of the axis that is nearest to a wall, and the wall's point, where they are nearer than the radius.
+    /// Returns the point of the axis that is nearest to a wall, and the wall's point, where they are nearer than the
+    /// radius.
     fn deepest(&self, walls: &Walls, feet: DVec3) -> Option<(DVec3, DVec3)> {
         let axis = self.axis(feet);
         let reach = DVec3::splat(self.radius);
         let mut least = (self.radius * (1.0 - SLACK)).powi(2);
         let mut found = None;
         walls.any_near(axis[0] - reach, axis[1] + reach, |wall| {
-            // A box is no farther than what is in it: most of a fine mesh is looked at no closer.
+            // A box is no farther than its content: most of a fine mesh is not examined more closely.
             let box_of = AxisBox::around(*wall);
             let [low, high] = [axis[0].min(axis[1]), axis[0].max(axis[1])];
             let apart = (box_of.low - high).max(low - box_of.high).max(DVec3::ZERO);
@@ -177,7 +180,7 @@ impl WalkerBody {
         found
     }
 
-    /// The highest ground under the footprint between two heights.
+    /// Returns the highest ground under the footprint between two heights.
     fn ground(&self, walls: &Walls, feet: DVec3, [low, high]: [f64; 2]) -> Option<f64> {
         let half = self.radius / 2.0;
         let places = FOOTPRINT.map(|[x, z]| DVec2::new(feet.x + x * half, feet.z + z * half));
@@ -196,7 +199,7 @@ impl WalkerBody {
     }
 }
 
-/// The height of a triangle over a place of the ground; `None` where it is not over it, or stands upright.
+/// Returns the height of a triangle over a place of the ground; `None` where it is not over it, or stands upright.
 fn height_at([a, b, c]: &Wall, place: DVec2) -> Option<f64> {
     let flat = [a, b, c].map(|corner| DVec2::new(corner.x, corner.z) - place);
     let cross = |from: usize, to: usize| flat[from].perp_dot(flat[to]);
@@ -207,7 +210,8 @@ fn height_at([a, b, c]: &Wall, place: DVec2) -> Option<f64> {
     (is_over && height.is_finite()).then_some(height)
 }
 
-/// The points of a segment and a triangle that are nearest to each other: the distance is convex along the segment.
+/// Returns the points of a segment and a triangle that are nearest to each other: the distance is convex along the
+/// segment.
 fn nearest_points([from, to]: [DVec3; 2], wall: Wall) -> (DVec3, DVec3) {
     let away = |part: f64| from.lerp(to, part).distance_squared(closest(wall, from.lerp(to, part)));
     let [mut low, mut high] = [0.0, 1.0];
@@ -294,7 +298,7 @@ mod tests {
                 let down = walked(&walls, up, DVec3::X, 2.0);
                 assert!(down.feet.y == 0.0 && down.is_on_ground && (down.feet.x - 6.0).abs() < 1e-9, "{down:?}");
             } else {
-                // Before it by the radius, and less where only the capsule's round end meets the edge.
+                // Before it by the radius, and less where only the capsule's round end touches the edge.
                 assert!(up.feet.y == 0.0 && up.feet.x < 1.0 && up.feet.x > 0.7, "{height}: {up:?}");
             }
         }

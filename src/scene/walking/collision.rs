@@ -1,10 +1,10 @@
 //! A walker that does not go through walls: a sphere that slides along triangles.
 //!
-//! A move is made in steps of half the sphere's radius, so that however fast one walks the middle never
-//! reaches the far side of a triangle: after each step the sphere is pushed out of the triangle that it
-//! is deepest in, to where it touches it (closest points after Ericson 2005, "Real-Time Collision
-//! Detection", 5.1.5), until it is in none. What is left of the step along the wall is the slide. A
-//! step that can't be mended, as in a corner too narrow, is not made.
+//! A move is made in steps of half the sphere's radius, so that however fast one walks the centre never reaches the far
+//! side of a triangle: after each step the sphere is pushed out of the triangle that it is deepest in, to where it
+//! touches it (closest points after Ericson 2005, "Real-Time Collision Detection", 5.1.5), until it is in none. The
+//! rest of the step along the wall is the slide. A step from which it can't be pushed out, as in a corner too narrow,
+//! is not made.
 
 use super::wall_tree::{Wall, WallTree};
 use crate::last_used::LastUsed;
@@ -12,37 +12,37 @@ use crate::scene::{Object, PoseBits, Scene};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Pushes that mend one step, at most.
+/// The most pushes after one step.
 pub(super) const PUSHES: usize = 12;
-/// Steps of one move, at most: what is left of it is not made.
+/// The most steps of one move: the rest of it is dropped.
 pub(super) const MOST_STEPS: usize = 2_000;
-/// A sphere may be so much inside of a wall, in parts of its radius: rounding.
+/// How far a sphere may be inside of a wall, as a part of its radius: rounding.
 pub(super) const SLACK: f64 = 1e-6;
 
 /// Triangles that can't be walked through, world space.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Walls {
-    /// One an object.
+    /// One tree for each object.
     trees: Vec<Arc<WallTree>>,
 }
 
-/// The walls of objects, kept as long as these stay where they are.
+/// The walls of objects, cached as long as these stay where they are.
 #[derive(Debug, Default)]
 pub struct WallCache {
-    /// By the mesh's content and the pose.
+    /// Trees by the mesh's content and the pose.
     trees: LastUsed<(u64, PoseBits), Arc<WallTree>>,
 }
 
 impl WallCache {
-    /// The walls of a scene at its moment: of all objects that are drawn. Those of objects that have not moved
-    /// since this was last asked are not made again.
+    /// Returns the walls of a scene at its time: of all objects that are drawn. Those of objects that have not moved
+    /// since the last call are not built again.
     pub fn walls(&mut self, scene: &Scene) -> Walls {
         let tree = |object: &Object| {
             let key = (object.mesh.content_hash(), object.pose.bits());
             self.trees.get_or_make(key, || Arc::new(tree_of(object)))
         };
         let walls = Walls { trees: scene.objects.iter().filter(|object| object.visible).map(tree).collect() };
-        // What is gone is forgotten at once.
+        // Walls of objects that are gone are dropped at once.
         self.trees.next_plan();
         walls
     }
@@ -55,12 +55,12 @@ fn tree_of(object: &Object) -> WallTree {
 }
 
 impl Walls {
-    /// Of these triangles; one with a corner that is no number is none.
+    /// Returns walls of these triangles; one with a corner that is not finite is left out.
     pub fn new(triangles: impl IntoIterator<Item = [DVec3; 3]>) -> Walls {
         Walls { trees: vec![Arc::new(WallTree::new(triangles))] }
     }
 
-    /// Where a sphere gets that starts at `from` and would go by `by`. One that starts in a wall and can't be
+    /// Returns where a sphere gets that starts at `from` and should go by `by`. One that starts in a wall and can't be
     /// pushed out of it goes freely until it is out.
     pub fn walk(&self, from: DVec3, by: DVec3, radius: f64) -> DVec3 {
         if !(by.is_finite() && from.is_finite() && radius > 0.0) {
@@ -73,7 +73,7 @@ impl Walls {
         let steps = (by.length() / (radius / 2.0)).ceil().max(1.0);
         let step = by / steps;
         let mut left = (steps as usize).min(MOST_STEPS);
-        // So many steps are tried at once: more where nothing is near, fewer where something is.
+        // The number of steps that are tried at once: more where nothing is near, fewer where something is.
         let mut stride = left;
         while left > 0 {
             stride = stride.min(left);
@@ -88,7 +88,7 @@ impl Walls {
                 continue;
             }
             let next = self.pushed_out(far, radius).filter(|next| !self.is_between(at, *next));
-            // What stands still now stands still for the rest of the way.
+            // A sphere that does not move now does not move for the rest of the way.
             let Some(next) = next.filter(|next| next.distance(at) > SLACK * radius) else { break };
             (at, left) = (next, left - 1);
             stride = 2;
@@ -96,18 +96,18 @@ impl Walls {
         at
     }
 
-    /// Is nothing near the way between two points?
+    /// Returns whether nothing is near the way between two points.
     fn is_free(&self, from: DVec3, to: DVec3, radius: f64) -> bool {
         let reach = DVec3::splat(radius);
         !self.any_near(from.min(to) - reach, from.max(to) + reach, |_| true)
     }
 
-    /// Is there no triangle?
+    /// Returns whether there is no triangle.
     pub fn is_empty(&self) -> bool {
         self.trees.iter().all(|tree| tree.is_empty())
     }
 
-    /// The lowest height that one of them reaches, world space; `None` where there is none.
+    /// The lowest height of the walls, world space; `None` where there are none.
     pub(super) fn lowest(&self) -> Option<f64> {
         self.trees.iter().filter_map(|tree| tree.lowest()).reduce(f64::min)
     }
@@ -116,7 +116,7 @@ impl Walls {
         self.trees.iter().any(|tree| tree.any_near(low, high, &mut visit))
     }
 
-    /// The nearest place found at which the sphere is in no wall.
+    /// Returns the nearest place found at which the sphere is in no wall.
     fn pushed_out(&self, at: DVec3, radius: f64) -> Option<DVec3> {
         let mut at = at;
         for _ in 0..PUSHES {
@@ -130,7 +130,7 @@ impl Walls {
         self.deepest(at, radius * (1.0 - SLACK)).is_none().then_some(at)
     }
 
-    /// The nearest point of the walls that is nearer than `radius`, with its wall.
+    /// Returns the nearest point of the walls that is nearer than `radius`, with its wall.
     fn deepest(&self, at: DVec3, radius: f64) -> Option<(DVec3, Wall)> {
         let mut found = None;
         let mut least = radius * radius;
@@ -147,13 +147,13 @@ impl Walls {
         found
     }
 
-    /// Does a wall stand between two points?
+    /// Returns whether a wall stands between two points.
     pub(super) fn is_between(&self, from: DVec3, to: DVec3) -> bool {
         self.any_near(from.min(to), from.max(to), |wall| is_crossed(*wall, from, to))
     }
 }
 
-/// The point of a triangle that is nearest to `at`: by the region of its plane that `at` lies over.
+/// Returns the point of a triangle that is nearest to `at`: by the region of its plane that `at` lies over.
 pub(super) fn closest([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
     let (ab, ac, ap) = (b - a, c - a, at - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -187,7 +187,7 @@ pub(super) fn closest([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
     if whole == 0.0 { a } else { a + ab * (vb / whole) + ac * (vc / whole) }
 }
 
-/// Does a segment cross a triangle?
+/// Returns whether a segment crosses a triangle.
 fn is_crossed([a, b, c]: [DVec3; 3], from: DVec3, to: DVec3) -> bool {
     let normal = (b - a).cross(c - a);
     let (before, after) = (normal.dot(from - a), normal.dot(to - a));
@@ -305,11 +305,11 @@ mod tests {
         let triangles =
             || mesh.triangles().iter().map(|corners| corners.map(|corner| mesh.positions()[corner as usize]));
         let walls = Walls::new(triangles());
-        // A tree a triangle is no tree at all.
+        // One tree for each triangle is the same as no tree.
         let slow = Walls { trees: triangles().map(|wall| Arc::new(WallTree::new([wall]))).collect() };
         let (from, by) = (DVec3::new(-2.9, 0.3, 0.2), DVec3::new(1.2, 0.1, 0.0));
         assert!((walls.walk(from, by, RADIUS) - slow.walk(from, by, RADIUS)).length() < 1e-9);
-        // As fast as one can be, for a quarter of a second, into the ball and past it.
+        // As fast as possible, for a quarter of a second, into the ball and past it.
         let at = walls.walk(DVec3::new(-60.0, 0.3, 0.2), DVec3::X * 125.0, RADIUS);
         let past = walls.walk(DVec3::new(-60.0, 2.2, 0.2), DVec3::X * 125.0, RADIUS);
         assert!(at.length() > 2.0 + RADIUS * 0.99, "{at}");

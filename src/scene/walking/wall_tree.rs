@@ -1,26 +1,27 @@
 //! Triangles in a tree of boxes, so that a few near a place are found among many.
 //!
-//! Each box is halved at the median of its triangles along its longest axis, so a tree of `n` triangles is
-//! about `log2 n` deep whatever their sizes.
+//! Each box is halved at the median of its triangles along its longest axis, so a tree of `n` triangles is about `log2
+//! n` deep whatever their sizes.
 //!
-//! `obvhs`, by which meshes are held against themselves, is no substitute: its builder (PLOC) pairs the two nearest boxes,
-//! and where tens of thousands of triangles lie in one place it takes minutes. A walk must not wait for a model like that.
+//! `obvhs`, by which meshes are compared with each other, is no substitute: its builder (PLOC) pairs the two nearest
+//! boxes, and where tens of thousands of triangles lie in one place it takes minutes. A walk must not wait for a model
+//! like that.
 
 use crate::math::AxisBox;
 use glam::DVec3;
 
-/// Triangles of a box that is halved no further.
+/// Most triangles of a box that is not halved.
 const FEW: usize = 4;
-/// As deep as halving a list by its median can get.
+/// The deepest that halving a list by its median can get.
 const DEEPEST: usize = 64;
 
 /// A triangle, world space.
 pub type Wall = [DVec3; 3];
 
-/// Triangles by where they are.
+/// A tree of triangles by their position.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WallTree {
-    /// The first is the root; a node's lower half follows it.
+    /// The first node is the root; a node's lower half follows it.
     nodes: Vec<Node>,
     triangles: Vec<Wall>,
 }
@@ -34,14 +35,14 @@ struct Node {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Holds {
-    /// Triangles from one index to another.
+    /// A leaf: triangles from one index to another.
     Triangles(u32, u32),
-    /// Two nodes: the next one, and this.
+    /// An inner node: its children are the next node, and this.
     Nodes(u32),
 }
 
 impl WallTree {
-    /// Of these triangles; one with a corner that is no number is left out.
+    /// Returns a tree of these triangles; one with a corner that is not finite is left out.
     pub fn new(triangles: impl IntoIterator<Item = Wall>) -> WallTree {
         let finite = |corners: &Wall| corners.iter().all(|corner| corner.is_finite());
         let mut tree = WallTree { nodes: Vec::new(), triangles: triangles.into_iter().filter(finite).collect() };
@@ -53,12 +54,12 @@ impl WallTree {
         tree
     }
 
-    /// Is there no triangle?
+    /// Returns whether there is no triangle.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// The lowest height that a triangle reaches; `None` where there is none.
+    /// Returns the lowest height that a triangle reaches; `None` where there is none.
     pub fn lowest(&self) -> Option<f64> {
         self.nodes.first().map(|root| root.low.y)
     }
@@ -83,7 +84,8 @@ impl WallTree {
         self.grow(upper, first + half);
     }
 
-    /// Those whose own box meets the box between two corners, until `visit` says to stop; true if it did.
+    /// Visits triangles whose own box overlaps the box between two corners, until `visit` returns true; returns whether
+    /// it did.
     pub fn any_near(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(&Wall) -> bool) -> bool {
         let meets = |a: DVec3, b: DVec3| a.cmple(high).all() && b.cmpge(low).all();
         let mut waiting = [0_u32; DEEPEST];
@@ -115,7 +117,7 @@ impl WallTree {
     }
 }
 
-/// Three times the middle of a triangle.
+/// Returns three times the centre of a triangle.
 fn middle([a, b, c]: &Wall) -> DVec3 {
     *a + *b + *c
 }

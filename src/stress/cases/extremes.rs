@@ -10,12 +10,12 @@ pub use eyes::under_a_roof;
 
 use crate::stress::StressCase;
 
-/// All of them.
+/// All cases of single extremes.
 pub fn all() -> impl Iterator<Item = &'static StressCase> {
     [eyes::ALL, lights::ALL, meshes::ALL, receivers::ALL, wrong_forms::ALL].into_iter().flatten()
 }
 
-/// So many steps of the last bit away.
+/// Returns the number `steps` floats after `value`.
 fn ulps(value: f64, steps: f64) -> f64 {
     let step = if steps > 0.0 { f64::next_up } else { f64::next_down };
     (0..steps.abs() as u32).fold(value, |value, _| step(value))

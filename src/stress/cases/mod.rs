@@ -1,9 +1,9 @@
 //! The cases as data. Adding one is adding one value.
 //!
-//! What a case does not say is expected to be right, for the reason that
-//! [`right_because`](super::right_because) has; shadow maps, planar textures and projected silhouettes are
-//! never promised to be, so there a small share of wrong pixels is known as `aliasing`. Shares and the
-//! values at which a failure must show are those of pictures of 320 × 240.
+//! Where a case lists no failure, a technique is expected to be right, for the reason that
+//! [`right_because`](super::right_because) gives; shadow maps, planar textures and projected silhouettes are never
+//! promised to be, so there a small share of wrong pixels is known as `aliasing`. Shares and the values at which a
+//! failure must show are those of pictures of 320 × 240.
 
 mod extremes;
 mod random;

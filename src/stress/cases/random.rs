@@ -1,5 +1,5 @@
-//! A thousand random scenes: soups of up to two hundred triangles, closed and open, under random
-//! eyes, lights and near planes. The value of the case is the seed, so any of them can be looked at.
+//! A thousand random scenes: soups of up to two hundred triangles, closed and open, under random eyes, lights and near
+//! planes. The value of the case is the seed, so any of them can be examined.
 
 use super::who::{BY_VERTEX_SHADER, FACING_IN_F32, PLAIN};
 use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene, shapes};
@@ -99,7 +99,7 @@ fn soup(random: &mut Random, kind: u32) -> Result<Mesh, MeshError> {
     let count = 1 + random.below(200);
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     match kind {
-        // Triangles of any size, each by itself.
+        // Triangles of any size, none of them connected.
         0 => {
             for first in (0..count).map(|index| 3 * index) {
                 let middle = random.within(1.0);

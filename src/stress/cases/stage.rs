@@ -1,4 +1,4 @@
-//! What scenes of cases are put together from.
+//! The parts that scenes of cases are built from.
 
 use crate::scene::{Light, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -21,7 +21,7 @@ pub fn cuboid(name: &str, center: [f64; 3], size: [f64; 3]) -> Result<Object, Me
     Ok(Object::of(name, shapes::cuboid(size)?).at(center))
 }
 
-/// The scene carried elsewhere, eye and lights with it.
+/// Moves the scene, eye and lights with it.
 pub fn carried(mut scene: Scene, by: DVec3) -> Scene {
     scene.camera.eye += by;
     scene.camera.target += by;
@@ -32,7 +32,7 @@ pub fn carried(mut scene: Scene, by: DVec3) -> Scene {
     scene
 }
 
-/// The scene made larger about the origin, eye and lights with it.
+/// Scales the scene about the origin, eye and lights with it.
 pub fn enlarged(mut scene: Scene, factor: f64) -> Scene {
     scene.camera.eye *= factor;
     scene.camera.target *= factor;

@@ -11,7 +11,7 @@ use crate::stress::{CaseNumber, ExpectedTrend, FailureSymptom, KnownFailure, Lea
 use crate::technique::Technique;
 use glam::DVec3;
 
-/// All of them.
+/// All sweeps.
 pub const ALL: &[StressCase] = &[
     NEAR_FAR,
     WORLD_OFFSET,
@@ -35,13 +35,12 @@ pub const ALL: &[StressCase] = &[
     LIGHT_ORBIT,
 ];
 
-// Deviations from the specification's table. `near-far` and shadow maps: the map's near plane is fitted
-// to what casts and not to the eye, so it is right here; its bias fails in `grazing`. `light-close` and
-// shadow maps: what the map misses of the box's top, its bottom makes up for; the map's near plane shows
-// in `light-at-sheet`. `light-far` and shadow maps: what fails is none of their usual failures, but the
-// map's depth. `fine-grid` and shadow maps: only bars of a tenth of a pixel are thinner than its texels,
-// and what differs there lies in the edge band: too much of it. `edge-order` has no case, since no
-// setting makes it.
+// Deviations from the specification's table. `near-far` and shadow maps: the map's near plane is fitted to the casters
+// and not to the eye, so it is right here; its bias fails in `grazing`. `light-close` and shadow maps: the bottom of
+// the box casts where the map misses its top; the map's near plane shows in `light-at-sheet`. `light-far` and shadow
+// maps: what fails is none of their usual failures, but the map's depth. `fine-grid` and shadow maps: only bars of a
+// tenth of a pixel are thinner than its texels, and what differs there lies in the edge band: too much of it.
+// `edge-order` has no case, since no setting causes it.
 
 const NEAR_FAR: StressCase = StressCase {
     name: "near-far",
@@ -128,14 +127,14 @@ const LIGHT_CLOSE: StressCase = StressCase {
         fails(FINITE, "finite-extrusion", "a vertex is carried by its distance to the light, which is next to nothing")
             .at(|distance| distance < 1.0)
             .is_missing()
-            // All but what little of it is drawn on the caster itself: of a closed body the lit face alone casts.
+            // All but the little of it that is drawn on the caster itself: of a closed body the lit face alone casts.
             .at_most(0.99),
         NO_FIT.at(|distance| distance < 1.0),
     ],
     ..PLAIN
 };
 
-/// Where the lamp of `light-far` goes.
+/// The direction in which the lamp of `light-far` is moved away.
 const FAR_AWAY: DVec3 = DVec3::new(0.2, 1.0, 0.4);
 
 const LIGHT_FAR: StressCase = StressCase {
@@ -201,15 +200,14 @@ const WRAPS: KnownFailure = fails(Z_FAIL, "wrap-256", "a count of 256 reads 0 in
     .is_missing()
     .at_most(0.05);
 
-// Clamped with all additions first, it is right: no pixel is in some of the volumes and in front of 255
-// others.
+// Clamped with all additions first, it is right: no pixel is in some of the volumes and in front of 255 others.
 const NESTED: StressCase = StressCase {
     name: "nested",
     lesson: "more and more volumes over the same pixels: eight bits read 256 as none",
     parameter: "volumes",
     values: &[1.0, 2.0, 16.0, 100.0, 255.0, 256.0, 257.0, 512.0, 600.0],
     drives: CaseNumber::Scene(|count| {
-        // Panes between lamp and floor that all throw the same shadow: a rim has all of them, or none.
+        // Panes between lamp and floor that all cast the same shadow: a rim has all of them, or none.
         let light = DVec3::new(0.1, 8.0, 0.2);
         let panes = (0..count as u32).map(|index| {
             let height = 0.5 + f64::from(index) * 0.002;
@@ -298,7 +296,7 @@ const THINNER_THAN_TEXELS: KnownFailure =
         .is_mixed()
         .at_most(0.07);
 
-/// Nearly every pixel that differs is near an edge: it shows by how many are excused.
+/// Nearly every pixel that differs is near an edge: the failure shows in the number of excused ones.
 const THINNER_THAN_EDGES: KnownFailure =
     fails(COARSE, "aliasing", "a bar is thinner than a texel, and all that differs lies along edges")
         .at(|pixels| pixels < 0.3)
@@ -362,7 +360,7 @@ const SUBPIXEL_EDGES: StressCase = StressCase {
         };
         let points: Vec<[f64; 3]> = smooth.positions().iter().map(bump).collect();
         let ball = Object::of("ball", shapes::triangles(&points, smooth.triangles())?).at([0.0, 1.3, 0.0]);
-        // Two metres are so many of 240 rows. One of some five hundred views from around, which shows it at 30.
+        // Two metres are this many of 240 rows. One of some five hundred views from around, which shows it at 30.
         let distance = 240.0 / (pixels * 22.5_f64.to_radians().tan());
         let (sin, cos) = (12.0 * 137.50776_f64).to_radians().sin_cos();
         let towards = DVec3::new(0.3 * cos + 0.8 * sin, 0.45, 0.8 * cos - 0.3 * sin).normalize();
@@ -402,7 +400,7 @@ const TRIANGLE_COUNT: StressCase = StressCase {
         (EDGE_LIST, 1e4, "every edge is searched for: with more it is refused"),
         (PLANAR, 1e5, "each triangle is a receiver: a million take half a minute"),
     ],
-    // A hundred thousand, flattened onto as many planes as have shadows, are a gigabyte.
+    // A hundred thousand triangles, flattened onto as many planes as have shadows, are a gigabyte.
     heavy_above: Some(1e4),
     // For ten times as many, n log n is a factor of twelve to fourteen, and n squared one of a hundred.
     trend: Some(ExpectedTrend::Grows(32.0)),
@@ -421,7 +419,7 @@ const MAP_SIZE: StressCase = StressCase {
     drives: CaseNumber::Setting("size", || {
         // A ring near a low lamp: the shadow's edge is long, and its texels are spread.
         let ring = Object::of("ring", shapes::torus(0.35, 0.12, 32, 16)?).at([0.0, 0.8, 0.0]);
-        // Only the flat floor is asked.
+        // Only the flat floor is compared.
         let ring = Object { receives: false, ..ring };
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.3, 1.8, 0.2]), vec![floor(3.0)?, ring]))
     }),

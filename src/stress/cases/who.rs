@@ -1,4 +1,4 @@
-//! Who runs beside the usual forms, what their failures are called, and the words that many cases share.
+//! Variants of techniques that run beside the usual ones, names of their failures, and sentences that many cases share.
 
 use crate::stress::{CaseNumber, Entrant, KnownFailure, LeastShares, StressCase};
 use crate::technique::Technique;
@@ -35,12 +35,12 @@ pub const DETACHED: Entrant = Entrant::with(Technique::ShadowMap, &[("bias-slope
 pub const UNCLIPPED: Entrant = Entrant::with(Technique::Planar, &[("clip", "off")]);
 pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse", "on")]);
 
-/// A known failure.
+/// Returns a known failure.
 pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> KnownFailure {
     KnownFailure::new(of, name, because)
 }
 
-/// What tells facing and far vertices in 24 bits.
+/// Facing and far vertices are computed in 24 bits.
 pub const FACING_IN_F32: KnownFailure = fails(
     BY_VERTEX_SHADER,
     "f32-limit",
@@ -70,11 +70,11 @@ pub const NO_FIT: KnownFailure = fails(
     "no picture holds a caster that reaches behind the light, so it casts nothing and the plan says so",
 )
 .is_missing();
-/// Each case has its own share of it.
+/// Near-plane cuts; each case has its own share of wrong pixels.
 pub const CUT_BY_NEAR: KnownFailure =
     fails(Z_PASS, "near-plane", "faces that the near plane cuts away, or that are behind the eye, are not counted");
 
-/// What is not said of a case: one value of the easiest scene.
+/// The defaults of a case: one value of the easiest scene.
 pub const PLAIN: StressCase = StressCase {
     name: "",
     lesson: "",

@@ -23,7 +23,7 @@ use toml::Spanned;
 
 const DEFAULT_AMBIENT: [f32; 3] = [0.15; 3];
 const DEFAULT_FOV_Y_DEGREES: f64 = 45.0;
-/// Why a value that only an oblique projection has is no use: its angle and its factor.
+/// Error messages for the two values that only an oblique projection has: its angle and its factor.
 const OF_OBLIQUE: [&str; 2] = [
     "`oblique_angle_degrees` is of `projection = \"oblique\"` alone: give that, or leave it out",
     "`oblique_factor` is of `projection = \"oblique\"` alone: give that, or leave it out",
@@ -31,7 +31,7 @@ const OF_OBLIQUE: [&str; 2] = [
 /// The near plane's distance unless given, in distances from eye to target.
 const DEFAULT_NEAR: f64 = 0.01;
 
-/// `name` is the scene's unless the table gives one; meshes are looked for in `folder`.
+/// Builds a scene. `name` is the scene's unless the table gives one; meshes are read from `folder`.
 pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, SceneFileProblem> {
     let mut builder = ObjectBuilder {
         folder,
@@ -75,7 +75,7 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
         eye,
         target,
         up: table.up.as_ref().map_or(Ok(DVec3::Y), finite)?,
-        // Unless given, the target is as large as a pinhole would have it.
+        // Unless given, the height at the target is that of a perspective camera.
         projection: projection(table, eye.distance(target) * (fov_y_degrees.to_radians() / 2.0).tan())?,
         fov_y_degrees,
         near: number(&table.near, eye.distance(target) * DEFAULT_NEAR)?,
@@ -88,7 +88,7 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
     Ok(camera)
 }
 
-/// With `half_height` where the table gives none.
+/// Returns the projection, with `half_height` where the table gives none.
 fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, SceneFileProblem> {
     let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let kind = table.projection.as_ref().map_or("perspective", |kind| kind.get_ref());
@@ -116,7 +116,7 @@ fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Scene
     })
 }
 
-/// Where the value stands that makes the camera unusable.
+/// Returns the position of the value that makes the camera unusable.
 fn culprit(table: &CameraTable, camera: &Camera) -> usize {
     let place = |value: &Option<SpannedNumber>| value.as_ref().map(|value| value.span().start);
     let eye = table.eye.span().start;
@@ -151,7 +151,7 @@ fn culprit(table: &CameraTable, camera: &Camera) -> usize {
     found.unwrap_or(eye)
 }
 
-/// Is a projection's factor what is wrong with it?
+/// Returns whether a projection's factor is what is wrong with it.
 fn is_wrong_factor(projection: Projection) -> bool {
     matches!(projection, Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor))
 }
@@ -208,7 +208,7 @@ fn swing(table: &SwingTable) -> Result<Swing, SceneFileProblem> {
     })
 }
 
-/// At least a millisecond: moments counted in far shorter periods have no phase.
+/// At least a millisecond: times counted in far shorter periods have no phase.
 fn period(value: &SpannedNumber) -> Result<f64, SceneFileProblem> {
     let seconds = finite_number(value)?;
     if seconds >= 0.001 {
@@ -240,11 +240,11 @@ fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, SceneFileProble
     Ok(TechniqueRequest { name: table.name.clone(), settings })
 }
 
-/// Makes objects; models are loaded once.
+/// Builds objects; models are loaded once.
 struct ObjectBuilder<'a> {
     folder: &'a Path,
     models: ModelReader,
-    /// By the name that the file gives them.
+    /// Models that were loaded, by the name that the file gives them.
     known: BTreeMap<String, Arc<Mesh>>,
     objects: Vec<Object>,
     names: ObjectNames,
@@ -296,7 +296,7 @@ impl ObjectBuilder<'_> {
         Ok(model)
     }
 
-    /// The picture on those parts of a mesh that have no material of their own.
+    /// Returns the texture of those parts of a mesh that have no material of their own.
     fn texture(&mut self, table: &MaterialTable, mesh: &Mesh) -> Result<Option<MaterialTexture>, SceneFileProblem> {
         let Some(file) = &table.texture else {
             let side = table.texture_side.as_ref().map(|side| ("texture_side", side.span()));
@@ -327,7 +327,7 @@ impl ObjectBuilder<'_> {
         }))
     }
 
-    /// As given, else after the mesh, with a number where that is taken.
+    /// Returns the given name, else the mesh's, with a number where that is taken.
     fn name(&mut self, table: &ObjectTable) -> Result<String, SceneFileProblem> {
         if let Some(name) = &table.name {
             if !self.names.take(name.get_ref()) {

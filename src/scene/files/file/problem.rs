@@ -3,34 +3,34 @@
 use crate::scene::suggestion;
 use std::ops::Range;
 
-/// Something wrong at a place of the text.
+/// An error at a position of the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneFileProblem {
-    /// Byte offset.
+    /// Byte offset of the value.
     pub at: usize,
-    /// What is wrong and how to mend it, in one line.
+    /// What is wrong and how to fix it, in one line.
     pub reason: String,
 }
 
 impl SceneFileProblem {
-    /// `reason` holds for what stands at `span`.
+    /// Returns an error about the value at `span`.
     pub fn new(span: Range<usize>, reason: impl Into<String>) -> SceneFileProblem {
         SceneFileProblem { at: span.start, reason: reason.into() }
     }
 
-    /// What the TOML reader found.
+    /// Returns the error that the TOML reader found.
     pub fn of_toml(error: &toml::de::Error) -> SceneFileProblem {
         SceneFileProblem { at: error.span().map_or(0, |span| span.start), reason: in_words(error.message()) }
     }
 
-    /// Counted from 1.
+    /// Returns its line, counted from 1.
     pub fn line_in(&self, text: &str) -> usize {
         let before = text.as_bytes().get(..self.at).unwrap_or(text.as_bytes());
         before.iter().filter(|byte| **byte == b'\n').count() + 1
     }
 }
 
-/// The reader's message with the mend.
+/// Returns the reader's message with how to fix it.
 fn in_words(message: &str) -> String {
     let message = message.replace(['\n', '\r'], " ");
     // serde: unknown field `colour`, expected one of `color`, `range`

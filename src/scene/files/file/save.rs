@@ -1,7 +1,7 @@
 //! A scene as a scene file, and the models that it needs beside it.
 //!
-//! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
-//! read is the one that was written. Small meshes stand in the file itself; others become models.
+//! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is read is the one
+//! that was written. Small meshes are in the file itself; others become models.
 
 use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, ObjectTable, OrbitTable, SceneTable, ShapeTable, SpannedTriple,
@@ -16,13 +16,13 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Triangles of the largest mesh that stands in the scene file.
+/// Triangles of the largest mesh that is written in the scene file.
 const MOST_INLINE: usize = 32;
 
 /// A scene as text, with the files that it names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SavedScene {
-    /// The scene file.
+    /// Text of the scene file.
     pub toml: String,
     /// Pictures, models and their materials: name, beside the scene file, and contents.
     pub files: Vec<(String, Vec<u8>)>,
@@ -31,16 +31,16 @@ pub struct SavedScene {
 /// Why a scene can't be written.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
-    /// What the serialiser refuses.
+    /// The serialiser failed.
     #[error("the scene can't be written as a scene file ({0})")]
     Scene(#[from] toml::ser::Error),
-    /// What the encoder refuses.
+    /// The PNG encoder failed.
     #[error("a picture can't be written ({0})")]
     Picture(#[from] png::EncodingError),
 }
 
-/// Writes a scene. New models are called `stem-object.obj`; meshes that are there as files already are `known`, each with
-/// its file's name.
+/// Writes a scene. New models are called `stem-object.obj`; meshes that have a file already are `known`, each with its
+/// file's name.
 pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Result<SavedScene, SaveError> {
     let mut beside = Beside { stem, files: Vec::new(), meshes: known, pictures: Vec::new() };
     let mut objects = Vec::with_capacity(scene.objects.len());
@@ -119,7 +119,7 @@ fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
     (orbit, swing)
 }
 
-/// `texture`: the file of its picture.
+/// Returns the table of an object. `texture`: the file of its picture.
 fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> ObjectTable {
     let lies = object.texture.as_ref();
     let (orbit, swing) = motion(&object.motion);
@@ -157,13 +157,13 @@ fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> O
 struct Beside<'a> {
     stem: &'a str,
     files: Vec<(String, Vec<u8>)>,
-    /// Those that are files, known ones first.
+    /// Meshes that have a file, known ones first.
     meshes: Vec<(Arc<Mesh>, String)>,
     pictures: Vec<(Arc<TextureImage>, String)>,
 }
 
 impl Beside<'_> {
-    /// The file of a mesh, which is made unless an earlier object has it; or its triangles.
+    /// Returns the file of a mesh, which is written unless an earlier object has it; or its triangles.
     fn mesh(&mut self, object: &Object) -> Result<MeshSource, SaveError> {
         let mesh = &object.mesh;
         if let Some((_, name)) = self.meshes.iter().find(|(other, _)| other == mesh) {
@@ -198,7 +198,7 @@ impl Beside<'_> {
         Ok(MeshSource::File(format!("{name}.obj")))
     }
 
-    /// The file of a picture, which is made unless it is there.
+    /// Returns the file of a picture, which is written unless an earlier object has it.
     fn picture(&mut self, picture: &Arc<TextureImage>) -> Result<String, SaveError> {
         if let Some((_, name)) = self.pictures.iter().find(|(other, _)| other == picture) {
             return Ok(name.clone());
@@ -210,7 +210,7 @@ impl Beside<'_> {
         Ok(name)
     }
 
-    /// A name for something, without its ending, that no other file has.
+    /// Returns a name, without its ending, that no other file has.
     fn unused(&self, of: &str, ending: &str) -> String {
         let plain: String = of.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
         let taken = |name: &str| self.files.iter().any(|(other, _)| other == &format!("{name}.{ending}"));
@@ -239,7 +239,7 @@ fn png(picture: &TextureImage) -> Result<Vec<u8>, png::EncodingError> {
     Ok(bytes)
 }
 
-/// A mesh as an OBJ model.
+/// Returns a mesh as an OBJ model.
 fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     let mut out = String::new();
     let mut line = |text: std::fmt::Arguments| {
@@ -270,7 +270,7 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
             let name: String = name.chars().map(plain).collect();
             line(format_args!("g {name}"));
         }
-        // Without a word, the last group's material would go on.
+        // Without a `usemtl` line, the last group's material would apply.
         match group.material {
             Some(_) => line(format_args!("usemtl {}", material_name(index))),
             None if groups[..index].iter().any(|other| other.material.is_some()) => line(format_args!("usemtl none")),
@@ -296,7 +296,7 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     out
 }
 
-/// The materials of a mesh's groups with the files of their pictures; empty where they have none.
+/// Returns the materials of a mesh's groups with the files of their pictures; empty where they have none.
 fn library(mesh: &Mesh, pictures: &[Option<String>]) -> String {
     let mut out = String::new();
     for (index, (group, picture)) in mesh.groups().iter().zip(pictures).enumerate() {
@@ -326,7 +326,7 @@ fn material_name(group: usize) -> String {
     format!("material-{}", group + 1)
 }
 
-/// The number with the fewest digits that is this one in single precision.
+/// Returns the number with the fewest digits that is this one in single precision.
 fn short(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(f64::from(value))
 }
@@ -339,7 +339,7 @@ mod tests {
     use std::collections::BTreeMap;
     use std::path::Path;
 
-    /// The scene as it is read again.
+    /// Returns the scene as it is read again.
     fn again(scene: &Scene) -> (Scene, SavedScene) {
         let folder = tempfile::tempdir().expect("a folder");
         let saved = save(scene, "fixed", Vec::new()).expect("saved");

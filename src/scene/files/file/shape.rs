@@ -20,10 +20,10 @@ const SHAPES: [(&str, &[&str]); 8] = [
     ("revolve", &["profile", "closed", "segments"]),
     ("triangles", &["points", "indices"]),
 ];
-/// Segments around or along a shape.
+/// The most segments around or along a shape.
 const MOST_SEGMENTS: u32 = 4096;
 
-/// The mesh of a shape.
+/// Returns the mesh of a shape.
 pub fn mesh(table: &ShapeTable) -> Result<Mesh, SceneFileProblem> {
     let name = table.shape.get_ref().as_str();
     let names = SHAPES.map(|(name, _)| name);
@@ -93,7 +93,7 @@ fn with_surface<T>(mesh: Mesh, made_of: &Spanned<T>) -> Result<Mesh, SceneFilePr
     Ok(mesh)
 }
 
-/// The parameters that are there, with their places.
+/// Returns the parameters that are given, with their positions.
 fn given(table: &ShapeTable) -> Vec<(&'static str, Range<usize>)> {
     fn place<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
         value.as_ref().map(Spanned::span)

@@ -1,4 +1,4 @@
-//! Puts a scene into a file: the scene file, and the models and pictures that it needs beside it.
+//! Writes a scene to a file: the scene file, and the models and pictures that it needs beside it.
 
 use super::save::{SaveError, SavedScene, save};
 use crate::files::{from_beside, read_plain, write_whole};
@@ -8,24 +8,24 @@ use crate::scene::files::read_text::stem;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a scene is not in its file.
+/// Why a scene can't be written to its file.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// The name is none of a scene file.
+    /// The file's name does not end as those of scene files.
     #[error("`{0}` can't be a scene file: give it a name that ends in .toml")]
     NoSceneFile(String),
-    /// A model or picture of that name is there, and another.
+    /// There is a different model or picture of that name already.
     #[error("`{0}` is another file, and stays as it is: choose another name for the scene")]
     ModelInTheWay(String),
-    /// The scene can't be told as text.
+    /// The scene can't be written as text.
     #[error(transparent)]
     Save(#[from] SaveError),
     /// A file can't be written.
     #[error("`{file}` can't be written ({source}): choose another place")]
     Write {
-        /// The scene file or a model.
+        /// Name of the scene file or a model.
         file: String,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
 }
@@ -35,17 +35,17 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
     if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("toml")) {
         return Err(StoreError::NoSceneFile(file.display().to_string().escape_debug().to_string()));
     }
-    // A mesh that was changed is another, and not named.
+    // A mesh that was changed is not in its file any more, and is written.
     let known = source.map(|path| model::named_meshes(path, &from_beside(file, path))).unwrap_or_default();
     write_files(&save(scene, &stem(file), known)?, file)
 }
 
-/// The models first, so that the scene file is never there without them; what was not there before goes again
-/// where something fails.
+/// Writes the models first, so that the scene file is never there without them; where writing fails, new files are
+/// removed.
 fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
     let mut models: Vec<(PathBuf, &[u8])> =
         saved.files.iter().map(|(name, bytes)| (file.with_file_name(name), bytes.as_slice())).collect();
-    // A model that holds the same already stays; another may be somebody's work, or what the scene is made of.
+    // A model with the same content stays; another may be somebody's work, or the one that the scene was opened from.
     models.retain(|(file, bytes)| !read_plain(file, bytes.len() as u64).is_ok_and(|there| there == *bytes));
     if let Some((taken, _)) = models.iter().find(|(file, _)| file.exists()) {
         return Err(StoreError::ModelInTheWay(taken.display().to_string().escape_debug().to_string()));
@@ -55,7 +55,7 @@ fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
     for (file, bytes) in all {
         let is_new = !file.exists();
         if let Err(source) = write_whole(file, bytes) {
-            // What failed is the error already.
+            // The first failure is the error that is returned.
             written.iter().for_each(|file| drop(std::fs::remove_file(file)));
             return Err(StoreError::Write { file: file.display().to_string().escape_debug().to_string(), source });
         }

@@ -1,6 +1,6 @@
-//! The tables of a scene file, which are read and written in this form and order: no value is checked yet.
+//! The tables of a scene file, which are read and written in this format and order: no value is checked yet.
 //!
-//! `Spanned` values know where they stand, for error lines; those that are to be written stand nowhere yet.
+//! `Spanned` values have their position in the text, for error lines; those that are to be written have none yet.
 
 use serde::de::{
     Deserializer, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer,
@@ -14,7 +14,7 @@ pub type SpannedNumber = Spanned<f64>;
 pub type SpannedTriple = Spanned<[f64; 3]>;
 pub type SpannedText = Spanned<String>;
 
-/// A value that is to be written.
+/// Returns a value that is to be written, without a position.
 pub fn unplaced<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }
@@ -126,7 +126,7 @@ pub enum MeshSource {
     Shape(Box<ShapeTable>),
 }
 
-/// A shape with the parameters of any; which belong to it is checked later.
+/// A shape with the parameters of all shapes; which belong to it is checked later.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeTable {
@@ -147,7 +147,7 @@ pub struct ShapeTable {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Segments(pub Vec<u32>);
 
-// Written out, and not `#[serde(untagged)]`, which would lose the places of what is inside.
+// Implemented here, and not by `#[serde(untagged)]`, which would lose the positions of inner values.
 impl<'de> Deserialize<'de> for MeshSource {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<MeshSource, D::Error> {
         deserializer.deserialize_any(MeshSourceVisitor)

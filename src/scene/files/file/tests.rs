@@ -35,7 +35,7 @@ fn parsed(text: &str) -> Result<Scene, (usize, String)> {
     parse(text, "unnamed", Path::new("")).map_err(|problem| (problem.line_in(text), problem.reason))
 }
 
-/// Line and reason of the error that replacing `from` by `to` makes.
+/// Returns line and reason of the error that results from replacing `from` by `to`.
 fn broken(from: &str, to: &str) -> (usize, String) {
     assert!(SCENE.contains(from), "{from} is not in the scene");
     parsed(&SCENE.replacen(from, to, 1)).expect_err(to)
@@ -89,7 +89,8 @@ fn every_shape_makes_a_mesh() {
     }
 }
 
-/// Unless given, the target is as large as a pinhole shows it; cabinet projection is usual. Saved, it is read as it was.
+/// Unless given, the height at the target is that of a perspective camera; cabinet projection is usual. Saved, it is
+/// read as it was.
 #[test]
 fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
     let folder = tempfile::tempdir().expect("a folder");

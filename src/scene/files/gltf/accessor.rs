@@ -1,4 +1,4 @@
-//! Numbers out of buffers. Nothing that a file says of them is believed: every byte is looked for.
+//! Numbers from buffers. Nothing that a file states about them is trusted: every byte is checked to exist.
 
 use super::document::{GltfDocument, GltfResult};
 use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, IndexComponentType};
@@ -7,8 +7,8 @@ use gltf::json::{Index, buffer};
 use std::rc::Rc;
 
 impl GltfDocument {
-    /// The items of an accessor one after the other, `N` numbers each; normalized integers as fractions. Read once, however
-    /// many ask for them.
+    /// Returns the items of an accessor one after the other, `N` numbers each; normalized integers as fractions. Each
+    /// accessor is read once, however often it is used.
     ///
     /// # Errors
     /// Another number of components; bytes beyond a buffer; more items than any model has.
@@ -64,12 +64,12 @@ impl GltfDocument {
         Ok(items)
     }
 
-    /// The whole numbers of an accessor.
+    /// Returns the whole numbers of an accessor.
     pub fn indices(&self, index: Index<Accessor>) -> GltfResult<Vec<u32>> {
         Ok(self.numbers::<1>(index)?.iter().map(|number| *number as u32).collect())
     }
 
-    /// `count` items of `size` bytes, which lie in the view one after the other or at its stride.
+    /// Returns `count` items of `size` bytes, which lie in the view one after the other or at its stride.
     fn strided(
         &self,
         view: Index<buffer::View>,
@@ -92,7 +92,7 @@ impl GltfDocument {
     }
 }
 
-/// A number at the start of some bytes, which are enough.
+/// Returns the number at the start of some bytes, of which there are enough.
 fn component(kind: ComponentType, normalized: bool, bytes: &[u8]) -> f64 {
     let two = || [bytes[0], bytes[1]];
     let four = || [bytes[0], bytes[1], bytes[2], bytes[3]];

@@ -15,11 +15,11 @@ use std::rc::Rc;
 /// Bytes of the largest file, buffers and pictures alike.
 const MOST_BYTES: u64 = 1 << 30;
 /// Items of accessors that any file may have read; beyond, one more for each byte of its buffers. More means that one
-/// buffer is told of over and over.
+/// buffer is used over and over.
 const FREE_ITEMS: u64 = 1 << 22;
-/// The shortest binary file: its head.
+/// Bytes of the header, and so of the shortest binary file.
 const GLB_HEAD: usize = 12;
-/// What a file may require: all that changes no geometry or is read here.
+/// Extensions that a file may require: all that change no geometry or are read here.
 const KNOWN_EXTENSIONS: [&str; 5] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -28,20 +28,20 @@ const KNOWN_EXTENSIONS: [&str; 5] = [
     "KHR_texture_transform",
 ];
 
-/// Why a file can't be shown, with the mend; in one line, without its name.
+/// The error says why a file can't be shown and how to fix it; in one line, without the file's name.
 pub type GltfResult<T> = Result<T, String>;
 
-/// A file that keeps the format's rules.
+/// A file that is valid by the format's rules.
 #[derive(Debug)]
 pub struct GltfDocument {
     /// Its JSON.
     pub root: Root,
     buffers: Vec<Vec<u8>>,
-    /// Where it was read from.
+    /// Path that it was read from.
     pub file: PathBuf,
-    /// What was read of accessors already, by index.
+    /// The numbers of accessors that were read already, by index.
     pub(super) numbers: RefCell<HashMap<usize, Rc<Vec<f64>>>>,
-    /// Items that may still be read.
+    /// The number of items that may still be read.
     left: Cell<u64>,
 }
 
@@ -86,7 +86,7 @@ impl GltfDocument {
         Ok(())
     }
 
-    /// The bytes of a buffer's or a picture's URI: a file beside this one, or data in the URI itself.
+    /// Returns the bytes of a buffer's or a picture's URI: a file beside this one, or data in the URI itself.
     pub fn resource(&self, uri: &str, most: u64) -> GltfResult<Vec<u8>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let broken = || "a data URI can't be read: export the file again".to_owned();
@@ -100,12 +100,12 @@ impl GltfDocument {
         read_plain(&self.file.with_file_name(path), most).map_err(|error| format!("{} {error}", quoted(uri)))
     }
 
-    /// Where a picture's file would be.
+    /// Returns where a picture's file would be.
     pub fn beside(&self, uri: &str) -> Option<PathBuf> {
         path_of(uri).map(|path| self.file.with_file_name(path))
     }
 
-    /// The bytes of a buffer's part.
+    /// Returns the bytes of a buffer view.
     pub fn view(&self, index: Index<buffer::View>) -> GltfResult<&[u8]> {
         let missing = || format!("buffer view {} is beyond its buffer: export the file again", index.value());
         let view = self.root.get(index).ok_or_else(missing)?;
@@ -117,7 +117,7 @@ impl GltfDocument {
             .ok_or_else(missing)
     }
 
-    /// Takes from the number of items that may still be read or made.
+    /// Takes items from the number that may still be read or computed.
     pub fn take(&self, items: u64) -> GltfResult<()> {
         let left = self.left.get().checked_sub(items);
         self.left.set(left.ok_or("tells of more vertices and triangles than its buffers have bytes: split the model")?);
@@ -125,7 +125,7 @@ impl GltfDocument {
     }
 }
 
-/// The files that a file names; none of what can't be read, which loading tells.
+/// Returns the files that a file names; empty where it can't be read, which loading reports.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = read_plain(file, MOST_BYTES) else { return Vec::new() };
     let Ok((root, _)) = parse(&bytes, file) else { return Vec::new() };
@@ -138,7 +138,7 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The path in a relative URI (RFC 3986); `None` of one that is elsewhere.
+/// Returns the path in a relative URI (RFC 3986); `None` for one that is elsewhere.
 fn path_of(uri: &str) -> Option<PathBuf> {
     let is_elsewhere = uri.starts_with("data:") || uri.contains("://") || uri.is_empty();
     let path = percent_encoding::percent_decode_str(uri).decode_utf8().ok()?;
@@ -151,7 +151,7 @@ fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneErro
         return Err(failed("is empty: give a glTF file with content"));
     }
     let is_binary = bytes.starts_with(b"glTF");
-    // The crate subtracts the head's length unchecked.
+    // The crate subtracts the header's length unchecked.
     let length = bytes.get(8..GLB_HEAD).and_then(|length| length.try_into().ok()).map_or(0, u32::from_le_bytes);
     if is_binary && (length as usize) < GLB_HEAD {
         return Err(failed("is a broken .glb (its head is too short): export it again"));
@@ -167,13 +167,13 @@ fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneErro
     }
 }
 
-/// Other people's words as one short line.
+/// Returns a foreign message as one short line.
 fn in_a_line(words: &str) -> String {
     const MOST: usize = 120;
     words.chars().take(MOST).flat_map(char::escape_debug).collect()
 }
 
-/// Does the file keep the rules that reading relies on?
+/// Checks the rules of the format that reading relies on.
 fn checked(root: &Root) -> GltfResult<()> {
     if root.asset.version.split('.').next() != Some("2") {
         let version = quoted(&root.asset.version);
@@ -183,7 +183,7 @@ fn checked(root: &Root) -> GltfResult<()> {
         let name = quoted(other);
         return Err(format!("needs the extension {name}, which is not done here: export it without (uncompressed)"));
     }
-    // The crate's own check of these looks without asking whether there is anything.
+    // The crate's own check of these indexes without a bounds check.
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     if let Some(beyond) = primitives.flat_map(|one| one.attributes.values()).find(|index| root.get(**index).is_none()) {
         return Err(format!("has vertices in accessor {}, which is missing: export it again", beyond.value()));
@@ -191,7 +191,7 @@ fn checked(root: &Root) -> GltfResult<()> {
     let mut first: Option<(String, Error)> = None;
     root.validate(root, JsonPath::new, &mut |path, error| {
         let path = path();
-        // Bounds of positions are computed here, and extensions were looked at above.
+        // Bounds of positions are computed here, and extensions were checked above.
         let is_needless =
             [".min", ".max"].iter().any(|end| path.as_str().ends_with(end)) && path.as_str().contains("POSITION");
         if first.is_none() && error != Error::Unsupported && !is_needless {
@@ -206,12 +206,12 @@ fn checked(root: &Root) -> GltfResult<()> {
     }
 }
 
-/// May a file require it?
+/// Returns whether a file may require it.
 pub fn is_known(extension: &str) -> bool {
     KNOWN_EXTENSIONS.contains(&extension) || extension.starts_with("KHR_materials_")
 }
 
-/// Is all of it read?
+/// Returns whether all of it is supported.
 pub fn is_done(extension: &str) -> bool {
     KNOWN_EXTENSIONS.contains(&extension)
 }

@@ -1,8 +1,8 @@
 //! Lights (`KHR_lights_punctual`) and cameras.
 //!
-//! Intensities are candela and lux there, and nothing here is exposed: what all lights together bring to the middle of
-//! what is seen is made 1, so that nothing is overexposed, and each keeps its share. Light does not fade here but towards its
-//! range.
+//! Intensities are candela and lux there, and there is no exposure here: they are scaled so that all lights together
+//! give 1 at the centre of the scene, so that nothing is overexposed, and each keeps its share. Light does not fade
+//! here except towards its range.
 
 use super::document::GltfResult;
 use super::named;
@@ -17,7 +17,7 @@ use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::Type;
 use gltf::json::validation::Checked;
 
-/// Of the distance from an orthographic camera to its far plane, how near its near plane may be.
+/// The least near plane of an orthographic camera, as a part of its distance to the far plane.
 const NEAREST: f64 = 1e-6;
 
 /// A light or a camera, and the node that it hangs on.
@@ -27,7 +27,7 @@ pub struct NodeItem<T> {
     pub it: T,
 }
 
-/// The lights of the scene that is shown.
+/// Returns the lights of the scene that is shown.
 pub fn lights(
     root: &Root,
     nodes: &GltfNodes,
@@ -77,7 +77,7 @@ pub fn lights(
     found
 }
 
-/// The first camera of the scene that is shown.
+/// Returns the first camera of the scene that is shown.
 pub fn camera(
     root: &Root,
     nodes: &GltfNodes,
@@ -106,7 +106,7 @@ fn placed(given: &gltf::json::Camera, nodes: &GltfNodes, node: usize, around: &S
     let eye = world.transform_point3(DVec3::ZERO);
     let ahead = world.transform_vector3(DVec3::NEG_Z).normalize_or_zero();
     let up = world.transform_vector3(DVec3::Y).normalize_or_zero();
-    // It is turned about what it looks at: as far off as the middle of the scene.
+    // The camera's target is at the distance of the scene's centre, so that orbiting it is useful.
     let distance = (around.middle() - eye).dot(ahead);
     let distance = if distance > 0.01 * around.extent() { distance } else { around.extent() };
     let base = Camera { up, ..Camera::looking(eye, eye + ahead * distance) };
@@ -119,7 +119,7 @@ fn placed(given: &gltf::json::Camera, nodes: &GltfNodes, node: usize, around: &S
         },
         (Checked::Valid(CameraType::Orthographic), _, Some(of)) => Camera {
             projection: Projection::Orthographic { half_height: f64::from(of.ymag.abs()) },
-            // Its plane may be at the eye, and ours may not.
+            // Its near plane may be at the eye, and ours may not.
             near: f64::from(of.znear).max(NEAREST * f64::from(of.zfar)),
             far: Some(f64::from(of.zfar)),
             ..base

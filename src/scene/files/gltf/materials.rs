@@ -1,8 +1,8 @@
-//! Materials and their pictures.
+//! Materials and their textures.
 //!
-//! Metal and roughness become the strength and the exponent of a highlight: the exponent whose lobe is as wide as
-//! that of the microfacets (2/α² − 2 with α = roughness², Walter et al. 2007), the strength the share of light that is
-//! reflected straight on (4 % of what is no metal, its colour of metal).
+//! Metal and roughness become the strength and the exponent of a highlight: the exponent whose lobe is as wide as that
+//! of the microfacets (2/α² − 2 with α = roughness², Walter et al. 2007), the strength the share of light that is
+//! reflected straight on (4 % for a dielectric, the metal's colour for a metal).
 
 use super::document::{GltfDocument, GltfResult};
 use super::named;
@@ -16,26 +16,26 @@ use gltf::json::texture::{Info, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, material};
 
-/// Share of light that a surface of no metal reflects straight on.
+/// Share of light that a dielectric surface reflects straight on.
 const PLAIN_REFLECTANCE: f32 = 0.04;
 
-/// What a primitive looks like.
+/// The material of a primitive.
 #[derive(Debug, Clone, Default)]
 pub struct PrimitiveMaterial {
-    /// The material's name, or what stands for it.
+    /// The material's name, or one that stands for it.
     pub name: String,
-    /// But for its shading; `None` where the file names none.
+    /// The material without its shading; `None` where the file names none.
     pub material: Option<Material>,
-    /// What its colour is multiplied with.
+    /// The texture that its colour is multiplied with.
     pub map: Option<GltfTexture>,
 }
 
-/// A picture, and how it lies on the surface.
+/// A texture, and its texture coordinates.
 #[derive(Debug, Clone)]
 pub struct GltfTexture {
-    /// What is shown.
+    /// The texture.
     pub texture: MaterialTexture,
-    /// Which of the vertices' places counts.
+    /// Which set of the vertices' texture coordinates is used.
     pub set: u32,
     scale: Vec2,
     turn: f32,
@@ -43,7 +43,8 @@ pub struct GltfTexture {
 }
 
 impl GltfTexture {
-    /// Where a place of a vertex, from the picture's upper left corner, lies from its lower left corner.
+    /// Converts a vertex's texture coordinates, from the picture's upper left corner, to ones from its lower left
+    /// corner.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         let scaled = uv * self.scale;
         let (sin, cos) = self.turn.sin_cos();
@@ -62,12 +63,12 @@ pub struct GltfMaterials<'a> {
 }
 
 impl<'a> GltfMaterials<'a> {
-    /// None is read yet.
+    /// Returns the materials of a file, none of them read yet.
     pub fn new(document: &'a GltfDocument, pictures: &'a mut ImageLoader) -> GltfMaterials<'a> {
         GltfMaterials { document, pictures, known: vec![None; document.root.materials.len()] }
     }
 
-    /// What a material looks like, and what of it is not shown.
+    /// Returns a material, recording what of it is not shown.
     pub fn look(
         &mut self,
         index: Option<Index<material::Material>>,
@@ -139,7 +140,7 @@ impl<'a> GltfMaterials<'a> {
         let given = root.get(image).ok_or("its picture is neither PNG nor JPEG: convert it")?;
         let of_file = given.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
         let name = named(given.name.as_deref().or(of_file), || format!("image-{}", image.value() + 1));
-        // Data within the file stands for a file whose name no other has.
+        // Data within the file is identified by a path that no other has.
         let key = of_file.and_then(|uri| self.document.beside(uri));
         let key = key.unwrap_or_else(|| self.document.file.join(format!("\0{}", image.value())));
         let document = self.document;

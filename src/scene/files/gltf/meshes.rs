@@ -1,4 +1,4 @@
-//! Meshes: the primitives of one become the parts of one, so that what is closed stays closed.
+//! Meshes: the primitives of one become the parts of one, so that a closed mesh stays closed.
 
 use super::document::{GltfDocument, GltfResult};
 use super::materials::{GltfMaterials, GltfTexture, PrimitiveMaterial};
@@ -15,17 +15,17 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, accessor::Accessor, mesh};
 use std::collections::HashMap;
 
-/// Joints that may pull at a vertex, four a set.
+/// Sets of joints that may move a vertex, four joints a set.
 const MOST_JOINT_SETS: u32 = 4;
 
-/// Where the vertices of a mesh go.
+/// The transform of a mesh's vertices.
 #[derive(Debug, Clone, Copy)]
 pub enum VertexTransform<'a> {
-    /// Nowhere: its object says where it is.
+    /// None: the object's pose places them.
     AsFile,
     /// Into world space.
     Placed(&'a DMat4),
-    /// Into world space with the joints that they hang on: the matrix of each.
+    /// Into world space by their joints: the matrix of each.
     Skinned(&'a [DMat4]),
 }
 
@@ -37,15 +37,15 @@ pub struct GltfMeshes<'a> {
 }
 
 impl<'a> GltfMeshes<'a> {
-    /// Of this file.
+    /// Returns a reader of this file.
     pub fn new(document: &'a GltfDocument, materials: GltfMaterials<'a>) -> GltfMeshes<'a> {
         GltfMeshes { document, materials }
     }
 
-    /// A mesh of the file, which may have no triangle.
+    /// Returns a mesh of the file, which may have no triangle.
     ///
     /// # Errors
-    /// Accessors that don't fit; an index beyond the vertices; a place that is no number.
+    /// Accessors that don't fit; an index beyond the vertices; a position that is not finite.
     pub fn mesh(&mut self, index: Index<mesh::Mesh>, form: VertexTransform) -> GltfResult<Mesh> {
         let given = self.document.root.get(index).ok_or_else(|| format!("mesh {} is missing", index.value()))?;
         let name = named(given.name.as_deref(), || format!("mesh {}", index.value()));
@@ -74,15 +74,15 @@ impl<'a> GltfMeshes<'a> {
 struct PrimitiveVertices {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    /// By vertex.
+    /// A normal for each vertex.
     normals: Option<Vec<Vec3>>,
-    /// By vertex, in the picture of its material.
+    /// Texture coordinates of each vertex, in its material's picture.
     uvs: Option<Vec<Vec2>>,
     has_colors: bool,
 }
 
 impl PrimitiveVertices {
-    /// Of the vertices that its triangles use; others of the same numbers may be another part's.
+    /// Reads the vertices that its triangles use; others of the same accessors may be another part's.
     fn read(
         document: &GltfDocument,
         primitive: &Primitive,
@@ -103,7 +103,7 @@ impl PrimitiveVertices {
             Some(index) => document.indices(index)?,
             None => (0..u32::try_from(all.len()).map_err(|_| "has too many vertices: split it")?).collect(),
         };
-        // What is placed in world space counts as a part of the scene.
+        // A mesh that is placed in world space counts as a part of the scene.
         if matches!(form, VertexTransform::AsFile) {
             document.take(indices.len() as u64)?;
         }
@@ -143,7 +143,7 @@ impl PrimitiveVertices {
         }
         let map = look.map.as_ref();
         let uvs = map.and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, &used));
-        // A normal that is none is the triangle's own.
+        // A normal that is not finite is replaced by the triangle's own.
         let finite = |normal: &DVec3| if normal.is_finite() { normal.as_vec3() } else { Vec3::ZERO };
         Ok(PrimitiveVertices {
             positions,
@@ -155,7 +155,8 @@ impl PrimitiveVertices {
     }
 }
 
-/// The vertices that triangles use, in the order of first use; the triangles are made to count these.
+/// Returns the vertices that triangles use, in the order of first use; the triangles' indices become positions in that
+/// list.
 fn used(triangles: &mut [[u32; 3]]) -> Vec<usize> {
     let mut places: HashMap<u32, u32, RandomState> = HashMap::default();
     let mut used = Vec::new();
@@ -170,7 +171,7 @@ fn used(triangles: &mut [[u32; 3]]) -> Vec<usize> {
     used
 }
 
-/// Where vertices lie in a picture; `None` where they can't be placed.
+/// Returns the vertices' texture coordinates; `None` where they can't be used.
 fn uvs(document: &GltfDocument, index: Index<Accessor>, map: &GltfTexture, used: &[usize]) -> Option<Vec<Vec2>> {
     let numbers = document.numbers::<2>(index).ok()?;
     let all = numbers.as_chunks::<2>().0;
@@ -179,7 +180,7 @@ fn uvs(document: &GltfDocument, index: Index<Accessor>, map: &GltfTexture, used:
     uvs.iter().all(is_usable_uv).then_some(uvs)
 }
 
-/// Of each vertex that is used, the matrix that its joints move it by.
+/// Returns for each vertex that is used the matrix that its joints move it by.
 fn skin(
     document: &GltfDocument,
     accessor: &dyn Fn(Semantic) -> Option<Index<Accessor>>,
@@ -208,14 +209,14 @@ fn skin(
             }
         }
     }
-    // Weights of bytes add up to nearly one.
+    // Weights stored in bytes sum to nearly one.
     for (matrix, sum) in matrices.iter_mut().zip(sums) {
         *matrix = if sum > 0.0 { *matrix * (1.0 / sum) } else { DMat4::IDENTITY };
     }
     Ok(matrices)
 }
 
-/// Corners of triangles, all turned the same way.
+/// Returns the corners of triangles, all with the same winding.
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => polygon::strip(indices.len()).map(|of| of.map(|corner| indices[corner])).collect(),
@@ -227,7 +228,7 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     }
 }
 
-/// One mesh of all parts.
+/// Returns one mesh of all parts.
 fn assemble(
     parts: &[(PrimitiveVertices, PrimitiveMaterial)],
     name: &str,

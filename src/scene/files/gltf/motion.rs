@@ -1,7 +1,8 @@
 //! Animations as motions.
 //!
-//! What fits is a node that turns at one speed, whole turns, about one axis, alone among the nodes that its children
-//! hang on: what hangs on it runs along a circle and turns with it. Everything else is named and stands still.
+//! What can be converted is a node that rotates at one speed, whole turns, about one axis, with no other animated node
+//! above or below it: what hangs on it runs along a circle and rotates with it. Everything else is listed and stands
+//! still.
 
 use super::document::{GltfDocument, GltfResult};
 use super::named;
@@ -13,24 +14,24 @@ use glam::{DQuat, DVec3};
 use gltf::json::animation::{Animation, Channel, Interpolation, Property};
 use gltf::json::validation::Checked;
 
-/// Turns may differ from what is said of them by so much, radians.
+/// How far rotations may differ from the motion that replaces them, radians.
 const BESIDE: f64 = 1e-3;
-/// Moments at which a motion is held against the turn that it stands for.
+/// The number of times at which a motion is compared with the rotation that it replaces.
 const SAMPLES: usize = 7;
 
-/// How a node turns, and what hangs on it with it.
+/// The rotation of a node, and of what hangs on it.
 #[derive(Debug, Clone, Copy)]
 pub struct NodeRotation {
     pivot: DVec3,
-    /// World space, of length 1.
+    /// Axis in world space, of length 1.
     axis: DVec3,
     degrees_per_second: f64,
 }
 
-/// The turns of a file's first animation.
+/// The rotations of a file's first animation.
 #[derive(Debug)]
 pub struct NodeRotations {
-    /// By node: what moves it.
+    /// For each node, what moves it.
     above: Vec<MovingAncestor>,
 }
 
@@ -39,12 +40,12 @@ pub struct NodeRotations {
 enum MovingAncestor {
     Nothing,
     One(NodeRotation),
-    /// One that hangs on another.
+    /// Animated nodes that hang on each other.
     Several,
 }
 
 impl NodeRotations {
-    /// Names what they leave out.
+    /// Converts an animation; records in `refusals` what it leaves out.
     pub fn new(document: &GltfDocument, nodes: &GltfNodes, refusals: &mut UnsupportedList) -> NodeRotations {
         let mut own: Vec<Option<NodeRotation>> = vec![None; document.root.nodes.len()];
         for (index, animation) in document.root.animations.iter().enumerate() {
@@ -76,21 +77,21 @@ impl NodeRotations {
         NodeRotations { above }
     }
 
-    /// Does anything move a node?
+    /// Returns whether anything moves a node.
     pub fn moves(&self, node: usize) -> bool {
         !matches!(self.above[node], MovingAncestor::Nothing)
     }
 
-    /// How what hangs on a node moves, and turns, as an object of this pose.
+    /// Returns the motion of an object of this pose that hangs on a node.
     ///
     /// # Errors
-    /// A turn that no motion of ours is.
+    /// A rotation that no motion of ours is.
     pub fn of_object(&self, nodes: &GltfNodes, node: usize, pose: &Pose) -> GltfResult<Motion> {
         let Some(turn) = self.of(node)? else { return Ok(Motion::default()) };
         let at = nodes.world[node].transform_point3(DVec3::ZERO);
         let is_on_axis = (at - turn.pivot).cross(turn.axis).length() <= 1e-9 * at.distance(turn.pivot);
         let orbit = (!is_on_axis).then(|| turn.orbit());
-        // A spin adds to one of three angles: which of them is this turn?
+        // A spin is added to one of three angles: finds the one that gives this rotation.
         let still = Pose { scale: DVec3::ONE, translate: DVec3::ZERO, ..*pose };
         let rotation = |pose: &Pose| DQuat::from_mat4(&pose.world_from_object());
         let fits = |motion: &Motion| {
@@ -109,7 +110,7 @@ impl NodeRotations {
         Ok(Motion { orbit, ..spin })
     }
 
-    /// How a light that hangs on a node moves; one that is nowhere turns too.
+    /// Returns the motion of a light that hangs on a node; a directional one rotates too.
     pub fn of_light(&self, node: usize) -> GltfResult<Motion> {
         Ok(Motion { orbit: self.of(node)?.map(|turn| turn.orbit()), ..Motion::default() })
     }
@@ -156,14 +157,14 @@ fn turn(
     }
     let times = document.numbers::<1>(sampler.input)?;
     let keys = document.numbers::<4>(sampler.output)?;
-    // Many channels may ask for the same.
+    // Many channels may use the same keys.
     document.take(keys.len() as u64 / 4)?;
     let keys: Vec<DQuat> = keys.as_chunks::<4>().0.iter().copied().map(unit).collect();
     let (Some(start), Some(end)) = (times.first(), times.last()) else { return Err(only()) };
     if times.len() != keys.len() || !(end - start).is_normal() || end <= start {
         return Err(only());
     }
-    // From key to key it turns the shorter way round.
+    // From key to key it rotates the shorter way round.
     let steps: Vec<DVec3> = keys
         .windows(2)
         .map(|pair| {
@@ -181,7 +182,7 @@ fn turn(
     if !(is_steady && turns > 0.5 && (angle - turns.round() * std::f64::consts::TAU).abs() <= BESIDE) {
         return Err(only());
     }
-    // Its first key stands for the node's own turn: both are the same, or the start would jump.
+    // Its first key replaces the node's own rotation: both must be equal, or the start would jump.
     let rest = super::nodes::rotation_of(&document.root.nodes[node]);
     if keys[0].angle_between(rest).min(keys[0].angle_between(-rest)) > BESIDE {
         return Err("it begins elsewhere than its node says: it stands as the node says".to_owned());
@@ -196,7 +197,7 @@ fn turn(
     Ok(NodeRotation { pivot, axis, degrees_per_second: speed.length().to_degrees() })
 }
 
-/// Stretched more along one axis than along another?
+/// Returns whether it scales more along one axis than along another.
 fn is_uneven(pose: Pose) -> bool {
     let DVec3 { x, y, z } = pose.scale;
     (x - y).abs().max((x - z).abs()) > BESIDE * x.abs()

@@ -1,32 +1,32 @@
-//! The tree of a file's nodes, and where each of them is.
+//! The tree of a file's nodes, and their matrices.
 
 use super::document::GltfResult;
 use crate::scene::Pose;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::{Index, Root, scene};
 
-/// How far a pose may lie beside the matrix that it is made from, in parts of its longest axis: what single precision
-/// leaves open.
+/// How far a pose may differ from the matrix that it is made from, as a part of its longest axis: the rounding of
+/// single precision.
 const BESIDE: f64 = 1e-6;
 
 /// All nodes of a file.
 #[derive(Debug)]
 pub struct GltfNodes {
-    /// World space from the node's own, by node.
+    /// World space from the node's own, for each node.
     pub world: Vec<DMat4>,
-    /// By node.
+    /// Parent of each node.
     pub parents: Vec<Option<usize>>,
-    /// Each before its children.
+    /// All nodes, each before its children.
     pub all: Vec<usize>,
-    /// Those of the scene that is shown, each before its children.
+    /// Nodes of the scene that is shown, each before its children.
     pub shown: Vec<usize>,
 }
 
 impl GltfNodes {
-    /// Of the file's scene: the one it says is to be shown, the first, or all there is.
+    /// Returns the nodes of the file's scene: its default scene, the first, or all nodes.
     ///
     /// # Errors
-    /// Nodes that form no tree; numbers that are none.
+    /// Nodes that form no tree; numbers that are not finite.
     pub fn new(root: &Root) -> GltfResult<GltfNodes> {
         let count = root.nodes.len();
         let mut parents = vec![None; count];
@@ -62,7 +62,7 @@ impl GltfNodes {
     }
 }
 
-/// These nodes and all below them, each once, and after the node that it hangs on.
+/// Returns these nodes and all below them, each once, and after the node that it hangs on.
 fn below(root: &Root, from: &[usize]) -> Vec<usize> {
     let mut is_met = vec![false; root.nodes.len()];
     let mut waiting: Vec<usize> = from.iter().rev().copied().collect();
@@ -77,7 +77,7 @@ fn below(root: &Root, from: &[usize]) -> Vec<usize> {
     found
 }
 
-/// The parent's space from the node's own.
+/// Returns the parent's space from the node's own.
 fn local(node: &scene::Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
@@ -92,19 +92,19 @@ fn local(node: &scene::Node) -> DMat4 {
     )
 }
 
-/// The node's turn, of unit length however it is written.
+/// Returns the node's rotation, normalised.
 pub fn rotation_of(node: &scene::Node) -> DQuat {
     node.rotation.map_or(DQuat::IDENTITY, |given| unit(given.0.map(f64::from)))
 }
 
-/// A quaternion of unit length; none at all turns nothing.
+/// Returns a quaternion of unit length; zero becomes no rotation.
 pub fn unit(given: [f64; 4]) -> DQuat {
     let turn = DQuat::from_array(given);
     let length = turn.length();
     if length.is_normal() { turn / length } else { DQuat::IDENTITY }
 }
 
-/// The pose that a node's place is, where there is one: no mirror, no shear.
+/// Returns the pose that a node's matrix is, where there is one: no mirroring, no shear.
 pub fn pose_of(world: &DMat4) -> Option<Pose> {
     if world.determinant() <= 0.0 {
         return None;

@@ -1,8 +1,7 @@
 //! Material libraries (`.mtl`) of OBJ files.
 //!
-//! Only the lines that a [`Material`] can hold are read, and broken ones are passed over: a model
-//! is worth seeing without its colours. Of pictures, `map_Kd` is shown; what else the library asks for is named
-//! ([`UnsupportedList`]).
+//! Only the lines that a [`Material`] can represent are read, and broken ones are skipped: a model is worth seeing
+//! without its colours. Of pictures, `map_Kd` is shown; what else the library asks for is listed ([`UnsupportedList`]).
 
 use crate::files::read_plain;
 use crate::scene::files::read_text::{decoded, quoted};
@@ -16,39 +15,39 @@ use std::path::{Path, PathBuf};
 /// Bytes of the largest library.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// What a model's libraries say.
+/// The materials of a model's libraries.
 #[derive(Debug)]
 pub struct MaterialLibraries<'a> {
     materials: Vec<tobj::Material>,
-    /// Places in the list; of two with one name, the later holds.
+    /// Indices in the list; of two materials with one name, the later is used.
     by_name: BTreeMap<String, usize>,
-    /// Names of those that were read.
+    /// Names of libraries that were read.
     read: BTreeSet<String>,
-    /// By the material's name.
+    /// Textures by the material's name.
     maps: BTreeMap<String, ObjTexture>,
-    /// What is asked for and not done.
+    /// What a library asks for and is not supported.
     pub refusals: UnsupportedList,
     pictures: &'a mut ImageLoader,
 }
 
-/// A picture of a material, and how it lies on the surface.
+/// A material's texture, and its texture coordinates.
 #[derive(Debug, Clone)]
 pub struct ObjTexture {
-    /// What is shown.
+    /// The texture.
     pub texture: MaterialTexture,
     scale: Vec2,
     offset: Vec2,
 }
 
 impl ObjTexture {
-    /// Where a place of the surface lies in the picture.
+    /// Converts texture coordinates of the surface to ones of the picture.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         uv * self.scale + self.offset
     }
 }
 
 impl<'a> MaterialLibraries<'a> {
-    /// Nothing yet.
+    /// Returns a list without materials.
     pub fn new(pictures: &'a mut ImageLoader) -> MaterialLibraries<'a> {
         MaterialLibraries {
             materials: Vec::new(),
@@ -60,22 +59,22 @@ impl<'a> MaterialLibraries<'a> {
         }
     }
 
-    /// Which material is called so, of those that were read.
+    /// Returns the index of the material of that name, of the libraries that were read.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.by_name.get(name).copied()
     }
 
-    /// One that was found.
+    /// Returns a material by its index.
     pub fn material(&self, found: usize) -> &tobj::Material {
         &self.materials[found]
     }
 
-    /// The picture of a material.
+    /// Returns the texture of a material.
     pub fn map(&self, material: &str) -> Option<&ObjTexture> {
         self.maps.get(material)
     }
 
-    /// Reads a library; pictures are looked for beside it. One that can't be read costs colours only, and is named.
+    /// Reads a library; paths of pictures are relative to it. One that can't be read costs colours only, and is listed.
     /// Some programs name it before every object: it is read once.
     pub fn load(&mut self, file: &Path, name: &str) {
         if !self.read.insert(name.to_owned()) {
@@ -135,7 +134,7 @@ impl<'a> MaterialLibraries<'a> {
     }
 }
 
-/// The pictures that a library shows; none where it can't be read.
+/// Returns the pictures that a library shows; empty where it can't be read.
 pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = read_plain(library, MOST_BYTES) else { return Vec::new() };
     let text = decoded(bytes);
@@ -143,13 +142,13 @@ pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
     maps.map(|rest| library.with_file_name(ObjTextureLine::parse(rest).path())).collect()
 }
 
-/// A picture other than that of the diffuse colour.
+/// Returns whether the keyword is of a picture other than that of the diffuse colour.
 fn is_map(keyword: &str) -> bool {
     keyword.starts_with("map_") || ["bump", "norm", "disp", "decal", "refl"].contains(&keyword)
 }
 
-/// Options with so many words that are passed over. What they are where they change nothing; `None`: how a picture is
-/// filtered, which is ours to say.
+/// Options that are skipped, with their numbers of words, and the values at which they change nothing; `None` for an
+/// option of how a picture is filtered, which this program decides.
 const OTHER_OPTIONS: [(&str, usize, Option<&str>); 9] = [
     ("-mm", 2, Some("0 1")),
     ("-cc", 1, Some("off")),
@@ -169,17 +168,17 @@ struct ObjTextureLine<'a> {
     scale: Vec2,
     offset: Vec2,
     clamps: bool,
-    /// Options that change what is shown, and are not done.
+    /// Options that change what is shown, and are not supported.
     passed_over: Vec<&'static str>,
 }
 
 impl<'a> ObjTextureLine<'a> {
-    /// The file's path, which may have been written on another system.
+    /// Returns the file's path, which may have been written on another system.
     fn path(&self) -> String {
         self.file.replace('\\', "/")
     }
 
-    /// Options come first; what follows is the file, whose name may have spaces.
+    /// Parses a line. Options come first; the rest is the file, whose name may have spaces.
     fn parse(rest: &'a str) -> ObjTextureLine<'a> {
         let mut unused = Vec2::ZERO;
         let mut line = ObjTextureLine {
@@ -208,7 +207,7 @@ impl<'a> ObjTextureLine<'a> {
                         line.passed_over.extend((!is_plain).then_some(*name));
                         skip(after, *count)
                     }
-                    // A file may be called so.
+                    // A file may have such a name.
                     None => break,
                 },
             };
@@ -217,7 +216,7 @@ impl<'a> ObjTextureLine<'a> {
     }
 }
 
-/// The first word and what follows it.
+/// Splits off the first word.
 fn next_word(text: &str) -> Option<(&str, &str)> {
     let text = text.trim_start();
     let end = text.find(char::is_whitespace).unwrap_or(text.len());
@@ -228,10 +227,10 @@ fn skip(text: &str, count: usize) -> &str {
     (0..count).fold(text, |text, _| next_word(text).map_or("", |(_, after)| after))
 }
 
-/// Up to three numbers, of which the first two are put into `into`; what follows them.
+/// Parses up to three numbers, and stores the first two in `into`; returns the rest.
 fn numbers<'a>(mut text: &'a str, into: &mut Vec2) -> &'a str {
     for axis in 0..3 {
-        // A name that begins with digits is followed by nothing: it is the file.
+        // A number with nothing after it is the file's name, which may begin with digits.
         let number = next_word(text).filter(|(_, after)| !after.is_empty());
         let Some((number, after)) = number.and_then(|(word, after)| Some((word.parse::<f32>().ok()?, after))) else {
             break;
@@ -244,8 +243,8 @@ fn numbers<'a>(mut text: &'a str, into: &mut Vec2) -> &'a str {
     text
 }
 
-/// The material of a library for surfaces that have normals of their own (`Phong`) or not. One that has a picture and
-/// no colour shows the picture as it is.
+/// Returns the material of a library for surfaces that have normals of their own (`Phong`) or not. One that has a
+/// picture and no colour shows the picture unchanged.
 pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Material {
     let default = Material::default();
     let within = |low: f32, value: f64, high: f32| (value as f32).clamp(low, high);
@@ -262,7 +261,7 @@ pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Mater
     }
 }
 
-/// The line in plain form, if it is one that is read and nothing is wrong with it.
+/// Returns the line in plain form, if it is one that is read and nothing is wrong with it.
 fn usable_line(line: &str) -> Option<String> {
     let (keyword, rest) = line.trim().split_once(char::is_whitespace)?;
     let count = match keyword {

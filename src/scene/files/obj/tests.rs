@@ -167,7 +167,7 @@ fn no_bytes_panic_and_every_error_is_one_line() {
     let mut random = XorShift(0x9e37_79b9_7f4a_7c15);
     let mut outcomes = [0, 0];
     for _ in 0..4000 {
-        // Whole models with a few words more are taken at times; the others hardly ever.
+        // Models with only a few changed words are valid at times; the others hardly ever.
         let (begun, most) = match random.below(3) {
             0 => (SQUARE.to_owned(), 60),
             1 => ("vn 0 0 1\n".to_owned(), 60),
@@ -206,7 +206,7 @@ fn files_that_are_no_text_say_so() {
     assert!(error_of(&file).contains("not a text file"));
 }
 
-/// Of programs that knew no UTF-8: names are told apart, and found in their library.
+/// Files of programs without UTF-8: names stay distinct, and are found in their library.
 #[test]
 fn names_and_comments_may_be_in_latin_1_and_utf_16_is_named() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,6 +1,6 @@
-//! The text of an OBJ file, read on all cores and checked line by line: the first line that is wrong is named.
+//! The text of an OBJ file, read on all cores and checked line by line: the first line that is wrong is reported.
 //!
-//! Vertex colours, points, lines and curves are left out. A place in a picture that is broken is none, as no mesh is worth
+//! Vertex colours, points, lines and curves are left out. Broken texture coordinates are dropped, as no mesh is worth
 //! less without.
 
 use crate::scene::files::read_text::quoted;
@@ -10,20 +10,20 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::AddAssign;
 
-/// What an OBJ file says; indices count from 0 and are in range.
+/// The content of an OBJ file; indices count from 0 and are in range.
 #[derive(Debug, Default, PartialEq)]
 pub struct ObjContents {
-    /// Finite.
+    /// Positions, all finite.
     pub positions: Vec<DVec3>,
-    /// Finite in single precision, too.
+    /// Normals, finite in single precision, too.
     pub normals: Vec<DVec3>,
-    /// Places in a picture; `None` where one can't be used.
+    /// Texture coordinates; `None` where they can't be used.
     pub places: Vec<Option<Vec2>>,
-    /// Of all faces, one after the other.
+    /// Corners of all faces, one after the other.
     pub corners: Vec<ObjCorner>,
-    /// How many corners each face has: three or more.
+    /// The number of corners of each face: three or more.
     pub arities: Vec<u32>,
-    /// Between faces: behind how many of them, and what.
+    /// Statements between faces: how many faces come before each, and what it is.
     pub statements: Vec<(usize, ObjStatement)>,
 }
 
@@ -35,7 +35,7 @@ pub struct ObjCorner {
     pub normal: Option<u32>,
 }
 
-/// What holds for the faces that follow.
+/// A statement that applies to the faces that follow.
 #[derive(Debug, PartialEq)]
 pub enum ObjStatement {
     /// `o` or `g`; empty where it gives no name.
@@ -49,13 +49,13 @@ pub enum ObjStatement {
 /// What is wrong with a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ObjLineProblem {
-    /// Counted from 1.
+    /// Number of the line, counted from 1.
     pub line: usize,
-    /// What is wrong and how to mend it.
+    /// What is wrong and how to fix it.
     pub reason: String,
 }
 
-/// Bytes that a thread takes at once, about.
+/// Approximate bytes that a thread takes at once.
 const PART: usize = 1 << 18;
 
 /// Reads and checks a file.
@@ -99,7 +99,7 @@ fn read_in_parts(raw: &str, size: usize) -> Result<ObjContents, ObjLineProblem> 
     Ok(joined)
 }
 
-/// The text in pieces that end where lines do, none of which goes on.
+/// Splits the text into pieces that end at the end of a line that is not continued.
 fn parts(raw: &str, size: usize) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut rest = raw;
@@ -115,7 +115,7 @@ fn parts(raw: &str, size: usize) -> Vec<&str> {
     parts
 }
 
-/// How many lines, vertices, normals and places in a picture there are.
+/// Numbers of lines, vertices, normals and texture coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 struct ObjCounts {
     lines: usize,
@@ -149,7 +149,7 @@ impl ObjCounts {
     }
 }
 
-/// Lines with their numbers, counted from 0; a backslash at the end joins the next one.
+/// Returns lines with their numbers, counted from 0; a backslash at the end joins the next one.
 fn lines(part: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut rest = part.lines().enumerate();
     std::iter::from_fn(move || {
@@ -169,7 +169,7 @@ fn lines(part: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
 }
 
 fn split_keyword(line: &str) -> (&str, &str) {
-    // White space beyond ASCII takes longer to be looked for, and is hardly ever there.
+    // Searching for white space beyond ASCII takes longer, and there hardly ever is any.
     let halves = match line.is_ascii() {
         true => line.trim_ascii().split_once(|c: char| c.is_ascii_whitespace()),
         false => line.trim().split_once(char::is_whitespace),
@@ -177,7 +177,7 @@ fn split_keyword(line: &str) -> (&str, &str) {
     halves.map_or((line.trim(), ""), |(keyword, rest)| (keyword, rest.trim()))
 }
 
-/// The words before a comment.
+/// Returns the words before a comment.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_plain = text.is_ascii();
     let plain = is_plain.then(|| text.split_ascii_whitespace());
@@ -186,7 +186,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     words.take_while(|word| !word.starts_with('#'))
 }
 
-/// Some lines of a file, and what is first wrong with them.
+/// Some lines of a file, and the first error in them.
 #[derive(Debug, Default)]
 struct ObjChunk {
     contents: ObjContents,
@@ -226,12 +226,12 @@ impl ObjChunk {
 }
 
 impl ObjContents {
-    /// Where a corner lies in a picture, if that can be used.
+    /// Returns the texture coordinates of a corner, if they can be used.
     pub fn place_of(&self, corner: &ObjCorner) -> Option<Vec2> {
         self.places[corner.place? as usize]
     }
 
-    /// Adds a face of a part of a file that has so much before it and in all.
+    /// Adds a face of a part of a file, with the counts before the part and in the whole file.
     fn add_face(&mut self, rest: &str, before: ObjCounts, all: ObjCounts) -> Result<(), String> {
         let here = ObjCounts {
             vertices: before.vertices + self.positions.len(),
@@ -254,7 +254,7 @@ impl ObjContents {
     }
 }
 
-/// Three numbers of a `v` or `vn` line.
+/// Parses the three numbers of a `v` or `vn` line.
 fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
     let (what, most) = if keyword == "v" { ("vertex", f64::MAX) } else { ("normal", f64::from(f32::MAX)) };
     let mut three = words(rest);
@@ -273,14 +273,14 @@ fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
     Ok(vector)
 }
 
-/// The place of a `vt` line, if it can be used; its second number is 0 unless given.
+/// Parses the texture coordinates of a `vt` line, if they can be used; the second is 0 unless given.
 fn place(rest: &str) -> Option<Vec2> {
     let mut numbers = words(rest).map(|word| word.parse().ok());
     let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
     is_usable_uv(&place).then_some(place)
 }
 
-/// A corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+/// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
 fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, String> {
     let mut parts = word.split('/');
     let (vertex, place, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
@@ -292,7 +292,7 @@ fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, St
         "" => None,
         normal => Some(index("normal", "normals", normal, before.normals, all.normals)?),
     };
-    // One that is not there is none; most corners have none.
+    // Coordinates that don't exist count as none; most corners have none.
     let place = match place {
         "" => None,
         place => index("place", "places", place, before.places, all.places).ok(),
@@ -300,7 +300,7 @@ fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, St
     Ok(ObjCorner { vertex, place, normal })
 }
 
-/// An index, counted from 0; in the file from 1, and negative ones count back from the line.
+/// Parses an index, counted from 0; in the file from 1, and negative ones count back from the line.
 fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Result<u32, String> {
     let given: i64 = word.parse().map_err(|_| format!("{} is no {what} index: give a whole number", quoted(word)))?;
     let back = usize::try_from(given.unsigned_abs()).unwrap_or(usize::MAX);
@@ -319,7 +319,8 @@ fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Res
 mod tests {
     use super::*;
 
-    /// Wherever a file is cut for its threads, it says the same: indices that count back, lines that go on, names, errors.
+    /// Wherever a file is cut for its threads, the result is the same: indices that count back, continued lines, names,
+    /// errors.
     #[test]
     fn cuts_change_nothing() {
         let text = "# é\nv 0 0 0\nv 1 0 0 \\\n# more\nv 1 1\\\n 0\r\nvn 0 0 1\nvt 0.5 \\\r\n0.25\nmtllib a b.mtl\no left\nf 1/1/1 2//1 3\n\

@@ -7,7 +7,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, LeastShares, StressCase};
 use glam::DVec3;
 
-/// All of them.
+/// All cases of this file.
 pub const ALL: &[StressCase] =
     &[EYE_IN_VOLUME, EYE_ON_SIDE_PLANE, LIGHT_BEHIND_EYE, SKY_BEHIND_VOLUME, SUN_ALONG_VIEW, ONE_PIXEL, WIDE, TALL];
 
@@ -20,7 +20,7 @@ const EYE_IN_VOLUME: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A box on a floor, and a roof whose shadow the eye is in.
+/// A box on a floor, and a roof whose shadow contains the eye.
 pub fn under_a_roof() -> Result<Scene, MeshError> {
     let roof = Object::of("roof", shapes::quad([2.5; 2])?).at([1.3, 4.0, 3.2]);
     let objects = vec![floor(3.0)?, roof, cuboid("box", [0.0, 0.5, 0.0], [0.6; 3])?];
@@ -98,7 +98,7 @@ const ONE_PIXEL: StressCase = StressCase {
 
 const ONLY_PIXEL: &str = "it is the only pixel";
 
-/// The middle of the shadow on the still life's floor.
+/// The centre of the shadow on the still life's floor.
 const BOX_SHADOW: DVec3 = DVec3::new(-0.25, 0.0, -0.375);
 
 const WIDE: StressCase = StressCase {
@@ -107,7 +107,7 @@ const WIDE: StressCase = StressCase {
     drives: CaseNumber::Scene(|_| {
         let mut scene = still_life()?;
         scene.camera.target = BOX_SHADOW;
-        // As high as one pixel; across, that is 60 degrees.
+        // The picture is as high as one pixel; across, that is 60 degrees.
         scene.camera.fov_y_degrees = 0.004;
         Ok(scene)
     }),

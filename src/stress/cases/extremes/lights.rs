@@ -8,7 +8,7 @@ use crate::stress::{CaseNumber, KnownFailure, LeastShares, StressCase};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
-/// All of them.
+/// All cases of this file.
 pub const ALL: &[StressCase] = &[
     LIGHT_AT_SHEET,
     FLIPPED_SHEET,
@@ -23,9 +23,9 @@ pub const ALL: &[StressCase] = &[
     LIGHT_COUNT,
 ];
 
-// Planar shadows fail here before the specification allows it, which is within 1e-5 degrees of a
-// receiver's plane: the sheet is the caster. Its shadow's corners lie a thousand kilometres away, and
-// are drawn as places on the floor, not as directions.
+// Planar shadows fail here before the specification allows it, which is within 1e-5 degrees of a receiver's plane: the
+// sheet is the caster. Its shadow's corners lie a thousand kilometres away, and are drawn as places on the floor, not
+// as directions.
 const LIGHT_AT_SHEET: StressCase = StressCase {
     name: "light-at-sheet",
     lesson: "the light is so near a sheet that its map's near plane passes it: the map sees through it",
@@ -78,7 +78,7 @@ const FLIPPED_SHEET: StressCase = StressCase {
     }),
     least: |_| LeastShares::USUAL,
     failures: &[
-        // It takes the light to be in the sheet's plane, and then nothing casts.
+        // It computes that the light is in the sheet's plane, and then nothing casts.
         FACING_IN_F32.at(|distance| distance < 5e-7).is_missing().at_most(0.66),
         FACING_IN_F32.at(|distance| distance < 5e-6).at_most(0.03),
         NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.62),
@@ -123,8 +123,8 @@ const LIGHT_IN_NEAR_PLANE: StressCase = StressCase {
         Ok(scene)
     }),
     failures: &[
-        // The board's volume holds the eye and is left once more than entered: −1 lights what the box alone darkens, as
-        // that counts one.
+        // The board's volume contains the eye and is left once more than entered: −1 lights what the box alone darkens,
+        // as that counts one.
         CUT_BY_NEAR.is_mixed().at_most(0.99),
         fails(
             Z_PASS_PLUS,

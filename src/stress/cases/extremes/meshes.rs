@@ -1,4 +1,4 @@
-//! Extremes of how a mesh hangs together.
+//! Extremes of a mesh's topology.
 
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene};
@@ -7,7 +7,7 @@ use crate::stress::{CaseNumber, LeastShares, StressCase};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// All of them.
+/// All cases of this file.
 pub const ALL: &[StressCase] = &[
     BOTH_SIDES,
     OPEN_MESH,
@@ -23,7 +23,7 @@ pub const ALL: &[StressCase] = &[
     UNDRAWN,
 ];
 
-/// A caster over the usual floor.
+/// Casters over the usual floor.
 fn over_floor(casters: Vec<Object>) -> Result<Scene, MeshError> {
     let mut objects = vec![floor(3.0)?];
     objects.extend(casters);
@@ -80,7 +80,7 @@ const MOBIUS: StressCase = StressCase {
         let points: Vec<[f64; 3]> = (0..steps).flat_map(|step| [at(step, -1.0), at(step, 1.0)]).collect();
         let quads = (0..steps).flat_map(|step| {
             let (a, b) = (2 * step, 2 * step + 1);
-            // The last joins the first's other side.
+            // The last step is joined to the first one's other side.
             let (c, d) = if step + 1 < steps { (a + 2, a + 3) } else { (1, 0) };
             [[a, c, d], [a, d, b]]
         });
@@ -216,7 +216,7 @@ const BESIDE_DEGENERATE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A triangle of three points in a line, none, two or three of them alike.
+/// A triangle of three points in a line, with none, two or three of them equal.
 fn line(alike: f64) -> Result<Object, MeshError> {
     let points = [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
     let triangle = match alike as u32 {

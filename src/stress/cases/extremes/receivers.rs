@@ -1,11 +1,11 @@
-//! Extremes of what is darkened: where it lies, and whether there is any.
+//! Extremes of receivers: where they lie, and whether there are any.
 
 use crate::scene::{Light, Object, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, LeastShares, StressCase};
 
-/// All of them.
+/// All cases of this file.
 pub const ALL: &[StressCase] =
     &[COPLANAR, ACROSS_LIGHT, THROUGH_FLOOR, BEHIND_PROJECTOR, SHELF_BETWEEN, ROUND_RECEIVER, NO_CASTER, NO_RECEIVER];
 

@@ -1,4 +1,4 @@
-//! Famous wrong forms of volumes and silhouettes: settings that the sources warn of.
+//! Famous wrong variants of volumes and silhouettes: settings that the sources warn of.
 
 use crate::scene::{Light, Object, shapes};
 use crate::stress::cases::stage::{carried, floor, scene, still_life};
@@ -6,7 +6,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, Entrant, StressCase};
 use crate::technique::Technique;
 
-/// All of them.
+/// All cases of this file.
 pub const ALL: &[StressCase] = &[CAPS, LIGHT_AND_ORIGIN, SILHOUETTE_PICTURE];
 
 const LIGHT_CAP_ALONE: Entrant = Entrant::with(Technique::ZFail, &[("caps", "light")]);

@@ -1,4 +1,4 @@
-//! Light that grazes what it falls on.
+//! Light at grazing angles.
 
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene, still_life};
@@ -90,7 +90,7 @@ pub const GRAZING_BOARD: StressCase = StressCase {
     ..GRAZING_EDGE
 };
 
-/// Failures that all who count volumes have alike, and others.
+/// Failures that all techniques have that count volumes, and others.
 const fn of_volumes<const N: usize, const ALL: usize>(
     alike: [KnownFailure; N],
     others: [KnownFailure; 3],
@@ -115,15 +115,14 @@ const SPREAD: KnownFailure = fails(MAP, "aliasing", "what lies within a texel of
     .at_most(0.02)
     .perhaps();
 
-/// Sooner than the specification has it, which allows for it within 1e-5 degrees. Seen from here, a
-/// step of depth on the floor is 2e-7 m of height. Under a light of a thousandth of a degree that moves
-/// the shadow's edge by a centimetre: half a pixel of 240 rows, two of 720. No volume can tell more than
-/// the depth it is compared with.
+/// It shows sooner than the specification allows, which is within 1e-5 degrees. Seen from here, a step of depth on the
+/// floor is 2e-7 m of height. Under a light of a thousandth of a degree that moves the shadow's edge by a centimetre:
+/// half a pixel of 240 rows, two of 720. No volume can be more exact than the depth that it is compared with.
 const SUNK: KnownFailure = fails(Z_FAIL, "f32-limit", "a step of depth moves the shadow's edge by more than a pixel")
     .at(|degrees| degrees < 5e-3)
     .is_mixed();
 
-/// In larger pictures.
+/// It shows in larger pictures.
 const SINKING: KnownFailure =
     fails(Z_FAIL, "f32-limit", "several steps of depth, as sides and floor round apart, are part of a pixel")
         .at(|degrees| degrees < 0.2)

@@ -7,7 +7,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, KnownFailure, StressCase};
 use crate::technique::Technique;
 
-/// Fifty places of the near plane, from before the box to behind it.
+/// Fifty distances of the near plane, from before the box to behind it.
 const NEAR_STEPS: [f64; 50] = {
     let mut steps = [0.0; 50];
     let mut index = 0;
@@ -48,7 +48,7 @@ pub const NEAR_PLANE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// Nearest and farthest depth of the roof, about.
+/// Approximate nearest and farthest depth of the roof, metres.
 const ROOF_BEGINS: f64 = 1.44;
 const ROOF_ENDS: f64 = 2.16;
 

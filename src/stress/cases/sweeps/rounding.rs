@@ -1,4 +1,4 @@
-//! What 24 bits round away: the middle of a seam, and the ends of very long edges.
+//! What rounding to 24 bits affects: the middle of a seam, and the ends of very long edges.
 
 use crate::scene::{Camera, Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene};
@@ -8,7 +8,7 @@ use crate::technique::Technique;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// Each seam by itself: as chance has it, a tenth of them have a hole.
+/// Each seam by itself: by chance, a tenth of them have a hole.
 const HOLE: KnownFailure = fails(
     Z_FAIL,
     "f32-limit",
@@ -52,7 +52,7 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
         let way = rays.through((middle / SIZE * 2.0 - 1.0) * DVec2::new(1.0, -1.0)).along;
         let width = 2.0 * camera.half_height_at(-camera.eye.y / way.y) / SIZE.y;
         let seen = camera.eye - way * (camera.eye.y / way.y) + across * (pixels * width);
-        // On the way from what is seen to the lamp, so that the shadow falls there.
+        // Between the visible point and the lamp, so that the shadow falls there.
         let raised = |on_floor: DVec3, part: f64| on_floor.lerp(lamp, part);
         let part = 0.03 + 0.27 * height;
         let seam = [raised(seen - along * 0.03, part + 0.02 * tilt), raised(seen + along * 0.03, part)];
