@@ -136,7 +136,7 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
         Visibility::ReceiverTexture => file!("arriving_by_receiver.wgsl"),
         Visibility::Projected => file!("arriving_by_projection.wgsl"),
     };
-    let light = if visibility.branches_on_light() { file!("light_storage.wgsl") } else { file!("light_uniform.wgsl") };
+    let light = if visibility.reads_map() { file!("light_storage.wgsl") } else { file!("light_uniform.wgsl") };
     vec![file!("draw.wgsl"), file!("pulled.wgsl"), file!("surface.wgsl"), light, arriving, own]
 }
 

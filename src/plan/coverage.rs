@@ -10,7 +10,7 @@
 //! triangles the GPU must be asked about, which it must cover the pixel with, and which leave no fragment: triangles
 //! that are culled, or clipped away at the near or far plane.
 
-use super::{Draw, DrawPart, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
+use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
@@ -62,15 +62,6 @@ pub struct VisibleFace {
     pub is_front: bool,
     /// Depth as it would be stored; outside 0 to 1 where clipped.
     pub depth: f32,
-}
-
-/// Which plane clipped a triangle away.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ClipPlane {
-    /// It is nearer than the near plane.
-    Near,
-    /// It is beyond the far plane.
-    Far,
 }
 
 /// A fragment of a triangle.

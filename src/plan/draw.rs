@@ -1,0 +1,127 @@
+//! A draw call: the geometry it draws, its shader, its raster state and its constants.
+
+use super::ids::{MeshId, TextureId};
+use super::program::{Program, ShaderEffect};
+use super::{DrawMesh, RasterState};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// One draw call.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Draw {
+    /// Short: `sides of bunny`.
+    pub name: String,
+    /// The object that it shows, or whose shadow it draws.
+    pub caster: Option<String>,
+    /// Which part of the object or of its shadow it draws.
+    pub part: DrawPart,
+    /// The shader.
+    pub program: Program,
+    /// The whole raster state.
+    pub raster: RasterState,
+    /// Vertices and indices.
+    pub mesh: MeshId,
+    /// Range of triangles in the mesh's index list.
+    pub triangles: Range<u32>,
+    /// Added to every index: a dark cap is its light cap at the far vertices.
+    pub base_vertex: u32,
+    /// For a part of a shadow volume: true where its triangles' fronts face into the volume, and their backs outwards.
+    /// Caps are runs of the caster's own triangles, so either is possible.
+    pub faces_inwards: bool,
+    /// Values for the shader.
+    pub constants: DrawConstants,
+}
+
+impl Draw {
+    /// Returns which part a triangle of the draw is: of caps that a vertex shader carries, light cap or dark cap.
+    pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> DrawPart {
+        match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
+            (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
+            (DrawPart::Caps, Some([false, ..])) => DrawPart::LightCap,
+            (part, _) => part,
+        }
+    }
+
+    /// Returns a draw of a whole mesh by position only, as into the stencil.
+    pub fn of_positions(
+        name: impl Into<String>,
+        part: DrawPart,
+        mesh: MeshId,
+        triangles: u32,
+        raster: RasterState,
+    ) -> Draw {
+        Draw {
+            name: name.into(),
+            caster: None,
+            part,
+            program: Program::Position,
+            raster,
+            mesh,
+            triangles: 0..triangles,
+            base_vertex: 0,
+            faces_inwards: false,
+            constants: DrawConstants::default(),
+        }
+    }
+
+    /// Returns whether the draw's shader may discard fragments and no record says which. `mesh` is the draw's.
+    pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
+        matches!(self.program, Program::Recorded { may_discard: ShaderEffect::Yes | ShaderEffect::Unknown, .. })
+            && mesh.retained.is_none()
+    }
+}
+
+named_enum! {
+    /// Which part of a frame's geometry a draw is.
+    pub enum DrawPart {
+        /// Visible surface.
+        Surface = "surface",
+        /// Side of a shadow volume.
+        Side = "side",
+        /// The casting triangles themselves.
+        LightCap = "light-cap",
+        /// The casting triangles carried to infinity.
+        DarkCap = "dark-cap",
+        /// Light cap and dark cap in one: the vertex shader decides which triangle is which.
+        Caps = "caps",
+        /// A plane that planar shadows fall on.
+        Receiver = "receiver",
+        /// A caster flattened onto a receiver.
+        PlanarShadow = "planar-shadow",
+        /// Surface as a light sees it.
+        Map = "map",
+    }
+}
+
+impl DrawPart {
+    /// Returns whether it is a part of a shadow volume.
+    pub fn is_of_volume(self) -> bool {
+        matches!(self, DrawPart::Side | DrawPart::LightCap | DrawPart::DarkCap | DrawPart::Caps)
+    }
+
+    /// Returns whether this part is `part`, or contains it.
+    pub fn includes(self, part: DrawPart) -> bool {
+        self == part || (self == DrawPart::Caps && matches!(part, DrawPart::LightCap | DrawPart::DarkCap))
+    }
+}
+
+/// Values that one draw passes to its shader.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct DrawConstants {
+    /// Material of the surface.
+    pub material: crate::scene::Material,
+    /// What [`Program::Label`] and [`Program::FlatLabel`] write: 0 lit or 1 shadow.
+    pub label: u32,
+    /// Linear RGBA that [`Program::Flat`] writes.
+    pub flat: [f32; 4],
+    /// What [`Program::Count`] adds for a front face: 1 or −1.
+    pub count: f32,
+    /// Index of the draw's own layer in the light's map.
+    pub layer: Option<u32>,
+    /// The eye's world X and Z, less whole periods of the material's checks: where their pattern begins, in metres.
+    #[serde(default)]
+    pub checks_from: [f32; 2],
+    /// The texture that the material's colour is multiplied with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texture: Option<TextureId>,
+}

@@ -1,0 +1,82 @@
+//! A render pass: its view, its targets and what they are cleared to, and its draws.
+
+use super::draw::Draw;
+use super::ids::{AttachmentId, LightId, ViewId};
+use super::{CpuImage, RecordedPass, Viewport};
+use serde::{Deserialize, Serialize};
+
+/// One render pass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Pass {
+    /// Short, lower case: `ambient`, `volumes`, `light`.
+    pub name: String,
+    /// One sentence that explains the pass to a learner.
+    pub purpose: String,
+    /// The light it belongs to; `None` for the scene's own passes.
+    pub light: Option<LightId>,
+    /// True for passes whose time counts for the frame; mask passes do not count.
+    pub timed: bool,
+    /// The view it is drawn from.
+    pub view: ViewId,
+    /// Colour target, if any.
+    pub color: Option<ColorTarget>,
+    /// Depth-stencil target, if any.
+    pub depth_stencil: Option<DepthStencilTarget>,
+    /// Scissor rectangle: left, top, columns, rows. Draws change nothing outside of it; clears do.
+    pub scissor: Option<[u32; 4]>,
+    /// Draws in order.
+    pub draws: Vec<Draw>,
+    /// A picture computed on the CPU that goes into its colour target in place of draws. Capture folders store it as an
+    /// array.
+    #[serde(skip)]
+    pub image: Option<CpuImage>,
+    /// Further data of a pass of another program's frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<Box<RecordedPass>>,
+}
+
+impl Pass {
+    /// Returns whether its draws may change a pixel, by its scissor rectangle.
+    pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
+        let holds = |[left, top, columns, rows]: [u32; 4]| {
+            (left..left.saturating_add(columns)).contains(&x) && (top..top.saturating_add(rows)).contains(&y)
+        };
+        self.scissor.is_none_or(holds)
+    }
+
+    /// Returns whether the pass counts the volumes that contain the near plane, as z-pass-plus begins. Its view is from
+    /// the light.
+    pub fn counts_at_near_plane(&self) -> bool {
+        self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
+    }
+
+    /// Returns the viewport of its draws in a target of that size.
+    pub fn viewport(&self, size: [u32; 2]) -> Viewport {
+        self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
+    }
+}
+
+/// The colour target of a pass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ColorTarget {
+    /// The attachment that is drawn into.
+    pub attachment: AttachmentId,
+    /// The layer that is drawn into.
+    pub layer: u32,
+    /// Value that it is cleared to at the start (linear RGBA, or a label in the first component); `None` loads what is
+    /// stored.
+    pub clear: Option<[f64; 4]>,
+}
+
+/// The depth-stencil target of a pass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DepthStencilTarget {
+    /// The attachment that is tested and drawn into.
+    pub attachment: AttachmentId,
+    /// The layer that is tested and drawn into.
+    pub layer: u32,
+    /// Depth that it is cleared to at the start; `None` loads what is stored.
+    pub clear_depth: Option<f32>,
+    /// Stencil value that it is cleared to at the start; `None` loads what is stored.
+    pub clear_stencil: Option<u8>,
+}

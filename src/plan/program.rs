@@ -1,0 +1,142 @@
+//! The shaders, by name: what each writes, and what it reads to find how much of a light arrives.
+
+use serde::{Deserialize, Serialize};
+
+/// The shader of a draw. All share one vertex transformation, so depths are bit-equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Program {
+    /// Writes depth and stencil only: volumes, caps, planar shadows, shadow maps, receiver marks.
+    Position,
+    /// Writes the draw's flat colour.
+    Flat,
+    /// Writes the draw's label, whichever way the surface faces.
+    FlatLabel,
+    /// Adds the draw's count where the front of a triangle is seen, and subtracts it where its back is.
+    Count,
+    /// Writes the material's colour times the ambient light.
+    Ambient {
+        /// Discards fragments nearer than the near plane, where nothing else clips them.
+        from_near: bool,
+    },
+    /// Adds the pass's light, as far as it arrives.
+    Light(Visibility),
+    /// Writes what the draw's layer of the light's map lets through, to darken what is there.
+    Through,
+    /// Writes a label: 3 where the triangle faces away from the light or is beyond its range, 1 where less than half of
+    /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
+    /// surfaces at one depth the first drawn decides, as it did for the picture.
+    Label(Visibility),
+    /// Another program's shader: vertices are clip-space positions, and go through unchanged. Its colours are not
+    /// known.
+    Recorded {
+        /// Whether it may discard fragments.
+        may_discard: ShaderEffect,
+        /// Whether it may write a depth of its own.
+        writes_depth: ShaderEffect,
+    },
+}
+
+/// What a shader reads to find how much of a light arrives at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Visibility {
+    /// Nothing: all that passes the depth and stencil tests is lit.
+    Everywhere,
+    /// The light's shadow map.
+    Map,
+    /// The light's labels, computed on the CPU.
+    Labels,
+    /// The light's count: zero is lit.
+    Count,
+    /// The receiver's texture: the draw's layer of the light's map.
+    ReceiverTexture,
+    /// The silhouettes of all casters, projected, except the one in the draw's own layer.
+    Projected,
+}
+
+impl Visibility {
+    /// All six, in order.
+    pub const ALL: [Visibility; 6] = [
+        Visibility::Everywhere,
+        Visibility::Map,
+        Visibility::Labels,
+        Visibility::Count,
+        Visibility::ReceiverTexture,
+        Visibility::Projected,
+    ];
+
+    /// Returns whether it reads the light's map.
+    pub fn reads_map(self) -> bool {
+        matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
+    }
+}
+
+impl Program {
+    /// Returns all programs of our own frames.
+    pub fn all() -> Vec<Program> {
+        let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
+        let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
+        let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
+        let recorded = Program::Recorded { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
+        flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
+    }
+
+    /// Returns the clip plane beyond which the shader discards a fragment of this depth: where depth is clamped,
+    /// nothing else clips at near and far (`discard` in the shaders' files).
+    pub fn discards(self, depth: f32) -> Option<ClipPlane> {
+        match self {
+            Program::Ambient { from_near: true } if depth < 0.0 => Some(ClipPlane::Near),
+            Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(ClipPlane::Far),
+            _ => None,
+        }
+    }
+
+    /// Returns whether it shows a surface's texture, where there is one.
+    pub fn shows_texture(self) -> bool {
+        matches!(self, Program::Ambient { .. } | Program::Light(_))
+    }
+
+    /// Returns whether it reads nothing but positions and the draw's flat colour.
+    pub fn is_flat(self) -> bool {
+        matches!(self, Program::Position | Program::Flat)
+    }
+
+    /// What it reads to find how much light arrives; `None` for programs that do not light.
+    pub fn visibility(self) -> Option<Visibility> {
+        match self {
+            Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
+            Program::Through => Some(Visibility::Projected),
+            Program::Position
+            | Program::Flat
+            | Program::FlatLabel
+            | Program::Count
+            | Program::Ambient { .. }
+            | Program::Recorded { .. } => None,
+        }
+    }
+
+    /// Returns whether it is another program's shader. Its vertices are in clip space, and go through unchanged.
+    pub fn is_recorded(self) -> bool {
+        matches!(self, Program::Recorded { .. })
+    }
+}
+
+named_enum! {
+    /// Whether a shader has an effect, such as discarding fragments.
+    pub enum ShaderEffect {
+        /// It never has it.
+        No = "no",
+        /// It may have it, for some fragments.
+        Yes = "yes",
+        /// The shader could not be read.
+        Unknown = "unknown",
+    }
+}
+
+/// Which plane clipped a triangle away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ClipPlane {
+    /// It is nearer than the near plane.
+    Near,
+    /// It is beyond the far plane.
+    Far,
+}

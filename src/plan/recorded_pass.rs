@@ -1,0 +1,48 @@
+//! What only a pass of another program's frame has: a viewport, debug groups, and targets with content before it begins.
+
+use crate::geometry::Blob;
+use serde::{Deserialize, Serialize};
+
+/// Further data of a pass of another program's frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecordedPass {
+    /// The viewport of its draws.
+    pub viewport: Viewport,
+    /// The program's debug groups around it, outermost first.
+    pub groups: Vec<String>,
+    /// Content of its depth and stencil as it begins, where that is not what the pass before left.
+    #[serde(skip)]
+    pub start: Option<StartContent>,
+}
+
+/// The rectangle and depth range of a target that clip space is mapped to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Viewport {
+    /// Left, top, width and height in pixels.
+    pub area: [f32; 4],
+    /// The stored depths of clip depth 0 and 1, each in [0, 1], the smaller one first.
+    pub depth: [f32; 2],
+}
+
+impl Viewport {
+    /// The viewport of a whole target, with all depths.
+    pub fn whole(size: [u32; 2]) -> Viewport {
+        let [width, height] = size.map(|side| side as f32);
+        Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
+    }
+
+    /// Returns the depth that a clip depth is stored as.
+    pub fn stored(&self, depth: f64) -> f64 {
+        let [near, far] = self.depth.map(f64::from);
+        near + (far - near) * depth
+    }
+}
+
+/// Content of a depth-stencil target, row by row from the top, without padding.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StartContent {
+    /// Depths as stored; `None` where the target has none.
+    pub depth: Option<Blob<f32>>,
+    /// Stencil values, a byte a pixel; `None` where the target has none.
+    pub stencil: Option<Blob<u8>>,
+}
