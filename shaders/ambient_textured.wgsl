@@ -1,4 +1,4 @@
-// The same of a surface with a picture.
+// Ambient light on a surface with a picture.
 
 struct UnlitTextured {
     @invariant @builtin(position) clip: vec4f,

@@ -57,7 +57,7 @@ fn lit_part(face: u32, clip: vec4f, along_x: vec3f, along_y: vec3f) -> f32 {
 }
 
 // How the depth of the triangle's plane grows along x and y of the map: both are linear in device
-// space, so two directions of the plane tell. Zero for a plane that the light sees edge-on.
+// space, so two directions of the plane determine it. Zero for a plane that the light sees edge-on.
 fn slope_in_map(face: u32, clip: vec4f, along_x: vec3f, along_y: vec3f) -> vec2f {
     let a = device_along(face, clip, along_x);
     let b = device_along(face, clip, along_y);

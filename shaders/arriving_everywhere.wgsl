@@ -1,4 +1,4 @@
-// All of the light arrives: what is dark has been kept out by the tests.
+// All of the light arrives: the depth and stencil tests have excluded the pixels in shadow.
 
 fn arriving(surface: Surface) -> vec4f {
     return vec4f(1.0);

@@ -1,5 +1,5 @@
-// Writes down every fragment: of which triangle, which side of it, and how deep. No test keeps a
-// fragment from running this, since the log's own draws test nothing.
+// Writes down every fragment: of which triangle, which side of it, and how deep. No test discards a
+// fragment before this, since the log's own draws test nothing.
 
 struct Fragment {
     // Index into the triangles that were asked about.
@@ -9,7 +9,7 @@ struct Fragment {
 }
 
 struct Log {
-    // How many there were, whether or not they found room.
+    // How many fragments there were, also those that `fragments` has no space for.
     count: atomic<u32>,
     fragments: array<Fragment>,
 }

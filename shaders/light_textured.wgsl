@@ -1,4 +1,4 @@
-// The same of a surface with a picture.
+// One light on a surface with a picture.
 
 struct Textured {
     @invariant @builtin(position) clip: vec4f,

@@ -8,7 +8,7 @@ fn vs_recorded(@location(0) clip: vec4f) -> @invariant @builtin(position) vec4f 
     return clip;
 }
 
-// Of depths that are integers, the nearest.
+// Rounds the depth to the nearest that an integer target stores.
 @fragment
 fn fs_recorded(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 {
     return round(at.z * steps) / steps;

@@ -1,9 +1,10 @@
-// Another program's draw whose shader has discarded fragments: those that it has kept are known.
+// Another program's draw whose shader discards fragments: the list of those that it did not discard is known, and this
+// discards all others.
 
 // The largest depth as an integer, where depths are stored as integers; 0 where they are floats.
 override steps: f32 = 0.0;
 
-// Column and row of the pixel in one word, and the triangle; in order.
+// The fragments that are not discarded, sorted: column and row of the pixel in one word, and the triangle.
 @group(2) @binding(0) var<storage, read> kept: array<vec2u>;
 
 struct Corner {
@@ -11,7 +12,7 @@ struct Corner {
     @location(0) @interpolate(flat) triangle: u32,
 }
 
-// Corners are not shared.
+// No two triangles share a vertex, so that a vertex's index gives its triangle.
 @vertex
 fn vs_recorded_kept(@location(0) clip: vec4f, @builtin(vertex_index) index: u32) -> Corner {
     return Corner(clip, index / 3);
@@ -43,7 +44,7 @@ fn fs_recorded_kept(corner: Corner) {
     }
 }
 
-// Of depths that are integers, the nearest.
+// Rounds the depth to the nearest that an integer target stores.
 @fragment
 fn fs_recorded_kept_steps(corner: Corner) -> @builtin(frag_depth) f32 {
     let at = vec2u(corner.clip.xy);

@@ -6,7 +6,7 @@
 
 struct View {
     clip_from_relative: mat4x4f,
-    // Where lines of sight meet; w = 0 where they are parallel.
+    // The point that all view rays start at; in a parallel projection their direction, with w = 0.
     eye: vec4f,
     // Linear RGB; the fourth is unused.
     ambient: vec4f,

@@ -1,7 +1,7 @@
-// Puts depths into a target: what another program's frame began with.
+// Writes depths into a target: those that another program's frame began with.
 
 struct Content {
-    // Of the target, texels.
+    // Width of the target, texels.
     width: u32,
     depths: array<f32>,
 }
@@ -10,7 +10,7 @@ struct Content {
 
 @vertex
 fn vs_start(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
-    // A triangle that holds the whole target.
+    // A triangle that covers the whole target.
     return vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 

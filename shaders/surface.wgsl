@@ -12,9 +12,9 @@ struct Light {
     position: vec4f,
     // Linear RGB times intensity.
     color: vec3f,
-    // Where it has faded to nothing; 0 for no falloff.
+    // Distance at which it has faded to nothing, metres; 0 for no falloff.
     range: f32,
-    // Which bit of a triangle's sides is its.
+    // Which bit of a triangle's `sides` belongs to this light.
     index: u32,
     unused: u32,
     // Faces of its map, and what their depth was cleared to: 0 where depth is reversed.
@@ -27,7 +27,7 @@ struct Light {
     filter_width: u32,
     // Projected silhouettes reach behind the light.
     projects_backwards: u32,
-    // Beyond their pictures their last texels go on.
+    // Beyond the edge of a silhouette's picture its last texels are repeated.
     repeats_edge: u32,
     clip_from_relative: array<mat4x4f, 64>,
 }

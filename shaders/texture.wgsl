@@ -1,12 +1,12 @@
 // The picture on a surface.
 
-// Of each corner of each triangle; 0, 0 is the picture's lower left.
+// Texture coordinates of each corner of each triangle; 0, 0 is the picture's lower left.
 @group(2) @binding(4) var<storage, read> uvs: array<vec2f>;
 @group(2) @binding(5) var picture: texture_2d<f32>;
 @group(2) @binding(6) var picture_sampler: sampler;
 
 // Linear RGB at a place of the picture, on the level whose texels are as large as a pixel. It compares neighbouring
-// pixels: to be called before any of them may have gone another way.
+// pixels: to be called in uniform control flow.
 fn in_picture(uv: vec2f) -> vec3f {
     let size = vec2f(textureDimensions(picture));
     let longest = max(length(dpdx(uv) * size), length(dpdy(uv) * size));

@@ -5,7 +5,7 @@ struct View {
     clip_from_stage: mat4x4f,
     // Where it is looked from; the direction towards the viewer, with w = 0, in parallel views.
     viewer: vec4f,
-    // How much nearer a step is: in parts of the depth, and in depth.
+    // How much nearer a step is: as a fraction of the depth, and in absolute depth.
     step: vec2f,
     // Pixels.
     size: vec2f,
@@ -14,10 +14,10 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 
-// Steps before what they lie on: shells, lines.
+// By how many steps shells and lines are drawn in front of what they lie on.
 const SHELL_STEPS: f32 = 1.0;
 const LINE_STEPS: f32 = 12.0;
-// What is left of the colour of a holder's back, which one looks through.
+// Opacity of the back of an object that contains others, which one looks through.
 const GLASS: f32 = 0.07;
 // Where what runs to infinity begins to fade, and where it is gone, in lengths of its corner at infinity.
 const FADE: vec2f = vec2f(1.0, 3.5);

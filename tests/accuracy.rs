@@ -17,7 +17,7 @@ use stencilscope::truth::Tracer;
 
 const SIZE: [u32; 2] = [96, 72];
 
-/// The knot, torn: triangles are missing, some are turned round and some are there twice.
+/// The knot, torn: triangles are missing, some are flipped and some are there twice.
 fn torn_knot() -> Scene {
     let mut scene = opened("assets/models/knot.obj");
     let mesh = &scene.objects[0].mesh;

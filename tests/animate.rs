@@ -1,4 +1,4 @@
-//! `animate` from outside: its files are decoded again and held against captures, pixel by pixel.
+//! `animate` from outside: its files are decoded again and compared with captures, pixel by pixel.
 
 use crate::commands::{assert_fails, done, folder, run, text};
 use crate::common::{names, opened, pixels, request, session};
@@ -126,8 +126,8 @@ fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
     for (place, (exact, rounded)) in (0..5).zip(exact.pictures.iter().zip(&rounded.pictures)) {
         let capture = session.capture(&round.scene(place), &request(Technique::ZFail, [96, 64])).expect("a frame");
         assert_eq!(*exact, finished(&capture), "place {place}");
-        let kept = Picture::drawn([96, 64], |at| apng::ColorDepth::Rounded.reduced(exact.at(at).expect("a pixel")));
-        assert_eq!(*rounded, kept, "place {place}");
+        let expected = Picture::drawn([96, 64], |at| apng::ColorDepth::Rounded.reduced(exact.at(at).expect("a pixel")));
+        assert_eq!(*rounded, expected, "place {place}");
     }
     assert!((1..5).all(|place| exact.pictures[place] != exact.pictures[place - 1]), "it moves");
 }

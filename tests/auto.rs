@@ -1,8 +1,8 @@
 //! What `auto` leaves out: taken where it changes nothing, not taken in the scene beside it, and without a pixel of
 //! difference, but where a volume's other far corners draw the very edge of a shadow.
 
+mod cached;
 mod clamped;
-mod kept;
 mod range;
 mod unseen;
 
@@ -82,13 +82,13 @@ fn left_out(session: &mut Session, scene: &Scene) -> Vec<String> {
     all.left_out.iter().map(ToString::to_string).collect()
 }
 
-/// In `taken` it is left out, in `kept`, the scene beside it, it is not; and where `decision` is forbidden
-/// it never is.
-fn assert_decides(decision: Decision, what: &str, taken: &Scene, kept: &Scene) {
+/// Asserts that `what` is left out in `taken` but not in `other`, a similar scene, and never where `decision` is
+/// forbidden.
+fn assert_decides(decision: Decision, what: &str, taken: &Scene, other: &Scene) {
     let mut session = session();
     let found = left_out(&mut session, taken);
     assert!(found.iter().any(|left| left == what), "{decision:?}: no `{what}` among {found:?}");
-    let beside = left_out(&mut session, kept);
+    let beside = left_out(&mut session, other);
     assert!(!beside.iter().any(|left| left == what), "{decision:?}: `{what}` is in {beside:?}");
     let without = session.capture(taken, &auto(&all_but(decision))).expect("a capture");
     assert!(!without.left_out.iter().any(|left| left.to_string() == what), "{decision:?}");
@@ -190,8 +190,8 @@ fn a_closed_mesh_casts_with_what_faces_the_light_alone() {
     assert_decides(Decision::AwayTriangles, what, &torus(false), &torus(true));
 }
 
-/// A turned room whose walls face the sun overhead by a rounding of their places: what faces the light
-/// alone lost the whole shadow.
+/// A rotated room whose walls face the sun overhead by a rounding of their places: what faces the light alone lost the
+/// whole shadow.
 #[test]
 fn a_wall_that_is_edge_on_keeps_all_triangles() {
     let mut room = cuboid("room", [-3.0, -3.0, -3.0], [3.0, 3.0, 3.0]);
@@ -296,12 +296,12 @@ fn a_light_that_all_in_view_faces_away_from_has_no_passes() {
 
 /// Where a count may pass what eight bits hold, and one below.
 #[test]
-fn a_count_beyond_eight_bits_is_kept_in_a_float() {
+fn a_count_beyond_eight_bits_is_stored_in_a_float() {
     let mut session = session();
     let mut stack = |count: u32| {
         let boards = (0..count).map(|i| square(&format!("board {i}"), 2.0 - f64::from(i) / 1000.0, 1.0)).collect();
         let mut scene = from_above(boards);
-        // Two triangles a board, of which a ray meets one or, on their edge, both.
+        // Two triangles a board, of which a ray hits one or, on their edge, both.
         scene.lights = vec![Light::point(DVec3::new(0.1, 4.0, 0.2))];
         let capture = session.capture(&scene, &auto("caster")).expect("a capture");
         let full = judged(&mut session, &scene, Technique::Auto, SIZE);

@@ -220,7 +220,7 @@ fn pixel_reports_its_history_as_text_and_as_json() {
 }
 
 #[test]
-fn a_model_with_z_up_is_turned_and_nothing_else_is() {
+fn a_model_with_z_up_is_rotated_and_nothing_else_is() {
     let folder = folder();
     let height = |more: &[&str]| {
         let arguments = [&["capture", "triangle.obj", "--size", "32x24", "-o", "out", "--overwrite"], more].concat();
@@ -372,11 +372,11 @@ fn a_word_that_no_picture_s_name_has_is_wrong_usage_and_the_names_are_reported()
     let folder = folder();
     let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "sunset"]);
     assert_eq!(output.status.code(), Some(2));
-    let told = text(&output.stderr);
+    let message = text(&output.stderr);
     for name in ["`sunset`", "inspector", "light-theme", "tour"] {
-        assert!(told.contains(name), "`{name}` is not in {told}");
+        assert!(message.contains(name), "`{name}` is not in {message}");
     }
-    assert_eq!(told.lines().count(), 1, "{told}");
+    assert_eq!(message.lines().count(), 1, "{message}");
     assert!(!folder.path().join("shots").exists(), "no empty folder is left behind");
 }
 

@@ -68,8 +68,8 @@ fn steps_of_depth_are_those_of_the_formula() {
     }
 }
 
-/// The corners of the triangle that a pixel shows are a triangle of the object's mesh, and hold the pixel between them;
-/// their products with the chain's matrices are what is told.
+/// The corners of the triangle that a pixel shows are a triangle of the object's mesh, and the pixel is between them;
+/// their products with the chain's matrices are what is reported.
 #[test]
 fn the_corners_of_a_pixel_s_triangle_go_the_same_way() {
     let mut session = session();
@@ -152,8 +152,8 @@ fn what_is_not_before_the_eye_is_not_divided_and_says_so() {
         for vertex in [&beside, &behind] {
             assert_eq!((vertex.ndc, vertex.window), (None, None), "{vertex:?}");
             assert!(vertex.beyond.contains(&"near"), "{}: {vertex:?}", mapping.name());
-            let told = vertex.rows(6);
-            assert!(told.iter().any(|(name, value)| *name == "NDC" && value.starts_with("not divided: w is not")));
+            let rows = vertex.rows(6);
+            assert!(rows.iter().any(|(name, value)| *name == "NDC" && value.starts_with("not divided: w is not")));
         }
         assert_eq!(right.beyond, ["right"]);
         assert!((right.ndc.expect("divided")[0] - 2.25).abs() < 1e-9);
@@ -161,7 +161,7 @@ fn what_is_not_before_the_eye_is_not_divided_and_says_so() {
     }
 }
 
-/// Lines of sight that are parallel divide by 1, before the eye and behind it.
+/// Parallel view rays divide by 1, before the eye and behind it.
 #[test]
 fn parallel_cameras_divide_by_one() {
     let mut session = session();
@@ -200,9 +200,12 @@ fn pixel_reports_vertices_and_explains_each_key() {
         let size = ["pixel", "tetrahedron", "--size", "80x60"];
         text(&run(work.path(), &[&size[..], arguments].concat()).stdout)
     };
-    let told = of(&["--vertex", "tetrahedron:3", "--vertex", "shaft:0"]);
-    assert!(told.contains("vertex 3 of tetrahedron\nworld ") && told.contains("vertex 0 of shaft\n"), "{told}");
-    assert!(told.contains("clip from eye, and its inverse:") && told.contains("\nview "), "{told}");
+    let printed = of(&["--vertex", "tetrahedron:3", "--vertex", "shaft:0"]);
+    assert!(
+        printed.contains("vertex 3 of tetrahedron\nworld ") && printed.contains("vertex 0 of shaft\n"),
+        "{printed}"
+    );
+    assert!(printed.contains("clip from eye, and its inverse:") && printed.contains("\nview "), "{printed}");
     let json = |arguments: &[&str]| -> serde_json::Value { serde_json::from_str(&of(arguments)).expect("JSON") };
     let document = json(&["--vertex", "tetrahedron:3", "--json"]);
     assert_eq!((&document["vertices"][0]["index"], document["chain"].as_array().map(Vec::len)), (&3.into(), Some(3)));
@@ -210,8 +213,8 @@ fn pixel_reports_vertices_and_explains_each_key() {
     let document = json(&["--at", "40,30", "--coordinates", "--json"]);
     assert_eq!(document["coordinates"]["vertices"].as_array().map(Vec::len), Some(3));
     crate::help::assert_json_is_explained("pixel", &document);
-    let told = of(&["--at", "40,30", "--coordinates"]);
-    assert_eq!(told.matches("\nview ").count(), 3, "{told}");
+    let printed = of(&["--at", "40,30", "--coordinates"]);
+    assert_eq!(printed.matches("\nview ").count(), 3, "{printed}");
     // The folder has the scene, and says the same.
     let made = run(work.path(), &["capture", "tetrahedron", "--size", "80x60", "-o", "out"]);
     assert!(made.status.success(), "{}", text(&made.stderr));

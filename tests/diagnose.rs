@@ -1,4 +1,4 @@
-//! The command `diagnose`: what it says in text, JSON and pictures, and the scene that it writes mended.
+//! The command `diagnose`: what it says in text, JSON and pictures, and the fixed scene that it writes.
 
 use crate::commands::{assert_fails, run, text};
 use crate::common::names;
@@ -29,16 +29,16 @@ fn shaded(folder: &Path) {
 #[test]
 fn a_right_frame_needs_nothing() {
     let folder = crate::commands::folder();
-    let (code, told, error) = diagnose(folder.path(), &["tori", "-t", "z-fail", "--fix", "right.toml"]);
-    assert_eq!((code, error.as_str()), (Some(0), ""), "{told}");
+    let (code, printed, error) = diagnose(folder.path(), &["tori", "-t", "z-fail", "--fix", "right.toml"]);
+    assert_eq!((code, error.as_str()), (Some(0), ""), "{printed}");
     for words in [
         "tori, z-fail, 160x120: none of ",
         "right, the fastest first: ",
         "what to do: nothing: the shadows are right\n",
     ] {
-        assert!(told.contains(words), "`{words}` is not in\n{told}");
+        assert!(printed.contains(words), "`{words}` is not in\n{printed}");
     }
-    assert!(told.ends_with("right.toml: not written, as nothing is wrong\n"), "{told}");
+    assert!(printed.ends_with("right.toml: not written, as nothing is wrong\n"), "{printed}");
     assert!(!folder.path().join("right.toml").exists());
 }
 
@@ -46,21 +46,21 @@ fn a_right_frame_needs_nothing() {
 fn the_text_says_what_is_wrong_why_and_what_to_do() {
     let folder = crate::commands::folder();
     shaded(folder.path());
-    let (code, told, error) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass"]);
-    assert_eq!(code, Some(1), "{told}");
+    let (code, printed, error) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass"]);
+    assert_eq!(code, Some(1), "{printed}");
     assert!(error.contains("eye-in-volume"), "{error}");
     assert_eq!(error.lines().count(), 1);
     for words in ["\n1. ", "   eye-in-volume (proven): ", "`-t z-fail`", "\n   as 1: eye-in-volume: "] {
-        assert!(told.contains(words), "`{words}` is not in\n{told}");
+        assert!(printed.contains(words), "`{words}` is not in\n{printed}");
     }
     // What a cause is, is said once.
-    assert_eq!(told.matches(Cause::EyeInVolume.meaning()).count(), 1, "{told}");
+    assert_eq!(printed.matches(Cause::EyeInVolume.meaning()).count(), 1, "{printed}");
 }
 
 /// What `--json` says, and the exit code.
 fn document(folder: &Path, arguments: &[&str]) -> (Option<i32>, serde_json::Value) {
-    let (code, told, error) = diagnose(folder, &[arguments, &["--no-techniques", "--json"]].concat());
-    (code, serde_json::from_str(&told).unwrap_or_else(|_| panic!("no JSON:\n{told}\n{error}")))
+    let (code, printed, error) = diagnose(folder, &[arguments, &["--no-techniques", "--json"]].concat());
+    (code, serde_json::from_str(&printed).unwrap_or_else(|_| panic!("no JSON:\n{printed}\n{error}")))
 }
 
 /// The first cause of each region, largest first.
@@ -88,9 +88,9 @@ fn a_triangle_across_the_lights_height_is_an_anti_shadow() {
 #[test]
 fn what_was_not_asked_for_or_not_drawn_is_reported_as_such() {
     let folder = crate::commands::folder();
-    let (code, told, _) = diagnose(folder.path(), &["tori", "-t", "none", "--no-techniques"]);
-    assert_eq!(code, Some(1), "{told}");
-    assert!(told.contains("   no shadows were asked for: the technique is none\n"), "{told}");
+    let (code, printed, _) = diagnose(folder.path(), &["tori", "-t", "none", "--no-techniques"]);
+    assert_eq!(code, Some(1), "{printed}");
+    assert!(printed.contains("   no shadows were asked for: the technique is none\n"), "{printed}");
     let (_, found) = document(folder.path(), &["tori", "-t", "none"]);
     assert_ne!(found["advice"]["mend"]["technique"], serde_json::Value::Null);
     let clamped = ["tori", "-t", "z-fail", "--set", "depth=standard-finite-clamp", "--far", "3"];
@@ -123,7 +123,7 @@ fn a_floor_is_no_open_mesh_and_a_sheet_over_it_is() {
     }
 }
 
-/// A map is blamed for what its settings can mend, and all of the picture is right by z-fail.
+/// A map is blamed for what its settings can fix, and all of the picture is right by z-fail.
 #[test]
 fn maps_are_reported_how_to_stay_maps() {
     let folder = crate::commands::folder();
@@ -133,14 +133,14 @@ fn maps_are_reported_how_to_stay_maps() {
     let causes = found["regions"].as_array().expect("regions").iter();
     let causes: Vec<&serde_json::Value> =
         causes.flat_map(|region| region["causes"].as_array().expect("causes")).collect();
-    let mends_of = |name: &str| -> Vec<&serde_json::Value> {
+    let fixes_of = |name: &str| -> Vec<&serde_json::Value> {
         causes.iter().filter(|cause| cause["cause"] == name).map(|cause| &cause["mend"]["settings"]).collect()
     };
     for cause in ["aliasing", "peter-panning"] {
         let sets_something = |settings: &serde_json::Value| settings.as_object().is_some_and(|some| !some.is_empty());
-        assert!(mends_of(cause).into_iter().any(sets_something), "{cause}: {found}");
+        assert!(fixes_of(cause).into_iter().any(sets_something), "{cause}: {found}");
     }
-    // What a bias is blamed for holds in its own numbers.
+    // What a bias is blamed for is consistent with the numbers in its own evidence.
     let metres = |words: &str| -> Option<f64> { words.split(' ').next()?.parse().ok() };
     let evidence = causes.iter().filter_map(|cause| cause["evidence"].as_str());
     let blamed = evidence.filter_map(|words| words.split_once("the bias moves the caster "));
@@ -156,9 +156,9 @@ fn maps_are_reported_how_to_stay_maps() {
 fn the_document_has_the_names_of_the_contract() {
     let folder = crate::commands::folder();
     shaded(folder.path());
-    let (code, told, _) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass", "--no-techniques", "--json"]);
+    let (code, printed, _) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass", "--no-techniques", "--json"]);
     assert_eq!(code, Some(1));
-    let document: serde_json::Value = serde_json::from_str(&told).expect("JSON alone");
+    let document: serde_json::Value = serde_json::from_str(&printed).expect("JSON alone");
     assert_eq!(
         (&document["schema"], &document["scene"], &document["technique"]),
         (&1.into(), &"shaded".into(), &"z-pass".into())
@@ -183,16 +183,16 @@ fn the_document_has_the_names_of_the_contract() {
 #[test]
 fn a_mesh_with_holes_is_reported_of_before_any_pixel() {
     let folder = crate::commands::folder();
-    let (_, told, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques", "--json"]);
-    let document: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    let (_, printed, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
     let found = document["mesh_findings"].as_array().expect("findings");
     let open = found.iter().find(|one| one["object"] == "triangle").expect("the triangle");
     assert_eq!((&open["cause"], &open["count"]), (&"open-mesh".into(), &3.into()));
     assert_eq!(open["at"].as_array().map(Vec::len), Some(3));
     crate::help::assert_json_is_explained("diagnose", &document);
-    let (code, told, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques"]);
+    let (code, printed, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques"]);
     assert_eq!(code, Some(0));
-    assert!(told.contains("triangle: 3 open-mesh: ") && told.contains("\n     at ("), "{told}");
+    assert!(printed.contains("triangle: 3 open-mesh: ") && printed.contains("\n     at ("), "{printed}");
 }
 
 #[test]
@@ -200,12 +200,12 @@ fn a_folder_has_pictures_text_and_document_and_is_replaced_only_on_request() {
     let folder = crate::commands::folder();
     shaded(folder.path());
     let arguments = ["shaded.toml", "-t", "z-pass", "--no-techniques", "-o", "why"];
-    let (code, told, error) = diagnose(folder.path(), &arguments);
+    let (code, printed, error) = diagnose(folder.path(), &arguments);
     assert_eq!(code, Some(1), "{error}");
-    assert!(told.ends_with("why: regions.png, mended.png, diagnosis.txt, diagnosis.json\n"), "{told}");
+    assert!(printed.ends_with("why: regions.png, mended.png, diagnosis.txt, diagnosis.json\n"), "{printed}");
     let why = folder.path().join("why");
     assert_eq!(names(&why), ["diagnosis.json", "diagnosis.txt", "mended.png", "regions.png"]);
-    assert!(told.starts_with(&fs::read_to_string(why.join("diagnosis.txt")).expect("text")));
+    assert!(printed.starts_with(&fs::read_to_string(why.join("diagnosis.txt")).expect("text")));
     let colors = |name: &str| {
         let file = fs::File::open(why.join(name)).expect("a picture");
         let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
@@ -239,13 +239,13 @@ fn the_fixed_scene_opens_again_and_is_right() {
     ];
     for (index, (arguments, fix)) in cases.into_iter().enumerate() {
         let file = format!("fixed-{index}.toml");
-        let (code, told, error) = diagnose(folder.path(), &[arguments, &["--fix", &file]].concat());
+        let (code, printed, error) = diagnose(folder.path(), &[arguments, &["--fix", &file]].concat());
         assert_eq!(code, Some(1), "{error}");
-        let last = told.lines().last().expect("a line");
-        assert!(last.starts_with(&format!("{file}: written so that it says: {fix}")), "{told}");
-        assert!(last.contains("opened again, 0 of "), "{told}");
-        let (code, told, error) = diagnose(folder.path(), &[&file, "--no-techniques"]);
-        assert_eq!(code, Some(0), "{told}{error}");
+        let last = printed.lines().last().expect("a line");
+        assert!(last.starts_with(&format!("{file}: written so that it says: {fix}")), "{printed}");
+        assert!(last.contains("opened again, 0 of "), "{printed}");
+        let (code, printed, error) = diagnose(folder.path(), &[&file, "--no-techniques"]);
+        assert_eq!(code, Some(0), "{printed}{error}");
     }
     let fixed = fs::read_to_string(folder.path().join("fixed-2.toml")).expect("a scene file");
     assert!(fixed.contains("knot.obj\"") && !names(folder.path()).contains(&"fixed-2-knot.obj".to_owned()), "{fixed}");
@@ -275,17 +275,17 @@ fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_fix() {
     assert_fails(&["diagnose", "tori", "--adapter", "no such gpu"], 3, &["mesa-vulkan-drivers"]);
 }
 
-/// A model beside the mended scene is never replaced: it may be what the scene is made of.
+/// A model beside the fixed scene is never replaced: it may be what the scene is made of.
 #[test]
 fn a_fixed_scene_replaces_no_model() {
     let folder = crate::commands::folder();
     let path = |name: &str| folder.path().join(name);
     let fixed = ["tori", "-t", "z-fail", "--set", "extrusion=finite:1", "--fix", "mended.toml", "--overwrite"];
-    let (code, told, error) = diagnose(folder.path(), &fixed);
-    assert_eq!(code, Some(1), "{told}{error}");
+    let (code, printed, error) = diagnose(folder.path(), &fixed);
+    assert_eq!(code, Some(1), "{printed}{error}");
     let is_model = |name: &String| name.starts_with("mended-") && name.ends_with(".obj");
     let models: Vec<String> = names(folder.path()).into_iter().filter(is_model).collect();
-    assert!(!models.is_empty(), "{told}");
+    assert!(!models.is_empty(), "{printed}");
     // Written again with the same models, it is there as before.
     assert_eq!(diagnose(folder.path(), &fixed).0, Some(1));
     let mine = "# somebody's work\nv 0 0 0\n";

@@ -27,7 +27,7 @@ fn first(diagnosis: &Diagnosis) -> Option<Cause> {
 }
 
 /// All regions with their causes, for failing tests.
-fn told(diagnosis: &Diagnosis) -> String {
+fn summary(diagnosis: &Diagnosis) -> String {
     let mut text = format!("{} {:?}\n", diagnosis.technique.name(), diagnosis.error);
     for region in &diagnosis.regions {
         let (kind, at) = (region.kind.name(), region.at);

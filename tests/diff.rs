@@ -58,10 +58,10 @@ fn one_flipped_bit_in_any_array_is_found() {
         let manifest = read_json(&folder.join("manifest.json"));
         for file in names(&folder).iter().filter(|name| name.ends_with(".npy")) {
             let path = folder.join(file);
-            let kept = fs::read(&path).expect("an array");
+            let original = fs::read(&path).expect("an array");
             flip(&path, 4);
             let difference = compare(&good, &read(&folder).expect("still an array")).expect("one size");
-            fs::write(&path, kept).expect("mended");
+            fs::write(&path, original).expect("mended");
             assert!(!difference.is_none(), "{file} of {}", technique.name());
             let aspects = match difference.first() {
                 Some(pass) => {
@@ -160,8 +160,8 @@ fn a_difference_that_goes_on_is_reported_as_carried() {
         let request = request_with(Technique::ZFail, &[("casters", casters)], SIZE);
         // A square that faces away from the light casts only among all.
         let corners = [[-1.0, 2.0, -1.0], [-1.0, 2.0, 1.0], [1.0, 2.0, 1.0], [1.0, 2.0, -1.0]];
-        let turned = mesh(&corners, &[[0, 2, 1], [0, 3, 2]]);
-        let scene = from_above(vec![Object::new("turned", turned, Material::default())]);
+        let flipped = mesh(&corners, &[[0, 2, 1], [0, 3, 2]]);
+        let scene = from_above(vec![Object::new("turned", flipped, Material::default())]);
         session.capture(&scene, &request).expect("a capture")
     });
     let difference = compare(&good, &other).expect("one size");
@@ -197,10 +197,10 @@ fn passes_of_one_frame_alone_are_named() {
     assert_eq!(stencil.map(|aspect| aspect.found), Some(AspectChange::OnlyIn(ComparedSide::A)));
     let text = difference.to_text();
     assert!(text.contains("technique: z-fail in A, shadow-map in B\n") && text.contains("only in B"), "{text}");
-    // The same the other way round.
-    let turned = compare(&map, &volumes).expect("one size");
-    assert_eq!(turned.passes.len(), difference.passes.len());
-    assert_eq!(turned.lights[0].labels.values().sum::<u64>(), difference.lights[0].labels.values().sum::<u64>());
+    // The comparison in the opposite direction.
+    let reversed = compare(&map, &volumes).expect("one size");
+    assert_eq!(reversed.passes.len(), difference.passes.len());
+    assert_eq!(reversed.lights[0].labels.values().sum::<u64>(), difference.lights[0].labels.values().sum::<u64>());
 }
 
 #[test]
@@ -284,13 +284,13 @@ fn the_command_reports_in_every_form_and_by_its_exit_code() {
     let differs = run(folder.path(), &["diff", "a", "b", "-o", "where.png"]);
     assert_eq!(differs.status.code(), Some(1));
     assert_eq!(text(&differs.stderr), "stencilscope: they differ, first in pass 2, light 1: volumes\n");
-    let told = text(&differs.stdout);
+    let printed = text(&differs.stdout);
     for words in [
         "first difference: pass 2, light 1: volumes\n  stencil: 1 pixel\n",
         "most at 44,29: ",
         "where.png: stencil of A",
     ] {
-        assert!(told.contains(words), "`{words}` is not in\n{told}");
+        assert!(printed.contains(words), "`{words}` is not in\n{printed}");
     }
     let picture = fs::File::open(folder.path().join("where.png")).expect("a picture");
     let reader = png::Decoder::new(std::io::BufReader::new(picture)).read_info().expect("a PNG");
@@ -317,17 +317,17 @@ fn the_command_compares_techniques_and_settings_of_a_scene() {
         let output = run(folder.path(), &[&["diff", "triangle.obj", "--size", "48x32"], options].concat());
         (output.status.code(), text(&output.stdout) + &text(&output.stderr))
     };
-    let (code, told) = diff(&["-t", "z-pass", "-t", "z-fail"]);
-    assert!(told.starts_with("A  triangle, z-pass, 48x32, 4 passes\nB  triangle, z-fail, 48x32"), "{told}");
-    assert_eq!(code, Some(i32::from(!told.contains("the same: all"))), "{told}");
-    let (code, told) = diff(&["-t", "z-fail", "--set-b", "faces=two-pass"]);
-    assert!(told.contains("setting faces: two-sided in A, two-pass in B\n"), "{told}");
-    assert_eq!(code, Some(1), "another number of passes: {told}");
-    let (code, told) = diff(&["-t", "z-fail", "--set-b", "silhouette=edge-list"]);
-    assert_eq!(code, Some(0), "{told}");
-    let (code, told) = diff(&["-t", "none", "-t", "z-fail", "-o", "p.png"]);
+    let (code, printed) = diff(&["-t", "z-pass", "-t", "z-fail"]);
+    assert!(printed.starts_with("A  triangle, z-pass, 48x32, 4 passes\nB  triangle, z-fail, 48x32"), "{printed}");
+    assert_eq!(code, Some(i32::from(!printed.contains("the same: all"))), "{printed}");
+    let (code, printed) = diff(&["-t", "z-fail", "--set-b", "faces=two-pass"]);
+    assert!(printed.contains("setting faces: two-sided in A, two-pass in B\n"), "{printed}");
+    assert_eq!(code, Some(1), "another number of passes: {printed}");
+    let (code, printed) = diff(&["-t", "z-fail", "--set-b", "silhouette=edge-list"]);
+    assert_eq!(code, Some(0), "{printed}");
+    let (code, printed) = diff(&["-t", "none", "-t", "z-fail", "-o", "p.png"]);
     assert_eq!(code, Some(1));
-    assert!(told.contains("p.png: ") && folder.path().join("p.png").is_file(), "{told}");
+    assert!(printed.contains("p.png: ") && folder.path().join("p.png").is_file(), "{printed}");
 }
 
 #[test]

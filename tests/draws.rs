@@ -32,7 +32,7 @@ fn untimed(mut capture: Capture) -> Capture {
     capture
 }
 
-/// The same without the states after draws.
+/// The capture without times and without the states after draws.
 fn without_draws(capture: Capture) -> Capture {
     let mut capture = untimed(capture);
     capture.steps.iter_mut().flat_map(|step| &mut step.draws).for_each(|draw| draw.after = None);
@@ -207,7 +207,7 @@ fn many_sheets(half: f64) -> Scene {
 }
 
 #[test]
-fn what_draws_leave_alone_takes_no_room() {
+fn what_draws_leave_alone_takes_no_memory() {
     let request = CaptureRequest { size: [640, 480], ..by_draw(Technique::None) };
     let mut session = session();
     let draws = |capture: &Capture| capture.steps.iter().map(|step| step.draws.len() as u64).sum::<u64>();
@@ -235,7 +235,7 @@ fn a_frame_whose_draws_change_too_much_is_refused_with_a_fix() {
     assert!(session.capture(&many_sheets(50.0), &request).is_ok());
 }
 
-/// No copy is held by a frame that is only timed: it is not refused for those it could make.
+/// A frame that is only timed copies nothing: it is not refused for the copies that it could make.
 #[test]
 fn a_frame_whose_snapshots_do_not_fit_at_once_is_timed_without_them() {
     let mut session = session();
@@ -243,7 +243,7 @@ fn a_frame_whose_snapshots_do_not_fit_at_once_is_timed_without_them() {
     let scene = many_sheets(0.5);
     let cost = session.capture_cost(&scene, &request, 1).expect("timed");
     assert!(cost.captured.len() == 1 && cost.snapshot_bytes > 0);
-    // Room for the attachments, but not for these beside them.
+    // Enough memory for the attachments, but not for copies beside them.
     session.hold_at_most(cost.snapshot_bytes);
     let less = session.capture_cost(&scene, &request, 1).expect("timed");
     assert!(less.captured.is_empty() && less.frames.len() == 1);

@@ -1,4 +1,4 @@
-//! Volumes that a vertex shader carries: counted as the CPU's, told as they were drawn.
+//! Volumes that a vertex shader carries: counted as the CPU's, reported as they were drawn.
 
 use crate::common::random::Random;
 use crate::common::{cuboid, from_above, labels, opened, request_with, session, square};
@@ -19,7 +19,7 @@ fn with(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
     request_with(technique, settings, SIZE)
 }
 
-/// The same, carried by the CPU and by the vertex shader.
+/// Captures of a scene whose volumes are extruded by the CPU and by the vertex shader.
 fn both(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> [Capture; 2] {
     [settings.to_vec(), [settings, &[BY_SHADER]].concat()]
         .map(|settings| session.capture(scene, &with(technique, &settings)).expect("a capture"))
@@ -145,14 +145,14 @@ fn a_folder_that_lies_about_corners_is_no_panic() {
     let bytes = std::fs::read(&corners).expect("read");
     // NumPy's own: a mark of eight bytes, and how long the rest of its head is.
     let (head, values) = bytes.split_at(10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]])));
-    let told = |values: Vec<u8>| {
+    let read_with = |values: Vec<u8>| {
         std::fs::write(&corners, [head, &values].concat()).expect("written");
         let opened = read_whole(&folder).map(RunFrame::from_folder);
         opened.map_err(|error| error.to_string())
     };
-    let cut = told(values[..values.len() / 2].to_vec()).expect_err("half of them");
+    let cut = read_with(values[..values.len() / 2].to_vec()).expect_err("half of them");
     assert!(!cut.contains('\n') && cut.contains("corners"), "{cut}");
-    let odd = told(values.chunks(4).flat_map(|_| f32::NAN.to_le_bytes()).collect()).expect("numbers or not");
+    let odd = read_with(values.chunks(4).flat_map(|_| f32::NAN.to_le_bytes()).collect()).expect("numbers or not");
     let odd = odd.expect("a whole frame");
     for pixel in [[10, 10], [48, 36], [90, 70]] {
         session.history(&odd.plan, &odd.capture, pixel).expect("a history");
@@ -168,7 +168,7 @@ fn a_light_that_moves_changes_no_vertex_that_is_uploaded() {
         scene.lights[0].position.x += x;
         let frame = session.render(scene, with(Technique::ZFail, settings)).expect("a frame");
         let volumes = frame.plan.meshes.iter().filter(|mesh| mesh.name.starts_with("volume of"));
-        let told = |plan: &FramePlan| plan.to_string();
+        let text = |plan: &FramePlan| plan.to_string();
         let hashes: Vec<_> = volumes
             .clone()
             .map(|mesh| {
@@ -177,7 +177,7 @@ fn a_light_that_moves_changes_no_vertex_that_is_uploaded() {
             })
             .collect();
         let made: Vec<_> = volumes.map(|mesh| mesh.vertices.hash()).collect();
-        assert_eq!(told(&frame.plan).contains("by its vertex shader carried"), settings == [BY_SHADER]);
+        assert_eq!(text(&frame.plan).contains("by its vertex shader carried"), settings == [BY_SHADER]);
         (hashes, made)
     };
     let [(uploaded, made), (again, moved)] = [0.0, 0.3].map(|x| at(x, &[BY_SHADER]));
@@ -186,18 +186,18 @@ fn a_light_that_moves_changes_no_vertex_that_is_uploaded() {
     assert!(uploaded.iter().zip(&again).all(|(one, other)| one != other));
 }
 
-/// Where lines of sight are parallel the count begins at the far end, of triangles that the CPU knows.
+/// Where view rays are parallel the count begins at the far end, of triangles that the CPU knows.
 #[test]
-fn parallel_lines_of_sight_are_left_to_the_cpu() {
+fn parallel_rays_are_left_to_the_cpu() {
     let mut session = session();
     let mut scene = opened("tori");
     let half_height = scene.camera.half_height_at_target();
     scene.camera = Camera { projection: Projection::Orthographic { half_height }, ..scene.camera };
-    let told = |capture: &Capture| {
+    let left_to_cpu = |capture: &Capture| {
         capture.left_out.iter().filter(|left| left.decision == Some(Decision::VertexExtrusion)).count()
     };
     let captures = both(&mut session, &scene, Technique::ZFail, &[]);
-    assert_eq!(captures.each_ref().map(told), [0, scene.lights.len()]);
+    assert_eq!(captures.each_ref().map(left_to_cpu), [0, scene.lights.len()]);
     assert!(labels(&captures[0]) == labels(&captures[1]) && other_counts(&captures)[0] == 0);
     // Z-pass begins at nothing, and no sentence says that it does.
     let in_front = both(&mut session, &scene, Technique::ZPass, &[]);
@@ -206,7 +206,7 @@ fn parallel_lines_of_sight_are_left_to_the_cpu() {
     assert!(left.because.contains("no side is seen edge-on") && !left.because.contains("begins"), "{}", left.because);
     // A volume that ends has nothing at infinity.
     let finite = both(&mut session, &scene, Technique::ZFail, &[("extrusion", "finite:4")]);
-    assert_eq!(finite.each_ref().map(told), [0, 0]);
+    assert_eq!(finite.each_ref().map(left_to_cpu), [0, 0]);
     assert!(finite[1].left_out.iter().all(|left| left.decision != Some(Decision::AwayTriangles)));
     assert!(finite[1].steps.iter().flat_map(|step| &step.draws).any(|draw| draw.part == DrawPart::Caps));
 }

@@ -44,9 +44,9 @@ fn recordings_that_are_here_are_imported() {
         assert_makes_what_was_stored(&frame);
         if recording(name).is_dir() {
             // Another driver may round otherwise: what is drawn and how is the same.
-            let [found, kept] =
+            let [found, stored] =
                 [frame, import::read(&recording(name)).expect("a frame")].map(|frame| import::list(&frame));
-            assert!(found.lines().skip(1).eq(kept.lines().skip(1)), "{name}: {found}\n{kept}");
+            assert!(found.lines().skip(1).eq(stored.lines().skip(1)), "{name}: {found}\n{stored}");
         }
     }
 }
@@ -62,7 +62,7 @@ fn a_list_reads_no_pictures() {
     assert!(states.events.iter().all(|event| event.after == RawContents::default()));
 }
 
-/// Clip space with its origin at the top, depth turned round, strips and fans that start again, instances, masks, a cube.
+/// Clip space with its origin at the top, depth reversed, strips and fans that start again, instances, masks, a cube.
 #[test]
 fn opengl_as_few_use_it_is_the_right_way_round() {
     let frame = record(&[PYTHON, &recording("odd.py").display().to_string()], 60).expect("a frame");

@@ -44,8 +44,8 @@ fn broken_files_are_refused_or_read() {
         let kind = kind(part, &home.join("whole"));
         // After what needs a GPU: its driver maps more than this.
         limit_memory();
-        let told = run(&kind, &home.join("broken"));
-        println!("{part}: {told}");
+        let outcome = run(&kind, &home.join("broken"));
+        println!("{part}: {outcome}");
         fs::remove_dir_all(&home).expect("removed");
     });
 }
@@ -91,7 +91,7 @@ fn run(kind: &Kind, place: &Path) -> String {
     )
 }
 
-/// Of what is taken from here on.
+/// Limits the memory that the process may take from here on.
 fn limit_memory() {
     let status = fs::read_to_string("/proc/self/status").expect("Linux");
     let line = status.lines().find_map(|line| line.strip_prefix("VmSize:")).expect("its address space");
@@ -101,7 +101,7 @@ fn limit_memory() {
     rustix::process::setrlimit(rustix::process::Resource::As, limit).expect("a limit");
 }
 
-/// Files of a kind, those that are made put into `made`.
+/// The files of one kind: those of the repository, and others that are made and written into the folder `made`.
 fn kind(part: &str, made: &Path) -> Kind {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let scene = |file: &Path| open(&OpenSpec::new(file.to_string_lossy())).is_ok();
@@ -179,7 +179,7 @@ fn copy(from: &Path, to: &Path) {
 
 /// The bytes with one to eight things wrong.
 fn mutated(mut bytes: Vec<u8>, others: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
-    // JSON within binary glTF keeps its length told, or nothing behind the head is ever looked at.
+    // JSON within binary glTF keeps its stated length, or nothing behind the head is ever looked at.
     let json = glb_json(&bytes);
     for _ in 0..1 + random.below(8) {
         let range = match &json {
@@ -213,8 +213,8 @@ fn mutated(mut bytes: Vec<u8>, others: &[Vec<u8>], random: &mut Random) -> Vec<u
                 let from = random.below(bytes.len() as u32) as usize;
                 let end = (from + 1 + random.below(60) as usize).min(bytes.len());
                 let part = bytes[from..end].to_vec();
-                let room = (at + part.len()).min(bytes.len());
-                bytes.splice(at..room, part);
+                let until = (at + part.len()).min(bytes.len());
+                bytes.splice(at..until, part);
             }
         }
         if bytes.is_empty() {
@@ -224,7 +224,7 @@ fn mutated(mut bytes: Vec<u8>, others: &[Vec<u8>], random: &mut Random) -> Vec<u
     bytes
 }
 
-/// Puts another number over the next one.
+/// Writes another number over the next one.
 fn number(bytes: &mut Vec<u8>, at: usize, grows: bool, random: &mut Random) {
     const NUMBERS: [&str; 16] = [
         "0",
@@ -251,8 +251,8 @@ fn number(bytes: &mut Vec<u8>, at: usize, grows: bool, random: &mut Random) {
     if grows {
         bytes.splice(start..end, other.iter().copied());
     } else {
-        let room = end - start;
-        let padded = (0..room).map(|index| other.get(index).copied().unwrap_or(b' '));
+        let length = end - start;
+        let padded = (0..length).map(|index| other.get(index).copied().unwrap_or(b' '));
         let padded: Vec<u8> = padded.collect();
         bytes[start..end].copy_from_slice(&padded);
     }

@@ -58,13 +58,13 @@ fn samples_open_with_their_objects_lights_and_cameras_and_what_is_not_shown_is_n
         let ahead = (scene.camera.target - scene.camera.eye).normalize();
         let is_ours = ahead.distance(-DVec3::new(0.42, 0.44, 0.8).normalize()) < 1e-9;
         assert_eq!(is_ours, !has_camera, "{name}");
-        let told = not_taken(&scene);
-        for one in &told {
+        let not_taken = not_taken(&scene);
+        for one in &not_taken {
             let is_expected = words.iter().any(|words| one.what.starts_with(words));
             assert!(is_expected && !one.because.contains('\n'), "{name}: {one:?}");
         }
-        let is_told = |words: &&str| told.iter().any(|one| one.what.starts_with(words));
-        assert!(words.iter().all(is_told), "{name}: {told:?}");
+        let is_reported = |words: &&str| not_taken.iter().any(|one| one.what.starts_with(words));
+        assert!(words.iter().all(is_reported), "{name}: {not_taken:?}");
     }
     let names = fs::read_dir(sample("")).expect("samples").map(|entry| entry.expect("a file").file_name());
     let scenes = names.filter(|name| Path::new(name).extension().is_some_and(|kind| kind == "glb" || kind == "gltf"));
@@ -121,7 +121,7 @@ fn nodes_are_placed_in_double_precision_along_the_tree() {
     let scene = scene("beside.gltf");
     let small = scene.objects.iter().find(|object| object.name == "small").expect("an object");
     let turn = |degrees: f64| DQuat::from_rotation_y(degrees.to_radians());
-    // Three nodes above each other, each turned and scaled in the one below.
+    // Three nodes above each other, each rotated and scaled in the one below.
     let corner = DVec3::splat(0.5);
     let expected = DVec3::new(0.0, 0.5, 0.0)
         + turn(15.0)
@@ -141,7 +141,7 @@ fn lights_keep_their_places_colours_and_shares() {
     let scene = scene("lights.glb");
     let [lamp, sun] = &scene.lights[..] else { panic!("two lights") };
     assert_eq!((lamp.position.truncate(), lamp.range), (DVec3::new(1.5, 4.0, 1.0), Some(20.0)));
-    // Turned by −60° about x, what shines along −z shines down and forwards.
+    // Rotated by −60° about x, what shines along −z shines down and forwards.
     let towards = DVec3::new(0.0, 60_f64.to_radians().sin(), 60_f64.to_radians().cos());
     assert!(sun.position.truncate().distance(towards) < 1e-6 && sun.is_directional());
     assert_eq!(sun.color, [0.6, 0.7, 1.0]);
@@ -198,7 +198,7 @@ fn pictures_lie_as_the_file_says() {
         texture.picture.linear_at([0.05, 0.95], 0.0, true).map(|channel| (channel * 100.0).round()),
         [72.0, 1.0, 1.0]
     );
-    // Three times as often, and turned: as KHR_texture_transform's matrices have it.
+    // Three times as often, and rotated: as KHR_texture_transform's matrices have it.
     let floor = &scene.objects[0].mesh;
     let uvs = floor.corner_uvs().expect("places")[0].expect("three");
     let (sin, cos) = 0.5_f32.sin_cos();
@@ -370,7 +370,7 @@ fn what_primitives_share_is_read_once_and_what_many_nodes_show_is_limited() {
     assert!(error.contains("has more than 8388608 vertices, those of all its instances"), "{error}");
 }
 
-/// Pictures within files are told apart by file.
+/// Pictures within files are distinguished by file.
 #[test]
 fn two_files_in_one_scene_show_their_own_pictures() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -454,8 +454,9 @@ fn what_turns_and_can_t_is_named_and_a_sun_on_its_own_node_turns() {
     ];
     for (nodes, target, words) in cases {
         let scene = opened(&put(folder.path(), "turn.gltf", &turning(nodes, &[target]))).expect("a scene");
-        let told: Vec<String> = scene.not_taken.iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
-        assert!(told.iter().any(|told| told.starts_with(words)) && !scene.is_animated(), "{words}: {told:?}");
+        let not_taken: Vec<String> =
+            scene.not_taken.iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
+        assert!(not_taken.iter().any(|line| line.starts_with(words)) && !scene.is_animated(), "{words}: {not_taken:?}");
     }
 }
 

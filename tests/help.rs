@@ -1,4 +1,4 @@
-//! `help` from outside: what it explains is held against the program itself, so that no page goes stale.
+//! `help` from outside: what it explains is compared with the program itself, so that no page goes stale.
 
 use crate::commands::{assert_fails, done, folder, printed_json, read_json, run, text};
 use serde_json::Value;

@@ -35,7 +35,7 @@ fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
     assert_makes_what_was_stored(&frame);
 }
 
-/// What wgpu draws on Vulkan: depth as a float and turned round, a viewport of negative height, light caps.
+/// What wgpu draws on Vulkan: depth as a float and reversed, a viewport of negative height, light caps.
 #[test]
 fn our_own_z_fail_comes_out_whole() {
     let frame = import::read(&recording("own")).expect("a frame");
@@ -150,7 +150,7 @@ fn a_folder_made_by_hand_is_read() {
 }
 
 #[test]
-fn a_picture_may_be_put_together_of_pieces() {
+fn a_picture_may_be_assembled_from_pieces() {
     let frame = import::read(
         made(|document, blobs| {
             document["textures"][0]["size"] = json!([2, 4]);
@@ -337,9 +337,9 @@ fn an_index_that_restarts_has_all_bits() {
     assert_eq!(draws(&frame.expect("a frame"))[0].triangles, [[0, 1, 2], [2, 1, 0]]);
 }
 
-/// RenderDoc's bytes for Vulkan: stencil above depth, rows from the top, and unused room at the end.
+/// RenderDoc's bytes for Vulkan: stencil above depth, rows from the top, and unused padding at the end.
 #[test]
-fn depth_of_24_bits_with_stencil_has_room_after_it_on_vulkan() {
+fn depth_of_24_bits_with_stencil_has_padding_after_it_on_vulkan() {
     let frame = import::read(
         made(|document, blobs| {
             document["api"] = json!("Vulkan");
@@ -360,7 +360,7 @@ fn next(state: &mut u64) -> usize {
     (*state >> 11) as usize
 }
 
-/// Breaks bytes here and there, cuts off, or puts another number in place of one.
+/// Breaks bytes here and there, cuts off, or writes another number in place of one.
 fn broken(mut bytes: Vec<u8>, state: &mut u64) -> Vec<u8> {
     const NUMBERS: [&str; 7] = ["0", "-1", "1", "255", "4294967295", "18446744073709551615", "1e39"];
     match next(state) % 4 {

@@ -1,4 +1,4 @@
-//! Frames leave nothing behind, and hold little while they run.
+//! Frames leave nothing behind, and need little memory while they run.
 
 use crate::common::{apart, opened};
 use stencilscope::session::{CaptureRequest, Session};
@@ -6,18 +6,18 @@ use stencilscope::technique::{Choice, Technique};
 
 /// Captures before it is measured: caches fill, and the driver compiles.
 const WARM_UP: usize = 10;
-/// How often it is measured. What a frame keeps grows each time; what an allocator takes for its own ends, up to 20 MB
-/// on two cores and once more than 40 on a busy machine, does not.
+/// How often it is measured. What a frame retains grows each time; what an allocator takes for its own ends, up to 20
+/// MB on two cores and once more than 40 on a busy machine, does not.
 const ROUNDS: usize = 3;
 /// Captures of a round.
 const FRAMES: usize = 30;
-/// What a round's frames may keep together, bytes. Lavapipe (Mesa 22.3) kept 8 MB of each while it compiled draws by
-/// their uniform values.
+/// What a round's frames may retain together, bytes. Lavapipe (Mesa 22.3) retained 8 MB of each while it compiled draws
+/// by their uniform values.
 const MOST_CACHED: u64 = 30 << 20;
 
 /// What stepping draw by draw through every pass may take, bytes. It takes 222 MiB; 352 where pictures share no rows,
-/// 639 where all copies of a frame are held before any is looked at.
-const MOST_HELD: u64 = 300 << 20;
+/// 639 where all copies of a frame are in memory before any is looked at.
+const MOST_RESIDENT: u64 = 300 << 20;
 
 /// A line of this process's memory, bytes: `RssAnon` is what is not shared, `VmHWM` the most that was ever there.
 fn memory(line: &str) -> u64 {
@@ -35,18 +35,18 @@ fn captures_keep_no_memory() {
         let request = CaptureRequest::new(Choice::new(technique), [64, 48]);
         let mut run = |frames: usize| {
             for frame in 0..frames {
-                let moment = scene.at(frame as f64 * 0.1);
-                session.capture(&moment, &request).expect("a capture");
+                let posed = scene.at(frame as f64 * 0.1);
+                session.capture(&posed, &request).expect("a capture");
             }
         };
         run(WARM_UP);
-        let kept = [(); ROUNDS].map(|()| {
+        let cached = [(); ROUNDS].map(|()| {
             let before = memory("RssAnon");
             run(FRAMES);
             memory("RssAnon").saturating_sub(before)
         });
-        let least = kept.into_iter().min().expect("a round");
-        assert!(least < MOST_CACHED, "{part}: {kept:?} bytes of {FRAMES} frames each");
+        let least = cached.into_iter().min().expect("a round");
+        assert!(least < MOST_CACHED, "{part}: {cached:?} bytes of {FRAMES} frames each");
     });
 }
 
@@ -61,7 +61,7 @@ fn draws_hold_few_pictures_at_once() {
         for step in 0..capture.steps.len() {
             capture = capture.with_draws(&session.step_draws(&plan, &capture, step).expect("draws"));
         }
-        let held = memory("VmHWM").saturating_sub(before);
-        assert!(held < MOST_HELD, "{} MiB", held >> 20);
+        let peak = memory("VmHWM").saturating_sub(before);
+        assert!(peak < MOST_RESIDENT, "{} MiB", peak >> 20);
     });
 }

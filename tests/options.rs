@@ -1,5 +1,5 @@
-//! Every option is a lesson: the right form beside the famous wrong one, each counted on scenes
-//! whose answers are known in closed form.
+//! Every option is a lesson: the right setting beside the famous wrong one, each counted on scenes whose answers are
+//! known in closed form.
 
 mod counts;
 mod depth;

@@ -152,7 +152,7 @@ fn differences(page: &Value, program: &Value, rounding: f64) -> Vec<String> {
     found
 }
 
-/// Holds the histories of 100 random pixels against those of the program, and says how long the slowest took, in
+/// Compares the histories of 100 random pixels with those of the program, and says how long the slowest took, in
 /// milliseconds.
 fn assert_same_histories(made: &mut Made, name: &str) -> f64 {
     let (rounding, plan) = (16.0 / f64::from(0xff_ffff), made.frame.plan.clone());
@@ -218,7 +218,7 @@ fn depths_are_those_of_the_gpu_to_the_last_bit() {
     }
 }
 
-/// A bit of the stored stencil turned over: the page says at which pixel.
+/// A bit of the stored stencil is inverted: the page says at which pixel.
 #[test]
 fn where_the_page_computes_something_else_it_says_so() {
     let mut made = tori();
@@ -279,7 +279,7 @@ fn nothing_is_loaded_and_nothing_could_be() {
         .collect();
     assert_eq!(asked, Vec::<String>::new());
     assert_eq!(browser.complaints(), Vec::<String>::new());
-    // The policy keeps away what an extension, or a mistake, could add.
+    // The policy blocks what an extension, or a mistake, could add.
     for attempt in [
         "fetch('http://127.0.0.1:9/').then(() => 'loaded', () => 'refused')",
         "new Promise((done) => { const one = new Image(); one.onload = () => done('loaded'); one.onerror = () => done('refused'); one.src = 'http://127.0.0.1:9/'; })",
@@ -367,8 +367,8 @@ fn a_clicked_texel_reports_the_pixels_that_read_it_and_a_pixel_what_it_is_compar
             browser.click_at(texel.at, [64, 64]);
             let of_texel = readers.of_texel(texel);
             assert!(of_texel.contains(&pixel));
-            let told: String = browser.text(".texel p").chars().filter(char::is_ascii_digit).collect();
-            assert_eq!(told, of_texel.len().to_string(), "{texel:?}");
+            let digits: String = browser.text(".texel p").chars().filter(char::is_ascii_digit).collect();
+            assert_eq!(digits, of_texel.len().to_string(), "{texel:?}");
             browser.evaluate("document.querySelector('.texel button').click()");
             let marks = browser.evaluate("document.querySelector('#marks .linked').getAttribute('d')");
             let expected: String = of_texel.iter().map(|[x, y]| format!("M{x} {y}h1v1h-1z")).collect();
@@ -378,7 +378,7 @@ fn a_clicked_texel_reports_the_pixels_that_read_it_and_a_pixel_what_it_is_compar
     }
 }
 
-/// What can be focused, in words that tell one from the other, where it is shown and not switched off.
+/// What can be focused, in words that distinguish one from the other, where it is shown and not switched off.
 const CONTROLS: &str = "(() => { const all = [...document.querySelectorAll('button, input, select, summary, [tabindex]')]; \
     const shown = all.filter((one) => !one.disabled && one.checkVisibility()); \
     shown.forEach((one, at) => { one.dataset.at = at; }); return shown.length; })()";

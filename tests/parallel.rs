@@ -1,4 +1,4 @@
-//! Cameras whose lines of sight are parallel: every volume counted right, from anywhere.
+//! Parallel projection: every volume counted right, from anywhere.
 
 use crate::common::random::Random;
 use crate::common::{
@@ -98,7 +98,7 @@ fn edges_seen_end_on_under_the_light_are_no_matter() {
     }
 }
 
-/// Over a large floor, straight down, with a box under the lamp: its whole lit side is met by the lamp's own ray.
+/// Over a large floor, straight down, with a box under the lamp: the lamp's own ray hits the whole lit side of the box.
 fn over_a_box() -> Scene {
     let scene = from_above(vec![cuboid("box", [-0.9, 1.0, -0.7], [0.8, 2.0, 1.0])]);
     let projection = Projection::Orthographic { half_height: 5.0 };
@@ -111,7 +111,7 @@ fn clears(plan: &FramePlan) -> Vec<u8> {
     volumes.filter_map(|pass| pass.depth_stencil.as_ref()?.clear_stencil).collect()
 }
 
-/// The floor is nobody's shadow's end: only what the ray meets is counted, once for each casting triangle.
+/// No shadow ends on the floor: only what the ray hits is counted, once for each casting triangle.
 #[test]
 fn the_count_begins_at_what_the_lamps_ray_along_the_view_meets() {
     let mut session = session();
@@ -123,11 +123,11 @@ fn the_count_begins_at_what_the_lamps_ray_along_the_view_meets() {
         assert_eq!(wrong(&judged), 0, "{casters}");
         let drawn = plan.passes.iter().flat_map(|pass| &pass.draws);
         assert!(drawn.filter(|draw| draw.part == DrawPart::DarkCap).count() == 0, "a line at infinity");
-        let kept = plan.left_out.iter().filter(|left| left.decision == Some(Decision::DarkCap)).count();
-        assert_eq!(kept, 2, "the floor's and the box's");
+        let left_out = plan.left_out.iter().filter(|left| left.decision == Some(Decision::DarkCap)).count();
+        assert_eq!(left_out, 2, "the floor's and the box's");
         clears(&plan)
     };
-    // The floor casts too: one of its two triangles is met, and the box's lit side, or both sides.
+    // The floor casts too: the ray hits one of its two triangles, and the box's lit side, or both sides.
     assert_eq!(began("light-facing", &scene), [2]);
     assert_eq!(began("all", &scene), [3]);
     let mut aside = scene.clone();
@@ -139,7 +139,7 @@ fn the_count_begins_at_what_the_lamps_ray_along_the_view_meets() {
 /// From within a shadow, and with the near plane across the scene: z-pass is wrong, as of a pinhole, and
 /// z-pass-plus counts what the near plane begins with.
 #[test]
-fn z_pass_plus_counts_what_parallel_lines_of_sight_begin_in() {
+fn z_pass_plus_counts_what_parallel_rays_begin_in() {
     let mut session = session();
     let scene = builtin::ALL.iter().find(|builtin| builtin.name == "inside").expect("a scene");
     let scene = scene.scene().expect("a scene");
@@ -241,7 +241,7 @@ fn a_field_of_view_is_refused_where_there_is_none() {
     assert_eq!(code, Some(0), "{line}");
 }
 
-/// The eye is over a board and the near plane under it: what lines of sight begin in is asked there.
+/// The eye is over a board and the near plane under it: which volumes the view rays begin in is asked there.
 #[test]
 fn z_pass_begins_with_the_volumes_around_the_middle_of_the_near_plane() {
     let mut session = session();
@@ -259,9 +259,9 @@ fn z_pass_begins_with_the_volumes_around_the_middle_of_the_near_plane() {
     let mut wrong_from = |start: &str| {
         let request = request_with(Technique::ZPass, &[("start", start)], SIZE);
         let capture = judged_by(&mut session, &scene, &request);
-        let told =
+        let is_reported =
             capture.steps.iter().any(|step| step.purpose.contains("1, for the volumes around the middle of the near"));
-        assert_eq!(told, start == "eye-count");
+        assert_eq!(is_reported, start == "eye-count");
         wrong(&capture)
     };
     assert_eq!(wrong_from("eye-count"), 0);

@@ -110,7 +110,7 @@ fn a_full_cache_gives_the_plan_of_an_empty_one() {
                 seen.push(sides(&full));
             }
         }
-        // What is kept must be told apart by them.
+        // Several plans differ by their sides: the cache has to distinguish them.
         assert!(seen.len() >= 4, "{technique:?}: {} kinds of surfaces", seen.len());
     }
 }
@@ -213,7 +213,7 @@ fn of_one_pass_only_that_one_is_split_and_nothing_runs_after_it() {
     assert_eq!(plan.split_pass_at_draws(99), plan);
 }
 
-/// Files count from 0, sentences from 1: a light has its one name wherever a plan is told.
+/// Files count from 0, sentences from 1: a light has its one name wherever a plan is printed.
 #[test]
 fn a_light_has_one_name_in_the_plans_text() {
     let scene = opened("two-lights");

@@ -44,7 +44,7 @@ const SAMPLES: [(&str, usize, usize, Shading, &[&str]); 4] = [
 
 #[test]
 fn samples_open_closed_and_right_side_out_and_what_is_not_shown_is_named() {
-    for (name, vertices, triangles, shading, told) in SAMPLES {
+    for (name, vertices, triangles, shading, reported) in SAMPLES {
         let scene = scene(name);
         let mesh = model(&scene);
         assert_eq!((mesh.positions().len(), mesh.triangles().len()), (vertices, triangles), "{name}");
@@ -52,7 +52,7 @@ fn samples_open_closed_and_right_side_out_and_what_is_not_shown_is_named() {
         assert!(is_closed(mesh) && volume(&scene, &scene.objects[0].name) > 0.1, "{name}");
         let not_taken: Vec<String> =
             mesh.not_taken().iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
-        assert_eq!(not_taken, told, "{name}");
+        assert_eq!(not_taken, reported, "{name}");
     }
     assert_eq!(crate::common::names(&sample("")).len(), SAMPLES.len());
 }
@@ -308,7 +308,7 @@ fn places_in_a_picture_are_of_corners_or_of_vertices() {
     let text =
         with("property float s\nproperty float t\n", &["0 0", "nan 0", "1 1", "0 1"], faces, "3 0 1 2\n3 0 2 3\n");
     assert_eq!(uvs(&text).0, [None, expected[1]]);
-    // Of a face's corners; where it has none, of vertices.
+    // Texture coordinates of a face's corners; where a face has none, those of its vertices.
     let of_corners =
         "element face 2\nproperty list uchar int vertex_index\nproperty list uchar float texcoord\nend_header\n";
     let rows = "3 0 1 2 6 .5 0 .5 .5 .5 1\n3 0 2 3 0\n";

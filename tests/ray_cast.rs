@@ -8,8 +8,8 @@ use stencilscope::scene::{Camera, Light, Material, Object, Pose, Scene};
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
-/// Triangles through each other, open, unoriented, sharing some vertices, some in a turned and
-/// mirrored object; the eye and the light anywhere, among them too.
+/// Triangles through each other, open, unoriented, sharing some vertices, some in a rotated and mirrored object; the
+/// eye and the light anywhere, among them too.
 fn soup(seed: u64) -> Scene {
     let mut random = Random::new(seed);
     let points: Vec<[f64; 3]> = (0..14).map(|_| random.within(1.5).to_array()).collect();
@@ -19,7 +19,7 @@ fn soup(seed: u64) -> Scene {
     let mut scene = from_above(vec![Object::new("soup", mesh(&points, &triangles), Material::default())]);
     scene.objects[0].pose.translate.y = -2.0;
     if seed.is_multiple_of(3) {
-        // Turned, squeezed and sometimes mirrored.
+        // Rotated, squeezed and sometimes mirrored.
         let scale = random.within(1.0).map(|s| if s.abs() < 0.2 { 0.2 } else { s });
         scene.objects[1].pose = Pose { rotate_degrees: random.within(180.0), scale, ..Pose::default() };
     }
@@ -31,7 +31,7 @@ fn soup(seed: u64) -> Scene {
     scene
 }
 
-fn held_against_rays(session: &mut Session, scene: &Scene, size: [u32; 2]) -> Difference {
+fn compared_with_rays(session: &mut Session, scene: &Scene, size: [u32; 2]) -> Difference {
     let capture = session.capture(scene, &request(Technique::ZFail, size)).expect("a capture");
     difference(scene, &capture, 0)
 }
@@ -41,7 +41,7 @@ fn z_fail_has_no_wrong_pixel_on_random_soups() {
     let mut session = session();
     let mut compared = 0;
     for seed in 1..=150 {
-        let found = held_against_rays(&mut session, &soup(seed), [64, 48]);
+        let found = compared_with_rays(&mut session, &soup(seed), [64, 48]);
         assert_eq!(found.wrong, 0, "seed {seed}: {found:?}");
         compared += found.compared;
     }

@@ -93,7 +93,7 @@ fn a_point_of_a_surface_that_is_seen_at_a_small_angle_is_not_taken_for_hidden() 
 }
 
 #[test]
-fn assertions_on_passes_tell_lights_apart() {
+fn assertions_on_passes_distinguish_lights() {
     let mut frame = rendered(Technique::ZFail);
     let below = frame.at_point([0.0, 0.0, 0.45]);
     below.stencil_of(0, "volumes", 2).stencil_of(1, "volumes", 0).stencil_after("ambient", 0);

@@ -31,7 +31,7 @@ fn draws(capture: &Capture) -> Vec<&DrawSummary> {
     capture.steps.iter().flat_map(|step| &step.draws).collect()
 }
 
-/// What the stencil holds after the last step that has one.
+/// The stencil after the last step that has one.
 fn last_stencil(capture: &Capture) -> Vec<u8> {
     let frames = (0..capture.steps.len()).rev().filter_map(|step| capture.frame_at(step));
     let stencil = frames.filter_map(|frame| frame.stencil.as_ref()).next().expect("a stencil");
@@ -90,7 +90,8 @@ fn the_next_frame_is_recorded_without_a_closure() {
     assert!(!target.exists(), "one frame and no more");
 }
 
-/// Every frame between two moments is recorded in a folder of its own, with what it took; an upload is no frame.
+/// Every frame between the start and the end of a series is recorded in a folder of its own, with what it took; an
+/// upload is no frame.
 #[test]
 fn a_series_has_each_frame_and_what_it_cost() {
     let renderer = Renderer::new(record::instance, Fault::None);

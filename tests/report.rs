@@ -1,4 +1,4 @@
-//! `report` from outside: all its forms, and what it refuses.
+//! `report` from outside: all its output formats, and what it refuses.
 
 use crate::commands::{assert_fails, done, folder, read_json, run, text};
 use crate::common::{choice, from_above, opened, session, square};
@@ -29,7 +29,7 @@ fn untimed(json: &str) -> serde_json::Value {
     for list in ["rows", "summary"] {
         for row in document[list].as_array_mut().into_iter().flatten() {
             let row = row.as_object_mut().expect("a row");
-            // Who is on the front depends on times.
+            // Which rows are on the Pareto front depends on times.
             ["frame_ms", "gpu_ms", "setup_ms", "pareto", "course"].iter().for_each(|key| drop(row.remove(*key)));
         }
     }
@@ -106,7 +106,7 @@ fn a_sweep_measures_every_value() {
         sweep("size=20x10,40x20", &["-t", "none"]).iter().map(|row| row.size).collect::<Vec<_>>(),
         [[20, 10], [40, 20]]
     );
-    // Only what has a map, and each form of it.
+    // Only techniques that have a map, with each kind of map.
     let maps = sweep("map-size=64,128", &[]);
     assert!(maps.len() > 4 && maps.iter().all(|row| row.settings.contains_key("size")));
     let refused = |words: &[&str], why: &str| {
@@ -133,7 +133,7 @@ fn frames_that_move_are_counted_with_their_set_up() {
         assert!(of_frame.setup_ms > 0.0 && of_frame.total_ms > moving.frame_ms.min, "{of_frame:?}");
         assert!((0.0..1.0).contains(&of_frame.setup_share) && moving.frame_ms.runs == 4);
         assert!(moving.cost_ms() == of_frame.total_ms && still.cost_ms() == still.frame_ms.median);
-        // Of four frames.
+        // The counts are sums over four frames.
         assert!(moving.wrong_color.is_some_and(|all| still.wrong_color.is_some_and(|one| all >= 3 * one)));
         assert!(
             moving.error.compared > 3 * still.error.compared,
@@ -230,17 +230,17 @@ fn a_report_is_written_in_every_form() {
 }
 
 #[test]
-fn rows_for_which_there_is_no_room_are_left_out_and_the_others_are_as_they_were() {
+fn rows_beyond_the_memory_budget_are_left_out_and_the_others_are_as_they_were() {
     let mut session = session();
     let scene = opened("table");
     let large = choice(Technique::ShadowMap, &[("size", "4096")]);
     let choices = vec![Choice::new(Technique::ZFail), large, Choice::new(Technique::Planar)];
     let what = Measurement { choices, size: [80, 60], runs: 2 };
-    let mut measured = |room| {
-        session.set_memory_budget(room);
+    let mut measured = |budget| {
+        session.set_memory_budget(budget);
         session.measure(&scene, &what, &Progress::default()).expect("rows")
     };
-    // The map alone is 64 MiB: where there is room, it is set up anew for each of its frames.
+    // The map alone is 64 MiB: where the budget allows it, it is set up anew for each of its frames.
     let (all, few) = (measured(None), measured(Some(32 << 20)));
     let row = |row: &MeasuredTechnique| (row.choice.technique(), row.error, row.frames.len(), row.bytes);
     assert_eq!(all.iter().map(|one| one.choice.clone()).collect::<Vec<_>>(), what.choices);

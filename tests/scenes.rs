@@ -145,7 +145,7 @@ fn assert_eye_is_free(scene: &Scene) {
         for point in near_points(&scene.camera, 16.0 / 9.0) {
             assert_eq!(crossings(object, eye, point), 0, "{}: {} is cut", scene.name, object.name);
         }
-        // In no particular direction, so that it meets no edge.
+        // In no particular direction, so that it hits no edge.
         let away = eye + DVec3::new(0.317, 0.841, -0.439) * 1e4;
         let is_solid = open_edges(&object.mesh) == 0 && volume(&object.mesh) > 0.0;
         let is_outside = crossings(object, eye, away).is_multiple_of(2);

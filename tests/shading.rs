@@ -1,4 +1,4 @@
-//! The terms of shading that a pixel is told, held against the picture that the GPU made of them.
+//! The terms of shading that are reported for a pixel, compared with the picture that the GPU made of them.
 
 use crate::commands::{assert_fails, folder, printed_json, run, text};
 use crate::common::shade::{shaded, srgb};
@@ -66,7 +66,7 @@ fn the_terms_of_a_pixel_add_up_to_its_colour() {
             .seen_from([0.3, 4.0, 3.0], [0.0; 3])
             .build();
         assert_terms_make_the_picture(&mut rendered(&scene, Technique::ZFail, &[]), "checks");
-        // Lines of sight that are parallel have highlights elsewhere.
+        // Parallel view rays have highlights elsewhere.
         let mut scene = scene;
         scene.camera.projection = Projection::Orthographic { half_height: 2.0 };
         assert_terms_make_the_picture(&mut rendered(&scene, Technique::ZFail, &[]), "checks, parallel");
@@ -127,8 +127,8 @@ fn pixel_reports_the_cosine_and_explains_each_key() {
     let found = shaded(&mut frame, [x, y]).expect("a surface");
     let at = format!("{x},{y}");
     let arguments = ["pixel", "spheres", "-t", "z-fail", "--set", "shading=gouraud", "--size", "96x72", "--at", &at];
-    let told = text(&run(folder.path(), &arguments).stdout);
-    assert!(told.contains(&found.text()), "{}\nis not in\n{told}", found.text());
+    let printed = text(&run(folder.path(), &arguments).stdout);
+    assert!(printed.contains(&found.text()), "{}\nis not in\n{printed}", found.text());
     let document = printed_json(folder.path(), &[&arguments[..], &["--json"]].concat());
     assert_eq!(document["shading"]["lights"][0]["cosine"].as_f64(), Some(found.lights[0].cosine));
     assert!(document["shading"]["lights"][0]["corner_cosines"].is_array());

@@ -24,8 +24,8 @@ const STORED_DEPTH: f32 = 0.5;
 /// Fails and passes `Greater` against the stored depth.
 const DEPTHS: [f32; 2] = [0.25, 0.75];
 
-/// Every compare function meets every operation in each place, on each face, with each pair of
-/// masks: the three places take operations that are shifted against each other.
+/// Every compare function is combined with every operation in each place, on each face, with each pair of masks: the
+/// three places take operations that are shifted against each other.
 fn states() -> Vec<RasterState> {
     let mut states = Vec::new();
     for compare in COMPARES {
@@ -171,8 +171,8 @@ fn the_machine_agrees_with_the_gpu_on_every_function_operation_place_face_refere
 /// Fragments below, at and above the stored depth.
 const COMPARED_DEPTHS: [f32; 3] = [0.25, STORED_DEPTH, 0.75];
 
-/// Every depth compare function meets a smaller, an equal and a larger depth, with and without
-/// writing: the count tells whether the test passed, the depth what was stored.
+/// Every depth compare function is tried with a smaller, an equal and a larger depth, with and without writing: the
+/// count shows whether the test passed, the depth what was stored.
 #[test]
 fn the_machine_agrees_with_the_gpu_on_every_depth_test() {
     let count = StencilFace {

@@ -1,4 +1,4 @@
-//! Counts of fragments by how they fared, held against the history of single pixels.
+//! Counts of fragments by their outcome, compared with the history of single pixels.
 
 use crate::common;
 use stencilscope::capture::StepTests;

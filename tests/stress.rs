@@ -1,4 +1,4 @@
-//! Stress cases: the table is sound, the command tells what it found, and a wrong answer can't pass.
+//! Stress cases: the table is sound, the command reports what it found, and a wrong answer can't pass.
 
 mod command;
 mod faults;
@@ -325,8 +325,8 @@ fn a_grazed_floor_does_not_darken_itself() {
     }
 }
 
-/// Seeds that once had a wrong pixel (2 and 1 at 320 × 240), each at the edge of a grazed triangle: the bias of
-/// sides that hug it is what mends them.
+/// Seeds that once had a wrong pixel (2 and 1 at 320 × 240), each at the edge of a triangle that the light grazes: the
+/// bias of volume sides that are nearly coplanar with it fixes them.
 #[test]
 fn seeds_that_failed_hold() {
     let mut session = session();

@@ -1,4 +1,4 @@
-//! Pictures on surfaces: the colour changes by the texel that a ray meets, and nothing else of a frame does.
+//! Pictures on surfaces: the colour changes by the texel that a ray hits, and nothing else of a frame does.
 
 mod files;
 
@@ -225,8 +225,8 @@ fn a_picture_along_the_world_lies_where_it_is_said_to() {
     assert_eq!((look(true, [-3.5, -1.5]), look(false, [-0.5, -1.5])), ([false, false], [true, false]));
 }
 
-/// What a ray meets, computed from the board's own plane, is what the GPU shows. Mixed along the picture's lines and not
-/// in space, the middle of the board would show half of the ramp.
+/// The texel at the point that a ray hits, computed from the board's own plane, is what the GPU shows. If coordinates
+/// were interpolated along the picture's lines and not in space, the middle of the board would show half of the ramp.
 #[test]
 fn places_in_a_picture_are_in_perspective() {
     let scene = SceneBuilder::new("slanted")
@@ -287,7 +287,8 @@ fn the_terms_of_a_pixel_with_a_picture_add_up_to_its_colour() {
             for [x, y] in (2..SIZE[1]).step_by(4).flat_map(|y| (2..SIZE[0]).step_by(5).map(move |x| [x, y])) {
                 let Some(found) = shaded(&mut frame, [x, y]) else { continue };
                 let term = found.texture.as_ref().expect("a picture");
-                // Where a level is many texels larger than a pixel is wide, how a GPU tells how wide shows.
+                // Where the texels of a mip level are much larger than a pixel, differences in how GPUs compute the
+                // level are visible.
                 blurred += u32::from(term.level > 0.0);
                 let stored = last_color(&frame, [x, y]);
                 let lit = found.lights.iter().filter(|light| light.label == Some(PixelLabel::Lit));
@@ -334,8 +335,8 @@ fn a_folder_holds_the_pictures_and_runs_again_as_it_was() {
     let error = read_whole(&folder.path().join("z-fail")).expect_err("cut off").to_string();
     assert!(error.contains("texture000.png") && !error.contains('\n'), "{error}");
     let frame = folder.path().join("planar-texture/frame.json");
-    let told = std::fs::read_to_string(&frame).expect("text");
-    std::fs::write(&frame, told.replace("\"texture\":0", "\"texture\":7")).expect("broken");
+    let document = std::fs::read_to_string(&frame).expect("text");
+    std::fs::write(&frame, document.replace("\"texture\":0", "\"texture\":7")).expect("broken");
     let error = read_whole(&folder.path().join("planar-texture")).expect_err("no such texture").to_string();
     assert!(error.contains("its texture does not exist"), "{error}");
 }

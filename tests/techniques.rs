@@ -61,25 +61,25 @@ fn a_directional_light_throws_a_shadow_of_the_same_size() {
     }
 }
 
-/// Turned triangles, mirrored objects and open meshes cast like the closed, outward box.
+/// Flipped triangles, mirrored objects and open meshes cast like the closed, outward box.
 #[test]
 fn winding_and_holes_do_not_change_a_shadow() {
     let mut session = session();
     let reference = cuboid("caster", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]);
-    let turned = |keep: fn(usize) -> bool, turn: fn(usize) -> bool| {
+    let flipped = |keep: fn(usize) -> bool, flip: fn(usize) -> bool| {
         let triangles = reference.mesh.triangles().iter().enumerate().filter(|(index, _)| keep(*index));
         let triangles: Vec<[u32; 3]> =
-            triangles.map(|(index, &[a, b, c])| if turn(index) { [a, c, b] } else { [a, b, c] }).collect();
+            triangles.map(|(index, &[a, b, c])| if flip(index) { [a, c, b] } else { [a, b, c] }).collect();
         remeshed(&reference, &triangles)
     };
     let mirrored = Pose { scale: DVec3::new(-1.0, 1.0, 1.0), ..Pose::default() };
     let variants = [
         reference.clone(),
-        turned(|_| true, |_| true),
-        turned(|_| true, |index| index % 3 == 0),
+        flipped(|_| true, |_| true),
+        flipped(|_| true, |index| index % 3 == 0),
         Object { pose: mirrored, ..reference.clone() },
         // Without its bottom, triangles 4 and 5.
-        turned(|index| index != 4 && index != 5, |index| index % 2 == 0),
+        flipped(|index| index != 4 && index != 5, |index| index % 2 == 0),
     ];
     let expected = label_counts(&capture(&mut session, &from_above(vec![reference.clone()]), Technique::ZFail));
     assert!(expected[1] > 500, "{expected:?}");
@@ -160,10 +160,10 @@ fn lights_do_not_disturb_each_other() {
     }
 }
 
-/// The box's top faces the light, its sides do not face light and eye alike from straight above;
-/// a ramp turned from the light does.
+/// The box's top faces the light, its sides do not face light and eye alike from straight above; a ramp that is rotated
+/// away from the light does.
 #[test]
-fn a_surface_turned_from_the_light_faces_away() {
+fn a_surface_rotated_from_the_light_faces_away() {
     let mut session = session();
     let mut ramp = square("ramp", 0.0, 1.0);
     ramp.pose.rotate_degrees.z = 80.0;
@@ -271,8 +271,8 @@ fn a_snapshot_after_each_draw_ends_like_one_after_each_pass() {
     }
 }
 
-/// A frame whose copies are many runs in parts, and leaves what it leaves in one. Of its draws, only what they change
-/// is held.
+/// A frame whose copies are large runs in parts, and leaves what it leaves in one. Of its draws, only what they change
+/// is stored.
 #[test]
 fn a_frame_that_copies_much_is_the_same_in_parts() {
     let mut session = session();
@@ -439,7 +439,7 @@ fn surfaces_that_overlap_in_one_plane_are_lit_once_by_the_truth() {
     assert!(truth == counted);
 }
 
-/// The floor's volume holds nothing that receives: z-fail does without it, where what is drawn of volumes counts right. With
+/// No receiver is inside the floor's volume: z-fail does without it, where what is drawn of volumes counts right. With
 /// it, each pixel has the same label.
 #[test]
 fn z_fail_draws_no_volume_of_what_darkens_nothing() {
@@ -463,9 +463,9 @@ fn z_fail_draws_no_volume_of_what_darkens_nothing() {
         };
         let (is_left_out, labels): (bool, Vec<u8>) = with(&[]);
         assert!(is_left_out, "{index}");
-        for kept in [("leave-out", "none"), ("casters", "all")] {
-            let (is_left_out, other) = with(&[kept]);
-            assert!(!is_left_out && labels == other, "{index}: {kept:?}");
+        for setting in [("leave-out", "none"), ("casters", "all")] {
+            let (is_left_out, other) = with(&[setting]);
+            assert!(!is_left_out && labels == other, "{index}: {setting:?}");
         }
         for wrong in [("caps", "light"), ("operations", "clamp"), ("light-caps", "never"), ("diffuse", "wrapped")] {
             assert!(!with(&[wrong]).0, "{index}: {wrong:?}");

@@ -1,4 +1,4 @@
-//! The texels that `pixel` names for a light, held against what `testing` reads and against the GPU's labels.
+//! The texels that `pixel` names for a light, compared with what `testing` reads and with the GPU's labels.
 
 use crate::commands::{done, folder};
 use crate::common::{choice, opened, pixels};
@@ -16,13 +16,13 @@ fn rendered(scene: &str, technique: Technique, settings: &[(&str, &str)]) -> Ren
     Rendered::new(&opened(scene), choice(technique, settings), SIZE).expect("a frame")
 }
 
-fn told(arguments: &[&str]) -> String {
+fn printed(arguments: &[&str]) -> String {
     let folder = folder();
     done(folder.path(), &[&["pixel"], arguments, &["--size", "160x120"]].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    serde_json::from_str(&told(&[arguments, &["--json"]].concat())).expect("JSON")
+    serde_json::from_str(&printed(&[arguments, &["--json"]].concat())).expect("JSON")
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn pixel_names_the_texel_that_testing_reads_with_both_depths_bias_and_side() {
             let bias = serde_json::json!({ "constant": 16, "slope": 2.0, "normal": 0.0, "receiver_plane": false });
             assert_eq!(read["bias"], bias);
             // The text has the same numbers.
-            let story = told(&asked);
+            let story = printed(&asked);
             let stored = if is_cleared { "no caster".to_owned() } else { format!("{:?}", expected.stored) };
             let line = format!("texel {},{}: stored {stored}", expected.texel[0], expected.texel[1]);
             assert!(story.contains(&line), "`{line}` is not in\n{story}");
@@ -82,7 +82,7 @@ fn every_texel_of_a_filter_is_read() {
     assert_eq!(texels.len(), 36);
     let lit = texels.iter().filter(|texel| texel["is_lit"] == true).count() as u64;
     assert_eq!(read["lit"].as_u64(), Some(lit));
-    assert!(told(&asked).contains("and 11 texels more"));
+    assert!(printed(&asked).contains("and 11 texels more"));
 }
 
 /// A scene, how it is drawn, and settings.
@@ -138,7 +138,7 @@ fn of_a_texture_pixel_lists_texels_with_their_weights_and_explains_each_key() {
         let read = &document["texels"][0];
         assert_eq!(read["kind"], kind);
         assert!(read["lets_through"][3].as_f64().is_some_and(|alpha| alpha < 0.5), "{read}");
-        let story = told(&["table", "-t", technique, "--at", &at]);
+        let story = printed(&["table", "-t", technique, "--at", &at]);
         for layer in read["layers"].as_array().expect("layers") {
             assert!(story.contains(&format!("{}: lets through", layer["name"].as_str().expect("a name"))), "{story}");
             for texel in layer["texels"].as_array().expect("texels") {

@@ -26,7 +26,7 @@ fn on_floor(x: u32, y: u32) -> [f64; 2] {
     [x, y].map(|n| (f64::from(n) + 0.5) / f64::from(SIZE[0]) * 20.0 - 10.0)
 }
 
-/// Holds every pixel against `expected(x, z)` of its floor point; `None` where both will do.
+/// Compares every pixel with `expected(x, z)` of its floor point; `None` where both will do.
 fn assert_floor(scene: &Scene, expected: impl Fn(f64, f64) -> Option<u8>) -> [usize; 4] {
     let truth = truth(scene);
     let mut counts = [0; 4];
@@ -140,8 +140,8 @@ fn a_grazing_light_finds_the_smallest_occluder() {
     assert_floor(&scene, |x, _| if (x - 1.0).abs() < 0.01 { None } else { shadow_if(x > 0.0 && x < 1.0) });
 }
 
-/// A floor of many coplanar triangles in several objects, turned and far from the origin, must not
-/// darken itself, however low the light.
+/// A floor of many coplanar triangles in several objects, rotated and far from the origin, must not darken itself,
+/// however low the light.
 #[test]
 fn coplanar_triangles_do_not_darken_each_other() {
     let corners: Vec<[f64; 3]> =
@@ -249,7 +249,8 @@ fn a_point_light_at_any_distance_agrees_with_a_directional_one() {
     }
 }
 
-/// The knot, which has edges and vertices everywhere, in another order and with turned corners.
+/// The knot, which has edges and vertices everywhere, with its triangles in another order and the corners of each
+/// rotated.
 #[test]
 fn labels_do_not_depend_on_the_order_of_triangles_or_threads() {
     let knot = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("assets/models/knot.obj")).expect("knot");

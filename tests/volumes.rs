@@ -1,4 +1,4 @@
-//! Shadow volumes: every setting right where it is right, and its famous wrong form counted.
+//! Shadow volumes: every setting right where it is right, and its famous wrong alternative counted.
 
 use crate::common::ray_cast::difference;
 use crate::common::{
@@ -201,7 +201,7 @@ fn by_topology_says_what_it_proved_and_what_it_could_not() {
     let mut session = session();
     let whole = cuboid("whole", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]);
     let open = of_mesh(&whole, |index, corners| if index == 4 { vec![] } else { vec![corners] });
-    let turned = of_mesh(&whole, |_, [a, b, c]| vec![[a, c, b]]);
+    let flipped = of_mesh(&whole, |_, [a, b, c]| vec![[a, c, b]]);
     let mirrored = |object: &Object| {
         let mut object = object.clone();
         object.pose.scale.x = -1.0;
@@ -210,9 +210,9 @@ fn by_topology_says_what_it_proved_and_what_it_could_not() {
     let cases = [
         (whole.clone(), None),
         (open, Some("not closed: 3 open edges")),
-        (turned.clone(), Some("inside out")),
+        (flipped.clone(), Some("inside out")),
         (mirrored(&whole), Some("inside out")),
-        (mirrored(&turned), None),
+        (mirrored(&flipped), None),
     ];
     for (caster, doubt) in cases {
         let scene = from_above(vec![caster]);
@@ -369,8 +369,8 @@ fn always(mut plan: FramePlan) -> FramePlan {
     plan
 }
 
-/// Turned, doubled and missing triangles, and fins, held against rays: from near, and from so far
-/// that a leak would be a streak across the whole picture.
+/// Flipped, doubled and missing triangles, and fins, compared with rays: from near, and from so far that a leak would
+/// be a streak across the whole picture.
 #[test]
 fn all_casters_leave_no_leak_on_any_mesh() {
     let mut session = session();

@@ -186,9 +186,9 @@ fn pixel_and_diagnose_take_a_folder_that_lies_elsewhere() {
     let of_folder = run(work.path(), &[&["pixel", &place], &at[..]].concat());
     assert!(of_folder.status.success(), "{}", text(&of_folder.stderr));
     let untimed = |output: &[u8]| {
-        let mut told: serde_json::Value = serde_json::from_slice(output).expect("JSON");
-        told.as_array_mut().expect("a list").iter_mut().for_each(|pixel| pixel["milliseconds"] = 0.into());
-        told
+        let mut pixels: serde_json::Value = serde_json::from_slice(output).expect("JSON");
+        pixels.as_array_mut().expect("a list").iter_mut().for_each(|pixel| pixel["milliseconds"] = 0.into());
+        pixels
     };
     assert_eq!(untimed(&of_scene.stdout), untimed(&of_folder.stdout));
     let diagnosis = |subject: &[&str]| run(work.path(), &[&["diagnose", "--no-techniques"], subject].concat());

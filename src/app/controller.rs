@@ -15,7 +15,7 @@ use crate::ask::{FilmOf, FilmSubject, PendingQuestion, QuestionKind};
 use crate::capture::Capture;
 use crate::import::SHIPPED;
 use crate::inspector::{Action, ExportData, Inspector, SceneEntry, StoredSettings};
-use crate::reading::shown::PictureKind;
+use crate::reading::picture_view::PictureKind;
 use crate::scene::{TechniqueRequest, builtin};
 use crate::session::RunFrame;
 use crate::stress::StressCase;

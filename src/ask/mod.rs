@@ -21,7 +21,7 @@ pub use run_request::{CarriedOver, ObjectChanges, RunRequest, without};
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
 use crate::diagnosis::Diagnosis;
-use crate::diagnosis::recorded::FrameDiagnosis;
+use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};

@@ -52,7 +52,7 @@ mod shots {
     use crate::inspector::{Inspector, Overlay, PanelKind, ThemeChoice};
     use crate::picture::Picture;
     use crate::picture::apng::{AnimatedPng, AnimationError, AnimationFormat, ColorDepth};
-    use crate::reading::shown::PictureKind;
+    use crate::reading::picture_view::PictureKind;
     use crate::scene::{OpenSpec, open};
     use crate::session::{CaptureRequest, SnapshotInterval};
     use crate::technique::{Choice, Technique};

@@ -10,21 +10,21 @@
 //! was caused.
 
 mod cause;
+mod error_picture;
 pub(crate) mod facts;
 mod fix;
+pub mod frame_causes;
 mod json;
 pub(crate) mod mesh_facts;
 pub(crate) mod proof;
-pub mod recorded;
 pub(crate) mod regions;
 pub(crate) mod rules;
-mod shown;
 mod suited;
 mod text;
 
 pub use cause::Cause;
+pub use error_picture::wrong_pixels;
 pub use fix::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};
-pub use shown::wrong_pixels;
 pub use suited::TechniqueFit;
 
 use crate::accuracy::{ErrorCounts, Finding};

@@ -12,12 +12,12 @@ mod align;
 mod images;
 mod json;
 mod notes;
-mod shown;
+mod picture;
 mod text;
 
 pub use images::{DifferingRegion, PixelDifference, Texel, TexelDifference};
 pub use notes::DifferenceNote;
-pub use shown::ShownDifference;
+pub use picture::ShownDifference;
 
 use crate::capture::{Capture, CapturedLight, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use align::{AlignedPair, align};

@@ -33,7 +33,7 @@ use crate::ask::{Answer, Question, QuestionKind, RunRequest};
 use crate::capture::{Capture, Image};
 use crate::plan::FramePlan;
 use crate::reading::capture_point::CapturePoint;
-use crate::reading::shown::{PictureKind, TexelZoom};
+use crate::reading::picture_view::{PictureKind, TexelZoom};
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
 use look::theme;
@@ -147,8 +147,8 @@ impl Inspector {
         actions.extend(model.answers.take_asked().into_iter().map(Action::Ask));
     }
 
-    /// Takes in the answer to what was asked with this ticket, or why there is none, with the mend. One to what is
-    /// asked no more is dropped. `is_last`: nothing more of it comes.
+    /// Takes the answer to the question with this ticket, or the reason why there is none and what would help. An
+    /// answer to a question that was dropped is ignored. `is_last`: no further answer to it comes.
     pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) {
         let failure = result.as_ref().err().cloned();
         match (self.model.answers.answer(ticket, result, is_last), failure) {
@@ -258,7 +258,7 @@ impl Inspector {
         }
     }
 
-    /// An export is done, in words, or failed, with the mend.
+    /// Reports that an export is done, or why it failed and what would help.
     pub fn end_export(&mut self, result: Result<String, String>) {
         match (result, &mut self.export_dialog) {
             (Ok(done), _) => {
@@ -306,8 +306,8 @@ impl Inspector {
         self.model.activity.job = job;
     }
 
-    /// A scene could not be opened, or its frame not be made: a tour that waits for it says so, and it is told until
-    /// one can be.
+    /// Reports that a scene could not be opened, or its frame not be made, until one can be. A tour that waits for it
+    /// reports it too.
     pub fn push_failure(&mut self, error: String) {
         self.tours.note_error(&error);
         self.model.push_failure(error);

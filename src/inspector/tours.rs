@@ -2,7 +2,7 @@
 
 use crate::inspector::action::Overlay;
 use crate::inspector::action::PanelKind;
-use crate::reading::shown::PictureKind;
+use crate::reading::picture_view::PictureKind;
 use crate::technique::Technique;
 
 /// What a stop does to the panels.

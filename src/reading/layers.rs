@@ -9,7 +9,7 @@ pub const CUBE_FACES: [&str; 6] = ["+x", "−x", "+y", "−y", "+z", "−z"];
 
 named_enum! {
     /// The content of the layers of a light's map. Its name is on the button of
-    /// [`PictureKind::Map`](super::shown::PictureKind::Map).
+    /// [`PictureKind::Map`](super::picture_view::PictureKind::Map).
     pub enum MapContent(
         /// What the picture shows.
         meaning,

@@ -3,7 +3,7 @@
 use super::{RunFrame, Session, SessionError};
 use crate::accuracy::ErrorCounts;
 use crate::capture::{Capture, Image};
-use crate::diagnosis::recorded::{FrameCauseFound, FrameDiagnosis, FrameSuspicion, suspicion, suspicions};
+use crate::diagnosis::frame_causes::{FrameCauseFound, FrameDiagnosis, FrameSuspicion, suspicion, suspicions};
 use crate::diagnosis::{Cause, Proof};
 use crate::gpu::SnapshotMemory;
 use crate::plan::{FramePlan, LightId};

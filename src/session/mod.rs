@@ -11,7 +11,7 @@ mod diagnose_recorded;
 mod draws;
 mod history;
 mod measure;
-mod recorded;
+mod recomputation;
 mod reference;
 mod report;
 mod step_tests;

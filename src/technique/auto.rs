@@ -26,7 +26,7 @@ use super::lesson::{Lesson, cited};
 use super::outside::{self, VIEW_PLANES, beyond};
 use super::settings::VolumeSettings;
 use super::volume::{CountingMode, VolumeDecision, VolumePolicy, VolumeSpec};
-use super::{PlanError, shown, volume};
+use super::{PlanError, visible_triangles, volume};
 use crate::geometry::umbra::{self, ConvexOccluder};
 use crate::geometry::{ClampedEnd, Extruder, Extrusion, NearClipVolume, ViewVolume, layers, touching};
 use crate::math::AxisBox;
@@ -66,9 +66,9 @@ const MOST_IN_STENCIL: usize = 255;
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = VolumeSettings::of_auto(&job.choice.common());
     let mut frame = FrameBuilder::new(job, StencilUse::Always)?;
-    shown::leave_out_hidden(&mut frame);
+    visible_triangles::leave_out_hidden(&mut frame);
     let begin = |frame: &mut FrameBuilder, light| {
-        let lit = shown::lit_by(frame, light);
+        let lit = visible_triangles::lit_by(frame, light);
         if lit.is_empty() && frame.common.allows(Decision::Light) {
             return Err("every surface in view faces away from it or lies beyond its range");
         }

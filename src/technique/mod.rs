@@ -95,9 +95,9 @@ mod ray_traced;
 mod receivers;
 mod settings;
 mod shadow_map;
-mod shown;
 mod silhouettes;
 mod surfaces;
+mod visible_triangles;
 mod volume;
 
 pub use choice::{Choice, ChoiceError};

@@ -62,8 +62,7 @@ pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceive
         let placed = &frame.placed[one.object];
         let (world, triangles) = (&placed.world, placed.object.mesh.triangles());
         let corners = triangles[one.receiver.triangles[0] as usize].map(|vertex| world[vertex as usize]);
-        // The inside of a box-shaped room is what one sees of it: an object that the eye is in has the eye within its
-        // bounds.
+        // Of an object that contains the eye, one sees the inside; the eye is then within its bounds.
         let is_inside = side_of_triangle(corners, eye) != Sign::Positive
             && !AxisBox::around(world.iter().copied()).holds(place)
             && frame.job.cache.connectivity(&placed.object.mesh).is_closed();

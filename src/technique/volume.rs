@@ -33,7 +33,7 @@ use super::description::{ComparisonRole, ONE_ROW, TechniqueDescription};
 use super::frame::{FrameBuilder, PlanRequest, StencilUse, SurfaceDrawing};
 use super::lesson::{Lesson, cited};
 use super::settings::{CasterRule, CountOperations, VolumeSettings};
-use super::{Choice, PlanError, Technique, shown};
+use super::{Choice, PlanError, Technique, visible_triangles};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
 use crate::plan::{
     CountBits, CountOf, CountedSide, DecidedBy, Decision, Draw, DrawMesh, DrawPart, FramePlan, LeftOut, LightId,
@@ -205,13 +205,13 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     // A mesh that is proven closed to choose its casting triangles also hides its own far side.
     let looks = settings.casters == CasterRule::ByTopology;
     if looks {
-        shown::leave_out_hidden(&mut frame);
+        visible_triangles::leave_out_hidden(&mut frame);
     }
     let extrusion = settings.extrusion;
     // Z-pass is wrong where the eye is in a volume, even in a floor's.
     let only_what_darkens = looks && counting == CountingMode::Behind && settings.volumes_count_right();
     let begin = |frame: &mut FrameBuilder, light| {
-        frame.lit = looks.then(|| shown::lit_by(frame, light));
+        frame.lit = looks.then(|| visible_triangles::lit_by(frame, light));
         Ok(UniformPolicy { light, counting, extrusion, only_what_darkens })
     };
     Ok(finish(frame, &settings, begin))

@@ -23,20 +23,20 @@ fn maps(capture: &Capture) -> Vec<Vec<u8>> {
 }
 
 /// Passes that were not run since their map is there.
-fn kept(capture: &Capture) -> usize {
+fn cached_passes(capture: &Capture) -> usize {
     capture.left_out.iter().filter(|left| left.decision == Some(Decision::Cached)).count()
 }
 
-/// A frame after another that keeps its map, against one that draws all of it.
-fn kept_after(session: &mut Session, before: &Scene, after: &Scene, technique: Technique) -> usize {
+/// How many passes a frame after another skips by the cached map. It is compared with a frame that draws all.
+fn cached_passes_after(session: &mut Session, before: &Scene, after: &Scene, technique: Technique) -> usize {
     session.capture(before, &asked(technique, "changed")).expect("a capture");
     let less = session.capture(after, &asked(technique, "changed")).expect("a capture");
     let whole = session.capture(after, &asked(technique, "always")).expect("a capture");
-    assert_eq!(kept(&whole), 0);
+    assert_eq!(cached_passes(&whole), 0);
     assert_eq!(labels(&less), labels(&whole), "{technique:?}");
     assert!(maps(&less) == maps(&whole) && !maps(&whole).is_empty(), "{technique:?}: the map differs");
     assert!(picture(&less) == picture(&whole), "{technique:?}: the picture differs");
-    kept(&less)
+    cached_passes(&less)
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn a_map_is_drawn_again_only_where_what_makes_it_has_changed() {
         scene.camera.target += DVec3::new(0.5, 0.0, 0.0);
     });
     for technique in [Technique::ShadowMap, Technique::PlanarTexture, Technique::Projective] {
-        let mut after = |scene: &Scene| kept_after(&mut session, &self::scene(), scene, technique);
+        let mut after = |scene: &Scene| cached_passes_after(&mut session, &self::scene(), scene, technique);
         assert!(after(&scene()) > 0, "{technique:?}");
         assert_eq!(after(&caster), 0, "{technique:?}: a caster that moved");
         assert_eq!(after(&light), 0, "{technique:?}: a light that moved");
@@ -65,7 +65,7 @@ fn a_map_is_drawn_again_only_where_what_makes_it_has_changed() {
 
 /// Draw by draw, what each leaves in the map is seen, though the map is there already.
 #[test]
-fn draws_of_a_kept_map_are_distinguished() {
+fn draws_of_a_cached_map_are_distinguished() {
     let mut session = session();
     let mut scene = scene();
     scene.objects.push(cuboid("other", [1.0, 1.0, -0.5], [1.5, 1.5, 0.5]));
@@ -82,7 +82,7 @@ fn draws_of_a_kept_map_are_distinguished() {
 
 /// A map that is there already is not drawn, so no sample of it passes: its casters are not left out for that.
 #[test]
-fn a_kept_map_keeps_its_casters_where_samples_are_counted() {
+fn a_cached_map_keeps_its_casters_where_samples_are_counted() {
     let mut session = session();
     for technique in [Technique::ShadowMap, Technique::PlanarTexture, Technique::Projective] {
         let whole = session.capture(&scene(), &asked(technique, "always")).expect("a capture");
@@ -91,7 +91,7 @@ fn a_kept_map_keeps_its_casters_where_samples_are_counted() {
         for frame in 0..3 {
             let less = session.capture(&scene(), &counted).expect("a capture");
             // The frame that counts samples has drawn the map for the one after it.
-            assert!(kept(&less) > 0, "{technique:?}, frame {frame}: the map is drawn again");
+            assert!(cached_passes(&less) > 0, "{technique:?}, frame {frame}: the map is drawn again");
             assert!(labels(&less) == labels(&whole), "{technique:?}, frame {frame}: the labels differ");
             assert!(maps(&less) == maps(&whole), "{technique:?}, frame {frame}: the map differs");
             assert!(picture(&less) == picture(&whole), "{technique:?}, frame {frame}: the picture differs");

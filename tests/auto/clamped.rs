@@ -92,14 +92,14 @@ fn it_ends_where_nothing_is_looked_at() {
         assert_right(&mut session, &scene);
         let reached = lowest(&mut session, &scene);
         assert!((end - 0.1..end).contains(&reached), "{reached}");
-        assert!(ends(&mut session, &scene).iter().any(|told| told.contains(because)), "{because}");
+        assert!(ends(&mut session, &scene).iter().any(|reason| reason.contains(because)), "{because}");
         let [all, unended] = ["all".to_owned(), all_but(Decision::BeyondReceivers)]
             .map(|leave_out| session.capture(&scene, &auto(&leave_out)).expect("a capture"));
         assert_differs_by_labels(&scene, &all, &unended);
     }
 }
 
-/// Lines of sight from below the floor are looked along too.
+/// View rays from below the floor are followed too.
 #[test]
 fn it_ends_no_nearer_than_the_eye() {
     let below = looking(box_under(lamp(), vec![]), [9.0, -2.0, 0.0], [0.0, 1.5, 0.0]);
@@ -140,7 +140,7 @@ fn what_lies_beyond_all_that_is_looked_at_has_no_volume() {
     assert!(of_box.because.starts_with("it lies beyond y = -0.0"), "{}", of_box.because);
 }
 
-/// Of so many vertices the box is looked at.
+/// The mesh has more than 4096 vertices: then its bounding box is looked at in their place.
 #[test]
 fn a_large_mesh_that_is_half_below_the_floor_ends_there_too() {
     let torus = shapes::torus(1.5, 0.6, 96, 64).expect("a mesh");
@@ -205,7 +205,7 @@ fn casters_that_touch_end_together_or_not_at_all() {
     // Apart they are on their own again.
     let apart = ends(&mut session, &scene(vec![cell("low", [0.0, 0.9]), cell("high", high)], lamp));
     assert!(apart.len() == 2 && apart[0] != apart[1], "{apart:?}");
-    // One that holds the eye in its shadow is counted behind, to infinity, and what touches it goes there too.
+    // A volume that the eye is in is counted behind, to infinity, and what touches it goes there too.
     let shading = |low: f64| cuboid("shading", [low, 1.5, -0.5], [1.5, 2.0, 0.5]);
     let seen_from = |casters: Vec<Object>| {
         let mut scene = scene(casters, [0.0, 3.8, 0.0]);

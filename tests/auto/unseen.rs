@@ -27,7 +27,7 @@ fn asked(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
     request_with(technique, settings, SIZE)
 }
 
-/// The frame with what the queries left out, held against the frame without queries.
+/// The frame with what the queries left out, compared with the frame without queries.
 fn with_queries(session: &mut Session, scene: &Scene, technique: Technique) -> Vec<String> {
     let mut run = |occlusion| {
         let request = asked(technique, &[("leave-out", "none"), ("occlusion", occlusion)]);

@@ -1,9 +1,9 @@
-//! The Explain tab's cards, held against the plan's draws and what the GPU left.
+//! The Explain tab's cards, compared with the plan's draws and what the GPU left.
 
 mod formulas;
 mod lines;
 
-use super::Held;
+use super::SeenPatterns;
 use super::frames::Frame;
 use super::patterns::{all_but, find, gaps, is_near, is_number, mask_of, matching, number};
 use super::purposes::steps;
@@ -19,7 +19,7 @@ use stencilscope::scene::Projection;
 use stencilscope::technique::VolumeSettings;
 use wgpu::CompareFunction;
 
-/// A card, and what it is told of.
+/// A card, and what it is about.
 struct Here<'a> {
     frame: &'a Frame,
     step: usize,
@@ -45,8 +45,8 @@ impl Here<'_> {
         self.frame.step(self.step).1.draws.iter().filter(move |draw| draw.part == part)
     }
 
-    /// Of each volume that its vertex shader carries, how many triangles its caster has, how many copies of each it has,
-    /// and its sides' triangles; of any other all nothing.
+    /// For each volume that is extruded by its vertex shader: the number of triangles of its caster, of copies of each
+    /// triangle, and of triangles of the volume's sides. Zeros for any other volume.
     fn copies_and_sides(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         self.draws(DrawPart::Side).map(|draw| {
             let caster = self.frame.scene.objects.iter().find(|object| draw.caster.as_ref() == Some(&object.name));
@@ -66,13 +66,13 @@ impl Here<'_> {
 
     /// Is it said of some volumes that they end before infinity? So it should be where one of this light does that is
     /// not asked to, and nowhere where none of the frame does.
-    fn ends_as_told(&self, told: &str) -> bool {
+    fn ends_as_reported(&self, text: &str) -> bool {
         let ends = |draw: &stencilscope::plan::Draw| {
             draw.part == DrawPart::Side
                 && self.frame.plan.meshes[draw.mesh.0].vertices.data().iter().all(|[.., w]| *w != 0.0)
         };
         let mut of_frame = self.frame.plan.passes.iter().flat_map(|pass| &pass.draws);
-        match told {
+        match text {
             "" => !self.draws(DrawPart::Side).any(ends),
             "; what ends before, beyond all that it is looked at on, is counted in front and open there" => {
                 of_frame.any(ends)
@@ -148,9 +148,9 @@ impl Here<'_> {
         if self.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 }
     }
 
-    /// What is told has been drawn, in triangles.
-    fn has_drawn(&self, part: DrawPart, told: &str) -> bool {
-        number(told) == self.triangles(part)
+    /// Is this number the count of triangles that this step draws of the part?
+    fn has_drawn(&self, part: DrawPart, text: &str) -> bool {
+        number(text) == self.triangles(part)
     }
 
     fn volume_passes_follow(&self) -> bool {
@@ -188,35 +188,37 @@ fn is_count_of(here: &Here, of: CountOf) -> bool {
         .filter_map(|draw| draw.caster.as_deref())
         .collect();
     let cast = || here.frame.scene.objects.iter().filter(|object| names.contains(&object.name.as_str()));
-    let told = here.frame.capture.lights[light].count_of == Some(of);
+    let is_reported = here.frame.capture.lights[light].count_of == Some(of);
     let by_hand = here.frame.capture.settings.get("casters").is_some_and(|casters| casters != "by-topology");
     match of {
         // An open caster that nothing lies behind is let be: it is a quad.
         CountOf::Bodies => {
-            told && !by_hand
+            is_reported
+                && !by_hand
                 && cast().all(|object| is_closed(object) || object.mesh.triangles().len() <= 2)
                 && cast().any(is_closed)
         }
-        CountOf::Surfaces => told,
-        CountOf::Mixed => told && !by_hand && cast().any(is_closed),
+        CountOf::Surfaces => is_reported,
+        CountOf::Mixed => is_reported && !by_hand && cast().any(is_closed),
     }
 }
 
-/// The faces of a pass at a pixel: those that add and take away, and what the count holds after them.
-fn adds_up(here: &Here, told: &[&str], modulus: f64) -> bool {
-    let at = at(told[0], told[1]);
-    let sum = number(told[7]);
+/// Are these the faces of a pass at a pixel, those that add and those that take away, and is their sum the stored
+/// count?
+fn adds_up(here: &Here, parts: &[&str], modulus: f64) -> bool {
+    let at = at(parts[0], parts[1]);
+    let sum = number(parts[7]);
     let change = f64::from(here.stored(at) - here.before(at));
     let in_floats = here.decided_by().counts_in_floats();
     let near = if in_floats && sum != change { near_count(here, at) } else { 0.0 };
     let stored = if in_floats { sum == change - near } else { (sum - change).rem_euclid(modulus) == 0.0 };
-    // What a first pass of floats leaves is not kept.
-    faces_add_up(here, told) && (stored || (in_floats && here.volume_passes_follow()))
+    // What a first pass of floats leaves is not stored.
+    faces_add_up(here, parts) && (stored || (in_floats && here.volume_passes_follow()))
 }
 
 /// Are these the picked pixel's faces, and their sum?
-fn faces_add_up(here: &Here, told: &[&str]) -> bool {
-    let [up, down, idle, up_again, down_again, sum] = [2, 3, 4, 5, 6, 7].map(|gap| number(told[gap]));
+fn faces_add_up(here: &Here, parts: &[&str]) -> bool {
+    let [up, down, idle, up_again, down_again, sum] = [2, 3, 4, 5, 6, 7].map(|gap| number(parts[gap]));
     let history = here.history.expect("a history");
     // Triangle by triangle, as the machine of the history took them; and in the end as the GPU stored it.
     let (mut ups, mut downs, mut rest) = (0.0, 0.0, 0.0);
@@ -246,50 +248,50 @@ fn pick_is_missing(here: &Here, _: &[&str]) -> bool {
     here.pick.is_none()
 }
 
-/// The sum of a pixel's depth: what the GPU stored, and what a reader gets who adds the numbers up.
-fn is_sum(here: &Here, told: &[&str], [sign, power]: [f64; 2]) -> bool {
-    let pixel = at(told[0], told[1]);
+/// The sum of a pixel's depth: what the GPU stored, and what a reader gets by adding the numbers up.
+fn is_sum(here: &Here, parts: &[&str], [sign, power]: [f64; 2]) -> bool {
+    let pixel = at(parts[0], parts[1]);
     let stored = here.depth(pixel);
-    let [offset, scale, distance] = [told[2], told[3], told[4]].map(number);
+    let [offset, scale, distance] = [parts[2], parts[3], parts[4]].map(number);
     let part = scale * distance.powf(power);
-    let is_sum = (offset + sign * part - number(told[5])).abs() <= 2e-3 * part + 1e-6;
-    told[4].ends_with(" m") && told[5].parse().ok() == stored && is_sum
+    let is_sum = (offset + sign * part - number(parts[5])).abs() <= 2e-3 * part + 1e-6;
+    parts[4].ends_with(" m") && parts[5].parse().ok() == stored && is_sum
 }
 
 /// A depth mapping's numbers, from the camera's.
-fn is_curve(here: &Here, told: &[&str], sign: f64) -> bool {
+fn is_curve(here: &Here, parts: &[&str], sign: f64) -> bool {
     let camera = here.frame.scene.camera;
     let far = here.frame.plan.depth.far;
     let epsilon = here.frame.capture.settings["epsilon"].parse::<f64>().expect("a number");
-    let offset = match told[0] {
+    let offset = match parts[0] {
         "reversed-infinite" => 0.0,
         "standard-infinite" => 1.0,
         "standard-infinite-epsilon" => 1.0 - epsilon,
         _ => far.map_or(f64::NAN, |far| far / (far - camera.near)),
     };
-    let scale = if told[0] == "reversed-infinite" { camera.near } else { -camera.near * offset };
-    let is = |told: &str, value: f64| (number(told) / value - 1.0).abs() < 1e-6 || number(told) == value;
-    told[0] == here.frame.capture.settings["depth"] && is(told[1], offset) && is(told[2], sign * scale)
+    let scale = if parts[0] == "reversed-infinite" { camera.near } else { -camera.near * offset };
+    let is = |text: &str, value: f64| (number(text) / value - 1.0).abs() < 1e-6 || number(text) == value;
+    parts[0] == here.frame.capture.settings["depth"] && is(parts[1], offset) && is(parts[2], sign * scale)
 }
 
 /// The numbers of linear depth: where it is 0 and 1 lie near plane and what is behind all.
-fn is_line(here: &Here, told: &[&str], sign: f64) -> bool {
-    let [offset, scale] = [number(told[1]), sign * number(told[2])];
+fn is_line(here: &Here, parts: &[&str], sign: f64) -> bool {
+    let [offset, scale] = [number(parts[1]), sign * number(parts[2])];
     let near = here.frame.scene.camera.near;
-    let is_reversed = told[0] == "reversed-infinite";
+    let is_reversed = parts[0] == "reversed-infinite";
     let end = if is_reversed { -offset / scale } else { (1.0 - offset) / scale };
     let at_near = offset + scale * near;
     let camera = here.frame.scene.camera;
     let ahead = (camera.target - camera.eye).normalize();
     let deepest = here.frame.scene.objects.iter().filter(|object| object.visible).flat_map(|o| o.world_positions());
     let deepest = deepest.map(|point| (point - camera.eye).dot(ahead)).fold(0.0, f64::max);
-    told[0] == here.frame.capture.settings["depth"]
+    parts[0] == here.frame.capture.settings["depth"]
         && (at_near - if is_reversed { 1.0 } else { 0.0 }).abs() < 1e-5
         && end > near
         && end < deepest * 1.02
 }
 
-/// What z-pass-plus began with: no step keeps it.
+/// What z-pass-plus began with: no step stores it.
 fn near_count(here: &Here, at: [u32; 2]) -> f64 {
     let history = here.history.expect("a history");
     let of_light = history.events.iter().filter(|event| event.light == Some(here.light()) && !event.is_from_camera);
@@ -303,12 +305,17 @@ pub fn patterns() -> Vec<&'static str> {
     all_but(&["receives no shadow", "no texel of it is known"], &[FORMULAS, LINES])
 }
 
-/// Of the first pattern that knows the text.
-fn find_first(all: &'static [(&'static str, Check)], here: &Here, text: &str, held: &mut Held) -> Option<String> {
-    find(matching(all, text).take(1), text, held, |check, told| check(here, told))
+/// Checks a text by the first pattern that it fits. Returns what is wrong, if anything.
+fn find_first(
+    all: &'static [(&'static str, Check)],
+    here: &Here,
+    text: &str,
+    seen: &mut SeenPatterns,
+) -> Option<String> {
+    find(matching(all, text).take(1), text, seen, |check, parts| check(here, parts))
 }
 
-pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
+pub fn check(frame: &Frame, seen: &mut SeenPatterns) -> Vec<String> {
     let mut wrong = Vec::new();
     for step in 0..frame.capture.steps.len() {
         let light = frame.capture.steps[step].light;
@@ -326,11 +333,11 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
             };
             for fact in facts(&known) {
                 let here = Here { frame, step, pick, history, map: map.as_ref(), formula: &fact.formula };
-                let formula = find_first(FORMULAS, &here, here.formula, held);
-                let lines = fact.here.iter().filter_map(|line| find_first(LINES, &here, line, held));
+                let formula = find_first(FORMULAS, &here, here.formula, seen);
+                let lines = fact.here.iter().filter_map(|line| find_first(LINES, &here, line, seen));
                 let name = &frame.capture.steps[step].name;
-                let told = formula.into_iter().chain(lines);
-                wrong.extend(told.map(|what| format!("a card of {name} (step {step}), pixel {pick:?}, {what}")));
+                let found = formula.into_iter().chain(lines);
+                wrong.extend(found.map(|what| format!("a card of {name} (step {step}), pixel {pick:?}, {what}")));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The frames that are held, and what their GPU left.
+//! The frames whose sentences are checked, and what their GPU left.
 
 use crate::common::{opened, request};
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use stencilscope::session::Session;
 use stencilscope::technique::{SettingSpec, SettingValues, Technique};
 
 const SIZE: [u32; 2] = [80, 60];
-/// Its frame takes as long as ten others: it is held with the defaults of a few techniques.
+/// Its frame takes as long as ten others: it is checked with the defaults of a few techniques.
 const LARGE: &str = "tiger-cage";
 
-/// A frame to hold.
+/// A frame to check.
 pub struct Job {
     scene: &'static str,
     technique: Technique,
@@ -28,11 +28,11 @@ pub struct Job {
 enum Seen {
     /// Its own camera.
     AsItIs,
-    /// The same place, lines of sight parallel.
+    /// The same place, with parallel view rays.
     Orthographic,
-    /// And aslant.
+    /// The same place, with parallel view rays that are oblique to the picture.
     Cabinet,
-    /// Parallel lines of sight from the light's place to a caster: its own ray along them meets that.
+    /// Parallel view rays, along the direction from the light's place to a caster: the ray through the light hits that.
     FromTheLight,
 }
 

@@ -1,6 +1,6 @@
 //! Patterns of sentences: text with gaps.
 
-use super::Held;
+use super::SeenPatterns;
 
 /// What stands in the gaps `{}` of a pattern; `None` where the text is another one.
 pub fn gaps<'a>(pattern: &str, text: &'a str) -> Option<Vec<&'a str>> {
@@ -29,12 +29,12 @@ pub fn matching<'t, C>(
 pub fn find<'t, C: 'static>(
     known: impl Iterator<Item = (&'static str, &'static C, Vec<&'t str>)>,
     text: &str,
-    held: &mut Held,
+    seen: &mut SeenPatterns,
     is_so: impl Fn(&C, &[&str]) -> bool,
 ) -> Option<String> {
     let known: Vec<_> = known.collect();
-    if let Some((pattern, ..)) = known.iter().find(|(_, check, told)| is_so(check, told)) {
-        held.insert(pattern);
+    if let Some((pattern, ..)) = known.iter().find(|(_, check, parts)| is_so(check, parts)) {
+        seen.insert(pattern);
         return None;
     }
     Some(match known.first() {
@@ -57,8 +57,8 @@ pub fn number(text: &str) -> f64 {
 }
 
 /// Is it this whole number?
-pub fn is_number(told: &str, count: usize) -> bool {
-    number(told) == count as f64
+pub fn is_number(text: &str, count: usize) -> bool {
+    number(text) == count as f64
 }
 
 /// The lowest bits of a stencil, by name.
@@ -71,13 +71,13 @@ pub fn mask_of(bits: &str) -> u8 {
     }
 }
 
-/// Are a number and the digits that it is told in the same? Four digits are told.
-pub fn is_near(told: &str, value: f64) -> bool {
-    let told = number(told);
-    told == value
-        || (told - value).abs() <= 6e-2_f64.min(1e-3 * value.abs().max(1e-3))
-        || (value.abs() < 1e-3 && (told / value - 1.0).abs() < 0.06)
-        || (value.abs() >= 1e5 && (told / value - 1.0).abs() < 0.06)
+/// Is this the text of a number? Four digits are written.
+pub fn is_near(text: &str, value: f64) -> bool {
+    let text = number(text);
+    text == value
+        || (text - value).abs() <= 6e-2_f64.min(1e-3 * value.abs().max(1e-3))
+        || (value.abs() < 1e-3 && (text / value - 1.0).abs() < 0.06)
+        || (value.abs() >= 1e5 && (text / value - 1.0).abs() < 0.06)
 }
 
 #[test]

@@ -1,6 +1,6 @@
-//! What each pass is for, held against its raster state, its programs and its targets.
+//! What each pass is for, compared with its raster state, its programs and its targets.
 
-use super::Held;
+use super::SeenPatterns;
 use super::frames::Frame;
 use super::patterns::{all_but, find, gaps, mask_of, matching};
 use glam::{DVec3, DVec4};
@@ -31,7 +31,7 @@ pub fn steps(draw: &Draw) -> Option<Steps> {
         let standard = matches!(raster.depth_compare, CompareFunction::Less | CompareFunction::LessEqual);
         assert!(nearer || standard, "{:?}", raster.depth_compare);
         let count = draw.constants.count as i32;
-        // Of strict tests one is "nearer", the other its complement holds ties.
+        // Of strict tests one is "nearer"; the complement of the other is true for equal depths.
         let is_strict = matches!(raster.depth_compare, CompareFunction::Greater | CompareFunction::Less);
         (is_strict, count, -count)
     } else {
@@ -63,8 +63,8 @@ fn count_all(pass: &Pass, is_in_front: bool, up: bool, down: bool) -> bool {
 }
 
 /// Half of a count: what its faces do.
-fn is_half(pass: &Pass, is_in_front: bool, told: &str) -> bool {
-    let up = match (is_in_front, told) {
+fn is_half(pass: &Pass, is_in_front: bool, text: &str) -> bool {
+    let up = match (is_in_front, text) {
         (true, "a front face nearer than the surface adds 1") | (false, "a back face hidden by the surface adds 1") => {
             true
         }
@@ -114,7 +114,7 @@ fn cleared_to(frame: &Frame, pass: &Pass) -> u32 {
     if first.draws.iter().any(|draw| draw.program == Program::Count) { float } else { stencil }.unwrap_or(0)
 }
 
-/// Does a count begin at the casting triangles that the light's ray along parallel lines of sight meets?
+/// Does a count begin at the casting triangles that the light's ray along the parallel view rays hits?
 fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
     let eye = frame.scene.camera.relative_eye();
     let light = pass.light.expect("a light").0;
@@ -127,42 +127,46 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
         (sides == [true; 3] || sides == [false; 3]) && normal.dot(a) / normal.dot(along) > 0.0
     };
     let caps = pass.draws.iter().filter(|draw| draw.part.includes(DrawPart::LightCap));
-    let met = caps.flat_map(|draw| {
+    let hit = caps.flat_map(|draw| {
         let mesh = &frame.plan.meshes[draw.mesh.0];
         let corners = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
         let place = |index: u32| DVec4::from_array(mesh.vertices.data()[index as usize].map(f64::from)).truncate();
         corners.chunks_exact(3).map(move |corners| [0, 1, 2].map(|corner| place(corners[corner]))).collect::<Vec<_>>()
     });
-    let met = met.filter(|corners| meets(*corners)).count() as u32;
+    let hit = hit.filter(|corners| meets(*corners)).count() as u32;
     let is_in_bits = |draw: &Draw| draw.program == Program::Count || draw.raster.face(true).1.write == bits;
     let counts_float = pass.draws.iter().any(|draw| draw.program == Program::Count);
-    let kept = if counts_float { met } else { met & u32::from(bits) };
-    eye.w == 0.0 && w == 1.0 && cleared_to(frame, pass) == kept && kept > 0 && pass.draws.iter().all(is_in_bits)
+    let start_count = if counts_float { hit } else { hit & u32::from(bits) };
+    eye.w == 0.0
+        && w == 1.0
+        && cleared_to(frame, pass) == start_count
+        && start_count > 0
+        && pass.draws.iter().all(is_in_bits)
 }
 
 /// What follows of what a count is said to begin at; `None` where that is not so.
-fn begins<'t>(frame: &Frame, pass: &Pass, told: &'t str) -> Option<&'t str> {
+fn begins<'t>(frame: &Frame, pass: &Pass, text: &'t str) -> Option<&'t str> {
     let cleared = cleared_to(frame, pass);
-    let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around {}. {}", told) {
+    let (start, is_so, rest) = if let Some(parts) = gaps("It begins at {}, for the volumes around {}. {}", text) {
         let starts_at_eye = frame.starts_at_eye();
         let place = if frame.scene.camera.is_parallel() { "the middle of the near plane" } else { "the eye" };
-        (told[0], starts_at_eye && told[1] == place, told[2])
-    } else if let Some(told) = gaps(
+        (parts[0], starts_at_eye && parts[1] == place, parts[2])
+    } else if let Some(parts) = gaps(
         "It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. {}",
-        told,
+        text,
     ) {
         let (start, bits) =
-            told[0].split_once(" in ").map_or((told[0], u8::MAX), |(start, bits)| (start, mask_of(bits)));
-        (start, is_light(pass, told[1]) && begins_at_far_end(frame, pass, bits), told[2])
+            parts[0].split_once(" in ").map_or((parts[0], u8::MAX), |(start, bits)| (start, mask_of(bits)));
+        (start, is_light(pass, parts[1]) && begins_at_far_end(frame, pass, bits), parts[2])
     } else {
-        return (cleared == 0).then_some(told);
+        return (cleared == 0).then_some(text);
     };
     (is_so && start.parse() == Ok(cleared)).then_some(rest)
 }
 
 /// What a count says in the end.
-fn is_left(frame: &Frame, pass: &Pass, told: &str) -> bool {
-    let Some(rest) = begins(frame, pass, told) else { return false };
+fn is_left(frame: &Frame, pass: &Pass, text: &str) -> bool {
+    let Some(rest) = begins(frame, pass, text) else { return false };
     let [one_side, is_plus] = [rest.starts_with("What is left"), frame.plan.technique == Technique::ZPassPlus.name()];
     let kinds = [
         ("What is left contains the surface{}.", one_side && !is_plus),
@@ -171,12 +175,12 @@ fn is_left(frame: &Frame, pass: &Pass, told: &str) -> bool {
     ];
     kinds
         .iter()
-        .any(|(pattern, is_so)| *is_so && gaps(pattern, rest).is_some_and(|told| is_so_where(frame, pass, told[0])))
+        .any(|(pattern, is_so)| *is_so && gaps(pattern, rest).is_some_and(|parts| is_so_where(frame, pass, parts[0])))
 }
 
 /// On what that hangs: the eye, the near plane, and caps that are not drawn.
-fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
-    let (eye, caps) = told.split_once("; ").unwrap_or((told, ""));
+fn is_so_where(frame: &Frame, pass: &Pass, text: &str) -> bool {
+    let (eye, caps) = text.split_once("; ").unwrap_or((text, ""));
     let [is_z_pass, is_auto] =
         [Technique::ZPass, Technique::Auto].map(|technique| frame.plan.technique == technique.name());
     let starts_at_eye = frame.starts_at_eye();
@@ -202,12 +206,12 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
     let own = || frame.plan.passes.iter().filter(|other| other.light == pass.light && other.view.0 == 0);
     let is_drawn = [DrawPart::LightCap, DrawPart::DarkCap]
         .map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part.includes(part))));
-    // Behind surfaces all volumes need a light cap, and those that do not meet in one point a dark one.
+    // Behind surfaces all volumes need a light cap, and those whose sides do not end in one point a dark one.
     let light = pass.light.expect("a light").0;
     let is_behind =
         counting(pass).iter().any(|one| !one.is_in_front) || pass.draws.iter().any(|d| turns_over(d, false));
     let is_point = frame.scene.lights[light].homogeneous().w != 0.0;
-    // Parallel lines of sight see it as a point.
+    // Parallel view rays see it as a point.
     let is_needed = [is_behind, is_behind && is_point && !is_parallel];
     is_eye_so
         && [0, 1]
@@ -216,25 +220,25 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
 }
 
 /// Does each face on this side turn the bit over, and is what follows of that so?
-fn is_odd_or_even(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
-    is_light(pass, told[0])
+fn is_odd_or_even(frame: &Frame, pass: &Pass, parts: &[&str], is_in_front: bool) -> bool {
+    is_light(pass, parts[0])
         && pass.draws.iter().all(|draw| turns_over(draw, is_in_front))
-        && begins(frame, pass, told[1]) == Some("")
-        && is_so_where(frame, pass, told[2])
+        && begins(frame, pass, parts[1]) == Some("")
+        && is_so_where(frame, pass, parts[2])
 }
 
-/// Do all faces count on this side, and is what is left of them as told?
-fn is_whole(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
-    is_light(pass, told[0]) && count_all(pass, is_in_front, true, true) && is_left(frame, pass, told[1])
+/// Do all faces count on this side, and is the text right about what is left of them?
+fn is_whole(frame: &Frame, pass: &Pass, parts: &[&str], is_in_front: bool) -> bool {
+    is_light(pass, parts[0]) && count_all(pass, is_in_front, true, true) && is_left(frame, pass, parts[1])
 }
 
-fn is_first_half(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
-    is_light(pass, told[0]) && is_half(pass, is_in_front, told[1]) && !is_second(frame, pass)
+fn is_first_half(frame: &Frame, pass: &Pass, parts: &[&str], is_in_front: bool) -> bool {
+    is_light(pass, parts[0]) && is_half(pass, is_in_front, parts[1]) && !is_second(frame, pass)
 }
 
-fn is_second_half(frame: &Frame, pass: &Pass, told: &[&str], is_in_front: bool) -> bool {
-    let is_so = is_half(pass, is_in_front, told[1]) && is_left(frame, pass, told[2]);
-    is_light(pass, told[0]) && is_so && is_second(frame, pass)
+fn is_second_half(frame: &Frame, pass: &Pass, parts: &[&str], is_in_front: bool) -> bool {
+    let is_so = is_half(pass, is_in_front, parts[1]) && is_left(frame, pass, parts[2]);
+    is_light(pass, parts[0]) && is_so && is_second(frame, pass)
 }
 
 fn asks(pass: &Pass, how: Visibility) -> bool {
@@ -283,41 +287,41 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. {}",
-        |frame, pass, told| is_whole(frame, pass, told, true),
+        |frame, pass, parts| is_whole(frame, pass, parts, true),
     ),
     (
         "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. {}",
-        |frame, pass, told| is_whole(frame, pass, told, false),
+        |frame, pass, parts| is_whole(frame, pass, parts, false),
     ),
     (
         "Counts the shadow volumes of {}, behind each surface where they may hold {}, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. {}",
-        |frame, pass, told| {
+        |frame, pass, parts| {
             let counting = counting(pass);
             let [front, behind] = [true, false].map(|side| counting.iter().any(|one| one.is_in_front == side));
             let is_right = |one: &Steps| (one.outside, one.inside) == if one.is_in_front { (1, -1) } else { (-1, 1) };
             let are_right = counting.iter().all(is_right);
-            let held = if frame.scene.camera.is_parallel() { "the near plane" } else { "the eye" };
-            let is_so = front && behind && are_right && told[1] == held;
-            is_light(pass, told[0]) && is_so && is_left(frame, pass, told[2])
+            let place = if frame.scene.camera.is_parallel() { "the near plane" } else { "the eye" };
+            let is_so = front && behind && are_right && parts[1] == place;
+            is_light(pass, parts[0]) && is_so && is_left(frame, pass, parts[2])
         },
     ),
     (
         "Counts the shadow volumes of {} in front of each surface, first half: {}. The other faces follow in a pass of their own.",
-        |frame, pass, told| is_first_half(frame, pass, told, true),
+        |frame, pass, parts| is_first_half(frame, pass, parts, true),
     ),
-    ("Counts the shadow volumes of {} in front of each surface, second half: {}. {}", |frame, pass, told| {
-        is_second_half(frame, pass, told, true)
+    ("Counts the shadow volumes of {} in front of each surface, second half: {}. {}", |frame, pass, parts| {
+        is_second_half(frame, pass, parts, true)
     }),
     (
         "Counts the shadow volumes of {} behind each surface, first half: {}. The other faces follow in a pass of their own.",
-        |frame, pass, told| is_first_half(frame, pass, told, false),
+        |frame, pass, parts| is_first_half(frame, pass, parts, false),
     ),
-    ("Counts the shadow volumes of {} behind each surface, second half: {}. {}", |frame, pass, told| {
-        is_second_half(frame, pass, told, false)
+    ("Counts the shadow volumes of {} behind each surface, second half: {}. {}", |frame, pass, parts| {
+        is_second_half(frame, pass, parts, false)
     }),
     (
         "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light adds 1, drawn as the light sees it through the near rectangle.",
-        |_, pass, told| is_light(pass, told[0]) && pass.counts_at_near_plane() && pass.view.0 != 0,
+        |_, pass, parts| is_light(pass, parts[0]) && pass.counts_at_near_plane() && pass.view.0 != 0,
     ),
     (
         "Writes what this technique says of the light at every pixel: lit, in shadow, or facing away. It is not part of the frame; it is how techniques are compared.",
@@ -332,8 +336,8 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Adds the light where the count is zero in {}, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
-        |frame, pass, told| {
-            let mask = mask_of(told[0]);
+        |frame, pass, parts| {
+            let mask = mask_of(parts[0]);
             let writes =
                 frame.plan.passes.iter().filter(|other| other.light == pass.light).flat_map(|other| &other.draws);
             let mut writes = writes.filter(|draw| draw.part.is_of_volume());
@@ -344,17 +348,20 @@ const PURPOSES: &[(&str, Check)] = &[
     ),
     (
         "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. {}1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
-        |frame, pass, told| is_odd_or_even(frame, pass, told, true),
+        |frame, pass, parts| is_odd_or_even(frame, pass, parts, true),
     ),
     (
         "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. {}1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
-        |frame, pass, told| is_odd_or_even(frame, pass, told, false),
+        |frame, pass, parts| is_odd_or_even(frame, pass, parts, false),
     ),
     (
         "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light turns the bit over, drawn as the light sees it through the near rectangle.",
-        |_, pass, told| {
+        |_, pass, parts| {
             let inverts = |draw: &Draw| draw.raster.face(true).0.pass_op == Operation::Invert;
-            is_light(pass, told[0]) && pass.counts_at_near_plane() && pass.view.0 != 0 && pass.draws.iter().all(inverts)
+            is_light(pass, parts[0])
+                && pass.counts_at_near_plane()
+                && pass.view.0 != 0
+                && pass.draws.iter().all(inverts)
         },
     ),
     (
@@ -447,10 +454,10 @@ pub fn patterns() -> Vec<&'static str> {
     all_but(&rare, &[PURPOSES])
 }
 
-pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
+pub fn check(frame: &Frame, seen: &mut SeenPatterns) -> Vec<String> {
     let wrong = |pass: &Pass| {
         let known = matching(PURPOSES, &pass.purpose).take(1);
-        let wrong = find(known, &pass.purpose, held, |check, told| check(frame, pass, told))?;
+        let wrong = find(known, &pass.purpose, seen, |check, parts| check(frame, pass, parts))?;
         Some(format!("the purpose of {} {wrong}", pass.name))
     };
     frame.plan.passes.iter().filter_map(wrong).collect()

@@ -1,5 +1,5 @@
-//! The stops of the guided tours: what each says is held against the frame that it shows. The words that are held stand
-//! here too, so that others are found.
+//! The stops of the guided tours: what each says is compared with the frame that it shows. The words that are checked
+//! stand here too, so that others are found.
 
 use super::purposes::steps;
 use crate::common::{opened, request, session, stencil};
@@ -8,7 +8,7 @@ use stencilscope::capture::Capture;
 use stencilscope::inspector::{TOURS, Tour, TourMove, TourStop};
 use stencilscope::plan::{DecidedBy, Draw, DrawPart, FramePlan, Pass, Program, Visibility};
 use stencilscope::progress::Progress;
-use stencilscope::reading::shown::PictureKind;
+use stencilscope::reading::picture_view::PictureKind;
 use stencilscope::scene::Scene;
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation};
@@ -307,7 +307,7 @@ fn step_at(stop: &TourStop, plan: &FramePlan, before: usize) -> Option<usize> {
 fn every_stop_of_a_tour_shows_what_it_says() {
     let mut session = session();
     let mut frames: BTreeMap<(&str, &str), (Scene, Capture, FramePlan)> = BTreeMap::new();
-    let mut held = 0;
+    let mut checked = 0;
     for tour in &TOURS {
         let mut step = 0;
         for (index, stop) in tour.stops.iter().enumerate() {
@@ -327,7 +327,7 @@ fn every_stop_of_a_tour_shows_what_it_says() {
             for (_, _, words, check) in claims {
                 assert!(stop.text.contains(words), "{place}: it does not say \"{words}\" any more");
                 assert!(check(&shown), "{place}: it is not so that \"{words}\"");
-                held += 1;
+                checked += 1;
             }
             for go in stop.go {
                 let is_there = match go {
@@ -343,5 +343,5 @@ fn every_stop_of_a_tour_shows_what_it_says() {
             }
         }
     }
-    assert_eq!(held, CLAIMS.len(), "a claim of no stop");
+    assert_eq!(checked, CLAIMS.len(), "a claim of no stop");
 }

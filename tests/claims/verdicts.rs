@@ -1,7 +1,7 @@
-//! The verdict about the picked pixel, without its history, with it, and with its map: its facts held against labels,
-//! counts and the color that the light pass left. How facts are worded, the tests of `history/verdict.rs` hold.
+//! The verdict about the picked pixel, without its history, with it, and with its map: its facts compared with labels,
+//! counts and the color that the light pass left. How facts are worded is tested in `history/verdict.rs`.
 
-use super::Held;
+use super::SeenPatterns;
 use super::frames::Frame;
 use super::patterns::{gaps, number};
 use stencilscope::capture::FrameTarget;
@@ -38,7 +38,7 @@ impl Here<'_> {
         self.frame.stencil(Some(self.last_volume_pass()), self.at).expect("a stencil").into()
     }
 
-    /// As a byte is told: what is close to 255 is below 0.
+    /// The count as a byte shows it: what is close to 255 is below 0.
     fn signed(&self) -> f64 {
         let count = self.count();
         if !self.decided_by().counts_in_floats() && count > 127.0 { count - 256.0 } else { count }
@@ -89,8 +89,8 @@ impl Here<'_> {
         }
     }
 
-    /// May the count begin at another number than 0: of the volumes around the eye, or of those that parallel lines of
-    /// sight end in?
+    /// May the count begin at another number than 0: of the volumes around the eye, or of those that parallel view rays
+    /// end in?
     fn begins_elsewhere(&self) -> bool {
         let starts_at_eye = self.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
         let is_point = self.frame.capture.lights[self.light].position.w != 0.0;
@@ -98,7 +98,7 @@ impl Here<'_> {
         starts_at_eye || (is_parallel && is_point && !self.is_side(CountedSide::InFront))
     }
 
-    /// How often faces turned its bit over.
+    /// How often faces inverted its bit.
     fn turns(&self) -> usize {
         let own = self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_of_volume());
         own.filter(|event| event.step() != 0 && event.before.stencil != event.after.stencil).count()
@@ -138,7 +138,7 @@ impl Here<'_> {
             && (label != Some(PixelLabel::Background) || is_clear())
     }
 
-    /// A count is told where the light pass tests one, and what it is says whether the pixel is dark.
+    /// A count is reported where the light pass tests one, and its value says whether the pixel is dark.
     fn tested(&self, label: Option<PixelLabel>, count: Option<VolumeCount>) -> bool {
         match (label, count) {
             (None | Some(PixelLabel::Background), count) => count.is_none(),
@@ -189,12 +189,12 @@ impl Here<'_> {
         let mask = i64::from(tested.bits.modulus()) - 1;
         let fits = tested.bits == CountBits::EIGHT || (self.signed() as i64 & mask) == self.signed() as i64;
         let is_parity = || {
-            let turned = tested.begins_elsewhere || self.turns() % 2 == usize::from(is_dark);
-            inverts && turned && self.count() == f64::from(u8::from(is_dark))
+            let ends_right = tested.begins_elsewhere || self.turns() % 2 == usize::from(is_dark);
+            inverts && ends_right && self.count() == f64::from(u8::from(is_dark))
         };
-        let held = self.frame.capture.lights[self.light].count.as_ref().and_then(|count| count.count_at(self.at));
+        let stored = self.frame.capture.lights[self.light].count.as_ref().and_then(|count| count.count_at(self.at));
         let reads_zero = |count: f32| match tested.count {
-            VolumeCount::Stencil(_) => self.count() == 0.0 && held == Some(count),
+            VolumeCount::Stencil(_) => self.count() == 0.0 && stored == Some(count),
             VolumeCount::Float(_) => self.count() == f64::from(count) && self.count() % 256.0 == 0.0,
         };
         Some(tested.count) == verdict.count
@@ -257,19 +257,19 @@ impl Here<'_> {
 
     fn texels(&self, sentence: &str) -> bool {
         let by_a_map = |label: u8| self.decided_by() == DecidedBy::Map && self.label() == Some(label);
-        let Some(told) = gaps("Texel {}: {}.", sentence) else { return false };
-        let follows = match told[1] {
+        let Some(parts) = gaps("Texel {}: {}.", sentence) else { return false };
+        let follows = match parts[1] {
             "it is nearer, so the light pass adds nothing" => by_a_map(1),
             "nothing nearer is stored, so the light pass adds the light" => by_a_map(0),
             "too close to tell by depths computed anew; the GPU's own say lit" => by_a_map(0),
             "too close to tell by depths computed anew; the GPU's own say in shadow" => by_a_map(1),
-            many => gaps("of the {} texels read, {} hold nothing nearer to the light", many).is_some_and(|told| {
-                let [all, lit] = [number(told[0]), number(told[1])];
+            many => gaps("of the {} texels read, {} hold nothing nearer to the light", many).is_some_and(|parts| {
+                let [all, lit] = [number(parts[0]), number(parts[1])];
                 by_a_map(u8::from(2.0 * lit < all))
             }),
         };
         let stores = [" holds no caster", " holds a caster ", " holds depth "];
-        follows && stores.iter().any(|stores| told[0].contains(stores))
+        follows && stores.iter().any(|stores| parts[0].contains(stores))
     }
 }
 
@@ -348,7 +348,7 @@ fn kind(verdict: &Verdict) -> &'static str {
     }
 }
 
-pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
+pub fn check(frame: &Frame, seen: &mut SeenPatterns) -> Vec<String> {
     let mut wrong = Vec::new();
     for (history, at) in &frame.pixels {
         for light in 0..frame.capture.lights.len() {
@@ -364,7 +364,7 @@ pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
                     && here.tested(verdict.label, verdict.count)
                     && here.evidence(&verdict);
                 if is_true {
-                    held.insert(kind(&verdict));
+                    seen.insert(kind(&verdict));
                 } else {
                     wrong.push(format!(
                         "of pixel {at:?} under light {}, is not so ({}): {} {} {verdict:?}",

@@ -6,7 +6,7 @@ use std::process::Command;
 /// Which part the process was started for.
 const PART: &str = "STENCILSCOPE_TEST_PART";
 
-/// Runs a test's `body` for each of `parts`, each in a process of its own, so that whatever a driver keeps of
+/// Runs a test's `body` for each of `parts`, each in a process of its own, so that whatever a driver retains of
 /// thousands of frames ends with it, and so that it can be measured. `test` is the test's own path, as the list of
 /// tests has it.
 pub fn apart(test: &str, parts: &[&str], body: impl Fn(&str)) {

@@ -38,7 +38,7 @@ pub fn choice(technique: Technique, settings: &[(&str, &str)]) -> Choice {
     choice
 }
 
-/// The same, untimed.
+/// A request for a technique with settings, untimed.
 pub fn request_with(technique: Technique, settings: &[(&str, &str)], size: [u32; 2]) -> CaptureRequest {
     CaptureRequest::new(choice(technique, settings), size)
 }
@@ -90,7 +90,7 @@ pub fn from_above(objects: Vec<Object>) -> Scene {
         .build()
 }
 
-/// The same under another light.
+/// The scene of `from_above` under another light.
 pub fn under(light: Light, objects: Vec<Object>) -> Scene {
     Scene { lights: vec![light], ..from_above(objects) }
 }
@@ -157,7 +157,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A capture held against the ground truth.
+/// A capture compared with the ground truth.
 pub fn judged(session: &mut Session, scene: &Scene, technique: Technique, size: [u32; 2]) -> Capture {
     judged_by(session, scene, &request(technique, size))
 }

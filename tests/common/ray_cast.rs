@@ -24,13 +24,13 @@ struct Seen {
 pub struct Difference {
     /// Pixels with a certain answer, lit or in shadow.
     pub compared: u64,
-    /// Of those, where the technique says otherwise.
+    /// Those of the compared pixels where the technique's label differs from that of the rays.
     pub wrong: u64,
     /// Pixels of each label, by the rays.
     pub labels: [u64; 4],
 }
 
-/// Holds a capture's labels of one light against ray casting. All objects are drawn and cast.
+/// Compares a capture's labels of one light with ray casting. All objects are drawn and cast.
 pub fn difference(scene: &Scene, capture: &Capture, light: usize) -> Difference {
     let triangles: Vec<Triangle> = scene
         .objects

@@ -1,7 +1,7 @@
 //! Each cause in scenes of its own.
 
 use super::provoke::{CAUSES, PlanFault, Provocation, provoke};
-use super::{SMALL, diagnose, faults, first, session, told};
+use super::{SMALL, diagnose, faults, first, session, summary};
 use crate::common::{choice, opened, request_with};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, MeshDefect, Proof};
@@ -30,7 +30,7 @@ fn every_cause_is_named_first_and_proven() {
         let has_numbers = |text: &str| text.contains(|c: char| c.is_ascii_digit());
         let measures = diagnosis.regions.iter().flat_map(|region| &region.causes).all(|one| has_numbers(&one.evidence));
         if first(&diagnosis) != Some(cause) || proof != Some(expected) || !measures {
-            missed.push(format!("{cause}: {}", told(&diagnosis)));
+            missed.push(format!("{cause}: {}", summary(&diagnosis)));
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
@@ -56,7 +56,7 @@ fn two_causes_at_once_are_both_named() {
     let mut open = provoke(Cause::OpenMesh, 2);
     open.choice.set("operations", "clamp").expect("a setting");
     open.fault = None;
-    // Nothing keeps shadows on their receiver, nor from darkening it twice.
+    // Nothing confines shadows to their receiver, or prevents them from darkening it twice.
     let flat = provoke(Cause::OffReceiver, 1);
     let mut missed = Vec::new();
     for (provoked, expected) in [
@@ -67,7 +67,7 @@ fn two_causes_at_once_are_both_named() {
     ] {
         let diagnosis = diagnose(&mut session, &provoked);
         if !proven(&diagnosis).is_superset(&expected.into()) {
-            missed.push(format!("{expected:?}: {}", told(&diagnosis)));
+            missed.push(format!("{expected:?}: {}", summary(&diagnosis)));
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
@@ -76,7 +76,7 @@ fn two_causes_at_once_are_both_named() {
 /// Keys and values.
 type Settings<'a> = &'a [(&'a str, &'a str)];
 
-/// What a setting makes wrong, a setting mends.
+/// What a setting makes wrong, a setting fixes.
 #[test]
 fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_fixed_by_it() {
     let mut session = session();
@@ -94,8 +94,8 @@ fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_fixed_by_it() {
         };
         let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoked(seed))).find(|found| found.is_bad());
         let found = found.expect("a wrong pixel");
-        assert!(proven(&found).contains(&cause), "{cause}: {}", told(&found));
-        assert!(told(&found).contains(fix), "{cause}: {}", told(&found));
+        assert!(proven(&found).contains(&cause), "{cause}: {}", summary(&found));
+        assert!(summary(&found).contains(fix), "{cause}: {}", summary(&found));
     }
 }
 
@@ -113,8 +113,8 @@ fn a_silhouette_that_does_not_fit_its_picture_is_outside_the_map() {
     };
     let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoked(seed))).find(|found| found.is_bad());
     let found = found.expect("a wrong pixel");
-    assert_eq!(first(&found), Some(Cause::OutsideMap), "{}", told(&found));
-    assert!(told(&found).contains("set fit = on"), "{}", told(&found));
+    assert_eq!(first(&found), Some(Cause::OutsideMap), "{}", summary(&found));
+    assert!(summary(&found).contains("set fit = on"), "{}", summary(&found));
 }
 
 /// Where one shadow ends in the middle of a pixel and the next begins there, rounding leaves a hole in the dark.
@@ -134,10 +134,10 @@ fn a_hole_where_two_shadows_meet_is_reported_with_the_distance_of_their_sides() 
         let found = session.diagnose(&provoked(technique).scene, &request, InjectedFault::None, &Progress::default());
         let found = found.expect("a diagnosis");
         let holes = found.regions.len() + found.rest.regions;
-        assert!(holes > 3 && found.error.false_shadow == 0, "{holes}: {}", told(&found));
+        assert!(holes > 3 && found.error.false_shadow == 0, "{holes}: {}", summary(&found));
         for region in &found.regions {
-            let [first, ..] = &region.causes[..] else { panic!("no cause: {}", told(&found)) };
-            assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", told(&found));
+            let [first, ..] = &region.causes[..] else { panic!("no cause: {}", summary(&found)) };
+            assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", summary(&found));
             let [column, row] = region.at;
             assert_eq!([(column - 20) % 14, (row - 70) % 14], [0, 0], "only where a seam is");
             let middle = format!(
@@ -163,18 +163,18 @@ fn what_is_cut_beside_the_border_is_reported_with_the_length_of_what_is_cut() {
     let found = diagnose(1e5);
     let mut beside = 0;
     for region in &found.regions {
-        let [first, ..] = &region.causes[..] else { panic!("no cause: {}", told(&found)) };
-        assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", told(&found));
+        let [first, ..] = &region.causes[..] else { panic!("no cause: {}", summary(&found)) };
+        assert_eq!((first.cause, first.proof), (Cause::F32Limit, Proof::NotRun), "{}", summary(&found));
         // Within the picture it is the corners, kilometres off, that are rounded.
         let is_beside = [0, 639].contains(&region.at[0]) || [0, 479].contains(&region.at[1]);
         let start = match is_beside {
             true => "edges of strips are up to 1.0e5 m long: where the picture ends",
             false => "a side of strips's volume passes 0.",
         };
-        assert!(first.evidence.starts_with(start), "{}", told(&found));
+        assert!(first.evidence.starts_with(start), "{}", summary(&found));
         beside += u32::from(is_beside);
     }
-    assert!(beside > 3, "{}", told(&found));
+    assert!(beside > 3, "{}", summary(&found));
 }
 
 /// One number for all pixels is right where the near plane is in what the eye is in.
@@ -185,22 +185,22 @@ fn counting_from_the_eyes_own_count_is_right_until_the_near_plane_is_cut() {
     let eye = Provocation { choice: starting.clone(), ..provoke(Cause::EyeInVolume, 1) };
     let zero = diagnose(&mut session, &provoke(Cause::EyeInVolume, 1));
     let found = diagnose(&mut session, &eye);
-    assert!(zero.is_bad() && !found.is_bad(), "{}\n{}", told(&zero), told(&found));
+    assert!(zero.is_bad() && !found.is_bad(), "{}\n{}", summary(&zero), summary(&found));
     let cut = (0..SEEDS).map(|seed| Provocation { choice: starting.clone(), ..provoke(Cause::NearPlaneCut, seed) });
     let found = cut.map(|cut| diagnose(&mut session, &cut)).find(|found| found.is_bad()).expect("a wrong pixel");
-    assert_eq!(first(&found), Some(Cause::NearPlaneCut), "{}", told(&found));
-    assert!(told(&found).contains("the count begins with"), "{}", told(&found));
+    assert_eq!(first(&found), Some(Cause::NearPlaneCut), "{}", summary(&found));
+    assert!(summary(&found).contains("the count begins with"), "{}", summary(&found));
 }
 
-/// A closed slat counts one, and so it is told.
+/// A closed slat counts one, and is reported so.
 #[test]
 fn a_body_that_the_near_plane_cuts_is_one_volume() {
     let scene = opened("inside");
     let choice = choice(Technique::ZPass, &[]);
     let provoked = Provocation { cause: Cause::NearPlaneCut, scene, choice, fault: None };
-    let told = told(&diagnose(&mut session(), &provoked));
-    assert!(told.contains("cuts 1 shadow volume of slat"), "{told}");
-    assert!(!told.contains("shadow volumes of slat"), "{told}");
+    let summary = summary(&diagnose(&mut session(), &provoked));
+    assert!(summary.contains("cuts 1 shadow volume of slat"), "{summary}");
+    assert!(!summary.contains("shadow volumes of slat"), "{summary}");
 }
 
 #[test]
@@ -219,7 +219,7 @@ fn a_right_frame_has_no_cause() {
                 fault: None,
             };
             let diagnosis = diagnose(&mut session, &provoked);
-            assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, told(&diagnosis));
+            assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, summary(&diagnosis));
             assert_eq!(diagnosis.error.wrong(), 0);
         }
     }
@@ -232,15 +232,15 @@ fn the_eye_in_the_shadow_of_the_sun_is_named_too() {
     let scene = opened("inside");
     let choice = choice(Technique::ZPass, &[]);
     let diagnosis = diagnose(&mut session, &Provocation { cause: Cause::EyeInVolume, scene, choice, fault: None });
-    assert!(diagnosis.regions.len() > 3, "{}", told(&diagnosis));
+    assert!(diagnosis.regions.len() > 3, "{}", summary(&diagnosis));
     for region in &diagnosis.regions {
         let first = region.causes.first().map(|found| (found.cause, found.proof));
         let is_named = matches!(first, Some((Cause::EyeInVolume | Cause::NearPlaneCut, Proof::Proven)));
-        assert!(is_named, "{:?}: {}", region.at, told(&diagnosis));
+        assert!(is_named, "{:?}: {}", region.at, summary(&diagnosis));
     }
 }
 
-/// The truth honours flags: they are told of apart, and nothing is wrong.
+/// The truth honours flags: they are reported separately, and nothing is wrong.
 #[test]
 fn flags_are_reported_of_with_what_they_take_away() {
     let mut session = session();
@@ -255,7 +255,7 @@ fn flags_are_reported_of_with_what_they_take_away() {
             _ => flagged.visible = false,
         }
         let diagnosis = diagnose(&mut session, &provoked);
-        assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
+        assert!(!diagnosis.is_bad(), "{}", summary(&diagnosis));
         let [flag] = &diagnosis.flags[..] else { panic!("{:?}", diagnosis.flags) };
         assert_eq!((flag.cause, &flag.object), (cause, &provoked.scene.objects[object].name));
         assert!(flag.pixels > 10 && flag.at.is_some(), "{flag:?}");
@@ -273,9 +273,9 @@ fn advice_fixes_the_whole_frame() {
     );
 }
 
-/// A larger map would mend it, but is not tried: what else mends it is.
+/// A larger map would fix it, but is not tried: what else fixes it is.
 #[test]
-fn what_there_is_no_room_for_is_reported_and_not_tried() {
+fn what_exceeds_the_memory_budget_is_reported_and_not_tried() {
     let mut session = session();
     let coarse = |seed| Provocation {
         choice: choice(Technique::PlanarTexture, &[("size", "64")]),
@@ -293,13 +293,13 @@ fn what_there_is_no_room_for_is_reported_and_not_tried() {
     session.set_memory_budget(Some(too_little));
     let diagnosis = diagnose(&mut session, &provoked);
     let found = found(&diagnosis).expect("a region");
-    assert_eq!((found.cause, found.proof), (Cause::Aliasing, Proof::Proven), "{}", told(&diagnosis));
+    assert_eq!((found.cause, found.proof), (Cause::Aliasing, Proof::Proven), "{}", summary(&diagnosis));
     assert_eq!(found.fix.expect("a mend").technique, Some(Technique::ZFail));
     assert!(found.evidence.contains("(set size = 256 can't be run"), "{}", found.evidence);
     assert!(!found.evidence.contains("size = 128 can't"), "{}", found.evidence);
 }
 
-/// What meshes are like is told where all casts right, too.
+/// What meshes are like is reported where all casts right, too.
 #[test]
 fn meshes_are_reported_of_with_places() {
     let mut session = session();
@@ -307,7 +307,7 @@ fn meshes_are_reported_of_with_places() {
         let mut provoked = provoke(cause, 0);
         (provoked.choice, provoked.fault) = (choice(Technique::ZFail, &[]), None);
         let diagnosis = diagnose(&mut session, &provoked);
-        assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
+        assert!(!diagnosis.is_bad(), "{}", summary(&diagnosis));
         let of_caster = diagnosis.mesh_findings.iter().filter(|found| found.object == "caster");
         let found: Vec<_> = of_caster.map(|found| (found.kind, found.count, found.at.is_empty())).collect();
         assert!(found.contains(&(MeshDefect::Cause(cause), count, false)), "{cause}: {found:?}");

@@ -45,7 +45,7 @@ pub fn textbook_silhouettes() -> PlanFault {
             let mut indices = plan.meshes[side.mesh.0].indices.data().to_vec();
             let run = side.triangles.start as usize * 3..side.triangles.end as usize * 3;
             for corners in indices[run].chunks_exact_mut(3) {
-                // Of the near edge, carried or not.
+                // The vertices of the near edge, whether a corner is carried to the far end or not.
                 let mut edge: Vec<u32> = corners.iter().map(|vertex| vertex % near).collect();
                 edge.sort_unstable();
                 edge.dedup();

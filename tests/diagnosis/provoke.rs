@@ -53,7 +53,7 @@ impl Dice {
         low + (high - low) * self.0.unit()
     }
 
-    /// Of so many.
+    /// A random index below `count`.
     fn one_of(&mut self, count: usize) -> usize {
         (self.0.unit() * count as f64) as usize
     }
@@ -132,7 +132,7 @@ fn rebuilt(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh")
 }
 
-/// A cause made to happen, one way or another for each seed.
+/// A scene and choice in which a cause occurs, one way or another for each seed.
 pub fn provoke(cause: Cause, seed: u64) -> Provocation {
     let dice = &mut Dice(Random::new(seed.wrapping_mul(64) + cause as u64 + 1));
     let facing = [("casters", "light-facing")];
@@ -237,8 +237,8 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
     };
     let mut scene = scene;
     // A floor is a mesh with an edge too, and a silhouette that falls on what stands on it.
-    let floor_tells = choice.settings().get("casters").is_some_and(|casters| casters == "light-facing");
-    if floor_tells || choice.technique() == Technique::Projective {
+    let is_light_facing = choice.settings().get("casters").is_some_and(|casters| casters == "light-facing");
+    if is_light_facing || choice.technique() == Technique::Projective {
         scene.objects[0].casts = false;
     }
     Provocation { cause, scene, choice, fault }

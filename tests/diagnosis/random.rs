@@ -1,13 +1,13 @@
 //! A hundred things made wrong at random: the first named cause is the true one.
 
 use super::provoke::{CAUSES, Provocation, provoke};
-use super::{diagnose, first, session, told};
+use super::{diagnose, first, session, summary};
 use crate::common::apart;
 use stencilscope::session::Session;
 
-/// As many provocations.
+/// How many provocations are tried.
 const COUNT: usize = 100;
-/// As many must be named.
+/// How many of their causes must be named first.
 const LEAST: usize = 95;
 /// Seeds that the scenes of single causes do not use.
 const FIRST_SEED: u64 = 1000;
@@ -48,7 +48,7 @@ fn name_a_hundred_provocations() {
             assert!(seed % 100 < 99, "{cause} can't be provoked");
         };
         if first(&diagnosis) != Some(cause) {
-            missed.push(format!("{cause}, seed {seed}: {}", told(&diagnosis)));
+            missed.push(format!("{cause}, seed {seed}: {}", summary(&diagnosis)));
         }
     }
     println!("{drawn_again} drawn again, {} missed:\n{}", missed.len(), missed.join("\n"));

@@ -157,7 +157,7 @@ fn z_pass_plus_begins_with_the_count_of_the_near_plane() {
     assert_eq!(notes, [("volumes", Some("clipped: it is nearer than the near plane")); 3]);
 }
 
-/// A shadow that a student follows: flattened onto the floor, it meets the floor's mark.
+/// A shadow that a student follows: flattened onto the floor, it raises the floor's mark.
 #[test]
 fn a_flattened_box_raises_its_receivers_mark_once() {
     let mut scene = nested_boxes();
@@ -196,7 +196,7 @@ fn a_triangle_that_is_culled_or_clipped_says_why() {
     // The top is 8 away, the bottom 9, the floor 10.
     scene.camera.near = 8.5;
     scene.camera.far = Some(9.5);
-    for (depth, fates) in [
+    for (depth, outcomes) in [
         ("standard-finite", ["floor, front, clipped", "box, back, passes, stores depth", "box, front, clipped"]),
         (
             "standard-finite-clamp",
@@ -206,7 +206,7 @@ fn a_triangle_that_is_culled_or_clipped_says_why() {
         let (capture, plan) = frame(&mut session, &scene, Technique::ZFail, &[("depth", depth)], SIZE);
         let history = session.history(&plan, &capture, INSIDE).expect("a history");
         assert!(history.agrees(), "{depth}: {:?}", history.disagreements());
-        assert_eq!(ambient(&history), fates.map(|outcome| format!("ambient: {outcome}")), "{depth}");
+        assert_eq!(ambient(&history), outcomes.map(|outcome| format!("ambient: {outcome}")), "{depth}");
     }
 }
 
@@ -228,7 +228,7 @@ fn geometry_finds_the_triangles_over_a_pixel() {
     assert!(over([50, 50]).iter().all(|(_, coverage)| *coverage == Coverage::Doubtful));
 }
 
-/// What decides is told, and not what usually would.
+/// What decides is reported, and not what usually would.
 #[test]
 fn why_names_the_test_that_failed_and_what_nobody_asked() {
     let mut session = session();

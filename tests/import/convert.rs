@@ -13,7 +13,7 @@ use stencilscope::plan::{Blob, CountedSide, DecidedBy, FramePlan, LightId, Raste
 use stencilscope::progress::Progress;
 use stencilscope::session::{FrameSource, RunFrame, Session};
 
-/// As a draw's depth and stencil may differ on another rasterizer: pixels on edges and at depths that are equal.
+/// How many pixels of a draw may differ in depth or stencil on another rasterizer: on edges, and at equal depths.
 const MOST_DIFFERING: u64 = 16;
 
 fn converted(session: &mut Session, name: &str) -> (FramePlan, Capture) {
@@ -123,15 +123,15 @@ fn how_the_eye_sees_is_found_from_the_vertices() {
 fn seen(eye: DVec3, target: DVec3, place: DVec3) -> DVec3 {
     // OGRE turns a camera by the shortest arc from −z, and sees 45 degrees.
     let ahead = (target - eye).normalize();
-    let turned = DQuat::from_rotation_arc(DVec3::NEG_Z, ahead);
-    let [right, above] = [turned * DVec3::X, turned * DVec3::Y];
+    let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, ahead);
+    let [right, above] = [rotation * DVec3::X, rotation * DVec3::Y];
     let stretch = 1.0 / (45.0_f64.to_radians() / 2.0).tan();
     let from = place - eye;
     DVec3::new(from.dot(right) * stretch, from.dot(above) * stretch, -from.dot(ahead))
 }
 
 #[test]
-fn the_light_is_found_where_the_script_put_it() {
+fn the_light_is_found_where_the_script_placed_it() {
     let frames = [
         ("ogre", DVec3::new(0.0, 150.0, 400.0), DVec3::new(0.0, 30.0, 0.0)),
         ("ogre-inside", DVec3::new(38.0, 14.0, 6.0), DVec3::new(-80.0, 20.0, 10.0)),
@@ -314,9 +314,9 @@ fn commands_answer_from_the_folder_of_a_recorded_frame() {
     for (name, code) in [("ogre", 0), ("ogre-short", 1)] {
         let frame = frame_of(name);
         write(frame.contents(), &work.path().join(name), false).expect("written");
-        let told = run(&["diagnose", name]);
-        assert_eq!(told.status.code(), Some(code), "{}", text(&told.stderr));
-        assert_eq!(text(&told.stdout).contains("finite-extrusion (light 1), proven: 0 pixels left"), code == 1);
+        let output = run(&["diagnose", name]);
+        assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
+        assert_eq!(text(&output.stdout).contains("finite-extrusion (light 1), proven: 0 pixels left"), code == 1);
         let json = run(&["diagnose", name, "--json"]);
         let document: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
         let regions = document["regions"].as_array().expect("regions");

@@ -1,5 +1,5 @@
 //! A rasteriser and stencil machine of its own, in `f64`: what a frame's positions and states make of what was there
-//! before each draw, held against what RenderDoc has stored after it.
+//! before each draw, compared with what RenderDoc has stored after it.
 //!
 //! Triangles are taken in homogeneous coordinates (Olano and Greer, 1997), so that none has to be clipped.
 
@@ -11,7 +11,7 @@ use stencilscope::import::{RawContents, RawCull, RawDraw, RawFrame, RawKind, Raw
 use stencilscope::plan::ShaderEffect;
 use stencilscope::wgpu::{CompareFunction, StencilOperation};
 
-/// A draw held against what was stored after it.
+/// A draw compared with what was stored after it.
 #[derive(Debug)]
 pub struct Compared {
     pub event: u32,
@@ -27,13 +27,13 @@ pub struct Compared {
     pub untied: usize,
 }
 
-/// Every draw whose depth and stencil are known before and after, and whose shader keeps all fragments.
+/// Every draw whose depth and stencil are known before and after, and whose shader discards no fragment.
 pub fn compare(frame: &RawFrame) -> Vec<Compared> {
-    let mut held: BTreeMap<RawTarget, RawContents> = frame.before.iter().cloned().collect();
+    let mut contents: BTreeMap<RawTarget, RawContents> = frame.before.iter().cloned().collect();
     let mut found = Vec::new();
     for event in &frame.events {
         let Some(target) = event.depth_target else { continue };
-        let before = held.insert(target, event.after.clone());
+        let before = contents.insert(target, event.after.clone());
         let (RawKind::Draw(draw), Some(before)) = (&event.kind, before) else { continue };
         if draw.fragment.may_discard != ShaderEffect::No {
             continue;

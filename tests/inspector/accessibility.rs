@@ -92,7 +92,7 @@ fn unnamed(harness: &Harness<Seen>) -> Vec<String> {
         .collect()
 }
 
-/// Buttons, fields and the like that can't be told apart by role and name.
+/// Buttons, fields and the like that role and name don't distinguish.
 fn ambiguous(harness: &Harness<Seen>) -> Vec<String> {
     let mut seen = BTreeMap::<String, usize>::new();
     for node in nodes(harness).filter(is_operable) {
@@ -198,7 +198,7 @@ fn tab_goes_on_from_the_picture_and_shift_tab_goes_back() {
     }
 }
 
-/// Puts the focus on a widget, as Tab does.
+/// Moves the focus to a widget, as Tab does.
 fn focus_on(harness: &mut Harness<Seen>, role: Role, label: &str) -> NodeId {
     harness.get_by_role_and_label(role, label).focus();
     harness.run_steps(2);

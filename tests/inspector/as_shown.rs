@@ -127,7 +127,7 @@ fn it_is_chosen_in_the_menu_of_exports() {
     assert!(path.ends_with("-as-shown.png"), "{path}");
 }
 
-/// Of a slab on a floor, whose edges are long in the picture.
+/// Volumes of a slab on a floor, whose edges are long in the picture.
 #[test]
 fn edges_that_count_twice_have_their_number() {
     let mut session = common::session();

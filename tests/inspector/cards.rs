@@ -123,7 +123,7 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
 }
 
 #[test]
-fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
+fn the_whole_ladder_is_visible_in_windows_that_are_not_high() {
     let history = history_by_hand::history([3, 4], &history_by_hand::FACES);
     for height in [800.0, 900.0, 1000.0, 1080.0] {
         let mut inspector = inspector(with_truth(z_fail(SIZE)));

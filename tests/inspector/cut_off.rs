@@ -1,4 +1,4 @@
-//! Words have room where they stand: none is cut off at a panel's edge, and what belongs together keeps together.
+//! No words are cut off at a panel's edge, and what belongs together stands together.
 
 use super::explain::over;
 use super::history::{DARK, answer};
@@ -14,7 +14,7 @@ fn what_a_ladder_counts_is_read_to_its_end() {
     let mut harness = picked(capture, DARK);
     answer(&mut harness, history(DARK, &FACES));
     for words in ["along the view ray", "Counted from"] {
-        let right = harness.query_all_by_label_contains(words).map(|told| told.rect().right()).fold(0.0, f32::max);
+        let right = harness.query_all_by_label_contains(words).map(|label| label.rect().right()).fold(0.0, f32::max);
         assert!(right > 0.0 && right <= 1280.0, "{words}: {right}");
     }
 }

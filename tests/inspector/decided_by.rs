@@ -50,7 +50,7 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
                 (Some(CountedSide::InFront), Some("Stencil count"), "volume face")
             }
             Technique::ZFail => (Some(CountedSide::Behind), Some("Stencil count"), "volume face"),
-            // No caster of this scene holds the eye in its shadow.
+            // The eye is in the shadow of no caster of this scene.
             Technique::Auto => (Some(CountedSide::InFront), Some("Stencil count"), "volume face"),
             Technique::Planar => (None, Some("Stencil value"), "flattened"),
             Technique::PlanarTexture => (None, None, "The texture of this flat receiver"),
@@ -64,7 +64,7 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
         };
         assert_eq!((side, legend), (expected_side, expected_legend), "{name}");
         assert!(says(&harness, reason), "{name}: {reason}");
-        // Two tori, proven closed, over a floor that is not: who counts says what.
+        // Two tori, proven closed, over a floor that is not: the label says which kinds of casters count.
         let counting = capture.lights[0].count_of.map(CountOf::what);
         assert_eq!(counting.is_some(), side.is_some(), "{name}");
         if let Some(counting) = counting {
@@ -77,7 +77,7 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
 #[test]
 fn a_pixel_whose_volumes_count_on_both_sides_has_one_ladder_of_them_all() {
     let mut session = common::session();
-    // The roof holds the eye in its shadow, and a part of the slab.
+    // The eye is in the shadow of the roof, and a part of the slab is too.
     let slab = common::cuboid("slab", [0.5, 3.0, -0.5], [2.0, 3.1, 0.5]);
     let roof = common::cuboid("roof", [-6.0, 12.0, -1.0], [-2.0, 12.5, 1.0]);
     let mut scene = common::from_above(vec![slab, roof]);

@@ -77,21 +77,21 @@ pub fn found() -> Diagnosis {
     }
 }
 
-fn tell(inspector: &mut Inspector, diagnosis: Diagnosis) {
+fn give_diagnosis(inspector: &mut Inspector, diagnosis: Diagnosis) {
     inspector.take_in(DiagnosisOf {}, Ok(Arc::new(diagnosis)));
 }
 
-fn opened(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
+fn opened(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.set_scene(&scene(), run_request(Technique::ZPass));
-    tell(&mut inspector);
+    prepare(&mut inspector);
     let mut harness = harness_in(inspector, [1280.0, 900.0]);
     show_tab(&mut harness, "Diagnosis");
     harness
 }
 
 fn with_regions() -> Harness<'static, Seen> {
-    opened(|inspector| tell(inspector, found()))
+    opened(|inspector| give_diagnosis(inspector, found()))
 }
 
 const FIRST: &str = "1 · missing shadow of box on floor: 70 pixels, eye-in-volume (proven)";
@@ -199,12 +199,12 @@ fn a_right_frame_says_so_and_small_windows_hold_it() {
         error: ErrorCounts { compared: 1200, ..ErrorCounts::default() },
         ..found()
     };
-    let harness = opened(|inspector| tell(inspector, right));
+    let harness = opened(|inspector| give_diagnosis(inspector, right));
     harness.get_by_label("No pixel is wrong.");
     harness.get_by_label_contains("none of 1\u{2009}200 compared pixels is wrong");
     for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
         let mut inspector = inspector(z_fail(SIZE));
-        tell(&mut inspector, found());
+        give_diagnosis(&mut inspector, found());
         harness_in(inspector, size);
     }
 }
@@ -225,7 +225,7 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
         frame.capture = Arc::new(judged);
         let inspector = || {
             let mut inspector = pictures::inspector(&frame, diagnosis.regions[0].at);
-            tell(&mut inspector, diagnosis.clone());
+            give_diagnosis(&mut inspector, diagnosis.clone());
             inspector
         };
         gallery.show(&format!("diagnosis-{}", technique.name()), gallery.sizes(), inspector, |harness| {
@@ -253,7 +253,7 @@ fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
     diagnosis.advice.as_mut().expect("advice").staying = staying;
     let mut inspector = inspector(z_fail(SIZE));
     inspector.set_scene(&scene(), run_request(Technique::ShadowMap));
-    tell(&mut inspector, diagnosis);
+    give_diagnosis(&mut inspector, diagnosis);
     let mut harness = harness_in(inspector, [1280.0, 1400.0]);
     show_tab(&mut harness, "Diagnosis");
     let stay =
@@ -271,7 +271,7 @@ fn a_long_title_goes_on_in_a_second_line() {
     let mut diagnosis = found();
     diagnosis.regions[1].casters = vec!["the orange torus at the back of the room".to_owned()];
     diagnosis.regions[1].receivers = vec!["the red torus by the window".to_owned()];
-    let harness = opened(|inspector| tell(inspector, diagnosis));
+    let harness = opened(|inspector| give_diagnosis(inspector, diagnosis));
     let short = harness.get_by_role_and_label(Role::Row, FIRST).rect().height();
     let long = harness.query_all_by_role(Role::Row).map(|row| row.rect().height()).fold(0.0, f32::max);
     assert!(long > short + 8.0, "{long} over {short}");

@@ -4,7 +4,7 @@ use super::*;
 use crate::common::random::Random;
 use stencilscope::inspector::{PanelKind, StoredSettings};
 
-/// A panel may be made no smaller by hand or by a drop, points.
+/// The least width and height that a panel may be given by hand or by a drop, points.
 const LEAST: [f32; 2] = [96.0, 48.0];
 
 fn titles() -> Vec<String> {
@@ -40,20 +40,20 @@ pub fn drag_tab(harness: &mut Harness<Seen>, from: Pos2, to: Pos2) {
 }
 
 #[track_caller]
-fn assert_usable(harness: &Harness<Seen>, told: &str) {
+fn assert_usable(harness: &Harness<Seen>, context: &str) {
     let mut names: Vec<String> = tabs(harness).into_iter().map(|(name, _)| name).collect();
     names.sort_unstable();
-    assert_eq!(names, titles(), "{told}");
+    assert_eq!(names, titles(), "{context}");
     let window = harness.ctx.content_rect();
     let panels = shown(harness);
-    assert!(!panels.is_empty(), "{told}");
+    assert!(!panels.is_empty(), "{context}");
     for (name, place) in &panels {
         let is_large = place.width() >= LEAST[0] && place.height() >= LEAST[1];
-        assert!(is_large && window.contains_rect(*place), "{name} is at {place} of {window}: {told}");
+        assert!(is_large && window.contains_rect(*place), "{name} is at {place} of {window}: {context}");
     }
     for (index, (name, place)) in panels.iter().enumerate() {
         let others = panels[..index].iter().filter(|(_, other)| place.shrink(1.0).intersects(other.shrink(1.0)));
-        assert_eq!(others.count(), 0, "{name} lies over another: {told}");
+        assert_eq!(others.count(), 0, "{name} lies over another: {context}");
     }
 }
 
@@ -93,7 +93,7 @@ fn wherever_tabs_are_dropped_and_borders_are_dragged_every_panel_stays_and_can_b
             let panels = shown(&harness);
             let in_view: Vec<(String, Rect)> =
                 tabs(&harness).into_iter().filter(|(_, place)| window.contains_rect(*place)).collect();
-            let told = if turn % 5 == 3 {
+            let context = if turn % 5 == 3 {
                 // A whole group, by the end of its bar of tabs.
                 let (name, place) = &panels[random.below(panels.len() as u32) as usize];
                 drag_tab(&mut harness, place.right_top() + vec2(-4.0, -14.0), to);
@@ -109,7 +109,7 @@ fn wherever_tabs_are_dropped_and_borders_are_dragged_every_panel_stays_and_can_b
                 drag_tab(&mut harness, place.center(), to);
                 format!("seed {seed}, turn {turn}: {name} to {to}")
             };
-            assert_usable(&harness, &told);
+            assert_usable(&harness, &context);
         }
         // A small window for a while changes nothing for good, and the next run finds all where it was.
         let before = (harness.state().inspector.remembered(), shown(&harness));

@@ -7,24 +7,24 @@ fn kind(harness: &Harness<Seen>) -> PictureKind {
 }
 
 /// What *Auto* shows of every step of the frame, from the first on.
-fn told(harness: &mut Harness<Seen>, steps: usize) -> Vec<(usize, PictureKind)> {
+fn shown_at_steps(harness: &mut Harness<Seen>, steps: usize) -> Vec<(usize, PictureKind)> {
     press(harness, Key::Home);
-    let mut told = Vec::new();
+    let mut shown = Vec::new();
     for _ in 0..steps {
-        told.push((harness.state().inspector.model.selection.step, kind(harness)));
+        shown.push((harness.state().inspector.model.selection.step, kind(harness)));
         press(harness, Key::ArrowRight);
     }
-    told
+    shown
 }
 
 #[test]
 fn each_step_shows_what_it_writes_and_a_mask_is_none_of_them() {
     let mut harness = harness(z_fail(SIZE));
     let of_z_fail = [(0, PictureKind::Color), (1, PictureKind::Stencil), (3, PictureKind::Color)];
-    assert_eq!(told(&mut harness, 3), of_z_fail);
+    assert_eq!(shown_at_steps(&mut harness, 3), of_z_fail);
     harness.state_mut().inspector.set_capture(Arc::new(cube_map()));
     let of_map = [(0, PictureKind::Map), (1, PictureKind::Map), (2, PictureKind::Color), (3, PictureKind::Color)];
-    assert_eq!(told(&mut harness, 4), of_map);
+    assert_eq!(shown_at_steps(&mut harness, 4), of_map);
     harness.get_by_label("step 4 of 4");
 }
 
@@ -68,7 +68,7 @@ fn a_mask_is_looked_at_by_its_row_and_stepped_away_from() {
 fn a_kind_that_was_chosen_stays_until_auto_is_chosen_again() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "Depth");
-    assert_eq!(told(&mut harness, 3).iter().filter(|(_, kind)| *kind == PictureKind::Depth).count(), 3);
+    assert_eq!(shown_at_steps(&mut harness, 3).iter().filter(|(_, kind)| *kind == PictureKind::Depth).count(), 3);
     press(&mut harness, Key::Home);
     press(&mut harness, Key::ArrowRight);
     click_button(&mut harness, "Auto");

@@ -62,7 +62,7 @@ fn an_axis_moves_along_itself_alone() {
 }
 
 #[test]
-fn a_direction_is_turned_and_stays_one() {
+fn a_direction_is_rotated_and_stays_one() {
     let mut scene = box_scene();
     scene.lights[0] = Light::directional(DVec3::new(0.0, 2.0, 0.0));
     let mut harness = harness_of(over(&scene));

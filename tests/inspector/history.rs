@@ -264,7 +264,7 @@ fn a_history_that_contradicts_the_gpu_says_so() {
 }
 
 #[test]
-fn of_600_events_only_rows_in_sight_are_drawn_and_a_rung_scrolls_to_its_row() {
+fn of_600_events_only_visible_rows_are_drawn_and_a_rung_scrolls_to_its_row() {
     let faces: Vec<Face> = (0..595).map(|index| (DrawPart::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
     let mut harness = answered(&faces);
     harness.get_by_label("600 events");
@@ -362,7 +362,7 @@ fn where_only_the_near_plane_counts_the_ladder_begins_and_ends_with_it() {
     );
 }
 
-/// Caps are drawn turned; what is called front and back is nonetheless what techniques say of it.
+/// Caps are drawn with flipped winding; what is called front and back is nonetheless what techniques say of it.
 #[test]
 fn behind_the_surface_back_faces_add_and_before_it_front_faces() {
     let mut session = common::session();

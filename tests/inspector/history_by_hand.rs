@@ -26,7 +26,7 @@ const NEAR: f32 = 0.1;
 
 struct Making {
     events: Vec<PixelEvent>,
-    held: PixelValues,
+    values: PixelValues,
     after: Vec<CapturedAfter>,
 }
 
@@ -34,13 +34,13 @@ impl Making {
     fn push(&mut self, pass: usize, kind: PixelEventKind, after: PixelValues) {
         let pass_name = ["ambient", "volumes", "mask", "light"][pass].to_owned();
         let light = (pass > 0).then_some(0);
-        let before = std::mem::replace(&mut self.held, after);
+        let before = std::mem::replace(&mut self.values, after);
         let target = if pass == 2 { FrameTarget::Labels } else { FrameTarget::Picture };
         self.events.push(PixelEvent { pass, pass_name, light, is_from_camera: true, target, kind, before, after });
     }
 
     fn end_pass(&mut self, pass: usize) {
-        let stored = DepthStencil { depth: self.held.depth, stencil: self.held.stencil };
+        let stored = DepthStencil { depth: self.values.depth, stencil: self.values.stencil };
         self.after.push(CapturedAfter { pass, stored, count: None });
     }
 }
@@ -74,14 +74,14 @@ fn triangle(
 /// that read the count. Two clears, a floor in three passes, and as many events more as faces.
 pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
     let surface = NEAR / (1.0 + at[0] as f32);
-    let held = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
-    let mut making = Making { events: Vec::new(), held, after: Vec::new() };
-    making.push(0, PixelEventKind::ClearDepth, held);
-    making.push(0, PixelEventKind::ClearStencil, held);
+    let values = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
+    let mut making = Making { events: Vec::new(), values, after: Vec::new() };
+    making.push(0, PixelEventKind::ClearDepth, values);
+    making.push(0, PixelEventKind::ClearStencil, values);
     let outcome = FragmentOutcome::Tested { stencil: TestResult::Always, depth: TestResult::Passed, operation: None };
     let floor =
         |outcome| PixelEventKind::Triangle(Box::new(triangle("floor", DrawPart::Surface, 0, true, surface, outcome)));
-    making.push(0, floor(outcome), PixelValues { depth: surface, ..held });
+    making.push(0, floor(outcome), PixelValues { depth: surface, ..values });
     making.end_pass(0);
     for (index, (part, is_front, distance)) in faces.iter().enumerate() {
         let depth = NEAR / distance;
@@ -94,28 +94,28 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
                 depth,
                 FragmentOutcome::Clipped(ClipPlane::Near),
             );
-            making.push(1, PixelEventKind::Triangle(Box::new(one)), making.held);
+            making.push(1, PixelEventKind::Triangle(Box::new(one)), making.values);
             continue;
         }
         let passes = depth > surface;
         let (operation, stencil) = match (passes, is_front) {
-            (true, _) => (StencilOperation::Keep, making.held.stencil),
-            (false, true) => (StencilOperation::DecrementWrap, making.held.stencil.wrapping_sub(1)),
-            (false, false) => (StencilOperation::IncrementWrap, making.held.stencil.wrapping_add(1)),
+            (true, _) => (StencilOperation::Keep, making.values.stencil),
+            (false, true) => (StencilOperation::DecrementWrap, making.values.stencil.wrapping_sub(1)),
+            (false, false) => (StencilOperation::IncrementWrap, making.values.stencil.wrapping_add(1)),
         };
         let test = if passes { TestResult::Passed } else { TestResult::Failed };
         let outcome = FragmentOutcome::Tested { stencil: TestResult::Always, depth: test, operation: Some(operation) };
         let name = if *part == DrawPart::Side { "sides of box" } else { "dark cap of box" };
         let one = triangle(name, *part, index as u32, *is_front, depth, outcome);
-        making.push(1, PixelEventKind::Triangle(Box::new(one)), PixelValues { stencil, ..making.held });
+        making.push(1, PixelEventKind::Triangle(Box::new(one)), PixelValues { stencil, ..making.values });
     }
     making.end_pass(1);
     for pass in [2, 3] {
-        let is_lit = making.held.stencil == 0;
+        let is_lit = making.values.stencil == 0;
         let stencil = if is_lit { TestResult::Passed } else { TestResult::Failed };
         let depth = if is_lit { TestResult::Passed } else { TestResult::NotReached };
         let outcome = FragmentOutcome::Tested { stencil, depth, operation: Some(StencilOperation::Keep) };
-        making.push(pass, floor(outcome), making.held);
+        making.push(pass, floor(outcome), making.values);
         making.end_pass(pass);
     }
     PixelHistory {
@@ -124,7 +124,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         is_reversed: true,
         depth_rounding: 0.0,
         start: PixelValues { depth: 0.0, stencil: 0, count: 0.0 },
-        computed: making.held,
+        computed: making.values,
         captured: making.after.last().map(|after| after.stored),
         captured_after: making.after,
         counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,

@@ -103,7 +103,7 @@ fn lights_are_added_and_deleted() {
 }
 
 #[test]
-fn objects_of_the_scene_and_new_ones_are_moved_turned_and_scaled() {
+fn objects_of_the_scene_and_new_ones_are_moved_rotated_and_scaled() {
     let mut harness = opened();
     choose_object(&mut harness, "floor");
     set_value(&mut harness, "object position y", -0.5);
@@ -121,8 +121,8 @@ fn objects_of_the_scene_and_new_ones_are_moved_turned_and_scaled() {
     set_value(&mut harness, "object scale y", 2.0);
     assert_eq!(last_run(&harness).objects.added[0].pose.scale.y, 2.0);
     click_button(&mut harness, "Z is up");
-    let turned = last_run(&harness).objects.added[0].pose;
-    let up = turned.world_from_object().transform_vector3(DVec3::Z).normalize();
+    let rotated = last_run(&harness).objects.added[0].pose;
+    let up = rotated.world_from_object().transform_vector3(DVec3::Z).normalize();
     assert!(up.distance(DVec3::Y) < 1e-12, "{up}");
 }
 
@@ -222,19 +222,19 @@ fn a_far_plane_is_set_and_taken_away() {
 }
 
 #[test]
-fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
+fn a_model_with_z_up_is_rotated_and_stands_on_its_floor_before_the_camera() {
     let (scene, mut harness) = settings_over(UpAxis::Y, |_| {});
     click_button(&mut harness, "z up");
     let run = last_run(&harness);
-    let turned = run.applied_to(&scene);
+    let rotated = run.applied_to(&scene);
     let ends = |object: &Object| {
         let heights = object.world_positions().into_iter().map(|at| at.y);
         heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)])
     };
-    let [low, high] = ends(&turned.objects[0]);
+    let [low, high] = ends(&rotated.objects[0]);
     assert!((high - low - 6.0).abs() < 1e-9, "its z axis is up");
     let gap = |scene: &Scene| ends(&scene.objects[0])[0] - ends(&scene.objects[1])[1];
-    assert!((gap(&turned) - gap(&scene)).abs() < 1e-9 && gap(&scene) > 0.0, "as near above the floor as before");
+    assert!((gap(&rotated) - gap(&scene)).abs() < 1e-9 && gap(&scene) > 0.0, "as near above the floor as before");
     assert!((run.camera.target.y - (low + high) / 2.0).abs() < 1e-9 && run.lights[0].position.y > high);
     click_button(&mut harness, "y up");
     assert_eq!(last_run(&harness), RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE));
@@ -250,7 +250,7 @@ fn settings_over(up: UpAxis, change: impl FnOnce(&mut Scene)) -> (Scene, Harness
 }
 
 #[test]
-fn turning_a_model_leaves_a_light_and_a_camera_where_they_were_put_by_hand() {
+fn rotating_a_model_leaves_a_light_and_a_camera_where_they_were_placed_by_hand() {
     let lamp = DVec3::new(9.0, 8.0, 7.0);
     let (scene, mut harness) = settings_over(UpAxis::Y, |scene| scene.lights[0].position = lamp.extend(1.0));
     click_button(&mut harness, "z up");
@@ -270,7 +270,7 @@ fn turning_a_model_leaves_a_light_and_a_camera_where_they_were_put_by_hand() {
 }
 
 #[test]
-fn a_floor_that_was_moved_stays_when_the_model_is_turned() {
+fn a_floor_that_was_moved_stays_when_the_model_is_rotated() {
     let (scene, mut harness) = settings_over(UpAxis::Y, |_| {});
     let floor = Pose { translate: DVec3::Y * -3.0, ..scene.objects[1].pose };
     let mut draft = harness.state().inspector.draft().expect("a draft").as_ref().clone();
@@ -283,17 +283,17 @@ fn a_floor_that_was_moved_stays_when_the_model_is_turned() {
 }
 
 #[test]
-fn a_model_that_was_opened_with_z_up_is_turned_back_to_what_it_is_with_y_up() {
+fn a_model_that_was_opened_with_z_up_is_rotated_back_to_what_it_is_with_y_up() {
     let (z_up, mut harness) = settings_over(UpAxis::Z, |_| {});
     let (y_up, _) = settings_over(UpAxis::Y, |_| {});
     click_button(&mut harness, "y up");
-    let turned = last_run(&harness).applied_to(&z_up);
-    assert_eq!((turned.camera, &turned.lights), (y_up.camera, &y_up.lights));
+    let rotated = last_run(&harness).applied_to(&z_up);
+    assert_eq!((rotated.camera, &rotated.lights), (y_up.camera, &y_up.lights));
     let heights = |scene: &Scene| {
         let of = |object: &Object| object.world_positions().iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
         scene.objects.iter().map(of).collect::<Vec<f64>>()
     };
-    assert!(heights(&turned).iter().zip(heights(&y_up)).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", heights(&turned));
+    assert!(heights(&rotated).iter().zip(heights(&y_up)).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", heights(&rotated));
     click_button(&mut harness, "z up");
     assert_eq!(last_run(&harness).applied_to(&z_up).camera, z_up.camera);
 }

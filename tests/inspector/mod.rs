@@ -5,6 +5,7 @@ mod as_shown;
 mod by_hand;
 mod cards;
 mod counts;
+mod cut_off;
 mod decided_by;
 mod diagnosis;
 mod docking;
@@ -25,7 +26,6 @@ mod pictures;
 mod random_input;
 mod recorded;
 mod report;
-mod room;
 mod scene_depth;
 mod scene_view;
 mod settings;
@@ -50,7 +50,7 @@ use stencilscope::capture::{Capture, Image, PixelFormat};
 use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector, SceneEntry};
 use stencilscope::plan::DrawPart;
 use stencilscope::progress::Progress;
-use stencilscope::reading::shown::{PictureKind, TexelZoom};
+use stencilscope::reading::picture_view::{PictureKind, TexelZoom};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, RunFrame, Session};
 use stencilscope::technique::{Choice, Technique};
@@ -98,7 +98,7 @@ fn harness_in(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
                 // Whether the frame is timed is seen in no panel.
                 Action::Ask(PendingQuestion { ask: Ask::TimingOf(_), .. }) => {}
                 Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => match &mut seen.asked {
-                    Some(held) => held.push(asked),
+                    Some(questions) => questions.push(asked),
                     None => {
                         let result = found(&seen.inspector, &asked);
                         seen.inspector.answer(asked.ticket, result, true);
@@ -349,7 +349,7 @@ fn a_light_in_the_tree_selects_its_last_pass() {
 }
 
 #[test]
-fn many_errors_leave_room_for_the_picture_and_go_at_once() {
+fn many_errors_leave_space_for_the_picture_and_go_at_once() {
     let mut harness = harness(z_fail(SIZE));
     for index in 0..60 {
         harness.state_mut().inspector.model.push_error(format!("{index}.obj: no faces: choose another file"));

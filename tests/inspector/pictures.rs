@@ -219,7 +219,7 @@ fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
 /// Brings the panels into a state to be looked at.
 pub type View = fn(&mut Harness<Seen>);
 
-fn tell_report(harness: &mut Harness<Seen>, report: Report) {
+fn give_report(harness: &mut Harness<Seen>, report: Report) {
     let measured = MeasuredReport { report, left_out: Vec::new() };
     harness.state_mut().inspector.take_in(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
 }
@@ -246,13 +246,13 @@ const VIEWS: [(&str, View); 13] = [
     }),
     ("settings", |harness| click(harness, "Scene settings")),
     ("report", |harness| {
-        tell_report(harness, one_scene());
+        give_report(harness, one_scene());
     }),
     ("report-running", |harness| {
         let mut report = one_scene();
         report.rows.truncate(8);
         report.mark_pareto();
-        tell_report(harness, report);
+        give_report(harness, report);
         harness.state_mut().inspector.model.answers.start(ReportOf::grid().expect("a grid"));
         harness.run_steps(1);
         let progress = last_asked::<ReportOf>(harness).progress;
@@ -260,7 +260,7 @@ const VIEWS: [(&str, View); 13] = [
         (0..8).for_each(|_| progress.advance());
     }),
     ("report-scenes", |harness| {
-        tell_report(harness, three_scenes());
+        give_report(harness, three_scenes());
     }),
     ("open", |harness| click(harness, "Open…")),
     ("error", |harness| {
@@ -268,7 +268,7 @@ const VIEWS: [(&str, View); 13] = [
     }),
 ];
 
-/// Of frames that were held against the truth.
+/// Views of frames that were compared with the truth.
 const JUDGED_VIEWS: [(&str, View); 4] = [
     ("truth", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Truth)),
     ("wrong", |harness| harness.state_mut().inspector.model.choose_picture(PictureKind::Error)),

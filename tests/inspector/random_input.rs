@@ -1,7 +1,7 @@
 //! Whatever is pressed, clicked, dragged, dropped or resized, and whatever answers come: no panic.
 //!
-//! Inputs come from fixed seeds, so that a failure can be had again: it tells the seed, the frame and the
-//! inputs before it.
+//! Inputs come from fixed seeds, so that a failure can be had again: it reports the seed, the frame and the inputs
+//! before it.
 
 use super::accessibility::known;
 use super::*;
@@ -11,8 +11,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use stencilscope::ask::{DiagnosisOf, TestsOf};
 
 const FRAMES: usize = 450;
-/// How many inputs before a failure are told.
-const TOLD: usize = 6;
+/// How many inputs before a failure are reported.
+const REPORTED_INPUTS: usize = 6;
 /// Sizes of windows in points: from what a window manager may do to a large screen.
 const SIZES: [[f32; 2]; 6] =
     [[1280.0, 800.0], [640.0, 400.0], [220.0, 1000.0], [1800.0, 90.0], [24.0, 16.0], [1.0, 1.0]];
@@ -61,7 +61,7 @@ struct Monkey {
     random: Random,
     captures: Vec<Arc<Capture>>,
     at: Pos2,
-    told: VecDeque<String>,
+    recent: VecDeque<String>,
 }
 
 impl Monkey {
@@ -81,9 +81,9 @@ impl Monkey {
     }
 
     fn report(&mut self, what: String) {
-        self.told.push_back(what);
-        if self.told.len() > TOLD {
-            self.told.pop_front();
+        self.recent.push_back(what);
+        if self.recent.len() > REPORTED_INPUTS {
+            self.recent.pop_front();
         }
     }
 
@@ -148,7 +148,7 @@ impl Monkey {
             harness.hover_at(self.at);
             harness.run_steps(1);
         }
-        // Now and then the button is let go outside the window, which is not told.
+        // Now and then the button is let go outside the window, of which there is no event.
         if self.below(8) > 0 {
             self.button(harness, button, false);
         }
@@ -208,7 +208,7 @@ impl Monkey {
                 inspector.model.answers.start(DiagnosisOf {});
             }
             13 => {
-                // Of any question that was ever asked, right or late.
+                // An answer to any question that was ever asked, in time or late.
                 let asked: Vec<u64> = seen.actions.iter().filter_map(ticket).collect();
                 let ticket = asked.get(self.below(asked.len().max(1))).copied().unwrap_or_default();
                 inspector.answer(ticket, Err(bad()), pixel[0].is_multiple_of(2));
@@ -241,8 +241,8 @@ fn by_hand() -> Vec<Arc<Capture>> {
 }
 
 fn run(name: &str, seed: u64, inspector: Inspector, captures: &[Arc<Capture>]) {
-    let (at, told) = (Pos2::ZERO, VecDeque::new());
-    let mut monkey = Monkey { random: Random::new(seed), captures: captures.to_vec(), at, told };
+    let (at, recent) = (Pos2::ZERO, VecDeque::new());
+    let mut monkey = Monkey { random: Random::new(seed), captures: captures.to_vec(), at, recent };
     let mut frame = 0;
     let result = catch_unwind(AssertUnwindSafe(|| {
         let mut harness = harness_in(inspector, SIZES[0]);
@@ -252,7 +252,7 @@ fn run(name: &str, seed: u64, inspector: Inspector, captures: &[Arc<Capture>]) {
             frame += 1;
         }
     }));
-    assert!(result.is_ok(), "{name}, seed {seed}, input {frame}, after {:#?}", monkey.told);
+    assert!(result.is_ok(), "{name}, seed {seed}, input {frame}, after {:#?}", monkey.recent);
 }
 
 #[test]

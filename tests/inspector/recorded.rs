@@ -9,7 +9,7 @@ use stencilscope::session::FrameSource;
 /// A surface of `ogre` in the shadow of the torus.
 const DARK: [u32; 2] = [60, 140];
 
-/// A recording of the repository, held against itself.
+/// A recording of the repository, compared with its own rerun.
 pub fn frame(session: &mut Session, name: &str) -> RunFrame {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings").join(name);
     let ConvertedFrame { plan, capture, scene, .. } =
@@ -85,10 +85,10 @@ fn a_picked_pixel_has_its_history() {
     let depth = ogre.capture.depth;
     let stored = ogre.capture.frame_at(ogre.capture.steps.len() - 1).and_then(|frame| frame.depth.image.depth_at(DARK));
     let away = depth.distance(stored.expect("a depth")).expect("a surface");
-    let told = format!("{} units", stencilscope::reading::format::digits(away));
+    let distance = format!("{} units", stencilscope::reading::format::digits(away));
     assert!(
-        harness.query_all_by_label_contains(&told).count() > 0,
-        "the distance, in a unit that nobody knows: {told}"
+        harness.query_all_by_label_contains(&distance).count() > 0,
+        "the distance, in a unit that nobody knows: {distance}"
     );
     let in_metres: Vec<String> = (harness.query_all_by_label_contains(" m"))
         .flat_map(|node| [node.accesskit_node().label(), node.accesskit_node().value()])

@@ -5,18 +5,18 @@ use crate::common::report::{one_scene, three_scenes};
 use egui::accesskit::Toggled;
 use stencilscope::report::{MeasuredReport, Report, ReportRow};
 
-fn tell(inspector: &mut Inspector, report: Report) {
-    tell_without(inspector, report, Vec::new());
+fn give_report(inspector: &mut Inspector, report: Report) {
+    give_report_without(inspector, report, Vec::new());
 }
 
-fn tell_without(inspector: &mut Inspector, report: Report, left_out: Vec<String>) {
+fn give_report_without(inspector: &mut Inspector, report: Report, left_out: Vec<String>) {
     let question = ReportOf::grid().expect("a grid");
     inspector.take_in(question, Ok(Arc::new(MeasuredReport { report, left_out })));
 }
 
-fn showing(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
+fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
-    tell(&mut inspector);
+    prepare(&mut inspector);
     harness_of(inspector)
 }
 
@@ -47,10 +47,10 @@ fn without_a_scene_nothing_can_be_measured() {
 fn while_it_measures_it_says_how_far_it_is_and_shows_the_rows_so_far() {
     let mut report = one_scene();
     report.rows.truncate(3);
-    let mut harness = showing(|inspector| tell(inspector, report));
+    let mut harness = showing(|inspector| give_report(inspector, report));
     click_button(&mut harness, "Measure again");
     let asked = last_asked::<ReportOf>(&harness);
-    // The worker has told no step yet; how many there will be is known.
+    // The worker has reported no step yet; how many there will be is known.
     let steps = asks::<ReportOf>(&harness).iter().map(|ask| ask.choices.len() * (ask.runs + 1)).sum::<usize>();
     harness.get_by_label(&format!("0 of {steps} · the truth"));
     let is_z_fail = |choice: &Choice| choice.technique() == Technique::ZFail;
@@ -70,7 +70,7 @@ fn while_it_measures_it_says_how_far_it_is_and_shows_the_rows_so_far() {
 #[test]
 fn a_point_and_a_row_open_what_they_stand_for() {
     let report = one_scene();
-    let mut harness = showing(|inspector| tell(inspector, report.clone()));
+    let mut harness = showing(|inspector| give_report(inspector, report.clone()));
     click_button(&mut harness, "shadow-map 1024: 1.5\u{a0}% wrong, 14.0 ms");
     assert_eq!(harness.state().actions.last(), Some(&opening(&report, "shadow-map", "1024")));
     click_role(&mut harness, Role::Row, "planar: 9.0\u{a0}% wrong, 10.5 ms");
@@ -82,14 +82,14 @@ fn a_point_and_a_row_open_what_they_stand_for() {
 #[test]
 fn what_was_left_out_is_named_and_where_it_is_measured() {
     let left_out = vec!["planar-texture 1024".to_owned(), "shadow-map 4096".to_owned()];
-    let harness = showing(|inspector| tell_without(inspector, one_scene(), left_out));
+    let harness = showing(|inspector| give_report_without(inspector, one_scene(), left_out));
     harness.get_by_label_contains("without planar-texture 1024, shadow-map 4096: too much memory for a window");
 }
 
 #[test]
 fn the_keyboard_reaches_points_and_rows() {
     let report = one_scene();
-    let mut harness = showing(|inspector| tell(inspector, report.clone()));
+    let mut harness = showing(|inspector| give_report(inspector, report.clone()));
     focus_role(&mut harness, Role::Button, "z-fail: none wrong, 21.7 ms");
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().actions, [opening(&report, "z-fail", "")]);
@@ -110,7 +110,7 @@ fn what_is_shown_now_is_selected() {
     request.choice.set("size", "2048").expect("a size");
     request.choice.set("bias-slope", "2").expect("a slope");
     inspector.set_scene(&scene(), request);
-    tell(&mut inspector, report);
+    give_report(&mut inspector, report);
     let harness = harness_of(inspector);
     for role in [Role::Button, Role::Row] {
         let toggled = |label: &str| harness.get_by_role_and_label(role, label).accesskit_node().toggled();
@@ -124,7 +124,7 @@ fn scenes_are_headed_and_narrow_windows_have_plot_and_table_below_each_other() {
     for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
         let mut other = Inspector::new(Vec::new());
         other.set_scene(&scene(), run_request(Technique::ZFail));
-        tell(&mut other, three_scenes());
+        give_report(&mut other, three_scenes());
         let harness = harness_in(other, size);
         if size[0] > 1000.0 {
             harness.get_by_label("inside a volume");
@@ -142,7 +142,7 @@ fn odd_rows_and_errors_are_shown() {
     report.rows[2].technique = "later".to_owned();
     report.mark_pareto();
     let harness = showing(|inspector| {
-        tell(inspector, report);
+        give_report(inspector, report);
         let question = ReportOf::grid().expect("a grid");
         inspector.take_in(question, Err("no GPU: install mesa-vulkan-drivers".to_owned()));
     });
@@ -156,7 +156,7 @@ fn the_rows_can_be_saved() {
     let mut harness = showing(|_| ());
     assert!(harness.query_by_role_and_label(Role::Button, "Save…").is_none(), "nothing is measured");
     assert!(harness.state_mut().inspector.export(ExportKind::Report).is_none());
-    tell(&mut harness.state_mut().inspector, report.clone());
+    give_report(&mut harness.state_mut().inspector, report.clone());
     harness.run_steps(2);
     click_button(&mut harness, "Save…");
     harness.get_by_label("Export: Report (table or plot)");
@@ -172,7 +172,7 @@ fn the_rows_can_be_saved() {
 #[test]
 fn what_was_measured_of_one_scene_does_not_stand_under_another_and_comes_back_with_its_own() {
     let row = "z-fail: none wrong, 21.7 ms";
-    let mut harness = showing(|inspector| tell(inspector, one_scene()));
+    let mut harness = showing(|inspector| give_report(inspector, one_scene()));
     harness.get_by_role_and_label(Role::Row, row);
     let other = Scene { name: "another".to_owned(), ..scene() };
     // What is loaded again may be another scene by now.

@@ -15,9 +15,10 @@ use stencilscope::viewport::{DrawnPicture, Viewports};
 use stencilscope::wgpu;
 
 const FREE: &str = "Free view of the scene";
-/// The free view's picture among those that are kept.
+/// Index of the free view's picture among those that are cached.
 const SLOT: usize = 1;
-/// Of depths that are rounded to single precision, and of places on the screen that are rounded to 1/256 pixel.
+/// Relative error of depths that are rounded to single precision, and of places on the screen that are rounded to 1/256
+/// pixel.
 const ROUNDING: f64 = 1e-5;
 
 /// What of the harness's last frame the viewport draws, and nothing else: egui's own triangles take long.
@@ -79,10 +80,10 @@ fn chunks(anatomy: &Anatomy, origin: DVec3) -> Vec<Chunk> {
     let whole = size(ends(&mut anatomy.objects.iter().flat_map(|object| object.positions.iter().copied())));
     let large =
         |object: &stencilscope::anatomy::PlacedObject| size(ends(&mut object.positions.iter().copied())) >= whole / 2.0;
-    let has_held = !anatomy.objects.iter().all(large);
+    let has_contained = !anatomy.objects.iter().all(large);
     let mut found = Vec::new();
     for (index, object) in anatomy.objects.iter().enumerate().filter(|(_, object)| object.visible) {
-        let holds = has_held && large(object);
+        let holds = has_contained && large(object);
         for part in object.mesh.triangles().chunks(32) {
             let places = |corners: &[u32; 3]| corners.map(|corner| object.positions[corner as usize] - origin);
             let triangles: Vec<_> = part.iter().map(places).collect();
@@ -93,13 +94,13 @@ fn chunks(anatomy: &Anatomy, origin: DVec3) -> Vec<Chunk> {
     found
 }
 
-/// A ray meets a box.
+/// Whether a ray hits a box.
 fn meets(from: DVec3, ahead: DVec3, [low, high]: [DVec3; 2]) -> bool {
     let (one, other) = ((low - from) / ahead, (high - from) / ahead);
     one.min(other).max_element() <= one.max(other).min_element() * (1.0 + 1e-9) + 1e-9
 }
 
-/// Along a ray, in lengths of `ahead`: a triangle that is met (Möller and Trumbore 1997).
+/// Distance along a ray, in lengths of `ahead`, at which it hits a triangle (Möller and Trumbore 1997).
 fn hit(from: DVec3, ahead: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
     let (u, v) = (b - a, c - a);
     let across = ahead.cross(v);
@@ -112,7 +113,7 @@ fn hit(from: DVec3, ahead: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
     Some(v.dot(other) / determinant).filter(|at| is_inside && *at > 0.0)
 }
 
-/// What the ray through a point of the picture meets first: object and reversed depth.
+/// What the ray through a point of the picture hits first: object and reversed depth.
 fn seen(chunks: &[Chunk], eye: DVec3, clip_from_stage: DMat4, ndc: [f64; 2]) -> Option<(usize, f64)> {
     let back = clip_from_stage.inverse();
     let place = |depth: f64| {
@@ -124,7 +125,7 @@ fn seen(chunks: &[Chunk], eye: DVec3, clip_from_stage: DMat4, ndc: [f64; 2]) -> 
     for chunk in chunks.iter().filter(|chunk| meets(from, ahead, chunk.ends)) {
         for corners in &chunk.triangles {
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            // From behind what holds others is glass.
+            // An object that contains others is glass when seen from behind.
             if chunk.holds && normal.dot(eye - corners[0]) * normal.dot(ahead) > 0.0 {
                 continue;
             }
@@ -146,10 +147,10 @@ fn place_in(rect: Rect, random: &mut Random) -> Pos2 {
     pos2(along(rect.left(), rect.right()), along(rect.top(), rect.bottom()))
 }
 
-/// All of a model's triangles go to the GPU. What a frame takes while it is turned is printed: the times of a machine
-/// that others use too are no ground to fail.
+/// All of a model's triangles go to the GPU. What a frame takes while the view is rotated is printed: the times of a
+/// machine that others use too are no ground to fail.
 #[test]
-fn a_large_model_is_drawn_whole_while_it_is_turned() {
+fn a_large_model_is_drawn_whole_while_it_is_rotated() {
     let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
     let scene = ball_scene(264, 133);
     let start = Instant::now();
@@ -190,8 +191,8 @@ fn a_large_model_is_drawn_whole_while_it_is_turned() {
     println!("and while nothing changes: {:?}", start.elapsed());
 }
 
-/// From 20 cameras a scene, at 200 points each. Where within a pixel another object begins, or what a ray meets is
-/// not certain, the point is excused; elsewhere the picture's depth is between those around the point.
+/// From 20 cameras a scene, at 200 points each. Where within a pixel another object begins, or what a ray hits is not
+/// certain, the point is excused; elsewhere the picture's depth is between those around the point.
 #[test]
 fn the_nearest_surface_is_the_one_a_ray_finds() {
     let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
@@ -205,7 +206,7 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
         let mut harness = harness_of(over(&scene));
         show(&mut harness);
         click(&mut harness, "Gizmos");
-        let (mut compared, mut excused, mut met) = (0, 0, 0);
+        let (mut compared, mut excused, mut hits) = (0, 0, 0);
         for projection in ["perspective", "orthographic", "cavalier", "cabinet"] {
             choose(&mut harness, "Projection of the Free view", projection);
             let rect = harness.get_by_label(FREE).rect();
@@ -229,7 +230,7 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
                     let found = f64::from(depths[(y * width + x) as usize]);
                     let here = at(x + 0.5, y + 0.5);
                     compared += 1;
-                    met += u64::from(here.is_some());
+                    hits += u64::from(here.is_some());
                     let depth = here.map_or(0.0, |(_, depth)| depth);
                     if (found - depth).abs() <= ROUNDING * depth {
                         continue;
@@ -248,8 +249,8 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
             harness.event(button_event(from, PointerButton::Primary, false));
             harness.run_steps(1);
         }
-        println!("{}: {compared} points, {met} on something, {excused} at an edge", scene.name);
-        assert!(met > compared / 10 && excused < compared / 20, "{}: {met} and {excused} of {compared}", scene.name);
+        println!("{}: {compared} points, {hits} on something, {excused} at an edge", scene.name);
+        assert!(hits > compared / 10 && excused < compared / 20, "{}: {hits} and {excused} of {compared}", scene.name);
     }
 }
 
@@ -262,10 +263,10 @@ fn share_of_view(anatomy: &Anatomy, clip_from_stage: DMat4, origin: DVec3) -> [f
     };
     let all: Vec<DVec3> = objects.iter().flat_map(|object| object.positions.clone()).collect();
     let is_large = |points: &[DVec3]| size(points) >= size(&all) / 2.0;
-    let has_held = !objects.iter().all(|object| is_large(&object.positions));
-    let held = objects.iter().filter(|object| !(has_held && is_large(&object.positions)));
+    let has_contained = !objects.iter().all(|object| is_large(&object.positions));
+    let contained = objects.iter().filter(|object| !(has_contained && is_large(&object.positions)));
     let ends = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-    held.flat_map(|object| &object.positions).fold(ends, |[left, low, right, high], place| {
+    contained.flat_map(|object| &object.positions).fold(ends, |[left, low, right, high], place| {
         let clip = clip_from_stage * (*place - origin).extend(1.0);
         assert!(clip.w > 0.0, "before the eye");
         let [x, y] = [clip.x / clip.w, clip.y / clip.w];

@@ -269,7 +269,7 @@ fn a_drag_over_a_built_in_scene_is_quick() {
     assert!(dragged.as_secs_f64() < 1.0);
 }
 
-/// Of a frame while the pointer moves.
+/// The average time of a frame while the pointer moves.
 fn time(harness: &mut Harness<Seen>, from: Pos2, by: f32) -> std::time::Duration {
     const FRAMES: u32 = 20;
     let start = std::time::Instant::now();

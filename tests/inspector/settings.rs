@@ -98,13 +98,13 @@ fn object(name: &str, mesh: &Mesh) -> ObjectMesh {
 fn each_mesh_has_a_line_and_says_what_it_means() {
     let mut inspector = inspector(z_fail(SIZE));
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let turned = common::mesh(&corners, &[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+    let flipped = common::mesh(&corners, &[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
     inspector.take_in(
         MeshesOf { added: Vec::new() },
         Ok(Arc::new(vec![
             object("box", &common::cuboid("box", [0.0; 3], [1.0; 3]).mesh),
             object("floor", &common::square("floor", 0.0, 1.0).mesh),
-            object("turned", &turned),
+            object("turned", &flipped),
         ])),
     );
     let mut harness = harness_in(inspector, [1280.0, 1500.0]);

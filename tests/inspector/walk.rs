@@ -192,8 +192,7 @@ fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
     harness.get_by_label(BANNER);
 }
 
-/// A room without a roof, 4 metres each way, and who stands in its middle; the wall to the right is the third
-/// object.
+/// A room without a roof, 4 metres each way, with the eye in its middle; the wall to the right is the third object.
 fn room() -> Scene {
     let room = [
         common::square("ground", 0.0, 2.0),
@@ -226,7 +225,7 @@ fn walking_in(scene: &Scene) -> Harness<'static, Seen> {
     harness
 }
 
-/// Where one is once a key was held for some frames.
+/// Where the walker is once a key was held down for some frames.
 fn go(harness: &mut Harness<Seen>, key: Key) -> DVec3 {
     harness.key_down(key);
     for _ in 0..3 {
@@ -296,7 +295,7 @@ fn walls_are_asked_for_anew_when_they_move_or_the_file_is_loaded_again() {
     assert_eq!(walls_asked(&harness).len(), before + 1, "another file has other walls");
 }
 
-/// The room, and who begins to walk in it at this height, and weighs something.
+/// The room, with a walker who has weight and begins at this height.
 fn falling_from(eye: DVec3, scene: &mut Scene) -> Harness<'static, Seen> {
     scene.camera.target += eye - scene.camera.eye;
     scene.camera.eye = eye;
@@ -337,7 +336,7 @@ fn g_makes_one_fall_land_and_walk_on_the_ground_and_float_again() {
 }
 
 #[test]
-fn who_falls_off_the_world_is_put_back_and_reported() {
+fn who_falls_off_the_world_is_set_back_and_reported() {
     let ground = common::square("ground", 0.0, 2.0);
     let mut scene = Scene { objects: vec![ground], ..room() };
     let mut harness = falling_from(DVec3::new(1.5, 1.7, 0.0), &mut scene);
@@ -360,7 +359,7 @@ fn who_falls_off_the_world_is_put_back_and_reported() {
     assert!(lowest < -1.0, "{lowest}");
     let eye = eye_of(&harness);
     assert!(eye.x > 1.5 && eye.x < 2.2 && (eye.y - 1.7).abs() < 0.1, "{eye}");
-    // Over nothing there is no place to be put back to but the first.
+    // Over nothing there is no place to return to but the first.
     let start = DVec3::new(9.0, 5.0, 0.0);
     let mut harness = falling_from(start, &mut scene);
     let floats = "Nothing to land on is below: back where you began, and you float (G)";

@@ -57,7 +57,7 @@ fn a_float_counts_what_the_stencil_counts() {
 }
 
 #[test]
-fn no_stencil_is_kept_where_a_float_counts() {
+fn no_stencil_is_stored_where_a_float_counts() {
     let found = capture(&mut session(), &scenes()[0], Technique::ZFail, &FLOAT);
     let has_stencil = |snapshot: &Snapshot| matches!(snapshot, Snapshot::Frame(frame) if frame.stencil.is_some());
     assert!(found.steps.iter().any(|step| step.name == "volumes"), "volumes were counted");

@@ -8,7 +8,7 @@ use stencilscope::technique::Technique;
 
 const NO_BIAS: [(&str, &str); 3] = [("bias-constant", "0"), ("bias-slope", "0"), ("size", "256")];
 
-/// A tilted plate that darkens itself where nothing keeps it from it.
+/// A tilted plate that darkens itself where nothing prevents it.
 fn plate() -> Scene {
     let mut plate = square("plate", 0.0, 3.0);
     plate.pose.rotate_degrees.z = 30.0;

@@ -111,16 +111,16 @@ fn a_shadow_tested_against_its_own_plane_fights_with_it() {
 }
 
 #[test]
-fn kept_casters_give_the_same_frame_and_moved_ones_are_flattened_again() {
+fn cached_casters_give_the_same_frame_and_moved_ones_are_flattened_again() {
     let mut session = session();
     let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
     for x in [0.0, 0.0, 1.0] {
         scene.objects[1].pose.translate.x = x;
-        let [kept, made] =
+        let [cached, made] =
             ["on", "off"].map(|cache| capture(&mut session, &scene, Technique::Planar, &[("cache", cache)]));
-        assert_eq!(kept.lights[0].shadow, made.lights[0].shadow);
-        let frames = kept.steps.iter().zip(&made.steps).filter(|(kept, made)| kept.snapshot == made.snapshot);
-        assert_eq!((frames.count(), made.steps.len()), (kept.steps.len(), kept.steps.len()));
+        assert_eq!(cached.lights[0].shadow, made.lights[0].shadow);
+        let frames = cached.steps.iter().zip(&made.steps).filter(|(cached, made)| cached.snapshot == made.snapshot);
+        assert_eq!((frames.count(), made.steps.len()), (cached.steps.len(), cached.steps.len()));
     }
 }
 

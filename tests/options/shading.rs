@@ -81,8 +81,8 @@ fn the_setting_shades_all_objects_as_their_materials_would() {
     for (name, shading) in [("flat", Shading::Flat), ("gouraud", Shading::Gouraud), ("phong", Shading::Phong)] {
         let by_material = capture(&mut session, &ball(shading), Technique::None, &[]);
         for other in Shading::ALL {
-            let told = capture(&mut session, &ball(other), Technique::None, &[("shading", name)]);
-            assert_eq!(brightness(&told), brightness(&by_material), "{other:?} told to be {name}");
+            let by_setting = capture(&mut session, &ball(other), Technique::None, &[("shading", name)]);
+            assert_eq!(brightness(&by_setting), brightness(&by_material), "{other:?} told to be {name}");
         }
     }
 }

@@ -9,7 +9,7 @@ use stencilscope::technique::Technique;
 
 const FINE: [(&str, &str); 1] = [("size", "1024")];
 
-/// Neither what is beyond the light nor what is behind the receiver is in the pyramid between.
+/// Neither what is beyond the light nor what is behind the receiver is in the frustum between.
 #[test]
 fn a_receivers_texture_shows_what_is_between_it_and_the_light_only() {
     let mut session = session();
@@ -82,7 +82,7 @@ fn a_silhouette_falls_backwards_only_where_that_is_not_prevented() {
     scene.camera.eye = DVec3::new(1.0, 0.0, 0.0);
     scene.camera.target = DVec3::new(-1.0, 0.0, 0.0);
     scene.camera.up = DVec3::Y;
-    // The caster is kept although nothing is behind it: a second wall stands there.
+    // The caster is not left out as one with nothing behind it: a second wall stands there.
     let mut behind = square("behind", 0.0, 20.0);
     behind.pose.rotate_degrees.z = 90.0;
     behind.pose.translate.x = 9.0;

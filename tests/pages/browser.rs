@@ -16,7 +16,7 @@ pub struct Browser {
     process: Child,
     orders: ChildStdin,
     messages: Receiver<Value>,
-    /// What the browser told without being asked.
+    /// Events that the browser sent without being asked.
     pub events: Vec<Value>,
     session: Option<String>,
     number: u64,
@@ -24,7 +24,7 @@ pub struct Browser {
 }
 
 impl Browser {
-    /// With an empty page of that many points, and the system's theme `dark` or `light`.
+    /// Starts a browser with an empty page of that many CSS pixels, and the system's theme `dark` or `light`.
     pub fn new([width, height]: [u32; 2], theme: &str) -> Browser {
         let profile = tempfile::tempdir().expect("a folder");
         let mut command = Command::new("sh");

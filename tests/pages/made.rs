@@ -27,7 +27,7 @@ impl Made {
         Made { frame, session, folder }
     }
 
-    /// With a state after every draw.
+    /// The page of a scene's frame, with a state after every draw.
     pub fn of_scene(scene: Scene, technique: &str, settings: &[(&str, &str)], size: [u32; 2]) -> Made {
         let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
         let choice = Choice::parse(&TechniqueRequest { name: technique.to_owned(), settings }).expect("a choice");
@@ -36,13 +36,13 @@ impl Made {
         Made::new(session.render(scene, request).expect("a frame"), session)
     }
 
-    /// Of a frame that was captured, here or by another program.
+    /// The page of a frame that was captured, here or by another program.
     pub fn of_folder(whole: WholeFrame) -> Made {
         let frame = RunFrame::from_folder(whole).expect("a whole frame");
         Made::new(frame, Session::new(None).expect("the reference adapter"))
     }
 
-    /// The same with its truth.
+    /// The page of the same frame with its ground truth.
     pub fn judged(mut self) -> Made {
         let scene = self.frame.scene().expect("a scene").clone();
         let judged = self.session.judged(&scene, &self.frame.capture, &Progress::default()).expect("the truth");

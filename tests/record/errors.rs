@@ -119,10 +119,10 @@ fn an_error_in_a_recorded_frame_is_the_programs() {
 fn a_lost_device_says_so_and_what_follows_is_no_panic() {
     let lose = |instance: fn(wgpu::InstanceDescriptor) -> wgpu::Instance| {
         let renderer = Renderer::new(instance, Fault::None);
-        let (told, heard) = mpsc::channel();
-        let told = std::sync::Mutex::new(told);
+        let (sender, heard) = mpsc::channel();
+        let sender = std::sync::Mutex::new(sender);
         renderer.device.set_device_lost_callback(move |reason, _| {
-            told.lock().expect("a sender").send(reason).expect("heard");
+            sender.lock().expect("a sender").send(reason).expect("heard");
         });
         let scope = renderer.device.push_error_scope(wgpu::ErrorFilter::Validation);
         renderer.device.destroy();

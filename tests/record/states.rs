@@ -23,14 +23,14 @@ const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 struct Stage {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// Of one layout each.
+    /// Two equal pipelines, each with a pipeline layout of its own.
     pipelines: [wgpu::RenderPipeline; 2],
     color_pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
     arguments: wgpu::Buffer,
     queries: wgpu::QuerySet,
     depth: wgpu::Texture,
-    /// Four samples, held by no memory between passes.
+    /// Four samples, transient: no memory holds them between passes.
     samples: wgpu::Texture,
     color: wgpu::Texture,
 }

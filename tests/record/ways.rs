@@ -83,7 +83,7 @@ impl Stage {
         }
     }
 
-    /// With layouts of its own.
+    /// A pipeline whose bind group layouts are derived from its shader.
     fn pipeline(&self, look: Look) -> wgpu::RenderPipeline {
         let attributes = wgpu::vertex_attr_array![0 => Float32x4];
         let step_mode = wgpu::VertexStepMode::Vertex;
@@ -205,15 +205,15 @@ fn what_a_shader_discards_is_known() {
     let mut found = |frame: &ConvertedFrame| {
         let [width, height] = frame.plan.size;
         let pixels = (0..width * height).step_by(7).map(|at| [at % width, at / width]);
-        let mut fates = [0; 2];
+        let mut outcomes = [0; 2];
         for pixel in pixels {
             let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
             assert_eq!(history.disagreements(), [], "{pixel:?}");
             for (_, one) in history.triangles() {
-                fates[usize::from(matches!(one.outcome, FragmentOutcome::Discarded(None)))] += 1;
+                outcomes[usize::from(matches!(one.outcome, FragmentOutcome::Discarded(None)))] += 1;
             }
         }
-        fates.map(|count| count > 0)
+        outcomes.map(|count| count > 0)
     };
     assert_eq!(found(&stage.recorded("sieve", of("sieve", PULLED), |pass| pass.draw(0..3, 0..3))), [true, true]);
     assert_eq!(found(&stage.recorded("half", of("half", FED), |pass| pass.draw(0..3, 0..2))), [true, true]);
@@ -223,7 +223,7 @@ fn what_a_shader_discards_is_known() {
     });
     assert_eq!(found(&both), [true, true]);
     assert_eq!(found(&stage.recorded("nothing", of("nothing", FED), |pass| pass.draw(0..3, 0..1))), [false, true]);
-    // Of a shader that can't, nothing is noted.
+    // For a shader that can't discard, nothing is noted.
     let plain = stage.recorded("plain", of("none", FED), |pass| pass.draw(0..3, 0..1));
     assert!(plain.plan.meshes.iter().all(|mesh| mesh.retained.is_none()) && found(&plain) == [true, false]);
 }

@@ -111,7 +111,7 @@ fn builtin_scenes_start_with_a_free_eye() {
 /// The tiger cage can be walked: an eye at head height is in no solid along the corridor, through
 /// a door into a cell, and on the walkway.
 #[test]
-fn the_tiger_cage_has_room_to_walk() {
+fn the_tiger_cage_has_space_to_walk() {
     let mut scene = opened("tiger-cage");
     let doors = [[0.0, 1.6, 0.9], [1.2, 1.6, 0.9], [2.2, 1.6, 0.9], [-1.2, 1.6, -0.9], [-2.2, 1.6, -0.9]];
     let ways = [[0.0, 1.6, 4.9], [0.0, 1.6, -5.2], [2.0, 1.6, 7.5], [0.0, 4.2, 5.0], [0.0, 4.2, -5.0]];
@@ -209,7 +209,7 @@ fn z_fail_is_right_in(name: &str) {
     }
 }
 
-/// Some moment of the scene, seen from somewhere else.
+/// The scene at some time, seen from somewhere else.
 fn from_anywhere(start: &Scene, random: &mut Random) -> Scene {
     let mut scene = start.at(random.unit() * 10.0);
     let reach = start.camera.eye.distance(start.camera.target);

@@ -1,4 +1,4 @@
-//! Things that move, and things that are mirrored, stretched and turned.
+//! Things that move, and things that are mirrored, stretched and rotated.
 
 use crate::common::{from_above, judged, opened, session, square};
 use glam::{DMat4, DVec3};
@@ -37,7 +37,7 @@ fn a_swing_is_a_pendulum() {
     assert!(Motion { swing: Some(Swing { degrees: 0.0, ..SWING }), ..Motion::default() }.is_still());
 }
 
-/// Whatever its pose and spin, a swinging object is its unswung self turned about the pivot.
+/// Whatever its pose and spin, a swinging object is its unswung self rotated about the pivot.
 #[test]
 fn a_swing_turns_the_whole_object() {
     let spin = DVec3::new(11.0, -40.0, 25.0);
@@ -82,7 +82,7 @@ fn with_pose(name: &str, mesh: &Arc<Mesh>, pose: Pose) -> Object {
     Object { pose, ..Object::new(name, Arc::clone(mesh), Material::default()) }
 }
 
-/// A mirrored, a stretched and a turned caster, one that orbits and spins, and lights that orbit.
+/// A mirrored, a stretched and a rotated caster, one that orbits and spins, and lights that orbit.
 fn moving_scene() -> Scene {
     let torus = Arc::new(shapes::torus(0.6, 0.25, 24, 14).expect("a torus"));
     let flight = Arc::new(shapes::stairs(4, 0.2, 0.25, 0.7).expect("stairs"));
@@ -129,7 +129,7 @@ fn moving_scene() -> Scene {
 }
 
 #[test]
-fn z_fail_is_right_whatever_is_mirrored_stretched_turned_and_moved() {
+fn z_fail_is_right_whatever_is_mirrored_stretched_rotated_and_moved() {
     let mut session = session();
     let scene = moving_scene();
     for seconds in [0.0, 0.9, 2.3, 4.1, 8.8] {

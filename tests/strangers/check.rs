@@ -26,14 +26,14 @@ pub struct Expected {
     pub draws: usize,
     /// Draws of the picture: those that are computed anew.
     pub of_picture: usize,
-    /// Draws whose kept fragments are known.
+    /// Draws whose shader may discard, and of which the fragments that it did not discard are known.
     pub discarding: usize,
     /// What is said of the frame as not known.
     pub limits: &'static [&'static str],
 }
 
-/// Records what `draw` draws, and holds it against itself: each draw leaves the stored bytes when it is computed anew, and
-/// so do the histories of 200 pixels.
+/// Records what `draw` draws, and compares the recording with itself: each draw leaves the stored bytes when it is
+/// computed anew, and so do the histories of 200 pixels.
 pub fn record(name: &str, device: &wgpu::Device, draw: impl FnOnce(), expected: &Expected) {
     let folder = PathBuf::from(std::env::temp_dir()).join(format!("stencilscope-{name}-{}", std::process::id()));
     let begin = Instant::now();
@@ -52,7 +52,7 @@ fn check(name: &str, folder: &Path, seconds: f64, expected: &Expected) {
     for (draw, differs) in &compared {
         assert!(differs.is_nowhere() && differs.rounded == 0, "{name}, {draw}: {differs:?}");
     }
-    let discarding = plan.meshes.iter().filter(|mesh| mesh.kept.is_some()).count();
+    let discarding = plan.meshes.iter().filter(|mesh| mesh.retained.is_some()).count();
     let limits = capture.origin.as_ref().map(|origin| origin.limits.clone()).unwrap_or_default();
     let found = (draws.len(), compared.len(), discarding);
     assert_eq!(found, (expected.draws, expected.of_picture, expected.discarding), "{name}");

@@ -67,7 +67,7 @@ fn renderer(make: fn(wgpu::InstanceDescriptor) -> wgpu::Instance) -> (wgpu::Devi
     (device, draw)
 }
 
-/// With a number: how long so many frames take that are not recorded.
+/// With a number as argument: prints how long so many frames take that are not recorded.
 fn main() {
     let turns = std::env::args().nth(1).and_then(|turns| turns.parse().ok());
     let (device, mut draw) = renderer(stencilscope::record::instance);

@@ -1,4 +1,4 @@
-//! `stencilscope stress` as a program: its forms, exit codes and refusals.
+//! `stencilscope stress` as a program: its output, exit codes and refusals.
 
 use super::*;
 

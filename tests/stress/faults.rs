@@ -1,4 +1,4 @@
-//! Faults put into scenes, plans and settings: each is found where `stress` judges it.
+//! Faults injected into scenes, plans and settings: each is found where `stress` judges it.
 
 use super::*;
 use crate::common::faults::turn_caps;
@@ -42,7 +42,7 @@ fn casting_nothing_is_no_known_failure() {
 
 fn cast_nothing_in_every_case() {
     let lose_all = [
-        // Of a closed body its lit face alone casts, and is carried by next to nothing.
+        // Only the lit face of the closed body casts, and it is extruded by next to nothing.
         "light-close finite-extrusion",
         "light-far depth-bits",
         "sliver aliasing",
@@ -173,7 +173,7 @@ fn dropped_slivers_and_closed_slits_are_found() {
 /// The same triangles, counted the same way, but with corners in another order: depths are no
 /// longer those of the surface, bit for bit.
 #[test]
-fn caps_in_turned_vertex_order_are_found() {
+fn caps_in_flipped_vertex_order_are_found() {
     let seeds: Vec<f64> = (0..60).map(f64::from).collect();
     assert_found(&mut session(), ("random", &seeds), Z_FAIL, InjectedFault::Plan(&turn_caps), "turned caps");
 }

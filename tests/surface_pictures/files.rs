@@ -19,16 +19,16 @@ fn model(library: &str, faces: &str) -> (Mesh, Vec<String>) {
     put("m.mtl", library.as_bytes());
     put("m.obj", format!("mtllib m.mtl\n{BOX}usemtl a\n{faces}").as_bytes());
     let mesh = obj::load(&folder.path().join("m.obj")).expect("a mesh");
-    let told = mesh.not_taken().iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
-    (mesh, told)
+    let not_taken = mesh.not_taken().iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
+    (mesh, not_taken)
 }
 
 #[test]
 fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
     let face = "f 1/1 2/2 3/3\n";
-    let (mesh, told) = model("newmtl a\nmap_Kd -s 2 4 -o 0.5 0 -clamp on two words.png\n", face);
+    let (mesh, not_taken) = model("newmtl a\nmap_Kd -s 2 4 -o 0.5 0 -clamp on two words.png\n", face);
     let texture = mesh.groups()[0].texture.as_ref().expect("a picture");
-    assert!(told.is_empty() && texture.clamps && texture.picture.name() == "two words.png", "{told:?}");
+    assert!(not_taken.is_empty() && texture.clamps && texture.picture.name() == "two words.png", "{not_taken:?}");
     assert_eq!(mesh.groups()[0].material.expect("a material").color, [1.0; 3], "no Kd: as it is");
     let uvs = mesh.corner_uvs().expect("places")[0].expect("three");
     assert_eq!(uvs, [[0.5, 0.0], [2.5, 0.0], [0.5, 4.0]].map(Vec2::from_array));
@@ -45,15 +45,21 @@ fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
         ("map_Kd tiles.png", "f 1/1 2/2 3/9\n", "map_Kd of `a`: faces have no texture coordinates"),
     ];
     for (line, faces, words) in cases {
-        let (mesh, told) = model(&format!("newmtl a\nKd 0.2 0.4 0.6\n{line}\n"), faces);
-        assert!(told.len() == 1 && told[0].starts_with(words) && !told[0].contains('\n'), "{line}: {told:?}");
+        let (mesh, not_taken) = model(&format!("newmtl a\nKd 0.2 0.4 0.6\n{line}\n"), faces);
+        assert!(
+            not_taken.len() == 1 && not_taken[0].starts_with(words) && !not_taken[0].contains('\n'),
+            "{line}: {not_taken:?}"
+        );
         let group = &mesh.groups()[0];
         assert_eq!(group.material.expect("a material").color, [0.2, 0.4, 0.6], "{line}");
         assert_eq!(group.texture.is_some(), line.contains("-mm"), "{line}");
     }
     let many: String = (0..99).map(|index| format!("newmtl m{index}\nmap_Ks none.png\n")).collect();
-    let (_, told) = model(&many, face);
-    assert_eq!((told.len(), told[32].as_str()), (33, "what else the file asks for: 32 things of it are named"));
+    let (_, not_taken) = model(&many, face);
+    assert_eq!(
+        (not_taken.len(), not_taken[32].as_str()),
+        (33, "what else the file asks for: 32 things of it are named")
+    );
     // What is not taken is in the plan, by name.
     let folder = folder();
     std::fs::write(folder.path().join("m.obj"), format!("mtllib /dev/zero\n{BOX}{face}")).expect("written");
@@ -88,10 +94,10 @@ fn a_scene_file_s_texture_that_can_t_be_shown_is_a_line() {
     ];
     for (mesh, material, line, words) in cases {
         let output = with(mesh, &material);
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{material}: {told}");
-        assert!(told.contains(&format!("a.toml:{line}: ")) && told.contains(words), "{material}: {told}");
-        assert_eq!(told.trim_end().lines().filter(|line| line.contains("a.toml")).count(), 1, "{told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{material}: {message}");
+        assert!(message.contains(&format!("a.toml:{line}: ")) && message.contains(words), "{material}: {message}");
+        assert_eq!(message.trim_end().lines().filter(|line| line.contains("a.toml")).count(), 1, "{message}");
     }
     assert!(with(quad, &format!("texture = {tiles:?}, texture_side = 0.25")).status.success());
     assert_fails(&["capture", "/dev/zero", "-o", "out"], 2, &["/dev/zero"]);
@@ -136,8 +142,8 @@ fn pixel_reports_the_texel_and_explains_each_key() {
     let folder = folder();
     let scene = asset("scenes/pattern.toml");
     let arguments = ["pixel", &scene, "--size", "96x72", "--at", "60,60"];
-    let told = text(&run(folder.path(), &arguments).stdout);
-    assert!(told.contains("its colour is times (") && told.contains(") of tiles.png, at u "), "{told}");
+    let printed = text(&run(folder.path(), &arguments).stdout);
+    assert!(printed.contains("its colour is times (") && printed.contains(") of tiles.png, at u "), "{printed}");
     let document = printed_json(folder.path(), &[&arguments[..], &["--json"]].concat());
     assert_eq!(document["shading"]["texture"]["name"], "tiles.png");
     crate::help::assert_json_is_explained("pixel", &document);

@@ -5,7 +5,7 @@ use crate::inspector::canvas;
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::reading::shown::ShownPicture;
+use crate::reading::picture_view::ShownPicture;
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
 /// Texels across and down; odd, so that the pick is in the middle.

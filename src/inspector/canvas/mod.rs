@@ -15,7 +15,7 @@ use crate::inspector::look::texture::{PictureCache, TextureSize};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::selection::moved;
-use crate::reading::shown::{PictureView, ShownPicture, TexelZoom};
+use crate::reading::picture_view::{PictureView, ShownPicture, TexelZoom};
 use egui::epaint::Mesh;
 use egui::{
     Align2, Color32, CornerRadius, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,

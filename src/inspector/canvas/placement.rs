@@ -1,6 +1,6 @@
 //! Where the picture lies on the screen, and which texel lies at which screen position.
 
-use crate::reading::shown::{PictureView, TexelZoom};
+use crate::reading::picture_view::{PictureView, TexelZoom};
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// Where a picture lies on the screen.

@@ -7,7 +7,7 @@ use crate::numbers;
 use crate::picture::colors;
 use crate::reading::change::{self, ChangeKind};
 use crate::reading::depth::DepthScale;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::Color32;
 
 /// Opacity of an overlay of colours.

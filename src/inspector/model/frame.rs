@@ -6,7 +6,7 @@ use crate::ask::{DrawsOf, FilmOf, Filmed, QuestionKind, TestsOf, TimingOf, Truth
 use crate::capture::{Capture, FrameTruth, Origin};
 use crate::plan::FramePlan;
 use crate::reading::format;
-use crate::reading::shown::has_truth;
+use crate::reading::picture_view::has_truth;
 use std::sync::Arc;
 
 /// The frame that is shown.

@@ -13,7 +13,7 @@ use crate::reading::capture_point::CapturePoint;
 use crate::reading::counts;
 use crate::reading::format;
 use crate::reading::outcomes::TestOutcomes;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::steps;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeSet;

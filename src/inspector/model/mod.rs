@@ -23,7 +23,7 @@ pub mod walk;
 use crate::ask::{Answers, QuestionKind, ReportOf, TruthOf};
 use crate::inspector::action::{DialogKind, PanelKind};
 use crate::inspector::look::texture::PictureCache;
-use crate::reading::shown::{PictureKind, PictureView, available, has_truth};
+use crate::reading::picture_view::{PictureKind, PictureView, available, has_truth};
 use crate::report::MeasuredReport;
 use animation::Animation;
 use frame::ShownFrame;

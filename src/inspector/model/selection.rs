@@ -6,7 +6,7 @@ use crate::ask::{DrawsOf, QuestionKind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
 use crate::history::PixelEvent;
 use crate::reading::capture_point::CapturePoint;
-use crate::reading::shown::{PictureKind, TexelZoom};
+use crate::reading::picture_view::{PictureKind, TexelZoom};
 use crate::reading::steps;
 use std::sync::Arc;
 

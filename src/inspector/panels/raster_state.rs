@@ -136,8 +136,8 @@ fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: 
     if let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) {
         matrix(ui, "light_from_world", &map.light_from_world.to_cols_array().map(|value| value as f32));
         let face = match model.view.face {
-            crate::reading::shown::FaceChoice::One(face) => face,
-            crate::reading::shown::FaceChoice::Grid => 0,
+            crate::reading::picture_view::FaceChoice::One(face) => face,
+            crate::reading::picture_view::FaceChoice::Grid => 0,
         };
         if let Some(clip) = map.clip_from_light.get(face) {
             matrix(ui, &format!("clip_from_light, layer {face}"), &clip.to_cols_array().map(|value| value as f32));

@@ -17,7 +17,7 @@ use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
 use crate::reading::map_readers::{MapReaders, MapTexel};
 use crate::reading::pick_ray;
-use crate::reading::shown::{FaceChoice, PictureKind, PictureView, TexelZoom};
+use crate::reading::picture_view::{FaceChoice, PictureKind, PictureView, TexelZoom};
 use crate::technique::MapSettings;
 use egui::{
     Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,

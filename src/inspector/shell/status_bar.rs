@@ -7,7 +7,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers;
 use crate::reading::format;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Margin, Ui};
 use std::sync::Arc;
 

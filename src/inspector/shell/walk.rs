@@ -10,7 +10,7 @@ use crate::inspector::action::{Action, Overlay};
 use crate::inspector::canvas;
 use crate::inspector::model::Model;
 use crate::inspector::model::walk::WalkGravity;
-use crate::reading::shown::PictureKind;
+use crate::reading::picture_view::PictureKind;
 use crate::scene::{Camera, Footing, WalkerBody, Walls};
 use crate::technique::Technique;
 use egui::{Context, Event, FocusDirection, Key, Vec2};

@@ -32,7 +32,7 @@ pub const FORMULAS: &[(&str, Check)] = &[
     }),
     ("a closed volume = sides + light cap + dark cap", |here, _| here.draws(DrawPart::Side).next().is_some()),
     ("light is added where count = 0", |here, _| asks_stencil(here, 0xff)),
-    ("light is added where count = 0, kept in {}", |here, told| asks_stencil(here, mask_of(told[0]))),
+    ("light is added where count = 0, kept in {}", |here, parts| asks_stencil(here, mask_of(parts[0]))),
     ("light is added where the stencil is even: a shadow adds 1 to its receiver's even mark", |here, _| {
         asks_stencil(here, 1)
     }),

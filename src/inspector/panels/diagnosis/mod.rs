@@ -6,7 +6,7 @@
 
 pub mod detail;
 pub mod fields;
-mod recorded;
+mod frame_causes;
 
 use crate::accuracy::Finding;
 use crate::ask::{DiagnosisOf, QuestionKind, Reply};
@@ -16,7 +16,7 @@ use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
-use crate::reading::shown::PictureKind;
+use crate::reading::picture_view::PictureKind;
 use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 pub use fields::DiagnosisPanel;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ const BELOW_TITLE: f32 = 26.0;
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
     if model.origin().is_some() {
-        return recorded::ui(ui, model);
+        return frame_causes::ui(ui, model);
     }
     let reply = model.answers.under_way::<DiagnosisOf>();
     let known = model.answers.last::<DiagnosisOf>().map(|(_, diagnosis)| Arc::clone(diagnosis));

@@ -1,7 +1,7 @@
 //! Under the passes: the draws of the selected one, and what the frame left out.
 
 use super::fields::PassesPanel;
-use super::{recorded, thumbnail};
+use super::{debug_groups, thumbnail};
 use crate::ask::Reply;
 use crate::capture::{Capture, DrawState, DrawSummary, StepDraws};
 use crate::inspector::look::theme;
@@ -63,7 +63,7 @@ fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Repl
     let is_missing = is_selected && !model.selected().is_known(capture);
     let is_fetched = is_missing && model.can_ask() && fetched.failed.is_none();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    let mark = recorded::mark(draw);
+    let mark = debug_groups::mark(draw);
     let name = match &mark {
         _ if is_fetched => format!("{}, being fetched", draw.name),
         Some(_) => format!("{}, differs", draw.name),
@@ -87,7 +87,7 @@ fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Repl
     let right = if is_fetched { "fetching …".to_owned() } else { format::count(draw.triangles) };
     paint_words(ui, draw, is_selected, (mark.as_deref(), &right), rect);
     let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
-    let recorded = recorded::explained(model, draw, index);
+    let recorded = debug_groups::explained(model, draw, index);
     let part = if draw.part.is_of_volume() && draw.caster.is_none() { "volume" } else { draw.part.name() };
     response.on_hover_text(format!("{part}: {}{changes}{recorded}", draw.name));
 }

@@ -1,9 +1,9 @@
 //! The passes of the frame as a tree: scene and lights, their passes in order, the draws of the
 //! selected one, what was left out, and why the selected pass is there.
 
+pub mod debug_groups;
 pub mod draws;
 pub mod fields;
-pub mod recorded;
 pub mod thumbnail;
 pub mod transport;
 
@@ -33,7 +33,7 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
         return;
     }
     transport::ui(ui, own, model);
-    recorded::origin(ui, model);
+    debug_groups::origin(ui, model);
     purpose(ui, &capture.steps[model.selection.step.min(capture.steps.len() - 1)]);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -56,7 +56,7 @@ fn tree(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Cap
         Some(StepSearch::Find(words)) => words.clone(),
         _ => String::new(),
     };
-    let groups = recorded::DebugGroups::new(own, model);
+    let groups = debug_groups::DebugGroups::new(own, model);
     let mut group = None;
     let mut found = 0;
     for (index, step) in capture.steps.iter().enumerate() {
@@ -66,7 +66,7 @@ fn tree(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Cap
         found += 1;
         if let Some(groups) = &groups {
             let Some(levels) = groups.above(ui, own, index) else { continue };
-            recorded::indented(ui, levels, |ui| {
+            debug_groups::indented(ui, levels, |ui| {
                 pass_row(ui, model, capture, index);
                 if index == model.selection.step {
                     draws::of_step(ui, own, model, capture);
@@ -163,7 +163,7 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
         pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), &steps::words(capture, index));
     }
     let width = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
-    let is_in_group = model.frame.plan.as_ref().is_some_and(|plan| !recorded::groups_of(plan, index).is_empty());
+    let is_in_group = model.frame.plan.as_ref().is_some_and(|plan| !debug_groups::groups_of(plan, index).is_empty());
     let light = step.light.filter(|_| is_in_group).map(|light| format!("{} · ", format::light(light)));
     let summary = light.unwrap_or_default() + &if is_beside { BESIDE.to_owned() } else { summary(step) };
     theme::line(ui, pos2(left, rect.top() + 23.0), width, &summary, TextStyle::Small, theme::of(ui).dim);

@@ -16,7 +16,7 @@ use crate::inspector::look::triangles;
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::Comparison;
 use crate::picture::Picture;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
 

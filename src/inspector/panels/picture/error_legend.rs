@@ -8,7 +8,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers::percent;
 use crate::reading::format;
-use crate::reading::shown::ShownPicture;
+use crate::reading::picture_view::ShownPicture;
 use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Sense, Stroke, Ui};
 use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
 

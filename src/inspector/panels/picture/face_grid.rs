@@ -9,7 +9,7 @@ use crate::inspector::model::Model;
 use crate::inspector::model::selection::Hover;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::layers::MapLayer;
-use crate::reading::shown::{FaceChoice, ShownPicture, TexelZoom};
+use crate::reading::picture_view::{FaceChoice, ShownPicture, TexelZoom};
 use egui::{Color32, CornerRadius, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 
 /// Height of the name above each picture, points.

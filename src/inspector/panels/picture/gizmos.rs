@@ -7,7 +7,7 @@ use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::pick_ray;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::DVec3;
 

@@ -15,7 +15,7 @@ use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.

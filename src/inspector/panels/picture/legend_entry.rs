@@ -2,7 +2,7 @@
 
 use crate::inspector::look::theme;
 use crate::reading::format;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, vec2};
 
 /// Returns the title: `Mask, light 1`.

@@ -28,7 +28,7 @@ use crate::inspector::model::selection::Hover;
 use crate::reading::change::{ChangeCache, StepChange};
 use crate::reading::format;
 use crate::reading::layers::{self, MapContent};
-use crate::reading::shown::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available};
+use crate::reading::picture_view::{DepthMode, FaceChoice, PictureKind, ShownPicture, TexelZoom, available};
 use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
 use overlays::Overlays;
 use std::sync::Arc;

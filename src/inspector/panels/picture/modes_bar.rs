@@ -8,7 +8,7 @@ use crate::inspector::look::widgets::{ButtonSegment, at_right, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{self, ComparedWith, Comparison, StepPhase, has_phases, step_words};
 use crate::reading::change::ChangeCache;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::technique::Technique;
 use egui::{Button, Rect, Ui, UiBuilder, vec2};
 

@@ -7,7 +7,7 @@ use crate::inspector::look::{coloring, palette};
 use crate::inspector::model::Model;
 use crate::reading::change::{self, ChangedTexels, StepChange};
 use crate::reading::format;
-use crate::reading::shown::ShownPicture;
+use crate::reading::picture_view::ShownPicture;
 use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
 
 /// How many changes of counts are listed one by one.

@@ -5,8 +5,8 @@
 use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::projected::outline;
-use crate::reading::shown::{PictureKind, ShownPicture};
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
 
 /// Draws the outline over the picture in `rect`, unless it is a map, which has pixels of its own.

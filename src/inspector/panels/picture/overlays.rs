@@ -18,7 +18,7 @@ use crate::plan::DrawPart;
 use crate::reading::format;
 use crate::reading::object_ids::ObjectIds;
 use crate::reading::outcomes::OUTCOMES;
-use crate::reading::shown::{PictureKind, ShownPicture};
+use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use crate::ask::{QuestionKind, TruthOf};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::picture::legend;
-use crate::reading::shown::{ShownPicture, has_truth};
+use crate::reading::picture_view::{ShownPicture, has_truth};
 use egui::{Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the note, points.

@@ -25,7 +25,7 @@ use crate::reading::depth::{DepthMeasure, FIXED_BITS};
 use crate::reading::format;
 use crate::reading::layers::MapContent;
 use crate::reading::map_decision::MapDecision;
-use crate::reading::shown::{PictureKind, has_truth};
+use crate::reading::picture_view::{PictureKind, has_truth};
 use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 

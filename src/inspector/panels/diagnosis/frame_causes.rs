@@ -2,7 +2,7 @@
 
 use crate::ask::{FaultsOf, QuestionKind};
 use crate::diagnosis::Proof;
-use crate::diagnosis::recorded::FrameDiagnosis;
+use crate::diagnosis::frame_causes::FrameDiagnosis;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
