@@ -5,7 +5,7 @@ use std::fmt;
 named_enum! {
     /// Why pixels are wrong, in our own frames and in those of other programs. In the order of families: volumes, meshes,
     /// counts, planes, maps, silhouettes, numbers, flags, states. Rules of other programs' frames are the table in
-    /// [`recorded`](super::recorded).
+    /// [`recorded`](super::frame_causes).
     pub enum Cause {
         /// Z-pass starts to count inside a volume.
         EyeInVolume = "eye-in-volume",

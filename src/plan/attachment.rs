@@ -15,7 +15,7 @@ pub struct Attachment {
     pub format: TextureFormat,
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// 1, or the faces of a shadow map; the memory is [`FramePlan::stored_layers`].
+    /// 1, or the faces of a shadow map; the memory is [`FramePlan::stored_layers`](super::FramePlan::stored_layers).
     pub layers: u32,
 }
 

@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Index into [`FramePlan::attachments`].
+/// Index into [`FramePlan::attachments`](super::FramePlan::attachments).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct AttachmentId(pub usize);
 
-/// Index into [`FramePlan::views`].
+/// Index into [`FramePlan::views`](super::FramePlan::views).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ViewId(pub usize);
 
-/// Index of a light, in the scene and in [`FramePlan::lights`] alike.
+/// Index of a light, in the scene and in [`FramePlan::lights`](super::FramePlan::lights) alike.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct LightId(pub usize);
 
@@ -21,10 +21,10 @@ impl LightId {
     }
 }
 
-/// Index into [`FramePlan::meshes`].
+/// Index into [`FramePlan::meshes`](super::FramePlan::meshes).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct MeshId(pub usize);
 
-/// Index into [`FramePlan::textures`].
+/// Index into [`FramePlan::textures`](super::FramePlan::textures).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct TextureId(pub usize);
