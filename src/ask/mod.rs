@@ -90,7 +90,7 @@ macro_rules! questions {
         pub enum QuestionKind { $($(#[$doc])* $name),* }
 
         impl QuestionKind {
-            /// All kinds, the most urgent first.
+            /// Lists all kinds in the order in which the worker answers waiting questions: the first is answered first.
             pub const ALL: &[QuestionKind] = &[$(QuestionKind::$name),*];
         }
 

@@ -324,8 +324,8 @@ impl Inspector {
         self.model.frame.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
     }
 
-    /// The texel that a pixel reads of the shadow map in its tab: index of the face, column and row. `None`
-    /// where it reads none, or the tab was not shown for this frame yet.
+    /// Returns the texel that a pixel reads of the map shown in the shadow map tab: index of the face, column and row;
+    /// with a filter, the middle texel. `None` where it reads none, or the tab was not shown for this frame yet.
     pub fn map_texel_of(&self, pixel: [u32; 2]) -> Option<(usize, [u32; 2])> {
         let readers = self.panels.shadow_map.readers(&self.model)?;
         readers.texel_of(pixel).map(|texel| (texel.face, texel.at))

@@ -52,7 +52,7 @@ impl TourStop {
     }
 }
 
-/// A tour of a technique.
+/// A guided tour of a technique: stops with a short text, each of which sets up the inspector's panels.
 #[derive(Debug)]
 pub struct Tour {
     /// The technique.

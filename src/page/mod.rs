@@ -47,7 +47,7 @@ pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageErro
     Ok(html::page(&title, &document::json(capture, plan)?))
 }
 
-/// Writes the page of a frame, and returns its size in bytes.
+/// Writes a frame as one self-contained HTML file to `path`, and returns its size in bytes.
 pub fn write(capture: &Capture, plan: &Arc<FramePlan>, path: &Path) -> Result<u64, PageError> {
     let text = html(capture, plan)?;
     let failed = |source| PageError::Write { path: path.display().to_string(), source };

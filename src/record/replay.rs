@@ -43,7 +43,7 @@ impl FrameReplay {
         FrameReplay { probes, ..FrameReplay::default() }
     }
 
-    /// The number of draws that were run so far.
+    /// Returns how many draws have been replayed so far.
     pub fn draws(&self) -> usize {
         self.draws
     }

@@ -29,7 +29,7 @@ enum StateSlot {
 }
 
 impl StateSlot {
-    /// Returns whether it is the same after a bundle as before.
+    /// Returns whether wgpu keeps this state after a render bundle is executed.
     fn outlasts_bundles(self) -> bool {
         matches!(
             self,

@@ -86,7 +86,9 @@ fn draws(plan: &FramePlan, is_meant: impl Fn(&Draw) -> bool) -> Vec<(&Pass, &Dra
         .collect()
 }
 
-/// Returns the triangles of a draw for which a condition is true; `None` where there are none.
+/// Builds a mesh, in view space, from the triangles of a draw for which `is_meant` is true. `places` has the vertices
+/// as homogeneous view-space points, w 1 or 0; w is dropped, so `is_meant` should refuse points at infinity. `None`
+/// where no triangle is left.
 fn mesh(
     plan: &FramePlan,
     draw: &Draw,

@@ -62,7 +62,7 @@ impl SceneBuilder {
         SceneBuilder { camera: Some(camera), ..self }
     }
 
-    /// Sets a camera as [`Camera::looking`] returns it.
+    /// Sets a camera at `eye` that looks at `target` (world space, metres), with the defaults of [`Camera::looking`].
     #[must_use]
     pub fn seen_from(self, eye: impl Into<DVec3>, target: impl Into<DVec3>) -> SceneBuilder {
         self.camera(Camera::looking(eye, target))

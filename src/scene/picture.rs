@@ -182,8 +182,9 @@ impl TextureImage {
         }
     }
 
-    /// Returns the filtered linear RGB at a place of the picture (0, 0 at its lower left, 1, 1 at its upper right), on
-    /// a mip level that may lie between two.
+    /// Samples the texture trilinearly: returns linear RGB at `uv` (0, 0 at the picture's lower left, 1, 1 at its upper
+    /// right) and mip level `level`, which may lie between two. `clamps` clamps to the edge; otherwise the texture
+    /// repeats.
     pub fn linear_at(&self, uv: [f64; 2], level: f64, clamps: bool) -> [f64; 3] {
         let level = level.clamp(0.0, f64::from(self.level_count() - 1));
         let [near, far] = [level.floor(), level.floor() + 1.0].map(|index| self.smooth_at(uv, index as u32, clamps));

@@ -69,7 +69,8 @@ impl Session {
         }
     }
 
-    /// Returns each suspected cause with what its fixes have shown, the most likely first.
+    /// Runs the frame with each suspected cause's fixes, and with some of them together where none alone removes the
+    /// fault. Returns each cause with its result, the most likely first.
     pub(super) fn proven(
         &mut self,
         runs: &mut TrialRuns,

@@ -107,7 +107,8 @@ fn fitted(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     (b != 0.0 && points.iter().all(is_near)).then_some([a, b])
 }
 
-/// Returns an eye at the origin that looks along −z, for which clip space is view space.
+/// Returns the camera assumed for a recorded frame: at the origin, looking along −z, y up, with a field of view of 90
+/// degrees, and near and far planes from the depth curve. [`clip_from_view`] has its projection.
 pub(super) fn camera(curve: &DepthCurve) -> Camera {
     let plane = |depth: f64| Some(curve.scale / (depth - curve.offset)).filter(|at| at.is_finite() && *at > 0.0);
     let near = plane(if curve.mapping.is_reversed() { 1.0 } else { 0.0 }).unwrap_or(1.0).clamp(1e-30, 1e30);

@@ -59,7 +59,7 @@ pub const UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
 /// A count that went down, or a surface that went farther away.
 pub const DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
 
-/// A surface where there was none.
+/// Marks a pixel where a step drew a surface and nothing was drawn before.
 pub const APPEARED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
 
 /// No surface where there was one.

@@ -80,7 +80,8 @@ fn between([a, b, c]: [Pos2; 3], y: f32) -> Option<[f32; 2]> {
     met.fold(None, |ends: Option<[f32; 2]>, x| Some(ends.map_or([x, x], |[low, high]| [low.min(x), high.max(x)])))
 }
 
-/// The corners' colours interpolated with these weights, times the texel of the font texture there.
+/// Interpolates the corners' colours with barycentric weights `shares`, times the nearest texel of the font texture.
+/// Returns premultiplied sRGB.
 fn color(corners: [Vertex; 3], shares: [f32; 3], letters: &ColorImage) -> Color32 {
     let mixed = |value: &dyn Fn(&Vertex) -> f32| -> f32 {
         corners.iter().zip(shares).map(|(corner, share)| value(corner) * share).sum()

@@ -96,7 +96,8 @@ fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// Draws the field of Ctrl-G or Ctrl-F while it is open: Enter goes to the pass, Escape closes.
+/// Draws the search field while it is open. Enter goes to the step with that number (Ctrl-G), or to the first pass that
+/// contains the words (Ctrl-F); Escape closes it.
 fn search(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     let Some(mut search) = own.search.take() else { return };
     let (text, name, hint) = match &mut search {

@@ -19,7 +19,8 @@ const MOST_WRONG: usize = 3;
 /// Opacity of a history that does not belong to the picked pixel.
 const GREYED: f32 = 0.4;
 
-/// Draws heading, rows and the selected event of the picked pixel. Returns where the rows end.
+/// Draws the heading, the rows and the selected event of the picked pixel's history. Returns the y, in points, at which
+/// the rows end.
 pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,

@@ -8,7 +8,8 @@ use crate::reading::format;
 use crate::reading::shading::{SurfaceShading, TextureTerm, digits, three};
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
-/// Draws the section, folded at first.
+/// Draws the section Shading, closed at first: how the picked pixel's colour is computed. Draws nothing for another
+/// program's frame, or without a trusted history of the pick.
 pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, picked: &PickedHistory) {
     let (Some(history), Some(plan)) = (&picked.history, &model.frame.plan) else { return };
     if capture.origin.is_some() || !picked.is_of_pick || !picked.wrong.is_empty() {
