@@ -5,7 +5,7 @@ use crate::progress::Progress;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// A question that is being answered.
+/// A question that is sent and not yet answered in full.
 #[derive(Debug, Clone)]
 pub struct PendingQuestion {
     /// Sent back with the answer: an answer to a question that is no longer asked is dropped.
@@ -17,13 +17,13 @@ pub struct PendingQuestion {
 }
 
 impl PartialEq for PendingQuestion {
-    /// Two are equal where question and ticket are.
+    /// Returns whether both are the same question under the same ticket; progress is not compared.
     fn eq(&self, other: &PendingQuestion) -> bool {
         self.ticket == other.ticket && self.ask == other.ask
     }
 }
 
-/// What is known about a question.
+/// The state of a question: its answer, an older one, the progress, or the reason for a failure.
 #[derive(Debug)]
 pub struct Reply<T> {
     /// Its answer.
@@ -49,13 +49,13 @@ impl<T> Default for Reply<T> {
 }
 
 impl<T> Reply<T> {
-    /// The answer, or the older one while there is none.
+    /// Returns the answer; while there is none, the older one (see [`Reply::older`]).
     pub fn latest(&self) -> Option<&Arc<T>> {
         self.ready.as_ref().or(self.older.as_ref())
     }
 
-    /// How many steps are done, and how many there are, while it is being answered; the total is 0 while it is not
-    /// known.
+    /// Returns, while the question is being answered, how many steps of the work are done and how many there are; the
+    /// total is 0 while it is not known.
     pub fn steps(&self) -> Option<(usize, usize)> {
         self.running.as_ref().map(Progress::steps)
     }
@@ -204,7 +204,7 @@ impl Answers {
         }
     }
 
-    /// Drops what is known of a kind.
+    /// Drops all answers to questions of this kind, so that the next use asks again.
     pub fn forget(&mut self, kind: QuestionKind) {
         self.slot_mut(kind).known = None;
     }
@@ -350,7 +350,7 @@ impl Answers {
         }
     }
 
-    /// Returns whether a question is being answered.
+    /// Returns whether any question is still waiting for its answer.
     pub fn is_waiting(&self) -> bool {
         self.slots.iter().any(|slot| slot.asked.is_some())
     }

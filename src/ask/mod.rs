@@ -34,9 +34,9 @@ use std::sync::Arc;
 
 /// A question of one kind, with the type of its answer.
 pub trait Question: Clone + Into<Ask> {
-    /// The type of its answer.
+    /// The type of the question's answer.
     type Answer;
-    /// The question's kind.
+    /// The kind of questions of this type.
     const KIND: QuestionKind;
     /// Returns the question, where `ask` is of this kind.
     fn of(ask: &Ask) -> Option<&Self>;
@@ -95,7 +95,7 @@ macro_rules! questions {
         }
 
         impl Ask {
-            /// The question's kind.
+            /// Returns the question's kind.
             pub fn kind(&self) -> QuestionKind {
                 match self { $(Ask::$name(_) => QuestionKind::$name),* }
             }
@@ -156,7 +156,7 @@ questions! {
     TimingOf { } -> Timing;
 }
 
-/// What a film shows.
+/// The content of a film that the inspector asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FilmSubject {
     /// A frame, pass by pass.
@@ -201,7 +201,7 @@ pub enum AnswerLifetime {
 }
 
 impl QuestionKind {
-    /// How long an answer is valid.
+    /// Returns how long an answer to a question of this kind is valid.
     pub fn holds(self) -> AnswerLifetime {
         match self {
             QuestionKind::WallsOf
@@ -214,13 +214,13 @@ impl QuestionKind {
         }
     }
 
-    /// Is the answer about the previous frame shown until that about the next is known? Others are dropped with their
-    /// frame, and their memory is freed.
+    /// Returns whether the answer about the previous frame is shown until that about the next is known. Others are
+    /// dropped with their frame, and their memory is freed.
     pub fn outlives_frame(self) -> bool {
         matches!(self, QuestionKind::HistoryOf | QuestionKind::AnatomyOf)
     }
 
-    /// Is it only asked when a button is pressed, as it takes long?
+    /// Returns whether the question is only asked when a button is pressed, as it takes long.
     pub fn is_started_by_hand(self) -> bool {
         matches!(
             self,
@@ -232,7 +232,8 @@ impl QuestionKind {
         )
     }
 
-    /// Is it about the shown frame, and answered in about the time that a frame takes? Long work is interrupted for it.
+    /// Returns whether the question is about the shown frame and takes about as long as a frame. Long work is
+    /// interrupted for it.
     pub fn is_short(self) -> bool {
         matches!(
             self,
@@ -240,23 +241,23 @@ impl QuestionKind {
         )
     }
 
-    /// Is it answered from the capture and its plan, without a run? Then a folder's frame answers it too, and no
-    /// picture waits for it.
+    /// Returns whether the answer is computed from the capture and its plan, without running the frame. Frames opened
+    /// from capture folders have such answers too, and no picture waits for it.
     pub fn is_read_from_capture(self) -> bool {
         self == QuestionKind::ReadersOf
     }
 
-    /// Is it answered only when no other question has been asked for a while?
+    /// Returns whether the question is answered only when no other question has been asked for a while.
     pub fn waits_for_quiet(self) -> bool {
         self == QuestionKind::TimingOf
     }
 
-    /// Do the next questions depend on it, so that all long work is interrupted for it?
+    /// Returns whether the next questions depend on the answer, so that all long work is interrupted for it.
     pub fn is_urgent(self) -> bool {
         self == QuestionKind::WallsOf
     }
 
-    /// Does the user wait for it so much that a truth that is being traced is interrupted, and begun again after it?
+    /// Returns whether even the tracing of a truth is interrupted for the question, and begun again after it.
     pub fn interrupts_truth(self) -> bool {
         matches!(self, QuestionKind::DrawsOf | QuestionKind::CaptureOf)
     }

@@ -26,7 +26,7 @@ pub struct RunRequest {
     pub objects: ObjectChanges,
 }
 
-/// Changes of a scene's objects.
+/// The user's changes to a scene's objects since it was opened.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ObjectChanges {
     /// Poses of moved objects at the scene's start, by index; they replace the loaded ones.
@@ -36,7 +36,7 @@ pub struct ObjectChanges {
 }
 
 impl ObjectChanges {
-    /// Returns the scene with these changes.
+    /// Returns a copy of the opened scene with these changes applied.
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let mut scene = loaded.clone();
         for (index, pose) in &self.moved {

@@ -33,7 +33,7 @@ impl LightRound {
         Ok(LightRound { scene, light, middle, places })
     }
 
-    /// Returns how many positions there are.
+    /// Returns the number of positions of the light, one for each picture of the film.
     pub fn places(&self) -> u32 {
         self.places
     }

@@ -35,7 +35,7 @@ pub const PLACE_MILLISECONDS: u16 = 100;
 /// How many positions of the light there are by default.
 pub const PLACES: u32 = 24;
 
-/// Why there is no film.
+/// The reason why a film could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
     /// The scene has fewer lights.
@@ -79,7 +79,7 @@ fn choice_of(lights: usize) -> String {
     }
 }
 
-/// What a film shows.
+/// The content of a film: the steps of a frame, or a light that moves round the scene.
 #[derive(Debug, Clone)]
 pub enum FilmContent {
     /// A frame, pass by pass; masks are not part of it and left out.
@@ -96,7 +96,7 @@ pub enum FilmContent {
 }
 
 impl FilmContent {
-    /// Returns how many pictures the film has.
+    /// Returns the number of pictures of the film.
     pub fn pictures(&self) -> u32 {
         match self {
             FilmContent::Steps(capture) => step_numbers::count(capture) as u32,
@@ -144,7 +144,7 @@ impl FilmContent {
     }
 }
 
-/// Renders a scene.
+/// A function that renders a scene for a picture of a film.
 pub type FilmRenderer<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
 
 /// A film that is being written. One that is dropped before its end leaves no file.

@@ -16,7 +16,7 @@ const MOST_RECENT: u64 = 256 << 20;
 /// Bytes of the largest piece that is cached.
 const LARGEST_PIECE: usize = 1 << 20;
 
-/// A file, or bytes in memory.
+/// The bytes that blobs are read from: a file, or memory.
 trait BlobSource: Read + Seek {}
 
 impl<T: Read + Seek> BlobSource for T {}
@@ -80,7 +80,7 @@ impl BlobFile {
         self.lengths.get(index).copied().ok_or_else(|| none_of(index))
     }
 
-    /// Reads a byte string.
+    /// Reads and decompresses the blob of this index.
     pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         self.reserve(self.length(index)?)?;
         let Some(RenderDocBlob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };

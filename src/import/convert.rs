@@ -35,7 +35,7 @@ pub const RECORDED: &str = "recorded";
 /// The attachment of the picture's depth and stencil; those of depth maps follow.
 const DEPTH_STENCIL: AttachmentId = AttachmentId(0);
 
-/// Returns the attachment of a depth map.
+/// Returns the id of the plan's attachment for the shadow map of this index.
 fn map_attachment(map: usize) -> AttachmentId {
     AttachmentId(DEPTH_STENCIL.0 + 1 + map)
 }

@@ -18,7 +18,7 @@ pub struct RenderDocDocument {
     pub blobs: Vec<RenderDocBlob>,
 }
 
-/// Where a byte string is stored.
+/// Where a byte string of RenderDoc's document is stored.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 pub enum RenderDocBlob {

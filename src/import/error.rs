@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Why there is no frame.
+/// The reason why a frame could not be imported.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// No draw has a depth buffer.

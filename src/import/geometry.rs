@@ -8,10 +8,10 @@ use super::raw::RawTopology;
 use super::unroll;
 use std::ops::Range;
 
-/// Bytes of a position.
+/// Size of a clip-space position in bytes: four 32-bit floats.
 const POSITION: usize = 16;
 
-/// The vertices and triangles of a draw.
+/// The vertices and triangles of a draw after the vertex shader.
 #[derive(Debug)]
 pub struct DrawGeometry {
     pub topology: RawTopology,
@@ -23,7 +23,7 @@ pub struct DrawGeometry {
     pub dropped: usize,
 }
 
-/// Reads the geometry of all instances.
+/// Reads the vertices and triangles of all instances of a draw, one after the other.
 pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<DrawGeometry, ImportError> {
     let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
     let mut all =

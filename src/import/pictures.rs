@@ -14,7 +14,7 @@ pub struct TexelLayout {
     pub depth_above_stencil: bool,
 }
 
-/// Returns the format of RenderDoc's name.
+/// Returns the texel format that RenderDoc names so.
 pub fn format(name: &str) -> RawFormat {
     match name {
         "D16" | "D16_UNORM" => RawFormat::D16,

@@ -17,12 +17,12 @@ use std::time::{Duration, Instant};
 
 /// Seconds that RenderDoc has to start a program and to write its capture.
 pub const GRACE: u64 = 30;
-/// How often limits are checked.
+/// Interval at which a process's limits are checked.
 const TURN: Duration = Duration::from_millis(50);
-/// Bytes of a line that are stored.
+/// Limit on the bytes of an output line that are stored.
 const LONGEST_LINE: usize = 2000;
 
-/// Limits of a process.
+/// Limits on the time and memory of a process.
 #[derive(Debug, Clone, Copy)]
 pub struct ProcessLimits {
     /// Time from its start to its result.
@@ -31,7 +31,7 @@ pub struct ProcessLimits {
     pub memory: u64,
 }
 
-/// Why there is no result.
+/// The reason why a process gave no result.
 #[derive(Debug)]
 pub enum ProcessEnd {
     TooLong,
@@ -105,7 +105,7 @@ impl ReaderProcess {
         Ok(Self { child, has_ended: false, folder, lines, last, errors: closed, start: Instant::now(), limits })
     }
 
-    /// The folder that the script writes to.
+    /// Returns the folder that the script writes to.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }

@@ -23,7 +23,7 @@ named_enum! {
     }
 }
 
-/// One frame of a program.
+/// One frame of another program, as RenderDoc or our recorder describes it, before conversion to a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawFrame {
     /// The graphics API whose calls were recorded.
@@ -59,7 +59,7 @@ pub struct RawTexture {
     pub samples: u32,
 }
 
-/// Format of a texel.
+/// The format of a texture's texels, as far as it matters for depth, stencil and colour.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum RawFormat {
     /// Depth in 16 bits, normalised.
@@ -168,7 +168,7 @@ pub struct RawEvent {
     pub after: RawContents,
 }
 
-/// What an event does.
+/// The kind of an event: a draw, a clear, a copy, the begin or end of a pass, compute work, or a presentation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RawKind {
     /// Draws triangles, or something else that has none.
@@ -194,7 +194,7 @@ pub enum RawKind {
     Present,
 }
 
-/// A draw call.
+/// A draw call of an imported frame: geometry, raster states and shader effects.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawDraw {
     /// How the vertices form primitives after the last vertex stage.
@@ -298,7 +298,7 @@ pub struct RawShape {
     pub clip_planes: bool,
 }
 
-/// A depth test that is on.
+/// The depth test of a draw that has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawDepth {
     /// The fragment passes where its depth compares so with the stored one.
@@ -318,7 +318,7 @@ pub struct RawStencilFace {
     pub masks: FaceMasks,
 }
 
-/// How the first colour target is written.
+/// The blend state of the first colour target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawBlend {
     /// Blending of `[colour, alpha]`, each absent where wgpu has no equivalent; all absent where the fragment's colour

@@ -18,16 +18,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Read, Seek};
 use std::path::Path;
 
-/// The most bytes of `frame.json`.
+/// Limit on the bytes of `frame.json`.
 const MOST_TEXT: u64 = 256 << 20;
-/// The most texels along a side.
+/// Limit on a texture's width and height in texels.
 const LARGEST: u32 = 1 << 14;
-/// The most events of a frame.
+/// Limit on the events of a frame.
 const MOST_EVENTS: usize = 100_000;
-/// The most textures of a frame.
+/// Limit on the textures of a frame.
 const MOST_TEXTURES: usize = 100_000;
 
-/// Reads a frame from the folder.
+/// Reads and checks the frame that a recording wrote into this folder.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
     let open = |name: &str| open_plain(&folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
     read_from(open("frame.json")?, open("data.bin")?)
@@ -135,7 +135,7 @@ impl DocumentReader {
         self.api != RecordedApi::Vulkan
     }
 
-    /// Returns width and height of a target.
+    /// Returns the width and height of a target in texels.
     fn size(&self, target: RawTarget) -> [u32; 2] {
         self.textures[target.texture].size.map(|side| (side >> target.mip).max(1))
     }

@@ -30,7 +30,7 @@ impl Default for RenderDocOptions {
     }
 }
 
-/// What to record.
+/// The inputs of a recording with RenderDoc.
 #[derive(Debug, Clone)]
 pub struct RecordingRequest {
     /// The program and its arguments.
@@ -44,13 +44,13 @@ pub struct RecordingRequest {
 }
 
 impl RecordingRequest {
-    /// The program's name.
+    /// Returns the name of the program that is recorded.
     pub fn program(&self) -> &str {
         self.command.first().map_or("", String::as_str)
     }
 }
 
-/// Reads the frame of a RenderDoc capture.
+/// Reads the frame of a RenderDoc capture file by running RenderDoc's Python module.
 pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> Result<RawFrame, ImportError> {
     // RenderDoc has one error for all of these.
     let reason = match std::fs::metadata(file) {

@@ -27,7 +27,7 @@ macro_rules! shipped {
     };
 }
 
-/// All built-in frames.
+/// The recorded frames that are built into the program.
 pub const SHIPPED: &[ShippedFrame] = &[
     shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
     shipped!("ogre-inside", "the eye in a shadow: OGRE counts that volume behind surfaces"),
@@ -35,12 +35,12 @@ pub const SHIPPED: &[ShippedFrame] = &[
 ];
 
 impl ShippedFrame {
-    /// Returns the built-in frame of that name.
+    /// Returns the built-in recorded frame of that name.
     pub fn named(name: &str) -> Option<&'static ShippedFrame> {
         SHIPPED.iter().find(|shipped| shipped.name == name)
     }
 
-    /// Reads the frame.
+    /// Reads the built-in frame's recording and converts it.
     pub fn open(&self) -> Result<WholeFrame, ImportError> {
         let frame = read_from(self.document, Cursor::new(self.data))?;
         let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, self.name)?;

@@ -5,7 +5,7 @@ use super::raw::{RawBlend, RawCull, RawDepth, RawFormat, RawShape, RawStencilFac
 use crate::plan::{FaceMasks, StencilFace};
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, CompareFunction, PolygonMode, StencilOperation};
 
-/// The states of a draw.
+/// The raster states of a draw in RenderDoc's document.
 #[derive(Debug)]
 pub struct DrawStates {
     pub view: RawView,

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::hash::BuildHasher;
 use std::io::Write;
 
-/// The type of a word.
+/// The number type of an array's elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ArrayWord {
@@ -37,7 +37,7 @@ impl ArrayWord {
 /// The layout of an array's elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ArrayLayout {
-    /// The type of a word.
+    /// The number type of an array's elements.
     pub word: ArrayWord,
     /// How many words an element has.
     pub lanes: usize,
@@ -45,10 +45,10 @@ pub struct ArrayLayout {
     pub width: usize,
 }
 
-/// Index of an array in its page.
+/// Index of an array in the page's list of arrays.
 pub type ArrayIndex = usize;
 
-/// The arrays of a page.
+/// The binary arrays of a page, each stored once.
 #[derive(Debug, Default)]
 pub struct PageArrays {
     entries: Vec<PageArray>,

@@ -107,7 +107,7 @@ struct PageMeasure {
     is_linear: bool,
 }
 
-/// The colours of pictures.
+/// The colours that the page draws pictures with.
 #[derive(Serialize)]
 struct PagePalette {
     stencil: Vec<colors::Rgb>,
@@ -116,7 +116,7 @@ struct PagePalette {
     linear: Vec<u8>,
 }
 
-/// Returns the document of a frame.
+/// Returns the page's JSON document of a frame: its plan, its passes, and its arrays.
 pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<String> {
     let mut arrays = PageArrays::default();
     let document = PageDocument {

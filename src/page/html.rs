@@ -7,7 +7,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest, Sha256};
 
-/// A source file of the page.
+/// A file of `assets/page/` that is built into the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PageAsset {
     /// Its name in `assets/page/`.
@@ -64,7 +64,7 @@ pub fn page(title: &str, document: &str) -> String {
     })
 }
 
-/// Returns all modules as one script.
+/// Returns the page's JavaScript modules joined into one script.
 pub fn script() -> String {
     let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
     let of_module = |module: &PageAsset| {

@@ -25,7 +25,7 @@ use crate::plan::FramePlan;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Why there is no page.
+/// The reason why a page could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
     /// The document has a number that JSON does not have, or memory is short.
@@ -41,7 +41,7 @@ pub enum PageError {
     },
 }
 
-/// Returns the page of a frame.
+/// Returns a frame as one self-contained HTML text.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
     Ok(html::page(&title, &document::json(capture, plan)?))

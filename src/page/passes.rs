@@ -9,7 +9,7 @@ use crate::plan::{
 };
 use serde::Serialize;
 
-/// A pass of the plan.
+/// A pass of the plan as the page's document has it.
 #[derive(Debug, Serialize)]
 pub struct PagePass<'a> {
     name: &'a str,
@@ -74,7 +74,7 @@ struct PageStencilFace<'a> {
     masks: FaceMasks,
 }
 
-/// Returns the passes of a plan.
+/// Returns the passes of a plan for the page's document; their meshes and pictures are added to `arrays`.
 pub fn passes<'a>(plan: &'a FramePlan, arrays: &mut PageArrays) -> Vec<PagePass<'a>> {
     plan.passes.iter().map(|pass| entry(plan, pass, arrays)).collect()
 }

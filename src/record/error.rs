@@ -1,7 +1,7 @@
 use crate::capture::CaptureError;
 use crate::import::ImportError;
 
-/// Why a frame is not recorded.
+/// The reason why a frame was not recorded.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
     /// The device was not created by an instance that [`super::instance`] returns.

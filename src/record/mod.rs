@@ -56,7 +56,7 @@ use recorder::Recorder;
 use std::any::Any;
 use std::path::Path;
 
-/// The environment variable that requests a frame.
+/// Name of the environment variable that requests a recording: `DIR`, `DIR:N` for the Nth frame, or `DIR:A..B`.
 pub const VARIABLE: &str = "STENCILSCOPE_RECORD";
 
 /// Returns an instance of wgpu whose frames can be recorded.

@@ -166,7 +166,7 @@ impl Probe {
         }
     }
 
-    /// Binds the log's group.
+    /// Binds the bind group with the probe's log buffers.
     pub fn bind(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, log: &[wgpu::BindingResource<'_>]) {
         let log =
             (0..).zip(log).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() });
@@ -187,7 +187,7 @@ fn layout_of(buffer: &VertexBufferSource) -> wgpu::VertexBufferLayout<'_> {
 /// Format of the target, whose content is discarded.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Returns a target whose content is discarded.
+/// Creates a colour target for passes that only write a log; nobody reads it.
 pub(super) fn target(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
     let target = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("stencilscope probe"),

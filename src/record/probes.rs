@@ -20,7 +20,7 @@ pub struct ProbeBudget {
 }
 
 impl Default for ProbeBudget {
-    /// Half a gigabyte each.
+    /// Returns the default limits: half a gigabyte for each kind of log.
     fn default() -> ProbeBudget {
         ProbeBudget { corners: 1 << 25, fragments: 1 << 26 }
     }

@@ -17,7 +17,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
-/// A request for frames.
+/// A request to record one frame or a series of frames.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct FrameRequest {
     folder: PathBuf,
@@ -73,7 +73,7 @@ fn of_environment() -> Option<FrameRequest> {
     (!TAKEN.swap(true, Ordering::Relaxed)).then(|| FrameRequest::of(&text))
 }
 
-/// The cost of recording a frame.
+/// What recording a frame has cost: draws, time and bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordingCost {
     /// The number of draws that were run one by one.
@@ -92,7 +92,7 @@ impl fmt::Display for RecordingCost {
     }
 }
 
-/// A recorded frame.
+/// A frame that was recorded, and where it was written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedFrame {
     /// The frame in the form of our own: plan, pictures, scene and lights as far as they were found.
@@ -103,7 +103,7 @@ pub struct RecordedFrame {
     pub cost: RecordingCost,
 }
 
-/// A frame of a series.
+/// The outcome of one frame of a recorded series.
 #[derive(Debug)]
 pub struct SeriesFrame {
     /// The folder that it was to be written to.
@@ -112,7 +112,7 @@ pub struct SeriesFrame {
     pub outcome: Result<RecordingCost, RecordError>,
 }
 
-/// The recorder of a device.
+/// Records the frames that are requested of one wrapped device.
 #[derive(Debug, Default)]
 pub struct Recorder {
     is_recording: AtomicBool,
@@ -152,7 +152,7 @@ struct RunningRecording {
     end: RecordingEnd,
 }
 
-/// What ends a recorded frame.
+/// The event that ends a recorded frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RecordingEnd {
     /// The closure returns.
@@ -198,7 +198,7 @@ impl Drop for ReplayTurn<'_> {
 pub struct ClosureFrame<'a>(&'a Recorder);
 
 impl ClosureFrame<'_> {
-    /// Writes the recorded frame.
+    /// Ends the frame, converts it and writes its folder.
     pub fn end(self, shared: &SharedDevice) -> Result<RecordedFrame, RecordError> {
         let running = self.0.take(|running| running.end == RecordingEnd::Closure).ok_or(RecordError::Busy)?;
         running.write(shared, &mut RecordingTools::default())
@@ -216,7 +216,7 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Recorder {
-    /// Requests the next frame that begins.
+    /// Requests that the next frame that begins is recorded into `folder`.
     pub fn wish(&self, shared: &SharedDevice, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |_| FrameRequest::one(folder, 0))
     }

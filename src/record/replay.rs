@@ -13,7 +13,7 @@ use crate::wrap::command::{DrawCommand, EncoderCommand, FinishedCommands, PassCo
 use crate::wrap::{PipelineSource, ViewSubresource};
 use std::collections::{BTreeMap, HashMap};
 
-/// A frame while it is replayed.
+/// The replay of a frame: runs its recorded commands again, draw by draw, and stores what each draw left in its targets.
 #[derive(Debug, Default)]
 pub struct FrameReplay {
     textures: HashMap<wgpu::Texture, usize>,
@@ -30,7 +30,7 @@ pub struct FrameReplay {
     draws: usize,
 }
 
-/// The targets of a pass.
+/// The colour and depth targets of a replayed pass.
 #[derive(Debug, Clone, Default)]
 struct PassTarget {
     colors: Vec<RawTarget>,
@@ -48,12 +48,12 @@ impl FrameReplay {
         self.draws
     }
 
-    /// Returns whether anything has been drawn yet.
+    /// Returns whether the frame has replayed any draw.
     pub fn has_drawn(&self) -> bool {
         self.draws > 0
     }
 
-    /// Runs the commands of encoders, in order.
+    /// Runs the recorded commands of encoders, in order, with probes around each draw.
     pub fn submit(
         &mut self,
         device: &wgpu::Device,
@@ -237,7 +237,7 @@ impl FrameReplay {
         self.events.push(RawEvent { id, name, groups, kind, color_targets, depth_target, after });
     }
 
-    /// Adds an event, with what it left.
+    /// Adds an event with the contents that its targets have after it.
     fn after(&mut self, gpu: ProbeGpu<'_>, name: String, kind: RawKind, into: &PassTarget) {
         self.event(name, kind, into);
         let targets: Vec<RawTarget> = into.depth.into_iter().chain(into.colors.first().copied()).collect();

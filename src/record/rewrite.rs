@@ -188,7 +188,7 @@ fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], reco
     module.functions.append(function, Span::UNDEFINED)
 }
 
-/// Adds a variable in storage.
+/// Adds a storage-buffer variable to a shader module.
 fn global(
     module: &mut Module,
     name: &str,
@@ -207,7 +207,7 @@ fn global(
     module.global_variables.append(variable, Span::UNDEFINED)
 }
 
-/// Builds the code of a function.
+/// Builds the statements and expressions of a function of a shader module.
 struct FunctionCode<'a> {
     expressions: &'a mut Arena<Expression>,
     body: Block,
@@ -228,7 +228,7 @@ impl FunctionCode<'_> {
         handle
     }
 
-    /// Returns the arguments of the function.
+    /// Adds `count` expressions for the function's arguments and returns their handles.
     fn arguments(&mut self, count: usize) -> Vec<Handle<Expression>> {
         (0..count as u32).map(|index| self.plain(Expression::FunctionArgument(index))).collect()
     }
@@ -418,7 +418,7 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
     function
 }
 
-/// The effects of a fragment shader.
+/// Whether a fragment shader may discard fragments, write the sample mask, or write depth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FragmentEffects {
     pub discards: bool,

@@ -93,7 +93,7 @@ impl PassState {
         }
     }
 
-    /// All commands that set the states, the pipeline first.
+    /// Returns the commands that set all states again, the pipeline first.
     pub fn commands(&self) -> impl Iterator<Item = &PassCommand> {
         self.commands.values()
     }
@@ -170,7 +170,7 @@ pub fn topology(pipeline: &PipelineSource) -> RawTopology {
     }
 }
 
-/// Returns the depth test.
+/// Returns a pipeline's depth test in the form of imported frames; `None` where it has none.
 pub fn depth(pipeline: &PipelineSource) -> Option<RawDepth> {
     let state = pipeline.depth_stencil.as_ref().filter(|state| state.format.has_depth_aspect())?;
     let write = state.depth_write_enabled.unwrap_or(false);

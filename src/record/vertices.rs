@@ -81,7 +81,7 @@ pub fn log(
     PositionLog::read(&bytes)
 }
 
-/// Positions by instance and vertex.
+/// The clip-space positions that a vertex shader returned, by instance and vertex index.
 pub struct PositionLog(HashMap<(u32, u32), [f32; 4]>);
 
 impl PositionLog {
@@ -131,7 +131,7 @@ impl ResolvedVertices {
     }
 }
 
-/// The instances of a direct draw.
+/// Returns the range of instances of a direct draw.
 pub fn instances(draw: &DrawCommand) -> Range<u32> {
     match draw {
         DrawCommand::Vertices { instances, .. } | DrawCommand::Indexed { instances, .. } => instances.clone(),

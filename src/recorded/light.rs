@@ -10,7 +10,7 @@ use crate::plan::{FramePlan, LightId};
 use glam::{DMat3, DVec3, DVec4};
 use std::collections::BTreeMap;
 
-/// The most edges that vote.
+/// Limit on the silhouette edges that are used to find a light.
 const MOST_EDGES: usize = 2000;
 /// The number of pairs of edges that are tried.
 const TRIES: usize = 3000;
@@ -22,7 +22,7 @@ const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
 const LEAST_EDGES: usize = 6;
 const LEAST_SHARE: f64 = 0.1;
 
-/// A light that was found.
+/// A light's position as found from the edges of shadow volumes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoundLight {
     /// Homogeneous position in the eye's space: a point, or with `w = 0` the direction towards it.
@@ -83,7 +83,7 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
     if infinite.is_empty() { finite.into_values().collect() } else { infinite }
 }
 
-/// Returns some of the lines, evenly spaced.
+/// Returns at most the limit of lines, evenly spaced in their list.
 fn thinned(lines: Vec<EdgeLine>) -> Vec<EdgeLine> {
     let step = lines.len().div_ceil(MOST_EDGES).max(1);
     lines.into_iter().step_by(step).collect()

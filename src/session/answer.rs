@@ -60,7 +60,7 @@ impl RunFrame {
         }
     }
 
-    /// The scene that the frame shows.
+    /// Returns the scene that the frame shows.
     pub fn scene(&self) -> Result<&Scene, SessionError> {
         self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoLights)
     }

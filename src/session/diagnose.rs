@@ -27,7 +27,7 @@ const SAMPLES: usize = 3;
 /// The most objects whose flags are examined; each costs a truth.
 const MOST_FLAGS: usize = 8;
 
-/// A frame that was run.
+/// The frame under diagnosis: its inputs, its capture, and its wrong pixels.
 struct DiagnosisRun {
     scene: Scene,
     choice: Choice,
@@ -168,7 +168,8 @@ impl Session {
         scene.objects.iter().map(one).collect()
     }
 
-    /// Examines some of a region's pixels closely.
+    /// Returns sample pixels of a region: the surface seen there, the casters between it and the light, and the pixel's
+    /// history where the technique has one.
     fn case<'r>(&mut self, facts: &FrameFacts, region: &'r ConnectedRegion) -> Result<RegionSamples<'r>, SessionError> {
         let light = region.light;
         let has_events = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();

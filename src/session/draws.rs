@@ -14,7 +14,7 @@ use crate::plan::FramePlan;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How often a snapshot is taken.
+/// After which steps stencil and depth are copied back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SnapshotInterval {
     /// After every pass.

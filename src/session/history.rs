@@ -7,7 +7,7 @@ use crate::plan::FramePlan;
 use crate::scene::Scene;
 use std::time::{Duration, Instant};
 
-/// Times of histories of pixels.
+/// Measured times of computing pixel histories.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HistoryCost {
     /// Plain frames, for comparison.

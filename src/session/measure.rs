@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// own.
 const CACHED_BYTES: u64 = 64 << 20;
 
-/// What to measure.
+/// The inputs of a measurement of techniques on one scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurement {
     /// Techniques with their settings.
@@ -27,7 +27,7 @@ pub struct Measurement {
 }
 
 named_enum! {
-    /// What moves from frame to frame.
+    /// Which part of the scene moves from frame to frame.
     pub enum MovingPart {
         /// What the scene's file or code moves.
         Scene = "scene",
@@ -44,7 +44,7 @@ named_enum! {
 const DEGREES_PER_SECOND: f64 = 10.0;
 
 impl MovingPart {
-    /// Returns the scene at a time.
+    /// Returns the scene as this movement has it some seconds after the start.
     fn at(self, scene: &Scene, seconds: f64) -> Scene {
         let mut moved = scene.at(if self == MovingPart::Scene { seconds } else { 0.0 });
         let turn = DQuat::from_rotation_y((seconds * DEGREES_PER_SECOND).to_radians());
@@ -63,7 +63,7 @@ impl MovingPart {
     }
 }
 
-/// Frames of a scene that moves.
+/// The frames of a moving scene that are measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionFrames {
     /// What moves.
@@ -84,7 +84,7 @@ impl MotionFrames {
     }
 }
 
-/// The measurements of one technique.
+/// The measured error and frame times of one technique.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredTechnique {
     /// Technique and settings.

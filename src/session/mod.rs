@@ -208,7 +208,7 @@ impl Session {
         self.limit = None;
     }
 
-    /// The GPU that it runs on.
+    /// Returns the name, backend and driver of the GPU that the session runs on.
     pub fn adapter(&self) -> &AdapterInfo {
         &self.executor.context().info
     }

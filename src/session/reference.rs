@@ -17,7 +17,7 @@ pub(super) struct ReferencePictures<'a> {
     pictures: Vec<(Choice, Arc<Image>)>,
 }
 
-/// How wrong a frame is.
+/// The wrong labels and wrong colours of a frame.
 pub(super) struct FrameError {
     /// Errors of labels, summed over lights.
     pub labels: ErrorCounts,

@@ -41,7 +41,7 @@ pub enum InjectedFault<'a> {
     Plan(&'a dyn Fn(&mut FramePlan)),
 }
 
-/// The inputs of a row.
+/// The inputs of one row of the stress table: a case, a technique and a value of what the case varies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StressStep<'a> {
     pub case: &'a StressCase,
@@ -72,7 +72,7 @@ impl Session {
         self.stress_rows(StressSteps::new(cases, only, size), progress)
     }
 
-    /// Computes all rows that are left.
+    /// Computes the rows of `steps` that are not yet computed, and returns them in order.
     pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());

@@ -69,12 +69,12 @@ impl StressSteps {
         (self, ShardPart::new(shard, places, how, names))
     }
 
-    /// The number of rows that are still to be computed.
+    /// Returns the number of rows that are still to be computed.
     pub fn left(&self) -> usize {
         self.left.len()
     }
 
-    /// Index and name of the case of the next row; `None` at the end.
+    /// Returns the index and name of the next row's case; `None` where all rows are computed.
     pub fn next_case(&self) -> Option<(usize, &'static str)> {
         self.left.front().map(|([case, _], step)| (*case, step.case.name))
     }

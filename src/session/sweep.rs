@@ -9,9 +9,9 @@ use std::str::FromStr;
 
 /// The most values of a sweep that are given as a range.
 const MOST_OF_RANGE: usize = 7;
-/// The most values in all.
+/// Limit on the number of values that a sweep has.
 const MOST: usize = 64;
-/// The most lights, casters and triangles.
+/// Limits on the lights, casters and triangles of a swept scene.
 const MOST_LIGHTS: f64 = 64.0;
 const MOST_CASTERS: f64 = 65_536.0;
 const MOST_TRIANGLES: f64 = 1e7;
@@ -111,7 +111,7 @@ fn values_of(text: &str, read: impl Fn(&str) -> Option<Vec<f64>>) -> Option<Vec<
     (values.len() <= MOST).then_some(values)
 }
 
-/// Measurements of one scene at one value.
+/// One measurement of a sweep: the scene at one value, and what to measure on it.
 #[derive(Debug, Clone)]
 pub struct SweepBlock {
     /// The scene at that value.
@@ -123,7 +123,7 @@ pub struct SweepBlock {
 }
 
 impl Sweep {
-    /// Its name on the command line.
+    /// Returns the name of what is varied, as the command line has it.
     pub fn name(&self) -> &'static str {
         match self {
             Sweep::Size(_) => "size",

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// The most fixes that are tried at once, for regions that none of them clears alone.
 const MOST_TOGETHER: usize = 3;
 
-/// The wrong pixels of a frame.
+/// The wrong pixels of a frame, found by comparing its labels with the truth.
 pub(super) struct JudgedFrame {
     /// For each light, a [`Finding`] for each pixel.
     pub findings: Vec<Vec<u8>>,

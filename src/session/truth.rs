@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// How often the callback runs while a truth is traced.
 const BETWEEN: Duration = Duration::from_millis(5);
 
-/// A traced scene.
+/// A scene's ray tracer and the truth that it found for one picture, with what they depend on.
 #[derive(Debug)]
 pub(super) struct TracedScene {
     key: TruthKey,
@@ -22,7 +22,7 @@ pub(super) struct TracedScene {
     pub truth: Truth,
 }
 
-/// All that a truth depends on.
+/// All that a truth depends on: a scene with an equal key is not traced again.
 #[derive(Debug, Clone, PartialEq)]
 struct TruthKey {
     size: [u32; 2],
@@ -157,7 +157,7 @@ impl Session {
     }
 }
 
-/// Times of the truth of a scene.
+/// Measured times of tracing the truth of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruthCost {
     /// Sorting the scene's triangles as the eye and each light see them.

@@ -45,7 +45,7 @@ pub struct BindGroup {
 
 impl BindGroupInterface for BindGroup {}
 
-/// A part of a real buffer.
+/// A range of bytes of an unwrapped wgpu buffer.
 #[derive(Debug, Clone)]
 pub struct BufferPart {
     buffer: wgpu::Buffer,
@@ -63,7 +63,7 @@ impl BufferPart {
     }
 }
 
-/// A real resource that is bound.
+/// An unwrapped wgpu resource of a bind group.
 #[derive(Debug, Clone)]
 pub enum BoundResource {
     Buffers(Vec<BufferPart>, ArrayCheck),
@@ -73,7 +73,7 @@ pub enum BoundResource {
     External(wgpu::ExternalTexture),
 }
 
-/// Whether it is an array.
+/// Whether a binding is an array of resources.
 type ArrayCheck = bool;
 
 impl BoundResource {
@@ -140,7 +140,7 @@ impl<'a> Borrowed<'a> {
     }
 }
 
-/// Creates a real group that binds `entries`.
+/// Creates an unwrapped bind group of these resources.
 pub fn real_group(
     device: &wgpu::Device,
     label: Option<&str>,

@@ -17,7 +17,7 @@ impl CommandList {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(command);
     }
 
-    /// Takes all commands.
+    /// Removes and returns all recorded commands.
     pub fn take(&self) -> Vec<EncoderCommand> {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -47,7 +47,7 @@ pub enum EncoderCommand {
 }
 
 impl EncoderCommand {
-    /// Encodes it as it was.
+    /// Encodes the command on a wgpu encoder with the arguments of the original call.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
         match self {
             EncoderCommand::RenderPass(targets, commands) => {
@@ -79,7 +79,7 @@ impl fmt::Debug for EncoderCommand {
     }
 }
 
-/// One call of a compute pass.
+/// A recorded call of a compute pass, as a closure that makes it again.
 pub struct ComputeCommand(pub Box<dyn Fn(&mut wgpu::ComputePass<'_>) + Send + Sync>);
 
 impl fmt::Debug for ComputeCommand {
@@ -117,7 +117,7 @@ pub struct PassTargets {
     multiview: Option<std::num::NonZeroU32>,
 }
 
-/// A colour target.
+/// A recorded colour attachment of a render pass.
 #[derive(Debug, Clone)]
 pub struct ColorAttachment {
     pub view: wgpu::TextureView,
@@ -127,7 +127,7 @@ pub struct ColorAttachment {
     pub ops: wgpu::Operations<wgpu::Color>,
 }
 
-/// The depth-stencil target.
+/// The recorded depth-stencil attachment of a render pass.
 #[derive(Debug, Clone)]
 pub struct DepthStencilAttachment {
     pub view: wgpu::TextureView,
@@ -224,14 +224,14 @@ fn part_of<V: Copy>(ops: wgpu::Operations<V>, is_first: bool, is_last: bool) -> 
     }
 }
 
-/// A bind group, and what it binds.
+/// A bind group with the resources that it binds.
 #[derive(Debug, Clone)]
 pub struct BoundGroup {
     pub real: wgpu::BindGroup,
     pub entries: Arc<[(u32, BoundResource)]>,
 }
 
-/// One call of a render pass.
+/// A recorded call of a render pass.
 #[derive(Debug, Clone)]
 pub enum PassCommand {
     Pipeline {
@@ -360,7 +360,7 @@ impl PassCommand {
     }
 }
 
-/// A call that draws.
+/// A recorded draw call of a render pass.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DrawCommand {
     Vertices { vertices: Range<u32>, instances: Range<u32> },
@@ -373,7 +373,7 @@ pub enum DrawCommand {
 }
 
 impl DrawCommand {
-    /// wgpu's name of the call.
+    /// Returns wgpu's name of the call.
     pub fn name(&self) -> &'static str {
         match self {
             DrawCommand::Vertices { .. } => "draw",

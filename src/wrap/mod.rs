@@ -94,7 +94,7 @@ real! {
     DispatchTextureView: texture::TextureView => wgpu::TextureView;
 }
 
-/// The wrapper of the program's pipeline.
+/// Returns the wrapper behind the pipeline that the program created.
 pub(crate) fn pipeline_of(pipeline: &DispatchRenderPipeline) -> &RenderPipeline {
     pipeline.as_custom().expect(FOREIGN)
 }

@@ -28,7 +28,7 @@ pub struct PipelineSource {
     pub multiview_mask: Option<std::num::NonZeroU32>,
 }
 
-/// A layout that the program created.
+/// A pipeline layout that the program created.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PipelineLayoutSource {
     pub real: wgpu::PipelineLayout,
@@ -37,7 +37,7 @@ pub struct PipelineLayoutSource {
     pub immediate_size: u32,
 }
 
-/// A programmable stage.
+/// The shader, entry point and constants of a pipeline's vertex or fragment stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProgrammableStage {
     pub source: ShaderSource,

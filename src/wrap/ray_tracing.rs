@@ -3,7 +3,7 @@
 
 use wgpu::custom::{BlasCompactCallback, BlasInterface, TlasInterface};
 
-/// Features that programs do not get.
+/// The wgpu features that are hidden from programs, as their calls are not wrapped.
 pub const NOT_WRAPPED: wgpu::Features =
     wgpu::Features::EXPERIMENTAL_RAY_QUERY.union(wgpu::Features::EXPERIMENTAL_MESH_SHADER);
 

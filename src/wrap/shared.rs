@@ -7,19 +7,19 @@ use std::fmt::Debug;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Records the calls of a device.
+/// Receives the calls of a wrapped device.
 pub trait CallRecorder: Any + Debug + Send + Sync {
-    /// Returns whether encoders write lists now.
+    /// Returns whether encoders should record their calls as lists of commands.
     fn is_recording(&self) -> bool;
 
-    /// Submits the results of encoders.
+    /// Submits what encoders have finished, to the queue or to a replay.
     fn submit(&self, shared: &SharedDevice, buffers: Vec<FinishedCommands>) -> wgpu::SubmissionIndex;
 
-    /// Called where a picture was presented.
+    /// Is called after the program has presented a picture.
     fn presented(&self, shared: &SharedDevice);
 }
 
-/// Records nothing.
+/// A call recorder that records nothing.
 #[derive(Debug)]
 pub struct NoRecorder;
 

@@ -45,7 +45,7 @@ impl SurfaceInterface for Surface {
     }
 }
 
-/// A picture that is presented, or dropped.
+/// A surface texture that the program presents, or drops.
 #[derive(Debug)]
 pub struct SurfaceOutput {
     inner: Mutex<Option<wgpu::SurfaceTexture>>,

@@ -96,7 +96,7 @@ impl<'a> PassBuilder<'a> {
         }
     }
 
-    /// Records what an event left.
+    /// Stores what an event left in the followed targets.
     fn note(&mut self, event: &RawEvent) {
         let after = &event.after;
         if let Some(target) = event.depth_target {

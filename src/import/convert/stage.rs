@@ -6,7 +6,7 @@ use crate::plan::{Attachment, AttachmentRole, PlanMap};
 use std::collections::BTreeMap;
 use wgpu::TextureFormat;
 
-/// What a draw draws into.
+/// Which of the followed targets a draw draws into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum DrawTarget {
     /// The picture, with its depth.
@@ -17,7 +17,7 @@ pub(super) enum DrawTarget {
     Map(usize, u32),
 }
 
-/// The targets that are followed.
+/// The targets of an imported frame that the plan has: the picture, its depth and stencil, and shadow maps.
 #[derive(Debug)]
 pub(super) struct FollowedTargets {
     /// The picture's depth and stencil.
@@ -65,7 +65,7 @@ impl FollowedTargets {
         Ok(stage)
     }
 
-    /// Width and height of the picture.
+    /// Returns the width and height of the picture in pixels.
     pub fn size(&self, frame: &RawFrame) -> [u32; 2] {
         size_of(frame, self.depth)
     }
@@ -79,7 +79,7 @@ impl FollowedTargets {
         (target.layer < PlanMap::MOST_FACES as u32).then_some(DrawTarget::Map(map, target.layer))
     }
 
-    /// Returns the target of a place.
+    /// Returns the imported frame's target that this place stands for.
     pub fn target(&self, place: DrawTarget) -> RawTarget {
         match place {
             DrawTarget::Picture | DrawTarget::Colors => self.depth,

@@ -31,7 +31,7 @@ named_enum! {
     }
 }
 
-/// Returns the purpose of a draw.
+/// Returns the purpose of a draw, derived from its stencil, depth and colour states.
 pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     if matches!(place, DrawTarget::Map(..)) {
         return DrawRole::FillsMap;
@@ -57,7 +57,7 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     }
 }
 
-/// Returns whether an operation adds or subtracts.
+/// Returns whether a stencil operation increments or decrements.
 fn counts(operation: StencilOperation) -> bool {
     matches!(
         operation,
