@@ -81,7 +81,7 @@ pub struct ErrorCounts {
 }
 
 impl ErrorCounts {
-    /// The number of pixels that are wrong and not excused.
+    /// Returns the number of pixels that are wrong and not excused.
     pub fn wrong(&self) -> u64 {
         self.false_shadow + self.missing_shadow + self.wrong_surface
     }

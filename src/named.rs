@@ -37,7 +37,7 @@ macro_rules! named_enum {
             /// All variants, in order.
             pub const ALL: [$Enum; [$($name),+].len()] = [$($Enum::$Variant),+];
 
-            /// Its name on the command line, in files and in JSON, or on its button.
+            /// Returns its name on the command line, in files and in JSON, or on its button.
             pub const fn name(self) -> &'static str {
                 match self {
                     $($Enum::$Variant => $name,)+

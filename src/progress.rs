@@ -34,7 +34,7 @@ impl Progress {
         self.0.item.store(item + 1, Ordering::Relaxed);
     }
 
-    /// Index of the current item; `None` while common work for all of them is done.
+    /// Returns the index of the current item; `None` while common work for all of them is done.
     pub fn item(&self) -> Option<usize> {
         self.0.item.load(Ordering::Relaxed).checked_sub(1)
     }

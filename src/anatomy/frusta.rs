@@ -36,7 +36,7 @@ pub fn all(scene: &Scene, plan: &FramePlan, objects: &[PlacedObject], aspect: f6
     frusta
 }
 
-/// Is a map of depths cleared to 0, so that its depth is reversed?
+/// Returns whether a depth map is cleared to 0, as its depth is reversed.
 fn is_reversed(map: &PlanMap) -> bool {
     map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0)
 }
@@ -112,7 +112,7 @@ fn of_matrix(clip_from_world: DMat4, is_reversed: bool, of: ViewOf) -> Option<Fr
     frustum.near.iter().chain(&frustum.far).all(|corner| corner.is_finite()).then_some(frustum)
 }
 
-/// The near-clip volume of a light; `None` where the light lies in the near plane.
+/// Returns the near-clip volume of a light; `None` where the light lies in the near plane.
 pub fn near_clip(camera: &Camera, aspect: f64, light: &Light) -> Option<NearClip> {
     let position = light.homogeneous();
     let relative = (position.truncate() - camera.eye * position.w).extend(position.w);

@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! mod.rs      the data                                  volumes.rs   volumes out of a plan
-//! make.rs     computes it from a scene and a plan       frusta.rs    frusta of camera and maps, and the near-clip volume
+//! make.rs     computes it from a scene and a plan       frusta.rs    frusta of camera and maps, near-clip volume
 //! ```
 
 mod frusta;
@@ -151,7 +151,7 @@ pub struct NearClip {
 }
 
 impl Frustum {
-    /// Is its far end a single point, the light?
+    /// Returns whether the frustum's far end is a single point: the light.
     pub fn ends_at_light(&self) -> bool {
         self.far.iter().all(|corner| *corner == self.far[0])
     }

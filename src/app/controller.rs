@@ -103,7 +103,7 @@ impl Controller {
         })
     }
 
-    /// Is a question being answered? Its progress changes without news.
+    /// Returns whether a question is being answered: its progress changes without news from the worker.
     pub fn is_answering(&self) -> bool {
         self.inspector.model.answers.is_waiting()
     }

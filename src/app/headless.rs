@@ -72,7 +72,7 @@ impl Headless {
         })
     }
 
-    /// The panels.
+    /// Returns the panels.
     pub fn inspector(&mut self) -> &mut Inspector {
         &mut self.controller.inspector
     }

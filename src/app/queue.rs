@@ -76,8 +76,8 @@ impl Order {
         }
     }
 
-    /// Is this order not replaced by a later one of its kind? Opening a scene is not replaced by a run: runs before it
-    /// are of the old scene, and runs after it were asked for before the window knew the new one.
+    /// Returns whether this order is not replaced by a later one of its kind. Opening a scene is not replaced by a run:
+    /// runs before it are of the old scene, and runs after it were asked for before the window knew the new one.
     fn outlasts(&self, later: &Order) -> bool {
         !matches!(self, Order::Run { .. }) && matches!(later, Order::Run { .. })
     }

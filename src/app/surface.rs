@@ -22,7 +22,8 @@ const OF_SCREEN: f64 = 0.95;
 /// The least size in points at which the panels fit.
 const LEAST_SIZE: [f64; 2] = [640.0, 400.0];
 
-/// Size of the screen on which a new window is likely to open, points; `None` where the system does not say.
+/// Returns the size of the screen on which a new window is likely to open, points; `None` where the system does not
+/// say.
 fn screen(event_loop: &ActiveEventLoop) -> Option<[f64; 2]> {
     let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next())?;
     Some(monitor.size().to_logical::<f64>(monitor.scale_factor()).into())

@@ -505,8 +505,8 @@ impl WorkerState {
     }
 }
 
-/// Where a case drives a setting: returns `chosen` with the setting at that value, or the case's first technique that
-/// has it; `None` where the case drives the scene.
+/// Returns, where a case drives a setting, `chosen` with the setting at that value, or the case's first
+/// technique that has it; `None` where the case drives the scene.
 fn driven(case: &StressCase, value: f64, chosen: &Choice) -> Result<Option<Choice>, ChoiceError> {
     let CaseNumber::Setting(key, _) = case.drives else { return Ok(None) };
     if chosen.settings().contains_key(key) {

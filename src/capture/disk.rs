@@ -59,7 +59,7 @@ pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
 }
 
-/// The path of the scene's file in a capture folder, whether or not it is there.
+/// Returns the path of the scene's file in a capture folder, whether or not it is there.
 pub fn scene_file(folder: &Path) -> PathBuf {
     folder.join(SCENE)
 }

@@ -144,17 +144,17 @@ impl Image {
         self.size[0] as usize * self.format.texel_bytes()
     }
 
-    /// Format of its texels.
+    /// Returns the format of its texels.
     pub fn format(&self) -> PixelFormat {
         self.format
     }
 
-    /// Width and height in texels.
+    /// Returns the width and height in texels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The ranges of memory of its rows, padding included: pictures that share rows return equal ranges.
+    /// Returns the ranges of memory of its rows, padding included: pictures that share rows return equal ranges.
     pub fn memory(&self) -> impl Iterator<Item = Range<usize>> {
         let place = |strip: &RowStrip| {
             let start = strip.bytes.as_ptr() as usize;
@@ -163,13 +163,13 @@ impl Image {
         self.strips.iter().map(place)
     }
 
-    /// Bytes of its memory that it does not share with `other`.
+    /// Returns the bytes of its memory that it does not share with `other`.
     pub fn bytes_beside(&self, other: Option<&Image>) -> u64 {
         let others: Vec<Range<usize>> = other.into_iter().flat_map(Image::memory).collect();
         covered(self.memory().chain(others.iter().cloned()).collect()) - covered(others)
     }
 
-    /// The texels of row `y` (0 at the top), without padding.
+    /// Returns the texels of row `y` (0 at the top), without padding.
     ///
     /// # Panics
     /// If there is no such row.
@@ -187,7 +187,7 @@ impl Image {
         Image::packed(self.format, size, bytes)
     }
 
-    /// All rows, top first.
+    /// Returns all rows, top first.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[u8]> {
         (0..self.size[1]).map(|y| self.row(y))
     }
@@ -235,7 +235,7 @@ impl Image {
     }
 }
 
-/// Bytes that ranges of memory cover together; those of overlapping ranges count once.
+/// Returns the bytes that ranges of memory cover together; those of overlapping ranges count once.
 pub(super) fn covered(mut places: Vec<Range<usize>>) -> u64 {
     places.sort_unstable_by_key(|place| (place.start, place.end));
     let mut end = 0;

@@ -207,7 +207,8 @@ impl LightEntry {
         })
     }
 
-    /// The homogeneous position; zero where it is not known, `None` where neither position nor direction is given.
+    /// Returns the homogeneous position; zero where it is not known, `None` where neither position nor direction is
+    /// given.
     pub fn homogeneous(&self) -> Option<DVec4> {
         if self.kind == "unknown" {
             return Some(DVec4::ZERO);

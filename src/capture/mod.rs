@@ -232,8 +232,8 @@ impl CapturedMap {
 }
 
 impl CapturedLight {
-    /// Pixels of surfaces that face the light whose count is a multiple of 256 other than 0, which
-    /// eight bits read as 0; `None` where the count is not known.
+    /// Returns the number of pixels of surfaces that face the light whose count is a multiple of 256 other than 0,
+    /// which eight bits read as 0; `None` where the count is not known.
     pub fn wrapped_pixels(&self) -> Option<u64> {
         let (count, labels) = (self.count.as_ref()?, self.shadow.as_ref()?);
         let counts = count.rows().flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned::<f32>);
@@ -316,7 +316,7 @@ impl RecomputeDifference {
 }
 
 impl Capture {
-    /// What decides where a light's shadow is.
+    /// Returns what decides where a light's shadow is.
     pub fn decided_by(&self, light: usize) -> DecidedBy {
         self.lights.get(light).map_or(DecidedBy::Nothing, |light| light.decided_by)
     }
@@ -336,7 +336,7 @@ impl Capture {
         })
     }
 
-    /// What counts of shadow volumes count, of all lights together; `None` where that is not known.
+    /// Returns what counts of shadow volumes count, of all lights together; `None` where that is not known.
     pub fn count_of(&self) -> Option<CountOf> {
         let mut all = self.lights.iter().filter_map(|light| light.count_of);
         let first = all.next()?;
@@ -348,7 +348,8 @@ impl Capture {
         self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
     }
 
-    /// Bytes of all images; shared memory counts once. It visits every image: call it once for each capture.
+    /// Returns the bytes of all images; shared memory counts once. It visits every image: call it once for each
+    /// capture.
     pub fn bytes(&self) -> u64 {
         let mut seen = std::collections::BTreeSet::new();
         let mut places = Vec::new();
@@ -360,7 +361,7 @@ impl Capture {
         image::covered(places)
     }
 
-    /// The errors of all lights together; `None` where no truth was asked for.
+    /// Returns the errors of all lights together; `None` where no truth was asked for.
     pub fn error(&self) -> Option<ErrorCounts> {
         let of_lights = self.lights.iter().map(|light| light.truth.as_ref().map(|truth| truth.error));
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
@@ -412,7 +413,7 @@ impl Capture {
 }
 
 impl Snapshot {
-    /// The picture's aspects, as far as there are any.
+    /// Returns the picture's aspects, as far as there are any.
     pub fn aspects(&self) -> impl Iterator<Item = &Aspect> {
         let frame = match self {
             Snapshot::Frame(frame) => Some(frame),
@@ -423,7 +424,7 @@ impl Snapshot {
 }
 
 impl DrawState {
-    /// The picture's aspects, and the pass's own target.
+    /// Returns the picture's aspects, and the pass's own target.
     pub fn aspects(&self) -> impl Iterator<Item = &Aspect> {
         self.snapshot.aspects().chain(&self.target)
     }
@@ -435,12 +436,12 @@ impl DrawState {
 }
 
 impl Step {
-    /// The number of triangles submitted.
+    /// Returns the number of triangles submitted.
     pub fn triangles(&self) -> u64 {
         self.draws.iter().map(|draw| draw.triangles).sum()
     }
 
-    /// The caster of all draws, if they have one in common.
+    /// Returns the caster of all draws, if they have one in common.
     pub fn caster(&self) -> Option<&str> {
         let first = self.draws.first()?.caster.as_deref()?;
         self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)

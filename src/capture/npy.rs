@@ -91,7 +91,7 @@ impl<R: Read> Array<R> {
         }
     }
 
-    /// The length of each dimension, the slowest first.
+    /// Returns the length of each dimension, the slowest first.
     pub fn shape(&self) -> &[u64] {
         &self.shape
     }

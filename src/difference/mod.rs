@@ -246,7 +246,7 @@ impl AspectDifference {
 }
 
 impl AspectKind {
-    /// Its name in JSON, without the face or layer.
+    /// Returns its name in JSON, without the face or layer.
     pub fn name(self) -> &'static str {
         match self {
             AspectKind::Color => "color",

@@ -52,7 +52,7 @@ impl PassDifference {
 }
 
 impl AspectKind {
-    /// Its name in words: layers count from 1.
+    /// Returns its name in words: layers count from 1.
     pub fn title(self) -> String {
         match self {
             AspectKind::Map(face) => format!("face {} of the map", face + 1),

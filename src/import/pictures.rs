@@ -150,7 +150,7 @@ fn quads(texels: impl Iterator<Item = [u8; 4]>) -> Vec<u8> {
     texels.collect::<Vec<_>>().into_flattened()
 }
 
-/// A float with five bits of exponent and `mantissa` bits after it.
+/// Returns the value of a float with five bits of exponent and `mantissa` bits after it.
 fn float(bits: u16, mantissa: u32) -> f32 {
     let fraction = f32::from(bits & ((1 << mantissa) - 1)) / (1 << mantissa) as f32;
     let exponent = i32::from(bits >> mantissa & 0x1f);

@@ -95,7 +95,7 @@ pub enum RawFormat {
 }
 
 impl RawFormat {
-    /// The largest depth where depth is stored as an integer: 2^bits − 1.
+    /// Returns the largest depth where depth is stored as an integer: 2^bits − 1.
     pub fn largest_depth(&self) -> Option<u32> {
         match self {
             RawFormat::D16 => Some(0xffff),

@@ -274,7 +274,7 @@ impl DocumentReader {
     }
 }
 
-/// A call that clears names depth, stencil or both.
+/// Returns a clear of colour, and of depth and stencil as far as the call's name says: both where it names neither.
 fn clear(name: &str, [color, depth_or_stencil]: [bool; 2]) -> RawKind {
     let [depth, stencil] = ["Depth", "Stencil"].map(|word| name.contains(word));
     let means_both = depth == stencil;

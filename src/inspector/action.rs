@@ -120,7 +120,7 @@ named_enum! {
 }
 
 impl Overlay {
-    /// Is it drawn from the frame's geometry in space, so that the anatomy has to be known?
+    /// Returns whether it is drawn from the frame's geometry in space, so that the anatomy has to be known.
     pub fn needs_anatomy(self) -> bool {
         self != Overlay::Tests
     }

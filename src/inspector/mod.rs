@@ -2,7 +2,8 @@
 //!
 //! Panels are a function of the model (`model/mod.rs`): they read it, change what is selected in it, and return
 //! [`Action`]s. They open no file, run nothing and know no GPU; what has to be found out they want of the model's
-//! [`Answers`](model::Model::answers), and whoever draws the inspector answers. So they can be driven and tested without a window.
+//! [`Answers`](model::Model::answers), and whoever draws the inspector answers. So they can be driven and tested
+//! without a window.
 //!
 //! ```text
 //! Inspector::ui ─ keys ─ top_bar ─ messages ─ docked panels ─ status_bar ─ dialogs ─► Actions, questions among them
@@ -179,7 +180,7 @@ impl Inspector {
         self.panels.follow(&self.model);
     }
 
-    /// How the open scene is to be run now.
+    /// Returns how the open scene is to be run now.
     pub fn draft(&self) -> Option<Box<RunRequest>> {
         self.model.scene.as_ref().map(|scene| Box::new(scene.draft.clone()))
     }
@@ -190,7 +191,7 @@ impl Inspector {
         self.model.answers.know_plan();
     }
 
-    /// What is to be remembered until the window is opened again.
+    /// Returns what is to be remembered until the window is opened again.
     pub fn remembered(&self) -> StoredSettings {
         let layout = self.dock.layout();
         StoredSettings { theme: self.model.theme, recent: self.model.recent.clone(), layout }
@@ -219,7 +220,7 @@ impl Inspector {
         actions
     }
 
-    /// How many stops the tour of a technique has.
+    /// Returns how many stops the tour of a technique has.
     pub fn stops_of(technique: Technique) -> usize {
         tour::stops_of(technique)
     }
@@ -231,7 +232,7 @@ impl Inspector {
         actions
     }
 
-    /// What an export of `kind` writes now; `None` where there is nothing of it.
+    /// Returns what an export of `kind` writes now; `None` where there is nothing of it.
     pub fn export(&mut self, kind: ExportKind) -> Option<ExportData> {
         export::data(&mut self.panels.picture, &mut self.model, kind)
     }
@@ -286,7 +287,7 @@ impl Inspector {
         self.model.textures.forget_unused();
     }
 
-    /// Index of the selected event in the history of the picked pixel.
+    /// Returns the index of the selected event in the history of the picked pixel.
     pub fn selected_event(&self) -> Option<usize> {
         let history = self.model.history_of_frame()?;
         self.model.selected_in(&history)
@@ -318,7 +319,7 @@ impl Inspector {
         self.model.select(CapturePoint { step, draw: Some(draw) });
     }
 
-    /// The pictures that are shown; none where nothing is drawn yet.
+    /// Returns the pictures that are shown; none where nothing is drawn yet.
     pub fn shown_images(&self) -> Vec<Arc<Image>> {
         let shown = |capture: &Arc<Capture>| self.model.shown(capture);
         self.model.frame.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
@@ -331,12 +332,12 @@ impl Inspector {
         readers.texel_of(pixel).map(|texel| (texel.face, texel.at))
     }
 
-    /// The depth that the shadow map in its tab is compared with at a pixel; `None` as for its texel.
+    /// Returns the depth that the shadow map in its tab is compared with at a pixel; `None` as for its texel.
     pub fn map_depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         self.panels.shadow_map.readers(&self.model)?.depth_of(pixel)
     }
 
-    /// The kind of picture that is shown.
+    /// Returns the kind of picture that is shown.
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.model.frame.capture.as_ref()?;
         self.model.shown(capture).map(|shown| shown.kind)

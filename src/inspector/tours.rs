@@ -44,7 +44,7 @@ pub struct TourStop {
 }
 
 impl TourStop {
-    /// The technique that is used at this stop.
+    /// Returns the technique that is used at this stop.
     pub fn technique(&self, tour: &Tour) -> Technique {
         let own =
             self.go.iter().find_map(|go| if let TourMove::Technique(technique) = go { Some(*technique) } else { None });
@@ -70,7 +70,7 @@ const fn stop(title: &'static str, text: &'static str, go: &'static [TourMove]) 
     TourStop { title, text, go }
 }
 
-/// The tour of a technique, with its index.
+/// Returns the tour of a technique, with its index.
 pub fn tour_of(technique: Technique) -> Option<(usize, &'static Tour)> {
     TOURS.iter().enumerate().find(|(_, tour)| tour.technique == technique)
 }

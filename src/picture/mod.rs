@@ -1,8 +1,8 @@
 //! Pictures for files: pixels that commands draw on the CPU, as PNG.
 //!
-//! A [`Picture`] is opaque sRGB, 8 bits a channel, row 0 at the top. The window draws with a GPU and
-//! shares only the [`colors`], which mean the same everywhere. Several make an animation ([`apng`]), and drawings become
-//! pixels ([`svg`]).
+//! A [`Picture`] is opaque sRGB, 8 bits a channel, row 0 at the top. The window draws with a GPU and shares only the
+//! [`colors`], which mean the same everywhere. Several make an animation ([`apng`]), and drawings become pixels
+//! ([`svg`]).
 
 pub mod apng;
 pub mod colors;
@@ -41,12 +41,12 @@ impl Picture {
         Picture { size, pixels: vec![color; size[0] as usize * size[1] as usize] }
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// One pixel; `None` outside.
+    /// Returns one pixel; `None` outside.
     pub fn at(&self, [x, y]: [u32; 2]) -> Option<Rgb> {
         (x < self.size[0]).then(|| self.pixels.get(self.index([x, y])).copied()).flatten()
     }
@@ -135,7 +135,7 @@ impl Picture {
         }
     }
 
-    /// Returns width and height that a number takes, pixels.
+    /// Returns the width and height that a number takes, pixels.
     pub fn number_size(number: usize, dot: u32) -> [u32; 2] {
         let digits = number.to_string().len() as u32;
         [(digits * DIGIT_WIDTH + 1) * dot, (DIGIT_HEIGHT + 2) * dot]

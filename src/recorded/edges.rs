@@ -43,7 +43,7 @@ impl OpenEdges {
         OpenEdges { edges: open.map(edge).collect() }
     }
 
-    /// The number of open edges.
+    /// Returns the number of open edges.
     pub fn count(&self) -> usize {
         self.edges.len()
     }

@@ -53,7 +53,7 @@ pub(super) enum FileProblem {
 }
 
 impl FileProblem {
-    /// A model of which no triangle is left to show.
+    /// Returns the problem of a model of which no triangle is left to show.
     pub fn no_triangles() -> FileProblem {
         FileProblem::File("has no triangle with three different corners: export its surface".to_owned())
     }

@@ -18,7 +18,7 @@ impl Shading {
     /// All three, in order.
     pub const ALL: [Shading; 3] = [Shading::Flat, Shading::Gouraud, Shading::Phong];
 
-    /// Its name in scene files and settings.
+    /// Returns its name in scene files and settings.
     pub const fn name(self) -> &'static str {
         match self {
             Shading::Flat => "flat",
@@ -44,8 +44,8 @@ pub struct Material {
     /// Linear RGB that it emits, whatever light falls on it; it lights nothing else.
     #[serde(default)]
     pub emission: [f32; 3],
-    /// The side of the squares of a checkerboard, along world X and Z in world units: every other one has a third of the
-    /// colour. 0 for none.
+    /// The side of the squares of a checkerboard, along world X and Z in world units: every other one has a third of
+    /// the colour. 0 for none.
     #[serde(default)]
     pub checks: f32,
 }

@@ -76,7 +76,7 @@ pub enum MeshError {
 }
 
 impl Mesh {
-    /// Distinct positions, object space.
+    /// Returns the distinct positions, object space.
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
@@ -86,14 +86,14 @@ impl Mesh {
         &self.triangles
     }
 
-    /// Object-space normals of each triangle's corners, not necessarily of unit length, where
-    /// the file gave them.
+    /// Returns the object-space normals of each triangle's corners, not necessarily of unit length, where the file gave
+    /// them.
     pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
         self.corner_normals.as_deref()
     }
 
-    /// Texture coordinates of each triangle's corners, where the file has them: 0, 0 is the picture's lower left
-    /// corner, 1, 1 its upper right.
+    /// Returns the texture coordinates of each triangle's corners, where the file has them: 0, 0 is the picture's lower
+    /// left corner, 1, 1 its upper right.
     pub fn corner_uvs(&self) -> Option<&[Option<[Vec2; 3]>]> {
         self.corner_uvs.as_deref()
     }
@@ -104,7 +104,7 @@ impl Mesh {
         of_these.is_some_and(|uvs| uvs.iter().all(Option::is_some))
     }
 
-    /// What its file asks for and is not supported.
+    /// Returns what its file asks for and is not supported.
     pub fn not_taken(&self) -> &[Unsupported] {
         &self.not_taken
     }
@@ -114,23 +114,24 @@ impl Mesh {
         Mesh { not_taken, ..self }
     }
 
-    /// Its groups: at least one, unless the mesh has no triangle.
+    /// Returns its groups: at least one, unless the mesh has no triangle.
     pub fn groups(&self) -> &[MeshGroup] {
         &self.groups
     }
 
-    /// The number of triangles that were left out because two of their corners coincide.
+    /// Returns the number of triangles that were left out because two of their corners coincide.
     pub fn dropped_triangles(&self) -> usize {
         self.dropped
     }
 
-    /// Hash of positions and triangles: what was computed from one mesh is valid for any other with the same hash.
-    /// Stable within a process only.
+    /// Returns the hash of positions and triangles: what was computed from one mesh is valid for any other with the
+    /// same hash. Stable within a process only.
     pub fn content_hash(&self) -> u64 {
         self.hash
     }
 
-    /// Hash of the corners' own normals, which [`Mesh::content_hash`] does not cover. Stable within a process only.
+    /// Returns the hash of the corners' own normals, which [`Mesh::content_hash`] does not cover. Stable within a
+    /// process only.
     pub fn normals_hash(&self) -> u64 {
         self.normals_hash
     }
@@ -148,7 +149,7 @@ impl Mesh {
         Ok(Mesh { dropped: self.dropped, not_taken: self.not_taken.clone(), ..builder.build()? })
     }
 
-    /// Smallest and largest corner of the bounding box; `None` without vertices.
+    /// Returns the smallest and largest corner of the bounding box; `None` without vertices.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let first = *self.positions.first()?;
         Some(self.positions.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p))))

@@ -82,7 +82,7 @@ impl Object {
         if group.material.is_some() { group.texture.as_ref() } else { self.texture.as_ref() }
     }
 
-    /// The welded vertices in world space. All users of a vertex get the same rounding.
+    /// Returns the welded vertices in world space. All users of a vertex get the same rounding.
     pub fn world_positions(&self) -> Vec<DVec3> {
         if self.pose == Pose::default() {
             return self.mesh.positions().to_vec();
@@ -132,7 +132,7 @@ impl Pose {
         }
     }
 
-    /// The matrix of this pose.
+    /// Returns the matrix of this pose.
     pub fn world_from_object(&self) -> DMat4 {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
     }

@@ -130,22 +130,22 @@ impl TextureImage {
         TextureImage { name: name.into(), ..self }
     }
 
-    /// Name of its file, as it is shown.
+    /// Returns the name of its file, as it is shown.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Width and height in texels.
+    /// Returns the width and height in texels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// sRGB and alpha, row by row from the top.
+    /// Returns the texels, sRGB and alpha, row by row from the top.
     pub fn texels(&self) -> &[[u8; 4]] {
         &self.texels
     }
 
-    /// Hash of the texels. Stable within a process only.
+    /// Returns the hash of the texels. Stable within a process only.
     pub fn hash(&self) -> u64 {
         self.hash
     }
@@ -155,12 +155,12 @@ impl TextureImage {
         self.texels.iter().any(|texel| texel[3] != u8::MAX)
     }
 
-    /// The number of its mip levels, level 0 included.
+    /// Returns the number of its mip levels, level 0 included.
     pub fn level_count(&self) -> u32 {
         self.size[0].max(self.size[1]).ilog2() + 1
     }
 
-    /// Its mip levels from 1 on, from half its size down to one texel.
+    /// Returns its mip levels from 1 on, from half its size down to one texel.
     pub fn levels(&self) -> &[MipLevel] {
         self.levels.get_or_init(|| {
             let mut levels: Vec<MipLevel> = Vec::new();
@@ -174,7 +174,7 @@ impl TextureImage {
         })
     }
 
-    /// Returns size and texels of a mip level; those of the last for a larger index.
+    /// Returns the size and texels of a mip level; those of the last for a larger index.
     fn level(&self, index: u32) -> ([u32; 2], &[[u8; 4]]) {
         match index.min(self.level_count() - 1).checked_sub(1).map(|above| &self.levels()[above as usize]) {
             None => (self.size, &self.texels),

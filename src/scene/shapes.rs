@@ -112,9 +112,9 @@ pub fn stairs(steps: u32, rise: f64, run: f64, width: f64) -> Result<Mesh, MeshE
     builder.build()
 }
 
-/// A closed upright plate with openings: its faces are cut into a grid by the lines at `xs` and
-/// `ys`, both rising, and the cells that `is_open(column, row)` names are left out. `thickness`
-/// along z, the origin's z in the middle.
+/// Returns a closed upright plate with openings: its faces are cut into a grid by the lines at `xs` and `ys`, both
+/// rising, and the cells that `is_open(column, row)` names are left out. `thickness` along z, the origin's z in the
+/// middle.
 pub fn plate(
     xs: &[f64],
     ys: &[f64],
@@ -148,8 +148,8 @@ pub fn plate(
     builder.build()
 }
 
-/// A tube around a path in a plane of constant z, with its radius at each point; both ends are
-/// open. `around` segments, of which the first faces +z.
+/// Returns a tube around a path in a plane of constant z, with its radius at each point; both ends are open. `around`
+/// segments, of which the first faces +z.
 pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     for (index, (point, radius)) in path.iter().enumerate() {

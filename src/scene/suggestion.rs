@@ -3,7 +3,7 @@
 /// Below this two names have little in common (Jaro–Winkler likeness, 0 to 1).
 const LIKE: f64 = 0.75;
 
-/// The lower-case name that is most like `word` in any case, if one is much like it.
+/// Returns the lower-case name that is most like `word` in any case, if one is much like it.
 pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
     let word = word.to_lowercase();
     let rated = names.iter().map(|name| (strsim::jaro_winkler(&word, name), *name));

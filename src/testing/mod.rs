@@ -104,12 +104,12 @@ impl Rendered {
         self.session
     }
 
-    /// Everything that the frame left.
+    /// Returns the capture: everything that the frame left.
     pub fn capture(&self) -> &Capture {
         &self.capture
     }
 
-    /// The frame as data.
+    /// Returns the frame as data.
     pub fn plan(&self) -> &FramePlan {
         &self.plan
     }
@@ -169,8 +169,8 @@ impl Rendered {
         shown
     }
 
-    /// Returns where a point of the world falls into a light's shadow map; `None` where there is no such map, or it does not
-    /// show the point.
+    /// Returns where a point of the world falls into a light's shadow map; `None` where there is no such map, or it
+    /// does not show the point.
     ///
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};

@@ -16,7 +16,7 @@ pub struct Pixel<'a> {
 }
 
 impl Pixel<'_> {
-    /// Everything that happened to it.
+    /// Returns the pixel's history: every event that tested or changed it.
     pub fn history(&self) -> &PixelHistory {
         &self.history
     }
@@ -152,8 +152,8 @@ impl Pixel<'_> {
         }
     }
 
-    /// The texel of a light's shadow map that the visible surface falls in; `None` where there is no such map, no
-    /// surface, or the surface is outside of what the map shows.
+    /// Returns the texel of a light's shadow map that the visible surface falls in; `None` where there is no such map,
+    /// no surface, or the surface is outside of what the map shows.
     ///
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
@@ -196,8 +196,8 @@ impl Pixel<'_> {
     }
 
     /// Asserts on how much nearer to a light its shadow map's depth is than the visible surface, in metres along the
-    /// map's axis: 0 where that is the surface itself, more where something is before it. See [`ShadowMapTexel::gap`]. A map
-    /// is no larger than its casters: beside them it is empty, and shows no surface.
+    /// map's axis: 0 where that is the surface itself, more where something is before it. See [`ShadowMapTexel::gap`].
+    /// A map is no larger than its casters: beside them it is empty, and shows no surface.
     ///
     /// ```
     /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
@@ -381,20 +381,21 @@ impl Pixel<'_> {
         }
     }
 
-    /// The distance of the visible surface of a pixel, metres; `None` where there is none.
+    /// Returns the distance of the visible surface of a pixel, metres; `None` where there is none.
     fn surface_distance(&self, pixel: [u32; 2]) -> Option<f64> {
         let last = self.capture.frame_at(self.capture.steps.len().saturating_sub(1))?;
         self.capture.depth.distance(last.depth.image.depth_at(pixel)?)
     }
 
-    /// The world position of the visible surface at the pixel's centre; `None` where there is none.
+    /// Returns the world position of the visible surface at the pixel's centre; `None` where there is none.
     fn surface(&self) -> Option<DVec3> {
         let distance = self.surface_distance(self.history.pixel)?;
         let [x, y] = self.history.pixel.map(|at| f64::from(at) + 0.5);
         Some(CameraProjection::of(self.capture).point(DVec2::new(x, y), distance))
     }
 
-    /// Index of the first pass of the picture that has this name, and belongs to this light where one is given.
+    /// Returns the index of the first pass of the picture that has this name, and belongs to this light where one is
+    /// given.
     #[track_caller]
     fn pass_of(&self, name: &str, light: Option<usize>) -> usize {
         let is_meant = |step: &&Step| light.is_none() || step.light == light;

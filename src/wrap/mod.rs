@@ -3,9 +3,11 @@
 //!
 //! What is not a plain forward:
 //! - targets, index and indirect buffers can be copied from (`texture.rs`, `buffer.rs`);
-//! - a device has one more bind group and two more storage buffers than were asked for, where the adapter has them (`adapter.rs`);
+//! - a device has one more bind group and two more storage buffers than were asked for, where the adapter has them
+//!   (`adapter.rs`);
 //! - pipelines, bind groups and bundles store their descriptors;
-//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and the recorder runs that list instead.
+//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and the recorder runs
+//!   that list instead.
 
 mod adapter;
 mod binding;
@@ -46,7 +48,7 @@ use wgpu::custom::{
 pub(crate) trait WrappedObject {
     type Object;
 
-    /// The real object.
+    /// Returns the real object.
     ///
     /// # Panics
     /// The object is of an instance that is not recorded: wgpu's own backends can't mix those either.

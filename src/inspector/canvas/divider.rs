@@ -12,7 +12,7 @@ use egui::{
 /// Size of the handle, points.
 const HANDLE: [f32; 2] = [14.0, 36.0];
 
-/// The part of `rect` in which the compared picture is drawn.
+/// Returns the part of `rect` in which the compared picture is drawn.
 pub fn part(rect: Rect, compare: &Comparison) -> Rect {
     let x = rect.left() + rect.width() * compare.at;
     if compare.flipped { rect.with_min_x(x) } else { rect.with_max_x(x) }
@@ -60,7 +60,7 @@ pub fn paint(ui: &Ui, rect: Rect, compare: &Comparison, x: f32, names: [&str; 2]
     }
 }
 
-/// How many steps to the right keys and assistive technology ask for.
+/// Returns how many steps to the right keys and assistive technology ask for.
 fn steps(ui: &Ui, id: egui::Id, has_focus: bool) -> i32 {
     ui.input(|input| {
         let asked = |action| input.num_accesskit_action_requests(id, action) as i32;

@@ -23,7 +23,7 @@ pub enum HandleKind {
 }
 
 impl HandleKind {
-    /// Its name, as shown: `Light 1`.
+    /// Returns its name, as shown: `Light 1`.
     pub fn name(self) -> String {
         match self {
             HandleKind::Light(index) => format::light_title(index),
@@ -43,7 +43,7 @@ pub struct HandleAnchor {
     pub reach: f64,
 }
 
-/// Where a light's handle is at a time in seconds, world space.
+/// Returns where a light's handle is at a time in seconds, world space.
 pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     let position = light.motion.apply_to_light(light.position, time);
     match position.w == 0.0 {
@@ -52,7 +52,8 @@ pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     }
 }
 
-/// The light's homogeneous position at the scene's start, after its handle was moved by `by` at a time in seconds.
+/// Returns the light's homogeneous position at the scene's start, after its handle was moved by `by` at a time in
+/// seconds.
 pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) -> DVec4 {
     let rotated = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
     let back = DMat3::from_cols(rotated(DVec3::X), rotated(DVec3::Y), rotated(DVec3::Z)).transpose();
@@ -77,7 +78,7 @@ pub fn grabbed(ui: &Ui, id: Id, rect: Rect, name: &str) -> Response {
     response
 }
 
-/// How far the arrow keys move the focused widget right and up, as a share of the view's height.
+/// Returns how far the arrow keys move the focused widget right and up, as a share of the view's height.
 pub fn arrows(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;

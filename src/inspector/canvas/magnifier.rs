@@ -59,7 +59,7 @@ pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &ShownPicture, coloring: C
     );
 }
 
-/// The inset's place: the lower left corner, or the lower right one where `pick` would be under it.
+/// Returns the inset's place: the lower left corner, or the lower right one where `pick` would be under it.
 fn place(rect: Rect, size: Vec2, pick: Rect) -> Rect {
     let left = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
     if left.intersects(pick) { left.translate(vec2(rect.right() - MARGIN - left.right(), 0.0)) } else { left }

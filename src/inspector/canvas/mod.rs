@@ -65,7 +65,7 @@ pub struct Canvas<'a> {
     pub has_arrows: bool,
 }
 
-/// The id of the picture's own canvas.
+/// Returns the id of the picture's own canvas.
 pub fn picture_id() -> Id {
     Id::unique(PICTURE)
 }
@@ -142,7 +142,7 @@ pub fn ui(
     (placement, hover)
 }
 
-/// How many texels, each way, have to become one so that every one covers at least a screen pixel.
+/// Returns how many texels, each way, have to become one so that every one covers at least a screen pixel.
 fn block_of(pixels: f32) -> u32 {
     (1.0 / pixels).ceil().clamp(1.0, 64.0) as u32
 }
@@ -194,7 +194,7 @@ fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: 
     }
 }
 
-/// How many texels the arrow keys ask to move by: one for a key press, ten with Shift.
+/// Returns how many texels the arrow keys ask to move by: one for a key press, ten with Shift.
 fn nudge(ui: &Ui) -> [i32; 2] {
     ui.input(|input| {
         let far = if input.modifiers.shift { 10 } else { 1 };
@@ -203,7 +203,7 @@ fn nudge(ui: &Ui) -> [i32; 2] {
     })
 }
 
-/// The part of `rect` that lies left or right of `part`.
+/// Returns the part of `rect` that lies left or right of `part`.
 fn beside(rect: Rect, part: Rect) -> Rect {
     if part.left() <= rect.left() { rect.with_min_x(part.right()) } else { rect.with_max_x(part.left()) }
 }
@@ -252,7 +252,7 @@ pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     }
 }
 
-/// A square for each pixel, as one mesh.
+/// Returns a square for each pixel, as one mesh.
 pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_MARKS).max(1)) {

@@ -40,7 +40,7 @@ pub struct OverlayLines {
 }
 
 impl OverlayLines {
-    /// The silhouettes of the casters of a light.
+    /// Returns the silhouettes of the casters of a light.
     pub fn silhouettes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
         let mut lines = OverlayLines::default();
@@ -54,7 +54,7 @@ impl OverlayLines {
         lines
     }
 
-    /// The edges of the shadow volumes of a light, each once for each part that it belongs to.
+    /// Returns the edges of the shadow volumes of a light, each once for each part that it belongs to.
     pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
         let mut lines = OverlayLines::default();
@@ -71,7 +71,7 @@ impl OverlayLines {
         lines
     }
 
-    /// The silhouette edges, on the screen, whose multiplicity is not 1.
+    /// Returns the silhouette edges, on the screen, whose multiplicity is not 1.
     fn counting(&self, placement: Placement) -> impl Iterator<Item = ([Pos2; 2], i32)> {
         self.lines.iter().filter_map(move |(ends, kind)| match kind {
             LineKind::Silhouette(multiplicity) if multiplicity.unsigned_abs() != 1 => {
@@ -81,8 +81,8 @@ impl OverlayLines {
         })
     }
 
-    /// The multiplicities that can be read, in the middle of their edges: those edges are long enough, the numbers lie
-    /// in `seen` and do not overlap.
+    /// Returns the multiplicities that can be read, in the middle of their edges: those edges are long enough, the
+    /// numbers lie in `seen` and do not overlap.
     pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
         let mut numbers: Vec<(Pos2, i32)> = Vec::new();
         let mut taken = TakenCells::default();
@@ -100,8 +100,8 @@ impl OverlayLines {
         numbers
     }
 
-    /// The multiplicity of the edge nearest to `at`, of those where it is not 1; `None` where none is within `reach`
-    /// points.
+    /// Returns the multiplicity of the edge nearest to `at`, of those where it is not 1; `None` where none is within
+    /// `reach` points.
     pub fn number_near(&self, placement: Placement, at: Pos2, reach: f32) -> Option<i32> {
         let near = self.counting(placement).map(|(ends, multiplicity)| (distance(ends, at), multiplicity));
         let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
@@ -117,7 +117,7 @@ impl OverlayLines {
         }
     }
 
-    /// The lines as a mesh on the screen, with soft edges.
+    /// Returns the lines as a mesh on the screen, with soft edges.
     pub fn mesh(&self, placement: Placement, theme: &Theme, pixels_per_point: f32) -> Arc<Mesh> {
         let mut mesh = Mesh::default();
         for (ends, kind) in &self.lines {
@@ -152,19 +152,19 @@ fn on_screen(placement: Placement, at: DVec2) -> Pos2 {
     placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale
 }
 
-/// Distance from a point to a segment.
+/// Returns the distance from a point to a segment.
 fn distance([from, to]: [Pos2; 2], at: Pos2) -> f32 {
     let along = to - from;
     let share = ((at - from).dot(along) / along.length_sq().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
     (from + along * share).distance(at)
 }
 
-/// A multiplicity with its sign: `+2`.
+/// Returns a multiplicity with its sign: `+2`.
 pub fn multiplicity(value: i32) -> String {
     format!("{}{}", if value < 0 { "−" } else { "+" }, value.unsigned_abs())
 }
 
-/// Colour of a kind of line, and its width in points.
+/// Returns the colour of a kind of line, and its width in points.
 fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
     match kind {
         LineKind::Silhouette(multiplicity) => (theme.lit, 0.6 + 0.6 * multiplicity.unsigned_abs().min(3) as f32),
@@ -201,7 +201,7 @@ pub struct PlacedLines {
 }
 
 impl PlacedLines {
-    /// The mesh of `lines`.
+    /// Returns the mesh of `lines`.
     pub fn of(
         &mut self,
         lines: &OverlayLines,
@@ -218,7 +218,7 @@ impl PlacedLines {
         self.mesh.clone()
     }
 
-    /// The multiplicities of `lines` that can be read in `seen`.
+    /// Returns the multiplicities of `lines` that can be read in `seen`.
     pub fn numbers(&mut self, lines: &OverlayLines, placement: Placement, seen: Rect) -> Arc<Vec<(Pos2, i32)>> {
         let key = Some((placement, seen));
         if self.numbers_key != key {
@@ -229,7 +229,7 @@ impl PlacedLines {
     }
 }
 
-/// The middle of a texel on the screen.
+/// Returns the middle of a texel on the screen.
 pub fn middle(placement: Placement, at: [u32; 2]) -> Pos2 {
     let Rect { min, max } = placement.rect_of(at);
     pos2((min.x + max.x) / 2.0, (min.y + max.y) / 2.0)

@@ -39,12 +39,12 @@ impl Placement {
         self.scale * pixels_per_point
     }
 
-    /// The texel position under a screen position; may lie outside the picture.
+    /// Returns the texel position under a screen position; may lie outside the picture.
     pub fn texel_position(&self, at: Pos2) -> Vec2 {
         (at - self.origin) / self.scale
     }
 
-    /// The texel under a screen position; `None` outside the picture.
+    /// Returns the texel under a screen position; `None` outside the picture.
     pub fn texel(&self, at: Pos2) -> Option<[u32; 2]> {
         let position = self.texel_position(at);
         let inside = position.x >= 0.0 && position.y >= 0.0;
@@ -52,13 +52,13 @@ impl Placement {
         (inside && texel[0] < self.size[0] && texel[1] < self.size[1]).then_some(texel)
     }
 
-    /// The screen rectangle of a texel.
+    /// Returns the screen rectangle of a texel.
     pub fn rect_of(&self, [x, y]: [u32; 2]) -> Rect {
         let min = self.origin + vec2(x as f32, y as f32) * self.scale;
         Rect::from_min_size(min, Vec2::splat(self.scale))
     }
 
-    /// The screen rectangle of the whole picture.
+    /// Returns the screen rectangle of the whole picture.
     pub fn rect(&self) -> Rect {
         Rect::from_min_size(self.origin, vec2(self.size[0] as f32, self.size[1] as f32) * self.scale)
     }

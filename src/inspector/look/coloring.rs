@@ -70,7 +70,7 @@ impl Coloring {
         }
     }
 
-    /// The colour that a texel is drawn in; `None` outside the picture.
+    /// Returns the colour that a texel is drawn in; `None` outside the picture.
     pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
         match self {
             Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
@@ -90,8 +90,8 @@ impl Coloring {
         }
     }
 
-    /// The texel's number for a cell that fits `columns` characters a line; `None` outside the picture. Colours have
-    /// one line for each channel.
+    /// Returns the texel's number for a cell that fits `columns` characters a line; `None` outside the picture. Colours
+    /// have one line for each channel.
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
@@ -123,28 +123,29 @@ impl Coloring {
         }
     }
 
-    /// How many lines a texel's number has.
+    /// Returns how many lines a texel's number has.
     pub fn lines(self) -> usize {
         if matches!(self, Coloring::Srgb | Coloring::Linear | Coloring::ColorChange) { 3 } else { 1 }
     }
 }
 
-/// The colour of one bit of a value.
+/// Returns the colour of one bit of a value.
 pub fn bit_color(value: u8, bit: u8) -> Color32 {
     palette::BITS[usize::from(value >> bit & 1)]
 }
 
-/// The new colour where it changed, see-through elsewhere.
+/// Returns the new colour where it changed, see-through elsewhere.
 pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
     if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
 }
 
-/// The screen colour of a share of light in linear bytes.
+/// Returns the screen colour of a share of light in linear bytes.
 pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
     palette::opaque(colors::linear([r, g, b]))
 }
 
-/// The colour of a count that went up or down: deep for one, lighter the further it went; see-through where it did not.
+/// Returns the colour of a count that went up or down: deep for one, lighter the further it went; see-through where it
+/// did not.
 pub fn count_color(by: i8) -> Color32 {
     let strength = match by.unsigned_abs() {
         0 => return Color32::TRANSPARENT,
@@ -155,7 +156,7 @@ pub fn count_color(by: i8) -> Color32 {
     base.lerp_to_gamma(Color32::WHITE, strength)
 }
 
-/// The colour of a surface that came nearer or went farther away.
+/// Returns the colour of a surface that came nearer or went farther away.
 pub fn depth_color(by: f32) -> Color32 {
     match by {
         0.0 => Color32::TRANSPARENT,
@@ -166,12 +167,12 @@ pub fn depth_color(by: f32) -> Color32 {
     }
 }
 
-/// The grey of a stored depth: near is light.
+/// Returns the grey of a stored depth: near is light.
 pub fn depth(scale: DepthScale, depth: f32) -> Color32 {
     scale.place(depth).map_or(palette::NO_SURFACE, palette::near_far)
 }
 
-/// As many digits of `value` as fit into `columns` characters.
+/// Returns as many digits of `value` as fit into `columns` characters.
 fn fitted(value: f64, columns: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();

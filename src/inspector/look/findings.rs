@@ -39,7 +39,7 @@ pub enum FindingPattern {
     Dotted,
 }
 
-/// A finding's colour, hatching and words.
+/// Returns a finding's colour, hatching and words.
 pub fn style(finding: Finding) -> FindingStyle {
     let (name, meaning, color, pattern) = match finding {
         Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, FindingPattern::Plain),
@@ -98,13 +98,13 @@ impl FindingPattern {
     }
 }
 
-/// The colour of a finding's number, without hatching; a number that is not a finding's is drawn as its stencil colour
-/// would be.
+/// Returns the colour of a finding's number, without hatching; a number that is not a finding's is drawn as its stencil
+/// colour would be.
 pub fn color(byte: u8) -> Color32 {
     Finding::from_byte(byte).map_or_else(|| palette::stencil(byte), |finding| style(finding).color)
 }
 
-/// The rank of a finding among several in one block: wrong ones come first, as each of them must be seen.
+/// Returns the rank of a finding among several in one block: wrong ones come first, as each of them must be seen.
 fn weight(byte: u8) -> u8 {
     match Finding::from_byte(byte) {
         Some(Finding::FalseShadow) => 5,
@@ -116,7 +116,7 @@ fn weight(byte: u8) -> u8 {
     }
 }
 
-/// The picture of findings in which each block of `block` × `block` texels is one texel: the worst of them.
+/// Returns the picture of findings in which each block of `block` × `block` texels is one texel: the worst of them.
 pub fn colored(image: &Image, block: usize) -> ColorImage {
     let block = block.max(1);
     let [width, height] = image.size().map(|side| (side as usize).div_ceil(block));

@@ -29,23 +29,23 @@ pub struct LabelMeaning {
     pub color: Color32,
 }
 
-/// A colour of the palette for the window, opaque.
+/// Returns a colour of the palette for the window, opaque.
 pub(super) const fn opaque([red, green, blue]: Rgb) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle again and again, each time darker by a
-/// step; 255 (−1) downwards in reds, lighter further away.
+/// Returns the colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle again and again, each time
+/// darker by a step; 255 (−1) downwards in reds, lighter further away.
 pub fn stencil(value: u8) -> Color32 {
     opaque(colors::stencil(value))
 }
 
-/// The colour of a label; a value that is not a label's is drawn as its stencil colour would be.
+/// Returns the colour of a label; a value that is not a label's is drawn as its stencil colour would be.
 pub fn label(value: u8) -> Color32 {
     opaque(colors::label(value))
 }
 
-/// Grey for a place between near (0) and far (1): near is light.
+/// Returns the grey for a place between near (0) and far (1): near is light.
 pub fn near_far(place: f32) -> Color32 {
     opaque(colors::near_far(place))
 }
@@ -68,8 +68,8 @@ pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
 /// The two colours of a bit: not set, set.
 pub const BITS: [Color32; 2] = [Color32::from_rgb(0x1b, 0x2a, 0x3d), Color32::from_rgb(0xf0, 0xe4, 0x42)];
 
-/// The colour of the test results on a pixel's fragments, bits of [`crate::capture::TestCounts`]; see-through without
-/// fragments.
+/// Returns the colour of the test results on a pixel's fragments, bits of [`crate::capture::TestCounts`]; see-through
+/// without fragments.
 pub fn outcome(outcomes: u8) -> Color32 {
     use crate::capture::TestCounts as Counts;
     match outcomes {
@@ -83,7 +83,7 @@ pub fn outcome(outcomes: u8) -> Color32 {
     }
 }
 
-/// The colour for receivers: 1 on one, 2 at its outline; see-through elsewhere.
+/// Returns the colour for receivers: 1 on one, 2 at its outline; see-through elsewhere.
 pub fn receiver(ink: u8) -> Color32 {
     let color = Color32::from_rgb(0x56, 0xb4, 0xe9);
     match ink {
@@ -93,8 +93,8 @@ pub fn receiver(ink: u8) -> Color32 {
     }
 }
 
-/// The colour for the number of fragments at a pixel: dark for none, clearly lighter for one, then lighter by a step
-/// each time the number about doubles.
+/// Returns the colour for the number of fragments at a pixel: dark for none, clearly lighter for one, then lighter by a
+/// step each time the number about doubles.
 pub fn overdraw(fragments: u8) -> Color32 {
     const RAMP: [(u8, u8, u8); 6] = [
         (0x35, 0x55, 0x9c),
@@ -114,14 +114,14 @@ pub fn overdraw(fragments: u8) -> Color32 {
     from.lerp_to_gamma(to, place - index as f32)
 }
 
-/// Black or white, whichever is read more easily on `background`.
+/// Returns black or white, whichever is read more easily on `background`.
 pub fn ink_on(background: Color32) -> Color32 {
     let [red, green, blue, _] = background.to_array().map(f32::from);
     let light = 0.299 * red + 0.587 * green + 0.114 * blue;
     if light > 128.0 { Color32::from_gray(16) } else { Color32::from_gray(225) }
 }
 
-/// The colour of a count.
+/// Returns the colour of a count.
 pub fn count(count: f32) -> Color32 {
     opaque(colors::count(count))
 }

@@ -107,7 +107,7 @@ impl PictureCache {
         keep_where(&mut self.ranges, &ranges);
     }
 
-    /// The texture of `image` in `coloring`.
+    /// Returns the texture of `image` in `coloring`.
     pub fn texture(
         &mut self,
         ctx: &Context,
@@ -146,7 +146,7 @@ impl PictureCache {
         handle
     }
 
-    /// How many texels of a byte picture have each value.
+    /// Returns how many texels of a byte picture have each value.
     pub fn histogram(&mut self, image: &Arc<Image>) -> [u64; 256] {
         if let Some((_, histogram)) = self.histograms.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return **histogram;
@@ -156,7 +156,7 @@ impl PictureCache {
         histogram
     }
 
-    /// How many texels of a picture of counts have each count.
+    /// Returns how many texels of a picture of counts have each count.
     pub fn tally(&mut self, image: &Arc<Image>) -> Arc<Tally> {
         if let Some((_, tally)) = self.tallies.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return tally.clone();
@@ -166,7 +166,7 @@ impl PictureCache {
         tally
     }
 
-    /// How many texels of a picture of linear colours are white, black, or neither.
+    /// Returns how many texels of a picture of linear colours are white, black, or neither.
     pub fn shares(&mut self, image: &Arc<Image>) -> LightShares {
         if let Some((_, shares)) = self.shares.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return *shares;
@@ -176,7 +176,7 @@ impl PictureCache {
         shares
     }
 
-    /// How many texels of a depth picture lie in each part of `range`; texels outside it are not counted.
+    /// Returns how many texels of a depth picture lie in each part of `range`; texels outside it are not counted.
     pub fn depth_histogram(&mut self, image: &Arc<Image>, measure: DepthMeasure, range: [f64; 2]) -> DepthHistogram {
         if let Some((of, by, over, bars)) = &self.depth_histogram
             && Arc::ptr_eq(of, image)
@@ -189,7 +189,7 @@ impl PictureCache {
         bars
     }
 
-    /// The smallest and largest value of a depth picture.
+    /// Returns the smallest and largest value of a depth picture.
     pub fn depth_range(&mut self, image: &Arc<Image>, measure: DepthMeasure) -> Option<[f64; 2]> {
         let known = self.ranges.iter().find(|(of, by, _)| Arc::ptr_eq(of, image) && *by == measure);
         if let Some((_, _, range)) = known {
@@ -221,13 +221,13 @@ fn options(coloring: Coloring) -> TextureOptions {
     TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
 }
 
-/// How many texels become one, each way, in a texture of at most `most` a side.
+/// Returns how many texels become one, each way, in a texture of at most `most` a side.
 fn thinning(image: &Image, most: u32) -> usize {
     let [width, height] = image.size();
     width.max(height).div_ceil(most.max(1)).max(1) as usize
 }
 
-/// The picture in its colours; every n-th texel where it has more than `most` a side.
+/// Returns the picture in its colours; every n-th texel where it has more than `most` a side.
 fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
     let [width, height] = image.size();
     let step = thinning(image, most);
@@ -284,7 +284,7 @@ fn depth_bars(image: &Image, measure: DepthMeasure, [low, high]: [f64; 2]) -> De
     bars
 }
 
-/// The picture in its colours, texel by texel, for a file.
+/// Returns the picture in its colours, texel by texel, for a file.
 pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     let colored = colored(image, coloring, u32::MAX);
     let [width, height] = image.size();

@@ -103,18 +103,18 @@ pub const LIGHT: Theme = Theme {
     dark_cap: rgb(0x4450d0),
 };
 
-/// The theme that `ui` is drawn in.
+/// Returns the theme that `ui` is drawn in.
 pub fn of(ui: &Ui) -> &'static Theme {
     in_visuals(ui.visuals())
 }
 
-/// The theme that goes with egui's own colours.
+/// Returns the theme that goes with egui's own colours.
 pub fn in_visuals(visuals: &egui::Visuals) -> &'static Theme {
     if visuals.dark_mode { &DARK } else { &LIGHT }
 }
 
 impl Theme {
-    /// The colour of a part of a shadow volume; `None` for parts that have no colour of their own.
+    /// Returns the colour of a part of a shadow volume; `None` for parts that have no colour of their own.
     pub fn part(&self, part: DrawPart) -> Option<Color32> {
         match part {
             DrawPart::Side => Some(self.side),
@@ -197,22 +197,22 @@ fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
     }
 }
 
-/// Text in the monospaced face, for numbers and addresses.
+/// Returns text in the monospaced face, for numbers and addresses.
 pub fn number(text: impl Into<String>) -> RichText {
     RichText::new(text).font(number_font(SMALL_SIZE))
 }
 
-/// The font id of the monospaced face at a size in points.
+/// Returns the font id of the monospaced face at a size in points.
 pub fn number_font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Monospace)
 }
 
-/// The word on a switch of a toolbar, dim while it is off.
+/// Returns the word on a switch of a toolbar, dim while it is off.
 pub fn switch_word(ui: &Ui, word: &str, is_on: bool) -> RichText {
     RichText::new(word).color(if is_on { of(ui).text } else { of(ui).dim })
 }
 
-/// Text of a side note.
+/// Returns the text of a side note.
 pub fn note(text: impl Into<String>) -> RichText {
     RichText::new(text).size(SMALL_SIZE).weak()
 }
@@ -265,7 +265,7 @@ pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &e
     }
 }
 
-/// The frame of a card on a panel.
+/// Returns the frame of a card on a panel.
 pub fn card(ui: &Ui) -> egui::Frame {
     egui::Frame::new()
         .fill(of(ui).raised)
@@ -274,12 +274,12 @@ pub fn card(ui: &Ui) -> egui::Frame {
         .inner_margin(Margin::same(8))
 }
 
-/// The frame of a dialog over everything.
+/// Returns the frame of a dialog over everything.
 pub fn dialog(ctx: &egui::Context) -> egui::Frame {
     egui::Frame::window(&ctx.global_style()).corner_radius(CornerRadius::same(4)).inner_margin(Margin::same(16))
 }
 
-/// The frame around the contents of a docked panel.
+/// Returns the frame around the contents of a docked panel.
 pub fn panel_frame(ui: &Ui) -> egui::Frame {
     egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::same(8))
 }

@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use egui::epaint::{ImageData, Mesh, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TexturesDelta};
 
-/// The font texture, as egui creates it in its first frame; its first texel is white.
+/// Returns the font texture, as egui creates it in its first frame; its first texel is white.
 pub fn letters(textures: &TexturesDelta) -> ColorImage {
     let mut letters = ColorImage::filled([1, 1], Color32::WHITE);
     for delta in textures.set.get(&TextureId::default()).into_iter().flatten() {
@@ -41,7 +41,7 @@ pub fn fill(picture: &mut Picture, mesh: &Mesh, clip: Rect, letters: &ColorImage
     }
 }
 
-/// The first pixel whose middle is not before `edge`.
+/// Returns the first pixel whose middle is not before `edge`.
 fn first(edge: f32) -> u32 {
     (edge - 0.5).ceil().max(0.0) as u32
 }
@@ -69,7 +69,8 @@ fn fill_triangle(picture: &mut Picture, corners: [Vertex; 3], clip: Rect, letter
     }
 }
 
-/// Where the line at height `y` enters and leaves a triangle; an edge includes its upper end, and not its lower one.
+/// Returns where the line at height `y` enters and leaves a triangle; an edge includes its upper end, and not its lower
+/// one.
 fn between([a, b, c]: [Pos2; 3], y: f32) -> Option<[f32; 2]> {
     let crossing = |[p, q]: [Pos2; 2]| {
         let [upper, lower] = if p.y <= q.y { [p, q] } else { [q, p] };

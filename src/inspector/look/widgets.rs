@@ -127,12 +127,12 @@ pub fn keep_arrows(ui: &Ui, response: &Response) {
     }
 }
 
-/// Is the widget with the focus one that arrow keys move?
+/// Returns whether the widget with the focus is one that arrow keys move.
 pub fn has_own_arrows(ctx: &egui::Context, focus: Option<egui::Id>) -> bool {
     focus.is_some() && focus == ctx.data(|data| data.get_temp(own_arrows()))
 }
 
-/// The id under which the focused widget that arrow keys move is stored.
+/// Returns the id under which the focused widget that arrow keys move is stored.
 fn own_arrows() -> egui::Id {
     egui::Id::unique("moved by arrows itself")
 }

@@ -35,7 +35,7 @@ impl Model {
         self.scene.is_some() || self.frame.plan.is_some()
     }
 
-    /// Where the frame comes from, if another program drew it.
+    /// Returns where the frame comes from, if another program drew it.
     pub fn origin(&self) -> Option<&Origin> {
         self.frame.capture.as_ref()?.origin.as_ref()
     }

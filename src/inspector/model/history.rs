@@ -29,7 +29,7 @@ impl Model {
         (is_waited_for && self.can_ask() && !is_late(&reply)).then(|| (PATIENCE - reply.waits_for).max(0.001))
     }
 
-    /// The history of the picked pixel, or of the pixel picked before in the same frame.
+    /// Returns the history of the picked pixel, or of the pixel picked before in the same frame.
     pub fn history_of_frame(&self) -> Option<Arc<PixelHistory>> {
         let reply = self.want_history();
         let is_late = is_late(&reply);
@@ -37,13 +37,13 @@ impl Model {
         reply.ready.or_else(|| before().filter(|_| !is_late))
     }
 
-    /// Index of the event of the selected triangle.
+    /// Returns the index of the event of the selected triangle.
     pub fn selected_in(&self, history: &PixelHistory) -> Option<usize> {
         history.events.iter().position(|event| self.selection.has_event(event))
     }
 }
 
-/// Is the shown history that of another pixel or frame, and has it been for longer than [`PATIENCE`]?
+/// Returns whether the shown history is of another pixel or frame, and has been for longer than [`PATIENCE`].
 pub fn is_late(reply: &Reply<PixelHistory>) -> bool {
     reply.ready.is_none() && reply.waits_for >= PATIENCE
 }

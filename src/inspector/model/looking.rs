@@ -140,7 +140,7 @@ pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoSte
 }
 
 impl Model {
-    /// The picture that is shown: of the selected point of the frame, or of the one before it.
+    /// Returns the picture that is shown: of the selected point of the frame, or of the one before it.
     pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
         let now = self.view.shown(capture, self.moment());
         match self.modes.phase {
@@ -152,7 +152,7 @@ impl Model {
         }
     }
 
-    /// The picture before the selected point of the frame.
+    /// Returns the picture before the selected point of the frame.
     ///
     /// # Errors
     /// There is nothing before it, or it is not known.
@@ -195,7 +195,7 @@ impl Model {
         }
     }
 
-    /// The picture that is compared with the shown one.
+    /// Returns the picture that is compared with the shown one.
     ///
     /// # Errors
     /// There is none, in a sentence.
@@ -261,12 +261,12 @@ impl Model {
         }
     }
 
-    /// The grey ramp's ends: as set by the user, or those of all shown pictures.
+    /// Returns the grey ramp's ends: as set by the user, or those of all shown pictures.
     fn shown_range(&mut self, shown: &ShownPicture) -> [f64; 2] {
         self.view.depth_range.unwrap_or_else(|| self.full_range(shown))
     }
 
-    /// The smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
+    /// Returns the smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
     pub fn full_range(&mut self, shown: &ShownPicture) -> [f64; 2] {
         full_range(&mut self.textures, shown)
     }

@@ -4,7 +4,7 @@
 //! change through its methods; what only one of them needs is stored in the panel itself. No widget is drawn here.
 //!
 //! ```text
-//! frame.rs     the capture that is shown, and all that is known of it by now     scene.rs   the open scene and its next run
+//! frame.rs     the capture that is shown, and all that is known of it by now     scene.rs   the open scene, its next run
 //! selection.rs step, draw, pixel, triangle                                       looking.rs which picture, and how
 //! history.rs   the picked pixel's history while it is being computed             undo.rs    undo and redo
 //! animation.rs, walk.rs  the scene's time, and walking                           memory.rs  from one run to the next
@@ -139,7 +139,7 @@ impl Model {
         self.view.choose(kind);
     }
 
-    /// The kind of picture that is shown at the selected point of the frame.
+    /// Returns the kind of picture that is shown at the selected point of the frame.
     pub fn kind(&self) -> Option<PictureKind> {
         self.view.kind_at(self.frame.capture.as_ref()?, self.moment())
     }

@@ -277,7 +277,7 @@ fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&[Option<usiz
     }
 }
 
-/// The middle of a mesh's bounding box.
+/// Returns the middle of a mesh's bounding box.
 fn middle(mesh: &Mesh) -> DVec3 {
     let all = || mesh.positions().iter().copied();
     let (low, high) = (all().reduce(DVec3::min), all().reduce(DVec3::max));

@@ -57,7 +57,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The pick in the picture that is shown: a texel of the map, or a pixel of the frame.
+    /// Returns the pick in the picture that is shown: a texel of the map, or a pixel of the frame.
     pub fn pick_of(&mut self, kind: PictureKind) -> &mut Option<[u32; 2]> {
         if kind == PictureKind::Map { &mut self.map_pick } else { &mut self.pick }
     }
@@ -78,23 +78,23 @@ fn key(event: &PixelEvent) -> Option<TriangleKey> {
 }
 
 impl Model {
-    /// How many numbered steps the frame has.
+    /// Returns how many numbered steps the frame has.
     pub fn steps(&self) -> usize {
         self.frame.capture.as_ref().map_or(0, |capture| steps::count(capture))
     }
 
-    /// The numbered steps before and after the selected one.
+    /// Returns the numbered steps before and after the selected one.
     pub fn neighbours(&self) -> [Option<usize>; 2] {
         let of = |find: fn(&Capture, usize) -> Option<usize>| find(self.frame.capture.as_ref()?, self.selection.step);
         [of(steps::previous), of(steps::next)]
     }
 
-    /// What is selected.
+    /// Returns what is selected.
     pub fn selected(&self) -> CapturePoint {
         CapturePoint { step: self.selection.step, draw: self.selection.draw }
     }
 
-    /// The point of the frame that is shown: the selected one, or the one shown before while that is not known.
+    /// Returns the point of the frame that is shown: the selected one, or the one shown before while that is not known.
     pub fn moment(&self) -> CapturePoint {
         let selected = self.selected();
         let is_known = self.frame.capture.as_ref().is_none_or(|capture| selected.is_known(capture));

@@ -61,12 +61,12 @@ impl UndoHistory {
         self.past.push(before);
     }
 
-    /// Is there a step to undo?
+    /// Returns whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    /// Is there a step to redo?
+    /// Returns whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }

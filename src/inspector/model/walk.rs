@@ -57,7 +57,7 @@ impl Default for WalkState {
 }
 
 impl WalkGravity {
-    /// Is the walker on the ground, with the same walls as before?
+    /// Returns whether the walker is on the ground, with the same walls as before.
     pub fn is_at_rest(&self, walls: &Arc<Walls>) -> bool {
         let is_same = self.within.as_ref().is_some_and(|within| Arc::ptr_eq(within, walls));
         is_same && self.standing.is_some_and(|standing| standing.is_on_ground)
@@ -65,7 +65,7 @@ impl WalkGravity {
 }
 
 impl WalkState {
-    /// Is the user walking?
+    /// Returns whether the user is walking.
     pub fn is_on(&self) -> bool {
         self.is_on
     }

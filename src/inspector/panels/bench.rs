@@ -22,7 +22,7 @@ const OPERATIONS: [StencilOperation; 8] = [
 /// Selects one of a face's operations.
 type FaceOperation = fn(&mut StencilFace) -> &mut StencilOperation;
 
-/// Draws the tab.
+/// Draws the tab Bench: one pixel, one stencil and depth state, and fragments that are sent through it one by one.
 pub fn ui(ui: &mut Ui, own: &mut TestBench, model: &Model) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let text = "One pixel and the tests of one draw. Push fragments: each is tested as the GPU would, the stencil \

@@ -10,7 +10,7 @@ use crate::reading::left_out::by_reason;
 use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
-/// Draws the tab.
+/// Draws the tab Explain: what the shown step does, in sentences with this frame's numbers.
 pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(Label::new(theme::note("Open a scene: what each pass is for is told here.")).wrap());

@@ -16,7 +16,7 @@ pub struct RasterStatePanel {
     api: RasterApi,
 }
 
-/// Draws the tab.
+/// Draws the tab State: the raster state of the selected pass or draw.
 pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(Label::new(theme::note("Open a scene: the state of its passes is shown here.")).wrap());

@@ -92,7 +92,7 @@ impl ShadowMapPanel {
     }
 }
 
-/// Draws the tab.
+/// Draws the tab Shadow map: the map of the selected light, with the texel that the picked pixel reads.
 pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);

@@ -33,7 +33,7 @@ fn verdict(rows: &StressRows, case: &StressCase) -> Option<StressVerdict> {
     rows.of(case).map(|summary| summary.verdict).max()
 }
 
-/// Draws the panel.
+/// Draws the panel Stress: the table of cases and techniques, and the plot of the selected case.
 pub fn ui(ui: &mut Ui, own: &mut StressPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let all: Vec<&'static StressCase> = cases::all().collect();
     let selected = own.selected.min(all.len().saturating_sub(1));

@@ -54,7 +54,7 @@ impl TileDrag {
     }
 }
 
-/// Is every panel in the layout exactly once?
+/// Returns whether every panel is in the layout exactly once.
 pub fn is_whole(tree: &Tree<PanelKind>) -> bool {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
@@ -142,7 +142,7 @@ fn split_in_tabs(tiles: &Tiles<PanelKind>) -> Option<(TileId, TileId)> {
     found.into_iter().min_by_key(|(id, _)| id.0)
 }
 
-/// All groups of tabs below a tile, from left to right and top to bottom.
+/// Returns all groups of tabs below a tile, from left to right and top to bottom.
 fn groups_below(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec<TileId> {
     match tiles.get(tile) {
         Some(Tile::Container(Container::Tabs(_))) => vec![tile],
@@ -153,7 +153,7 @@ fn groups_below(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec<TileId> {
     }
 }
 
-/// The group of tabs at a position, among those for which `is_meant` is true.
+/// Returns the group of tabs at a position, among those for which `is_meant` is true.
 fn group_at(tiles: &Tiles<PanelKind>, at: Pos2, is_meant: &dyn Fn(TileId) -> bool) -> Option<TileId> {
     let is_group = |id: &TileId| matches!(tiles.get(*id), Some(Tile::Container(Container::Tabs(_))));
     let is_there = |id: &TileId| tiles.rect(*id).is_some_and(|rect| rect.contains(at));
@@ -173,7 +173,7 @@ fn share_fairly(tree: &mut Tree<PanelKind>) {
     }
 }
 
-/// The least size of a tile.
+/// Returns the least size of a tile.
 fn least(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec2 {
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(tile) else { return LEAST };
     let gaps = GAP * linear.children.len().saturating_sub(1) as f32;

@@ -139,13 +139,13 @@ fn is_film(kind: ExportKind) -> bool {
     matches!(kind, ExportKind::Steps | ExportKind::LightRound)
 }
 
-/// The light that moves round the scene: the shown one; `None` where no light can.
+/// Returns the light that moves round the scene: the shown one; `None` where no light can.
 fn selected_light(model: &Model) -> Option<usize> {
     let last = model.scene.as_ref()?.draft.lights.len().checked_sub(1)?;
     Some(model.view.light.min(last))
 }
 
-/// The measured report; `None` until it is complete.
+/// Returns the measured report; `None` until it is complete.
 fn measured(model: &Model) -> Option<&Report> {
     let (_, measured) = model.answers.last::<ReportOf>().filter(|_| model.answers.asked::<ReportOf>().is_none())?;
     Some(&measured.report).filter(|report| !report.rows.is_empty())

@@ -233,7 +233,7 @@ pub fn remember(ctx: &Context) -> FocusBefore {
     FocusBefore { widget, is_typing }
 }
 
-/// Is it a key that a text field uses to edit its text?
+/// Returns whether it is a key that a text field uses to edit its text.
 fn edits_text(command: KeyCommand) -> bool {
     matches!(command, KeyCommand::Undo | KeyCommand::Redo)
 }

@@ -34,7 +34,7 @@ impl OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
     }
 
-    /// Is the source one of those that are listed?
+    /// Returns whether the source is one of those that are listed.
     fn names(&self, source: &str) -> bool {
         self.scenes.iter().chain(&self.frames).any(|entry| entry.name == source)
     }

@@ -11,7 +11,7 @@ use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::{Margin, Ui};
 use std::sync::Arc;
 
-/// Draws the bar.
+/// Draws the status bar at the lower edge: the shown picture, the texel under the pointer, the GPU, and times.
 pub fn ui(ui: &mut Ui, model: &mut Model) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {

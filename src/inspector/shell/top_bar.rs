@@ -16,7 +16,7 @@ const WIDE: f32 = 930.0;
 /// Width of the name of what is open, points: it is fixed so that the techniques do not move.
 const NAME_WIDTH: f32 = 112.0;
 
-/// Draws the bar.
+/// Draws the bar at the upper edge: opening, what is open, the techniques, and tools.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("top bar").frame(frame).show(ui, |ui| {
@@ -130,7 +130,7 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
-/// The settings of a technique that differ from its defaults: `casters light-facing`.
+/// Returns the settings of a technique that differ from its defaults: `casters light-facing`.
 fn changes(scene: &OpenScene, technique: Technique) -> String {
     let choice = if scene.draft.choice.technique() == technique {
         Some(&scene.draft.choice)

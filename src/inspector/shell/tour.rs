@@ -116,7 +116,7 @@ impl Tours {
     }
 }
 
-/// The scene that a stop is about, where another one is open.
+/// Returns the scene that a stop is about, where another one is open.
 fn scene_to_open(model: &Model, tour: &Tour, stop: usize) -> Option<&'static str> {
     let scene = tour.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go))?;
     let is_open = model.scene.as_ref().is_some_and(|open| open.name == scene);
@@ -161,7 +161,7 @@ fn do_stop(model: &mut Model, go: TourMove, capture: &Capture) {
     }
 }
 
-/// How many stops the tour of a technique has.
+/// Returns how many stops the tour of a technique has.
 pub fn stops_of(technique: Technique) -> usize {
     tour_of(technique).map_or(0, |(_, tour)| tour.stops.len())
 }
@@ -170,13 +170,13 @@ fn scene_of(go: &[TourMove]) -> Option<&'static str> {
     go.iter().find_map(|go| if let TourMove::Scene(name) = go { Some(*name) } else { None })
 }
 
-/// The pixel nearest to the middle that has this label under the first light.
+/// Returns the pixel nearest to the middle that has this label under the first light.
 fn pixel_with(capture: &Capture, label: u8) -> Option<[u32; 2]> {
     let image = capture.lights.iter().find_map(|light| light.shadow.as_ref())?;
     nearest_to_middle(image, |value| value == label)
 }
 
-/// The wrong pixel nearest to the middle, where the truth is known.
+/// Returns the wrong pixel nearest to the middle, where the truth is known.
 fn wrong_pixel(capture: &Capture) -> Option<[u32; 2]> {
     let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
     nearest_to_middle(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))

@@ -301,7 +301,7 @@ fn fallen(
     }
 }
 
-/// The walls of the scene to be run; until they are known, the previous ones.
+/// Returns the walls of the scene to be run; until they are known, the previous ones.
 fn walls(model: &Model) -> Option<Arc<Walls>> {
     let scene = model.scene.as_ref().filter(|_| model.walk.collides || model.walk.weight.is_some())?;
     let time = if scene.animated { scene.draft.time } else { 0.0 };
@@ -330,8 +330,8 @@ fn turn(camera: &mut Camera, by: Vec2) {
     camera.target = camera.eye + rotation;
 }
 
-/// The direction of the pressed keys in the world, of length 1: over the ground, or along the view where the walker
-/// flies.
+/// Returns the direction of the pressed keys in the world, of length 1: over the ground, or along the view where the
+/// walker flies.
 fn direction(camera: &Camera, goes: DVec3, flies: bool) -> DVec3 {
     let ahead = (camera.target - camera.eye).normalize_or_zero();
     let flat = DVec3::new(ahead.x, 0.0, ahead.z).normalize_or(DVec3::NEG_Z);

@@ -22,8 +22,8 @@ const PANE_SIZE: [f64; 3] = [0.95, 1.3, 0.04];
 /// How much of the light from behind a pane it blocks.
 const PANE_OPACITY: f32 = 0.4;
 
-/// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one cone and their shadows
-/// fall to the right, where the eye sees them.
+/// Builds the scene. The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one cone
+/// and their shadows fall to the right, where the eye sees them.
 pub fn build() -> Result<Scene, MeshError> {
     let floor = Arc::new(shapes::quad([15.0, 6.0])?);
     let wall = Arc::new(shapes::parallelogram(DVec3::new(-7.5, 0.0, -1.8), [DVec3::X * 15.0, DVec3::Y * 3.4])?);

@@ -15,7 +15,7 @@ const CUP: [f32; 3] = [0.72, 0.66, 0.52];
 /// Segments around the axis.
 const AROUND: u32 = 56;
 
-/// The table's top is at height 0.
+/// Builds the scene. The table's top is at height 0.
 pub fn build() -> Result<Scene, MeshError> {
     let table = Arc::new(shapes::cylinder(3.4, 0.16, 96)?);
     let glazed =

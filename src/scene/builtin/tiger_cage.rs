@@ -43,7 +43,7 @@ const CORD: f64 = 0.8;
 /// The swing of an ideal pendulum of that length.
 const SWING: Swing = Swing { pivot: PIVOT, axis: DVec3::new(0.35, 0.0, 1.0), degrees: 20.0, period_seconds: 1.8 };
 
-/// The floor is at height 0, the origin in the middle of the cells.
+/// Builds the scene. The floor is at height 0, the origin in the middle of the cells.
 pub fn build() -> Result<Scene, MeshError> {
     let mut objects = hall()?;
     objects.extend(cells()?);
@@ -124,7 +124,7 @@ fn cells() -> Result<Vec<Object>, MeshError> {
     Ok(objects)
 }
 
-/// One wall along x with a door to each cell, upright on the floor.
+/// Returns one wall along x with a door to each cell, upright on the floor.
 fn cell_fronts() -> Result<Mesh, MeshError> {
     let mut lines = vec![-HALF_LENGTH];
     for cell in 0..CELLS {
@@ -135,7 +135,7 @@ fn cell_fronts() -> Result<Mesh, MeshError> {
     shapes::plate(&lines, &[-SUNK, DOOR[1], CELL_HEIGHT], WALL, |column, row| column % 2 == 1 && row == 0)
 }
 
-/// The ceiling of a cell: bars along the corridor, let into the partitions, and one across.
+/// Returns the ceiling of a cell: bars along the corridor, let into the partitions, and one across.
 fn bars() -> Result<Mesh, MeshError> {
     const SPACING: f64 = 0.19;
     const COUNT: u32 = 12;

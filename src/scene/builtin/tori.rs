@@ -71,7 +71,7 @@ const TORI: [Orbiting; 4] = [
     },
 ];
 
-/// The room's origin is its centre.
+/// Builds the scene. The room's origin is its centre.
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.66, 0.22, 64, 28)?);
     let plaster = Material { color: PLASTER, ..Material::default() };

@@ -118,17 +118,18 @@ impl Camera {
         !self.projection.is_pinhole()
     }
 
-    /// The rotation from view space to world space, for directions.
+    /// Returns the rotation from view space to world space, for directions.
     pub fn world_from_view(&self) -> DMat3 {
         projection::view_from_world_rotation(self.target - self.eye, self.up).transpose()
     }
 
-    /// Where view rays begin, homogeneous, world space: the eye, or where they are parallel the direction towards it.
+    /// Returns where view rays begin, homogeneous, world space: the eye, or where they are parallel the direction
+    /// towards it.
     pub fn eye_position(&self) -> DVec4 {
         self.relative_eye() + (self.eye * self.relative_eye().w).extend(0.0)
     }
 
-    /// Where view rays begin, homogeneous, relative to the eye point.
+    /// Returns where view rays begin, homogeneous, relative to the eye point.
     pub fn relative_eye(&self) -> DVec4 {
         match self.projection {
             Projection::Perspective => DVec4::W,
@@ -136,13 +137,13 @@ impl Camera {
         }
     }
 
-    /// A point whose count is valid for all view rays: the eye, or the centre of the near plane of a parallel camera,
-    /// whose rays begin there.
+    /// Returns a point whose count is valid for all view rays: the eye, or the centre of the near plane of a parallel
+    /// camera, whose rays begin there.
     pub fn counting_place(&self) -> DVec3 {
         if self.is_parallel() { self.eye + self.rays(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
     }
 
-    /// The name of [`Camera::counting_place`], as it is shown.
+    /// Returns the name of [`Camera::counting_place`], as it is shown.
     pub fn counting_place_name(&self) -> &'static str {
         if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
     }
@@ -159,8 +160,8 @@ impl Camera {
         }
     }
 
-    /// Half of the height that the picture shows, metres: at distance 1 of a perspective camera, at any of a parallel
-    /// projection.
+    /// Returns half of the height that the picture shows, metres: at distance 1 of a perspective camera, at any of a
+    /// parallel projection.
     pub fn half_height(&self) -> f64 {
         match self.projection {
             Projection::Perspective => (self.fov_y_degrees.to_radians() / 2.0).tan(),
@@ -168,12 +169,12 @@ impl Camera {
         }
     }
 
-    /// Half of the height that the picture shows at a distance along the view's axis, metres.
+    /// Returns half of the height that the picture shows at a distance along the view's axis, metres.
     pub fn half_height_at(&self, distance: f64) -> f64 {
         self.half_height() * if self.is_parallel() { 1.0 } else { distance }
     }
 
-    /// Half of the height that the picture shows at the target's distance, metres.
+    /// Returns half of the height that the picture shows at the target's distance, metres.
     pub fn half_height_at_target(&self) -> f64 {
         self.half_height_at((self.target - self.eye).length())
     }
@@ -223,7 +224,7 @@ impl CameraRays {
         Ray { from: self.world_from_view * from, along: self.world_from_view * along }
     }
 
-    /// World direction of the view's axis.
+    /// Returns the world direction of the view's axis.
     pub fn axis(&self) -> DVec3 {
         -self.world_from_view.z_axis
     }

@@ -51,12 +51,12 @@ impl SceneBounds {
         if sum > 0.0 { sum } else { 1.0 }
     }
 
-    /// The lowest height.
+    /// Returns the lowest height.
     pub fn lowest(&self) -> f64 {
         self.low.y
     }
 
-    /// The centre of the bounding box.
+    /// Returns the centre of the bounding box.
     pub fn middle(&self) -> DVec3 {
         self.low / 2.0 + self.high / 2.0
     }

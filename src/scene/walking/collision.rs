@@ -107,7 +107,7 @@ impl Walls {
         self.trees.iter().all(|tree| tree.is_empty())
     }
 
-    /// The lowest height of the walls, world space; `None` where there are none.
+    /// Returns the lowest height of the walls, world space; `None` where there are none.
     pub(super) fn lowest(&self) -> Option<f64> {
         self.trees.iter().filter_map(|tree| tree.lowest()).reduce(f64::min)
     }

@@ -28,7 +28,7 @@ const LIST_SHARE: f32 = 0.5;
 const INDENT: f32 = 28.0;
 const BELOW_TITLE: f32 = 26.0;
 
-/// Draws the panel.
+/// Draws the panel Diagnosis: regions of wrong pixels, their causes, and the fixes with their proofs.
 pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
     if model.origin().is_some() {
         return frame_causes::ui(ui, model);

@@ -27,7 +27,7 @@ pub fn origin(ui: &mut Ui, model: &Model) {
     }
 }
 
-/// The debug groups of a pass, outermost first.
+/// Returns the debug groups of a pass, outermost first.
 pub fn groups_of(plan: &FramePlan, pass: usize) -> &[String] {
     plan.passes.get(pass).and_then(|pass| pass.recorded.as_ref()).map_or(&[], |recorded| &recorded.groups)
 }

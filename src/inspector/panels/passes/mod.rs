@@ -21,7 +21,7 @@ use thumbnail::{colored, paint_row_background, paint_thumbnail};
 /// The words in a mask's row.
 const BESIDE: &str = "beside the frame";
 
-/// Draws the panel.
+/// Draws the panel Passes: the frame's passes and draws in order, to step through.
 pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     if let Some(search) = model.requests.search.take() {
         own.search = Some(search);

@@ -64,7 +64,7 @@ impl PicturePanel {
     }
 }
 
-/// Draws the panel.
+/// Draws the panel Picture: the shown picture with its toolbar, overlays and legend.
 pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut Vec<Action>) {
     own.follow(model.frame.number);
     model.selection.hover = None;
@@ -359,7 +359,7 @@ fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// A list, for names that are too long and too many for buttons.
+/// Draws a list, for names that are too long and too many for buttons.
 fn layer_list(ui: &mut Ui, layers: &[layers::MapLayer], mut chosen: usize) -> Option<usize> {
     let before = chosen;
     let all = format!("All {}", layers.len());

@@ -35,7 +35,7 @@ pub use picked::PixelPanel;
 /// Height of a row of values where vertical space is short, points.
 const TIGHT_ROW: f32 = 18.0;
 
-/// Draws the panel.
+/// Draws the panel Pixel: the history of the picked pixel and why it is lit or dark.
 pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());

@@ -30,7 +30,7 @@ impl HistoryRows {
     const LOW: f32 = 18.0;
 }
 
-/// Is a panel of this size so small that everything is closer together?
+/// Returns whether a panel of this size is so small that everything is drawn closer together.
 pub fn is_tight(size: egui::Vec2) -> bool {
     size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
 }

@@ -34,7 +34,7 @@ named_enum! {
 }
 
 impl LensProjection {
-    /// Is depth drawn at an angle?
+    /// Returns whether the projection is oblique: depth is drawn at an angle.
     pub fn is_oblique(self) -> bool {
         matches!(self, LensProjection::Cavalier | LensProjection::Cabinet)
     }
@@ -74,18 +74,18 @@ impl PaneView {
         }
     }
 
-    /// Rotation from world to view space.
+    /// Returns the rotation from world to view space.
     pub fn rotation(&self) -> DMat3 {
         let pitch = self.pitch.clamp(-90.0, 90.0).to_radians();
         DMat3::from_rotation_x(pitch) * DMat3::from_rotation_y(-self.yaw.to_radians())
     }
 
-    /// Distance from a perspective view's eye to the middle, metres.
+    /// Returns the distance from a perspective view's eye to the middle, metres.
     pub fn distance(&self) -> f64 {
         self.height / 2.0 / (self.fov_y.to_radians() / 2.0).tan()
     }
 
-    /// The view in a rectangle of the screen.
+    /// Returns the view in a rectangle of the screen.
     pub fn lens(&self, rect: Rect) -> Lens {
         let length = match self.projection {
             LensProjection::Cavalier => 1.0,
@@ -131,7 +131,7 @@ impl Lens {
         self.rotation * (world - self.center)
     }
 
-    /// The eye, world space; in parallel projections the direction towards the viewer, with `w = 0`.
+    /// Returns the eye, world space; in parallel projections the direction towards the viewer, with `w = 0`.
     pub fn viewer(&self) -> DVec4 {
         let world = self.rotation.transpose();
         match self.eye {
@@ -168,7 +168,7 @@ impl Lens {
         }
     }
 
-    /// The largest z of view space that is drawn.
+    /// Returns the largest z of view space that is drawn.
     pub fn near(&self) -> f64 {
         self.eye.map_or(f64::INFINITY, |eye| eye * (1.0 - NEAR))
     }

@@ -32,7 +32,7 @@ const LEGEND_WIDTH: f32 = 164.0;
 /// In a narrower panel the legend is left out, points.
 const LEAST_WIDTH: f32 = 420.0;
 
-/// Draws the panel.
+/// Draws the panel Scene: views of the scene in space with its lights, frusta and shadow volumes.
 pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Vec<Action>) {
     view.follow(model.scenes_opened);
     if let Some(words) = missing(model) {

@@ -274,7 +274,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// What is invisible in the picture is transparent here.
+    /// Returns an object's colour, transparent where the object is invisible in the picture.
     fn material(&self, object: &PlacedObject) -> Color32 {
         let [red, green, blue] = object.color.map(|channel| (channel * 255.0).round() as u8);
         let color = coloring::linear([red, green, blue, 255]);

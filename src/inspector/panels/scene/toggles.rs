@@ -59,7 +59,7 @@ impl VolumeFilter {
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
     }
 
-    /// Is the frustum of a light's map shown, or of the silhouette of one caster in it?
+    /// Returns whether the frustum of a light's map is shown, or of the silhouette of one caster in it.
     pub fn has_frustum(self, light: usize, caster: Option<usize>) -> bool {
         let is_other = caster.is_some_and(|caster| self.caster.is_some_and(|one| one != caster));
         self.light.is_none_or(|one| one == light) && !is_other

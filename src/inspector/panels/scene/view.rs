@@ -178,12 +178,12 @@ impl SceneView {
     }
 }
 
-/// Its index in a row of all.
+/// Returns its index in a row of all.
 pub fn index_of(pane: Pane) -> usize {
     Pane::ALL.iter().position(|one| *one == pane).unwrap_or_default()
 }
 
-/// Yaw and pitch of a camera, degrees.
+/// Returns the yaw and pitch of a camera, degrees.
 fn angles(camera: &Camera) -> (f64, f64) {
     let ahead = (camera.target - camera.eye).normalize_or_zero();
     ((-ahead.x).atan2(-ahead.z).to_degrees(), (-ahead.y).clamp(-1.0, 1.0).asin().to_degrees())

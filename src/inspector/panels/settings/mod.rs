@@ -16,7 +16,7 @@ use crate::technique::{Choice, SettingSpec, SettingValues, Technique};
 use egui::{DragValue, RichText, Ui};
 use std::sync::Arc;
 
-/// Draws the panel.
+/// Draws the panel Scene settings: the camera, lights and objects of the open scene, and the technique's settings.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if model.scene.is_none() {
         let text = match (&model.frame.capture, &model.activity.job) {

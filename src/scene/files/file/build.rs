@@ -416,7 +416,7 @@ fn within(value: &SpannedNumber, low: f64, high: f64) -> Result<f32, SceneFilePr
     Err(SceneFileProblem::new(value.span(), format!("{range}: correct it")))
 }
 
-/// Linear RGB, each from 0 to `most`.
+/// Returns linear RGB, each from 0 to `most`.
 fn color(value: &SpannedTriple, most: f64) -> Result<[f32; 3], SceneFileProblem> {
     let rgb = finite(value)?.to_array();
     if rgb.iter().all(|part| (0.0..=most.min(f64::from(f32::MAX))).contains(part)) {
