@@ -49,7 +49,8 @@ pub struct StressArguments {
     output: Option<String>,
 }
 
-/// Runs the cases; `command` is the command line, for the page.
+/// Runs the stress cases and prints a table of the results, or writes the files that are asked for; with `--list`, only
+/// lists the cases. `command` is the command line to print in the page.
 ///
 /// # Errors
 /// A case or technique that does not exist; no GPU; a file that can't be written;

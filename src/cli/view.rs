@@ -50,7 +50,7 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
     job.run()
 }
 
-/// Why there can be no window; `None` where there may be one.
+/// Returns why no window can open (built without one, or no display), or `None` where it may work.
 fn no_window_because() -> Option<&'static str> {
     if cfg!(not(feature = "inspector")) {
         return Some("this build has no window");

@@ -92,7 +92,9 @@ impl Diagnosis {
         out
     }
 
-    /// Returns the last line: what to do.
+    /// Returns the advice that ends the diagnosis: the best fix found, its command-line options, and the best technique
+    /// that has no wrong pixel. `suited` has the measured result of each candidate technique; empty where none was
+    /// measured.
     pub fn what_to_do(&self, suited: &[TechniqueFit]) -> String {
         if !self.is_bad() {
             return "nothing: the shadows are right".to_owned();

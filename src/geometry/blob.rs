@@ -5,7 +5,7 @@ use std::fmt::{self, Debug, Formatter};
 use std::hash::{BuildHasher, Hasher};
 use std::sync::{Arc, LazyLock};
 
-/// Shared data with its hash: the executor uploads equal data once and caches it while it is used.
+/// Shared, immutable values with a hash: the executor uploads equal data once and keeps it while it is used.
 #[derive(Debug, Clone)]
 pub struct Blob<T> {
     data: BlobData<T>,
@@ -13,7 +13,7 @@ pub struct Blob<T> {
     hash: u64,
 }
 
-/// Values, or what makes them when they are first asked for.
+/// The values, or the function that makes them when they are first asked for.
 #[derive(Clone)]
 enum BlobData<T> {
     Given(Arc<[T]>),
@@ -32,17 +32,18 @@ impl<T: Debug> Debug for BlobData<T> {
 }
 
 impl<T: bytemuck::Pod> Blob<T> {
-    /// Hashes `data`.
+    /// Makes a blob of these values and hashes their bytes.
     pub fn new(data: Vec<T>) -> Blob<T> {
         Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: BlobData::Given(data.into()) }
     }
 
-    /// `len` values that `make` makes when they are first asked for. What has the same `identity` is taken for equal.
+    /// Makes a blob of `len` values that `make` computes when they are first asked for. Blobs with the same `identity`
+    /// and length are taken for equal.
     pub fn made(identity: &[u8], len: usize, make: impl FnOnce() -> Vec<T> + Send + Sync + 'static) -> Blob<T> {
         Blob { hash: hashed(identity), len, data: BlobData::Made(Arc::new(LazyLock::new(Box::new(make)))) }
     }
 
-    /// The values.
+    /// Returns the values; makes them first where that is still to do.
     pub fn data(&self) -> &[T] {
         match &self.data {
             BlobData::Given(values) => values,
@@ -50,12 +51,12 @@ impl<T: bytemuck::Pod> Blob<T> {
         }
     }
 
-    /// How many values there are; none is made for the answer.
+    /// Returns how many values there are, without making them.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Are there none?
+    /// Returns whether there are no values.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -65,7 +66,8 @@ impl<T: bytemuck::Pod> Blob<T> {
         bytemuck::cast_slice(self.data())
     }
 
-    /// Returns a hash of the bytes. It is stable within a process only.
+    /// Returns the hash of the bytes, or of the identity of values that are made on demand. It is stable within a
+    /// process only.
     pub fn hash(&self) -> u64 {
         self.hash
     }

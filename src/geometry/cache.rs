@@ -13,21 +13,22 @@ use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Most triangles that are cached at once (about 60 bytes each, and as much again for each pose); a scene of more
-/// starts over with each mesh.
+/// The most triangles whose edges, planes and topology are cached (about 60 bytes each, and as much again for each
+/// pose); beyond, the cache is emptied.
 const MOST_TRIANGLES_CACHED: usize = 2_000_000;
 
-/// Places of meshes that something short is known about.
+/// The most placed meshes whose short results (is it solid, does it have doubles) are cached.
 const MOST_PLACES_CACHED: usize = 16_384;
 
-/// Most triangles of surfaces that are cached at once, some 80 bytes each; beyond, they are made anew for each plan.
+/// The most triangles of drawn surfaces that are cached, some 80 bytes each; beyond, surfaces are made anew for each
+/// plan.
 const MOST_SURFACES_CACHED: usize = 500_000;
 
-/// Most flattened triangles that are cached at once, 96 bytes each; beyond, they are made anew for each plan.
+/// The most flattened triangles that are cached, 96 bytes each; beyond, they are made anew for each plan.
 const MOST_FLATTENED_CACHED: usize = 500_000;
 
-/// What was found out about the meshes planned so far. Planning with a full or an empty cache
-/// gives the same plan.
+/// Geometry derived from meshes, kept between plans: edge lists, planes, topology, flattened casters and drawn
+/// surfaces. A plan is the same with a full or an empty cache.
 #[derive(Debug, Default)]
 pub struct GeometryCache {
     edges: HashMap<u64, Arc<EdgeList>>,
@@ -36,7 +37,7 @@ pub struct GeometryCache {
     connectivities: HashMap<u64, Arc<Connectivity>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
-    /// Do two of its triangles have the same corners?
+    /// By mesh and pose: whether two of its triangles have the same corners.
     doubled: HashMap<(u64, PoseBits), bool>,
     extruded: LastUsed<ExtrudedKey, ExtrudedVolume>,
     surfaces: LastUsed<SurfaceKey, DrawnSurface>,
@@ -45,23 +46,23 @@ pub struct GeometryCache {
     silhouette: Vec<SilhouetteEdge>,
 }
 
-/// Homogeneous world positions of a caster's shadow on a plane.
+/// Homogeneous world positions of a caster's triangles flattened onto a plane.
 type FlattenedTriangles = Arc<Vec<[DVec4; 3]>>;
 
-/// Mesh, place, form and origin.
+/// Hash of the mesh, pose, form, and the origin that positions are relative to.
 type ExtrudedKey = (u64, PoseBits, ExtrudedForm, [u64; 3]);
 
-/// Mesh, its normals, place, origin, and where each group ends and how it is shaded.
+/// Hashes of the mesh and its normals, pose, origin, and for each group the end of its triangles and its shading.
 type SurfaceKey = (u64, u64, PoseBits, [u64; 3], Vec<(usize, Shading)>);
 
-/// What of a surface is drawn alike under any light.
+/// The vertex data of a drawn surface that does not depend on lights.
 #[derive(Debug, Clone)]
 pub struct DrawnSurface {
-    /// Relative to an origin.
+    /// Positions relative to an origin, with w = 1.
     pub vertices: Blob<[f32; 4]>,
-    /// The mesh's triangles.
+    /// Vertex indices of the mesh's triangles, three a triangle.
     pub indices: Blob<u32>,
-    /// The normal of each corner.
+    /// The unit normal of each corner, world space.
     pub normals: Blob<[f32; 4]>,
 }
 
@@ -74,46 +75,45 @@ pub enum SilhouetteBy {
     Search,
 }
 
-/// One caster: a mesh and where it is.
+/// A mesh with its pose and its vertices in world space.
 #[derive(Debug, Clone, Copy)]
 pub struct Caster<'a> {
     /// Its triangles.
     pub mesh: &'a Mesh,
-    /// Its place.
+    /// Where the mesh is placed.
     pub pose: &'a Pose,
-    /// The mesh's vertices so placed.
+    /// World positions of the mesh's vertices.
     pub world: &'a [DVec3],
 }
 
-/// A volume that is asked for.
+/// The input for the indices of a shadow volume ([`GeometryCache::volume_indices`]).
 #[derive(Debug, Clone, Copy)]
 pub struct VolumeRequest<'a> {
     /// The caster.
     pub caster: Caster<'a>,
-    /// The caster is drawn too, so its sides may graze visible surfaces.
+    /// Whether the caster is drawn too, so that its sides may graze visible surfaces.
     pub is_drawn: bool,
-    /// Homogeneous position.
+    /// Homogeneous world position of the light; w = 0 for a directional one.
     pub light: DVec4,
-    /// Which of its triangles cast.
+    /// Which of the caster's triangles cast.
     pub casters: Casters,
-    /// For each triangle, whether it does not have to cast, since what it darkens is dark without it; empty where none
-    /// is.
+    /// For each triangle, whether it need not cast, as its shadow is dark without it; empty where none is.
     pub hidden: &'a [bool],
     /// How the silhouette is found.
     pub by: SilhouetteBy,
-    /// Carries it away from the light.
+    /// Carries the vertices away from the light.
     pub extruder: &'a Extruder,
 }
 
 impl GeometryCache {
-    /// Forgets surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for.
+    /// Drops surfaces, flattened casters and volumes for vertex shaders that the last plan did not ask for.
     pub fn next_plan(&mut self) {
         self.extruded.next_plan();
         self.surfaces.next_plan();
         self.flattened.next_plan();
     }
 
-    /// A flattened caster: made again only if plane, caster or light changed.
+    /// Returns a flattened caster; calls `make` only if plane, caster or light are new.
     pub fn flattened(&mut self, what: &FlattenedCaster, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
         self.flattened.get_or_make_within(MOST_FLATTENED_CACHED, what.key(), || {
             let triangles = Arc::new(make());
@@ -122,7 +122,7 @@ impl GeometryCache {
         })
     }
 
-    /// The edges of `mesh`, built on first use.
+    /// Returns the edge list of `mesh`, built on first use.
     pub fn edges(&mut self, mesh: &Mesh) -> Arc<EdgeList> {
         if let Some(edges) = self.edges.get(&mesh.content_hash()) {
             return edges.clone();
@@ -133,7 +133,7 @@ impl GeometryCache {
         edges
     }
 
-    /// The planes of a caster's triangles, made on first use.
+    /// Returns the planes of a caster's triangles, computed on first use.
     pub fn planes(&mut self, caster: Caster) -> Arc<CasterPlanes> {
         let key = (caster.mesh.content_hash(), caster.pose.bits());
         if let Some(planes) = self.planes.get(&key) {
@@ -145,7 +145,8 @@ impl GeometryCache {
         planes
     }
 
-    /// Writes the indices of a volume into `out`: facings, silhouette and [`write_indices`], in cached buffers.
+    /// Writes the vertex indices of a volume into `out` and returns which ranges of triangles are its parts: computes
+    /// facings, the silhouette, and [`write_indices`].
     pub fn volume_indices(&mut self, of: &VolumeRequest, out: &mut Vec<u32>) -> VolumeParts {
         let VolumeRequest { caster, light, .. } = *of;
         let triangles = caster.mesh.triangles();
@@ -169,7 +170,8 @@ impl GeometryCache {
         write_indices(triangles, caster.world.len(), &self.facings, (found, grazing), far_end, out)
     }
 
-    /// A caster's volume for a vertex shader: made again only if caster or origin changed.
+    /// Returns a caster's volume for a vertex shader, with positions relative to `origin`; made only if caster, origin
+    /// or form are new.
     pub fn extruded(&mut self, caster: Caster, origin: DVec3, form: ExtrudedForm) -> ExtrudedVolume {
         let Caster { mesh, pose, world } = caster;
         let key = (mesh.content_hash(), pose.bits(), form, origin.to_array().map(f64::to_bits));
@@ -180,8 +182,8 @@ impl GeometryCache {
         self.extruded.get_or_make(key, || ExtrudedVolume::new(world, mesh.triangles(), &edges, origin, form))
     }
 
-    /// Returns what of a mesh is drawn alike under any light, relative to `origin` and with this shading of each group.
-    /// It is made again only if one of these changes, or where too much is cached.
+    /// Returns a surface's vertex data relative to `origin`, with this shading of each group; calls `make` only if one
+    /// of these is new, or where too much is cached.
     pub fn surface(
         &mut self,
         of: Caster,
@@ -196,22 +198,22 @@ impl GeometryCache {
         self.surfaces.get_or_make_within(MOST_SURFACES_CACHED, key, || (make(), mesh.triangles().len()))
     }
 
-    /// How `mesh` hangs together, found out on first use.
+    /// Returns the topology of `mesh`, examined on first use.
     pub fn topology(&mut self, mesh: &Mesh) -> Arc<Topology> {
         let connectivity = self.connectivity(mesh);
         let build = || Arc::new(Topology::new(mesh, connectivity));
         self.topologies.entry(mesh.content_hash()).or_insert_with(build).clone()
     }
 
-    /// Returns how the triangles of a mesh are connected by their edges.
+    /// Returns how the triangles of a mesh are connected by their edges, examined on first use.
     pub fn connectivity(&mut self, mesh: &Mesh) -> Arc<Connectivity> {
         let edges = self.edges(mesh);
         let build = || Arc::new(Connectivity::new(mesh, &edges));
         self.connectivities.entry(mesh.content_hash()).or_insert_with(build).clone()
     }
 
-    /// Do the triangles that face the light cast the shadow of the whole mesh? The mesh is looked at
-    /// once a place, the light each time.
+    /// Checks that the triangles that face the light cast the shadow of the whole mesh: it is solid, and the light is
+    /// outside. The mesh is examined once for each pose, the light each time.
     ///
     /// # Errors
     /// What speaks against it, or is not proven.
@@ -237,7 +239,7 @@ impl GeometryCache {
         }
     }
 
-    /// Has a placed mesh two triangles with the same corners? `find_out` looks, once a place.
+    /// Returns whether two triangles of a placed mesh have the same corners; calls `find_out` only once for each pose.
     pub fn has_doubles(&mut self, caster: Caster, find_out: impl FnOnce() -> bool) -> bool {
         let key = (caster.mesh.content_hash(), caster.pose.bits());
         if let Some(known) = self.doubled.get(&key) {
@@ -260,7 +262,7 @@ impl GeometryCache {
     }
 }
 
-/// Adds a result about a mesh at a pose that takes long to compute and little memory.
+/// Adds a result about a mesh at a pose; empties the map first where it is full.
 fn insert_among<T>(known: &mut HashMap<(u64, PoseBits), T>, key: (u64, PoseBits), found: T) {
     if known.len() >= MOST_PLACES_CACHED {
         known.clear();

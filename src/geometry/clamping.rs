@@ -15,28 +15,30 @@ use foldhash::fast::RandomState;
 use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 
-/// How far outside of the side the end lies, in parts of the box around all: more than `f32` can move it.
+/// How far outside of the box's side the end lies, relative to the size of the box around everything: more than
+/// rounding to `f32` can move it.
 const ROUNDING: f64 = 1e-4;
-/// What single precision moves a place by, and more, in parts of its distance.
+/// An upper bound for the relative error of a position in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
-/// A vertex that would be carried farther, in parts of the box around all, may as well go to infinity.
+/// How far a vertex may be carried, relative to the size of the box around everything; farther, it may as well go to
+/// infinity.
 const MOST_REACH: f64 = 100.0;
 
-/// The end of a volume: a plane across an axis of the world.
+/// The far end of a shadow volume: an axis-aligned plane in world space, beyond all that is looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClampedEnd {
-    /// 0, 1, 2: x, y, z.
+    /// The axis that the plane is perpendicular to: 0, 1, 2 for x, y, z.
     axis: usize,
     /// Where on that axis, metres.
     at: f64,
-    /// All that is looked at has higher values than `at`, not lower.
+    /// Whether all that is looked at has higher values on the axis than `at`; otherwise lower ones.
     is_below: bool,
 }
 
 impl ClampedEnd {
-    /// Returns the nearest end of the volumes of `casters` under a homogeneous `light` that is outside of `looked_at`,
-    /// a box around the eye and all surfaces that their shadows may fall on; world space. `None` where rays leave the
-    /// box by no common side.
+    /// Returns the nearest end for the volumes of `casters` under a homogeneous `light` that lies outside of
+    /// `looked_at`, a box around the eye and all surfaces that their shadows may fall on; world space. `None` where the
+    /// light's rays through the casters leave the box by no common side.
     pub fn beyond(looked_at: AxisBox, casters: &[AxisBox], light: DVec4) -> Option<ClampedEnd> {
         let size = casters.iter().fold(looked_at, |all, caster| all.joined(*caster)).diagonal();
         let corners: Vec<DVec3> = casters.iter().flat_map(AxisBox::corners).collect();
@@ -56,31 +58,35 @@ impl ClampedEnd {
         sides.filter_map(end).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, end)| end)
     }
 
-    /// Where a vertex of that caster goes: along the light's ray onto the plane. What is beyond it stays.
+    /// Returns where a caster's vertex is carried: along the light's ray onto the plane. A vertex beyond the plane
+    /// stays.
     pub fn carry(&self, position: DVec3, light: DVec4) -> DVec3 {
         let along = along(position, light);
         let way = (self.at - position[self.axis]) / along[self.axis];
         if way > 0.0 { position + along * way } else { position }
     }
 
-    /// Does all of a caster lie beyond it? Then its shadow falls on nothing that is looked at.
+    /// Returns whether all of a caster's box lies beyond the plane, so that its shadow falls on nothing that is looked
+    /// at.
     pub fn is_passed_by(&self, caster: AxisBox) -> bool {
         if self.is_below { caster.high[self.axis] <= self.at } else { caster.low[self.axis] >= self.at }
     }
 
-    /// The axis that it lies across, 0, 1 or 2 for x, y or z, and where on it, metres.
+    /// Returns the axis that the plane is perpendicular to (0, 1, 2 for x, y, z), and its coordinate on that axis in
+    /// metres.
     pub fn place(&self) -> (usize, f64) {
         (self.axis, self.at)
     }
 
-    /// Has all that is looked at higher values on that axis, not lower?
+    /// Returns whether all that is looked at has higher values on that axis than the plane; otherwise lower ones.
     pub fn is_below(&self) -> bool {
         self.is_below
     }
 }
 
-/// Casters, each a box and the vertices in it, world space, that have a place in common as it is drawn: relative to
-/// `origin`, in single precision. Groups of their numbers, in the order of each group's first.
+/// Groups casters that touch: those that share a vertex position in single precision relative to `origin`. Each caster
+/// is its box and its vertices, world space; the groups list indices into `casters`, in the order of their first
+/// members.
 pub fn touching(casters: &[(AxisBox, &[DVec3])], origin: DVec3) -> Vec<Vec<usize>> {
     let grown = |(around, _): &(AxisBox, &[DVec3])| {
         let farthest = around.corners().map(|corner| corner.distance(origin)).into_iter().fold(0.0, f64::max);
@@ -107,7 +113,7 @@ pub fn touching(casters: &[(AxisBox, &[DVec3])], origin: DVec3) -> Vec<Vec<usize
     groups
 }
 
-/// The way of the light's ray through a place, of any length.
+/// Returns the direction of the light's ray through a point, of any length.
 fn along(position: DVec3, light: DVec4) -> DVec3 {
     position * light.w - light.truncate()
 }

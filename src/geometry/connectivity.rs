@@ -7,13 +7,13 @@ use super::EdgeList;
 use crate::scene::Mesh;
 use glam::DVec3;
 
-/// Most places that are listed of each kind.
+/// The most places that are listed of each kind.
 pub(super) const MOST_PLACES: usize = 64;
 
-/// How often something was found, and where.
+/// How often a defect of a mesh was found, and where.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FoundPlaces {
-    /// How often.
+    /// How often it was found.
     pub count: usize,
     /// The first places, object space: at most 64.
     pub places: Vec<DVec3>,
@@ -28,18 +28,19 @@ impl FoundPlaces {
     }
 }
 
-/// How the triangles of a mesh hang together. Places are the middles of edges.
+/// How the triangles of a mesh are connected: its components and the edges that are not shared by two consistently
+/// wound triangles. Places are the midpoints of edges.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Connectivity {
-    /// Parts that hang together by edges.
+    /// Number of connected components: triangles that are connected by edges.
     pub components: usize,
-    /// Edges of one triangle.
+    /// Edges of only one triangle.
     pub open_edges: FoundPlaces,
     /// Edges of more than two triangles.
     pub non_manifold_edges: FoundPlaces,
-    /// Edges of two triangles that both run the same way along it.
+    /// Edges of two triangles that both run along it in the same direction.
     pub inconsistent_edges: FoundPlaces,
-    /// For each triangle, the number of its part, in the order of their first triangles.
+    /// For each triangle, the index of its component, in the order of their first triangles.
     component_of: Vec<u32>,
 }
 
@@ -71,23 +72,26 @@ impl Connectivity {
         connectivity
     }
 
-    /// No edge ends the surface, and none joins more than two triangles.
+    /// Returns whether every edge joins exactly two triangles; their winding may still disagree
+    /// ([`Connectivity::is_oriented`]).
     pub fn is_closed(&self) -> bool {
         self.open_edges.count == 0 && self.non_manifold_edges.count == 0
     }
 
-    /// Neighbouring triangles agree on which side is out.
+    /// Returns whether the two triangles at every edge that joins two are wound alike, so that they agree on which side
+    /// is out.
     pub fn is_oriented(&self) -> bool {
         self.inconsistent_edges.count == 0
     }
 
-    /// Which component a triangle belongs to, in the order of their first triangles.
+    /// Returns the index of the component that a triangle belongs to; components are in the order of their first
+    /// triangles.
     pub fn component_of(&self, triangle: usize) -> usize {
         self.component_of[triangle] as usize
     }
 }
 
-/// Disjoint sets of triangles, or of anything that has numbers.
+/// Disjoint sets (union-find) of triangles, or of anything that has indices.
 pub(super) struct DisjointSets {
     parent: Vec<u32>,
 }
@@ -106,13 +110,14 @@ impl DisjointSets {
         member
     }
 
-    /// The smaller root stays, so that a set is named for its first member.
+    /// Joins the sets of two members. The smaller root stays, so that a set's root is its first member.
     pub(super) fn join(&mut self, one: usize, other: usize) {
         let (one, other) = (self.root(one), self.root(other));
         self.parent[one.max(other)] = one.min(other) as u32;
     }
 
-    /// Returns the number of each member's set, and how many sets there are.
+    /// Returns for each member the index of its set, and how many sets there are; sets are in the order of their first
+    /// members.
     pub(super) fn numbered(mut self) -> (Vec<u32>, usize) {
         let mut numbers = Vec::with_capacity(self.parent.len());
         let mut count = 0;

@@ -21,29 +21,29 @@ pub struct Edge {
     pub high: u32,
 }
 
-/// All edges of a mesh, ordered by (low, high), with their incident triangles.
+/// All edges of a mesh, sorted by (low, high), with the triangles at each.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EdgeList {
     edges: Vec<Edge>,
-    /// The incidents of each edge; of a fan, two that stand for no triangle.
+    /// The two triangles at each edge; two that stand for no triangle where there are more than two.
     pairs: Vec<[Incident; 2]>,
-    /// Edges of more than two triangles, in order.
+    /// Edges of more than two triangles, in the order of edges.
     fans: Vec<NonManifoldEdge>,
     fan_incidents: Vec<Incident>,
     none: Incident,
     neighbourhoods: Vec<Neighbourhood>,
 }
 
-/// Edges that are passed over together.
+/// The number of edges that are skipped together where all triangles around face the same way.
 const BLOCK: usize = 32;
-/// Runs of triangles that a block's edges may touch and be passed over.
+/// The most runs of triangles that a block's edges may touch for the block to be skipped.
 const MOST_RUNS: usize = 8;
 
-/// The runs of triangles that the edges of a block touch, repeated to fill; `None` where they are too
-/// many, or where some edge is not run once either way.
+/// The runs of triangles that the edges of a block touch, repeated to fill the array; `None` where they are too many,
+/// or where some edge is not shared by two triangles in opposite directions.
 type Neighbourhood = Option<[u32; MOST_RUNS]>;
 
-/// An edge of more than two triangles: `fan_incidents[start..end]`.
+/// An edge of more than two triangles, which are `fan_incidents[start..end]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct NonManifoldEdge {
     edge: u32,
@@ -51,8 +51,8 @@ struct NonManifoldEdge {
     end: u32,
 }
 
-/// A triangle's use of an edge: twice the triangle's index, plus one where it runs from high to
-/// low. Ordered by triangle. The index after the last triangle stands for none.
+/// A triangle's use of an edge: twice the triangle's index, plus 1 where it runs from high to low. The index after the
+/// last triangle stands for none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Incident(u32);
 
@@ -65,14 +65,15 @@ impl Incident {
         1 - 2 * (self.0 & 1) as i32
     }
 
-    /// The signed facing of its triangle: what it adds to the edge's multiplicity.
+    /// Returns what its triangle adds to the edge's multiplicity: the triangle's facing times its direction along the
+    /// edge.
     fn of(self, signs_and_none: &[i8]) -> i32 {
         i32::from(signs_and_none[self.triangle()]) * self.direction()
     }
 }
 
 impl EdgeList {
-    /// The edges of `triangles` over `vertex_count` vertices.
+    /// Builds the list of the edges of `triangles`, whose corners index `vertex_count` vertices.
     pub fn new(triangles: &[[u32; 3]], vertex_count: usize) -> EdgeList {
         let mut buckets = buckets_by_low_vertex(triangles, vertex_count);
         let none = Incident(triangles.len() as u32 * 2);
@@ -109,13 +110,13 @@ impl EdgeList {
         [self.none; 2]
     }
 
-    /// Returns the edges in order of (low, high).
+    /// Returns all edges, sorted by (low, high).
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
 
-    /// The triangles that use edge `index`, each with +1 where it runs from low to high and −1
-    /// where it runs back.
+    /// Returns the triangles at the edge with this index, each with +1 where it runs from low to high and −1 where it
+    /// runs back.
     pub fn incident(&self, index: usize) -> impl Iterator<Item = (usize, i32)> {
         let fan = self.fans.binary_search_by_key(&(index as u32), |fan| fan.edge).map(|fan| self.fans[fan]);
         let incidents = fan.map_or(&self.pairs[index][..], |fan| self.of_fan(fan));
@@ -127,8 +128,8 @@ impl EdgeList {
         &self.fan_incidents[fan.start as usize..fan.end as usize]
     }
 
-    /// Calls `visit` with the index and multiplicity of the edges of some blocks whose triangles'
-    /// signed facings do not cancel, in order of edges.
+    /// Calls `visit` with the index and multiplicity of each edge in these blocks whose triangles' signed facings do
+    /// not cancel, in the order of edges.
     pub(super) fn for_each_unbalanced(
         &self,
         blocks: Range<usize>,
@@ -160,7 +161,7 @@ impl EdgeList {
         }
     }
 
-    /// How many blocks of edges there are.
+    /// Returns how many blocks of edges there are.
     pub(super) fn blocks(&self) -> usize {
         self.neighbourhoods.len()
     }

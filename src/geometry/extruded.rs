@@ -12,32 +12,33 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// A vertex before it is carried, and the plane that decides.
+/// A vertex of a volume that a vertex shader extrudes, with the plane that decides whether it is carried away.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ExtrudedCorner {
-    /// Homogeneous with `w = 1`, relative to the origin of the pass's view.
+    /// Its position before it is carried: homogeneous with w = 1, relative to the origin of the pass's view.
     pub near: [f32; 4],
-    /// The plane of its triangle, in the same space: the unit normal and what is added to the product with it. Zeros
-    /// carry the vertex whatever the light.
+    /// The plane of its triangle in the same space: unit normal and offset. It is carried where the light is not in
+    /// front of the plane; zeros carry it under any light.
     pub plane: [f32; 4],
 }
 
-/// Where a light carries vertices.
+/// How a vertex shader carries vertices away from one light.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Carry {
-    /// Homogeneous, relative to the origin of the pass's view.
+    /// The light's homogeneous position, relative to the origin of the pass's view.
     pub light: [f32; 4],
     /// A far vertex is `(scale · near + offset, w)`.
     pub scale: f32,
     /// See [`Carry::scale`].
     pub offset: [f32; 3],
-    /// 0 at infinity, else 1.
+    /// The w of far vertices: 0 at infinity, else 1.
     pub w: f32,
 }
 
 impl Carry {
-    /// Is the light not in front of this plane? In the shader's order of steps.
+    /// Returns whether a vertex with this plane is carried: the light is not in front of the plane. Computes in single
+    /// precision and in the shader's order.
     pub fn carries(&self, [x, y, z, rest]: [f32; 4]) -> bool {
         let [light_x, light_y, light_z, light_w] = self.light;
         let side = x * light_x + y * light_y + z * light_z + rest * light_w;
@@ -45,30 +46,30 @@ impl Carry {
         !matches!(side.partial_cmp(&0.0), Some(std::cmp::Ordering::Greater))
     }
 
-    /// Where a vertex goes.
+    /// Returns where a vertex is carried.
     pub fn far(&self, [x, y, z, _]: [f32; 4]) -> [f32; 4] {
         let [to_x, to_y, to_z] = self.offset;
         [self.scale * x + to_x, self.scale * y + to_y, self.scale * z + to_z, self.w]
     }
 }
 
-/// Vertices that are carried by the shader.
+/// The vertices of a volume that a vertex shader extrudes, and how it carries them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extruded {
     /// One a vertex.
     pub corners: Blob<ExtrudedCorner>,
-    /// Where to.
+    /// How they are carried away from the light.
     pub carry: Carry,
 }
 
 impl Extruded {
-    /// Which of these vertices go to the far end?
+    /// Returns which of these vertices (by index) are carried to the far end.
     pub fn carried(&self, vertices: [u32; 3]) -> [bool; 3] {
         let is_carried = |corner: &ExtrudedCorner| self.carry.carries(corner.plane);
         vertices.map(|vertex| self.corners.data().get(vertex as usize).is_some_and(is_carried))
     }
 
-    /// Where the shader puts each vertex; made when they are first asked for.
+    /// Returns the positions at which the shader puts the vertices, computed when they are first asked for.
     pub fn vertices(&self) -> Blob<[f32; 4]> {
         let Extruded { corners, carry } = self.clone();
         let place = move |corner: &ExtrudedCorner| match carry.carries(corner.plane) {
@@ -83,33 +84,33 @@ impl Extruded {
     }
 }
 
-/// Of which triangles the volume consists that the shader carries.
+/// The triangles that a volume for a vertex shader consists of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ExtrudedForm {
-    /// Each triangle once, and a quad between the two of each edge: of a mesh that is closed and consistently wound,
-    /// of which the triangles that face the light cast.
+    /// Each triangle once, and a quad between the two triangles of each edge: for a closed, consistently wound mesh
+    /// whose light-facing triangles cast.
     Closed,
-    /// Each triangle twice, back to back, and a quad between the two at each of its edges: for any mesh.
+    /// Each triangle twice, back to back, and a quad between the copies at each of its edges: for any mesh.
     Prisms(Casters),
 }
 
-/// A caster's volume before a light decides about it.
+/// A caster's volume for a vertex shader; it is the same for every light.
 #[derive(Debug, Clone)]
 pub struct ExtrudedVolume {
-    /// Three a triangle, or six.
+    /// Its vertices: three for each triangle of the mesh, or six where each is there twice.
     pub corners: Blob<ExtrudedCorner>,
-    /// Three a triangle.
+    /// Vertex indices, three a triangle.
     pub indices: Blob<u32>,
-    /// Triangles of the quads on edges.
+    /// The range of triangles that are the quads on edges.
     pub sides: Range<usize>,
-    /// The mesh's triangles in its own order: front faces outwards.
+    /// The range of the mesh's triangles in its own order, front faces outwards.
     pub caps: Range<usize>,
-    /// The caps once more with back faces outwards; empty for a closed mesh.
+    /// The range of the second copies, which face inwards; empty for a closed mesh.
     pub flipped_caps: Range<usize>,
 }
 
 impl ExtrudedVolume {
-    /// Makes the volume of a mesh's `triangles` over `world`, with their `edges`; corners are relative to `origin`.
+    /// Makes the volume of a mesh with vertices `world`; positions are relative to `origin`.
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],
@@ -144,7 +145,8 @@ impl ExtrudedVolume {
 }
 
 impl ExtrudedForm {
-    /// The planes that decide about a triangle's copies: near where its front casts, and where its back does.
+    /// Returns the planes that decide about a triangle's two copies: it stays where its front casts, and where its back
+    /// does.
     fn planes(self, plane: [f32; 4]) -> [[f32; 4]; 2] {
         let (front, back) = (plane, plane.map(|value| -value));
         match self {
@@ -155,19 +157,19 @@ impl ExtrudedForm {
     }
 }
 
-/// Zeros where the corners are collinear.
+/// Returns a triangle's plane relative to `origin`: unit normal and offset; zeros where the corners are collinear.
 fn plane([a, b, c]: [DVec3; 3], origin: DVec3) -> [f32; 4] {
     let normal = (b - a).cross(c - a).normalize_or_zero();
     normal.extend(-normal.dot(a - origin)).as_vec4().to_array()
 }
 
-/// A quad from `near`'s edge to `far`'s, by the indices of their corners: outwards where the first stays, runs from `p`
-/// to `q`, and the second is carried, or the other way round.
+/// Adds the two triangles of a quad between the edge `p`–`q` of one triangle and the same edge of another. It faces
+/// outwards where the first, running from `p` to `q`, stays and the second is carried, or the other way round.
 fn quad([p, q]: [u32; 2], [p_far, q_far]: [u32; 2], out: &mut Vec<u32>) {
     out.extend([q, p, p_far, q, p_far, q_far]);
 }
 
-/// Adds, at each edge, a quad between the corners of its two triangles.
+/// Adds, for each edge, a quad between the two triangles that share it.
 fn between_neighbours(triangles: &[[u32; 3]], edges: &EdgeList, out: &mut Vec<u32>) {
     for (index, edge) in edges.edges().iter().enumerate() {
         let corner = |triangle: usize, vertex: u32| {
@@ -185,7 +187,7 @@ fn between_neighbours(triangles: &[[u32; 3]], edges: &EdgeList, out: &mut Vec<u3
     }
 }
 
-/// Adds, at each edge of a triangle, a quad between its two copies.
+/// Adds, for each edge of a triangle, a quad between the triangle's two copies.
 fn around_prism(triangle: usize, out: &mut Vec<u32>) {
     let first = triangle as u32 * 6;
     for (p, q) in [(0, 1), (1, 2), (2, 0)] {

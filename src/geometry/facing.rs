@@ -17,57 +17,56 @@ use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
-/// Which triangles cast.
+/// Which triangles of a mesh cast its shadow volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Casters {
-    /// Every triangle, oriented towards the light: right for any triangle soup.
+    /// Every triangle, turned towards the light: right for any triangle soup.
     All,
-    /// Those that face the light, as textbooks have it: right only for a closed mesh with its
-    /// outside out and the light outside it.
+    /// Those that face the light: right only for a closed, outward-wound mesh with the light outside it.
     LightFacing,
     /// Those that face away from the light, flipped: right under the same conditions.
     LightBackFacing,
 }
 
-/// Triangles of a block of planes.
+/// Number of triangles in a block of planes.
 const LANES: usize = 64;
-/// Runs of such a block.
+/// Number of runs in a block of planes.
 const RUNS: usize = LANES / RUN;
-/// Number of triangles whose common facing is stored, so that what depends on them can be passed over.
+/// Number of triangles in a run, whose common facing is stored so that the run can be skipped.
 pub(super) const RUN: usize = 16;
-/// A run of triangles that do not all face the same way.
+/// Stands for the facing of a run whose triangles do not all face the same way.
 pub(super) const MIXED: i8 = 2;
-/// Triangles a thread takes at once.
+/// Number of triangles that one thread takes at once.
 const SHARE: usize = 1024 * LANES;
-/// Relative rounding of one `f32` operation.
+/// Relative rounding error of one `f32` operation.
 const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 
-/// The planes of a caster's triangles, world space.
+/// The planes of a caster's triangles, world space, in blocks for fast facing tests.
 #[derive(Debug, Clone, Default)]
 pub struct CasterPlanes {
     blocks: Vec<PlaneBlock>,
     extremes: Vec<PlaneExtremes>,
     middle: DVec3,
-    /// At least the distance of any corner from `middle` along any axis.
+    /// An upper bound for the distance of any corner from `middle` along any axis.
     reach: f64,
 }
 
-/// Planes of [`LANES`] triangles; NaN where the plane is too uncertain to decide anything.
+/// Planes of [`LANES`] triangles; NaN where the plane is too uncertain to decide a side.
 #[derive(Debug, Clone)]
 struct PlaneBlock {
     normal: [[f32; LANES]; 3],
     offset: [f32; LANES],
 }
 
-/// The smallest and largest components of the planes of [`RUNS`] runs: x, y, z and offset of
-/// either; NaN where one of the planes is uncertain.
+/// The smallest and largest plane components (x, y, z, offset) of each of a block's [`RUNS`] runs; NaN where one of the
+/// planes is uncertain.
 #[derive(Debug, Clone)]
 struct PlaneExtremes {
     low: [[f32; RUNS]; 4],
     high: [[f32; RUNS]; 4],
 }
 
-/// How all triangles of a caster face one light, and how many do so either way.
+/// For each triangle of a caster whether it faces a light, and how many face it or face away.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Facings {
     /// 1 towards the light, −1 away, 0 edge-on; one more 0 at the end stands for "no triangle".
@@ -79,7 +78,7 @@ pub struct Facings {
 }
 
 impl Facings {
-    /// Returns facings from signs that are known already, such as the exact ones.
+    /// Returns facings with these signs, such as those of [`facing`](super::silhouette::facing).
     pub fn from_signs(signs: impl IntoIterator<Item = Sign>) -> Facings {
         let mut facings = Facings::default();
         facings.signs.extend(signs.into_iter().map(|sign| sign.value() as i8));
@@ -95,7 +94,7 @@ impl Facings {
         (*towards, *away) = (signs.iter().filter(|sign| **sign > 0).count(), signs.iter().filter(|s| **s < 0).count());
     }
 
-    /// One a triangle: 1, −1 or 0.
+    /// Returns a sign for each triangle: 1 where it faces the light, −1 where it faces away, 0 edge-on.
     pub fn signs(&self) -> &[i8] {
         &self.signs[..self.signs.len().saturating_sub(1)]
     }
@@ -105,22 +104,22 @@ impl Facings {
         &self.signs
     }
 
-    /// The common sign of every [`RUN`] triangles, or [`MIXED`].
+    /// Returns the common sign of each run of [`RUN`] triangles, or [`MIXED`].
     pub(super) fn runs(&self) -> &[i8] {
         &self.runs
     }
 
-    /// How many triangles face the light.
+    /// Returns how many triangles face the light.
     pub fn towards(&self) -> usize {
         self.towards
     }
 
-    /// How many face away from it.
+    /// Returns how many triangles face away from the light.
     pub fn away(&self) -> usize {
         self.away
     }
 
-    /// Triangles that do not cast become edge-on, so that nobody downstream needs to know.
+    /// Sets the sign of triangles that do not cast to 0, as if they were edge-on.
     pub fn keep_casting(&mut self, casters: Casters) {
         let keep = |sign: i8| match casters {
             Casters::All => sign,
@@ -133,7 +132,7 @@ impl Facings {
         }
     }
 
-    /// Sets the facing of the triangles that `left_out` says, one value a triangle, to 0; of none, if it is empty.
+    /// Sets the sign of each triangle for which `left_out` is true to 0; changes nothing where it is empty.
     pub fn leave_out(&mut self, left_out: &[bool]) {
         if left_out.is_empty() {
             return;
@@ -149,14 +148,14 @@ impl Facings {
     }
 }
 
-/// The sign that all have in common, or [`MIXED`].
+/// Returns the sign that all have in common, or [`MIXED`].
 fn sign_of_run(signs: &[i8]) -> i8 {
     let first = signs.first().copied().unwrap_or(MIXED);
     if signs.iter().fold(0, |different, sign| different | (sign ^ first)) == 0 { first } else { MIXED }
 }
 
 impl CasterPlanes {
-    /// Computes the planes of `triangles` over `world` positions.
+    /// Computes the planes of `triangles` with vertices `world`.
     pub fn new(world: &[DVec3], triangles: &[[u32; 3]]) -> CasterPlanes {
         let Some(first) = world.first() else { return CasterPlanes::default() };
         let (low, high) = world.iter().fold((*first, *first), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -179,8 +178,8 @@ impl CasterPlanes {
         CasterPlanes { blocks, extremes, middle, reach }
     }
 
-    /// Computes the exact facing of every triangle, into buffers that are reused. `world` and `triangles` are those
-    /// that the planes were made of.
+    /// Computes on which side of every triangle a homogeneous `light` is, exactly, into `out`. `world` and `triangles`
+    /// must be those that the planes were made of.
     pub fn facings(&self, world: &[DVec3], triangles: &[[u32; 3]], light: DVec4, out: &mut Facings) {
         let view = PlaneLight::new(self, light);
         if out.signs.len() != triangles.len() + 1 {
@@ -233,11 +232,11 @@ impl CasterPlanes {
     }
 }
 
-/// A light as the planes see it.
+/// A light's position scaled as the planes are, with the rounding error bound.
 struct PlaneLight {
     light: [f32; 3],
     w: f32,
-    /// Values beyond it have the exact sign.
+    /// Plane values of larger magnitude are sure to have the exact sign.
     bound: f32,
 }
 
@@ -280,7 +279,7 @@ impl PlaneLight {
         signs
     }
 
-    /// Signs of a run; returns their sum and how many are not zero.
+    /// Writes the signs of a run's triangles into `out`; returns their sum, and how many are not 0.
     fn run(&self, block: &PlaneBlock, run: usize, out: &mut [i8], exact: impl Fn(usize) -> i8) -> (i64, i64) {
         let [x, y, z] = self.light;
         let [nx, ny, nz] = &block.normal;
@@ -316,8 +315,8 @@ impl PlaneExtremes {
     }
 }
 
-/// Scaled normal and offset of a triangle's plane; `None` where rounding may have moved the normal
-/// by more than 2^-26 of its largest component, or nothing is known of it.
+/// Returns the scaled normal and offset of a triangle's plane; `None` where rounding may have moved the normal by more
+/// than 2^-26 of its largest component, or the numbers are out of range.
 fn plane([a, b, c]: [DVec3; 3], (middle, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
     let (u, v) = (b - a, c - a);
     let normal = u.cross(v);

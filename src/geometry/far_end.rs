@@ -12,9 +12,9 @@ use super::{Facings, SilhouetteEdge};
 use crate::math::{AxisBox, Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
-/// A fan's direction goes in through a side of the bounding box at this sine at least.
+/// The apex direction points to the box's middle only if it enters through a side at this sine or more.
 const STEEP: f64 = 0.25;
-/// Directions to count along, none of them special; the next is taken where one lies on a cone's border.
+/// Directions to count along, none of them special; the next is tried where one lies on a cone's border.
 const PROBES: [DVec3; 4] = [
     DVec3::new(0.2719, -0.8461, 0.4583),
     DVec3::new(-0.7713, 0.3329, 0.5424),
@@ -23,22 +23,23 @@ const PROBES: [DVec3; 4] = [
 ];
 /// Directions of an octahedron's corners.
 const AXES: [DVec3; 6] = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
-/// Its sides, outwards.
+/// The octahedron's triangles by their corners, facing outwards.
 const OCTAHEDRON: [[u32; 3]; 8] =
     [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 
-/// A fan at infinity, and whole spheres.
+/// The dark cap of an infinite volume under a point light: a fan of triangles at infinity around one direction, and
+/// whole spheres that correct the count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapFan {
-    /// The direction in which its triangles meet.
+    /// The direction in which the fan's triangles meet.
     pub apex: DVec3,
-    /// Spheres that are added, or taken away.
+    /// How many spheres at infinity are added; negative where they are taken away.
     pub spheres: i32,
 }
 
 impl CapFan {
-    /// Makes the fan of a caster and a point light, with the silhouette of its casting triangles; `None` where no
-    /// direction to count along was found.
+    /// Makes the fan for a caster under a point light at `light`, from the silhouette of its casting triangles; `None`
+    /// where every probe direction lies on a cone's border.
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],
@@ -74,18 +75,19 @@ impl CapFan {
         PROBES.iter().find_map(spheres_along).map(|spheres| CapFan { apex, spheres })
     }
 
-    /// How many triangles its spheres have.
+    /// Returns how many triangles its spheres have.
     pub fn sphere_triangles(&self) -> usize {
         OCTAHEDRON.len() * self.spheres.unsigned_abs() as usize
     }
 
-    /// The apex, then the corners of a sphere, if it has any.
+    /// Returns the apex, then the corners of the octahedron that stands for a sphere if there is any, as directions (w
+    /// = 0).
     pub fn vertices(&self) -> impl Iterator<Item = DVec4> + use<> {
         let axes = if self.spheres == 0 { &AXES[..0] } else { &AXES[..] };
         std::iter::once(self.apex).chain(axes.iter().copied()).map(|direction| direction.extend(0.0))
     }
 
-    /// Returns the triangles of its spheres, whose first corner has index `first`.
+    /// Returns the triangles of its spheres as vertex indices; `first` is the index of the octahedron's first corner.
     pub fn sphere_indices(&self, first: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
         let is_flipped = self.spheres < 0;
         let side = move |[a, b, c]: [u32; 3]| {
@@ -95,7 +97,7 @@ impl CapFan {
     }
 }
 
-/// The direction from a light into the box from `low` to `high`; `None` where it is inside, or on it.
+/// Returns the direction from a light into the box from `low` to `high`; `None` where the light is inside or on it.
 fn into_box(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
     let above = [(DVec3::X, light.x - high.x), (DVec3::Y, light.y - high.y), (DVec3::Z, light.z - high.z)];
     let below = [(DVec3::NEG_X, low.x - light.x), (DVec3::NEG_Y, low.y - light.y), (DVec3::NEG_Z, low.z - light.z)];

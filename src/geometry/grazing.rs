@@ -7,15 +7,15 @@
 use super::{Caster, Edge, EdgeList, SilhouetteEdge};
 use glam::DVec4;
 
-/// The sine up to which the light grazes a triangle, about a tenth of a degree: beyond it, what is
-/// within rounding of a side is within a tenth of a pixel of the edge.
+/// A light grazes a triangle where the sine of its angle to the plane is at most this, about a tenth of a degree:
+/// beyond it, what is within rounding of a side is within a tenth of a pixel of the edge.
 const GRAZING: f64 = 0.002;
 
-/// The sine below which rounding to single precision may turn a triangle to the light's other side.
+/// The sine below which single precision may take the light to be on a triangle's other side.
 const EDGE_ON: f64 = 1e-6;
 
-/// Moves the edges whose sides graze a triangle of `caster` to the end, with the order unchanged otherwise; returns how
-/// many they are.
+/// Moves the silhouette edges whose sides graze a triangle of `caster` to the end, keeping the order otherwise; returns
+/// how many there are.
 pub fn move_grazing_last(
     silhouette: &mut [SilhouetteEdge],
     caster: Caster,

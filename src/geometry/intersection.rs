@@ -15,7 +15,8 @@ use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::time::Duration;
 
-/// Returns two triangles that intersect elsewhere than in what they share, or are not proven not to.
+/// Returns the indices of two triangles that intersect in more than the corners and edges they share, or for which that
+/// is not ruled out; `None` for a mesh that does not intersect itself.
 pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
     if triangles.is_empty() {
         return None;
@@ -28,7 +29,7 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
     if search.finds_any() { search.first() } else { None }
 }
 
-/// Looks for triangles that intersect among those whose boxes overlap.
+/// A search for intersecting triangles among those whose bounding boxes overlap, in a bounding volume hierarchy.
 struct IntersectionSearch<'a> {
     world: &'a [DVec3],
     triangles: &'a [[u32; 3]],
@@ -38,15 +39,15 @@ struct IntersectionSearch<'a> {
     hierarchy: &'a Bvh2,
 }
 
-/// Two nodes of the hierarchy: which triangles below the one intersect which below the other?
+/// Two nodes of the hierarchy whose triangles are tested against each other.
 type NodePair = [u32; 2];
 
 impl IntersectionSearch<'_> {
-    /// Pairs that are shared among threads, about.
+    /// About how many pairs of nodes are shared among threads.
     const SHARED: usize = 1024;
 
-    /// Traverses the hierarchy against itself: no pair is visited twice, as it would be if each triangle asked for
-    /// those around it.
+    /// Returns whether any two triangles intersect. Traverses the hierarchy against itself, so that each pair is
+    /// visited once.
     fn finds_any(&self) -> bool {
         let mut pairs: Vec<NodePair> = vec![[0, 0]];
         while !pairs.is_empty() && pairs.len() < Self::SHARED {
@@ -67,7 +68,8 @@ impl IntersectionSearch<'_> {
         })
     }
 
-    /// Returns whether triangles of two leaves intersect. For other nodes, it adds the pairs below whose boxes overlap.
+    /// Returns whether triangles of two leaves intersect. For inner nodes, adds to `below` the pairs of children whose
+    /// boxes overlap.
     fn look(&self, [one, other]: NodePair, below: &mut Vec<NodePair>) -> bool {
         let node = |index: u32| &self.hierarchy.nodes[index as usize];
         let overlap = |pair: &NodePair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
@@ -111,7 +113,8 @@ impl IntersectionSearch<'_> {
             && meet(self.world, [one, other].map(|triangle| (self.triangles[triangle], self.has_area[triangle])))
     }
 
-    /// Returns the first triangle in the mesh's order that intersects some later one: the same in every run.
+    /// Returns the first triangle in the mesh's order that intersects a later one, and that one: the same pair in every
+    /// run.
     fn first(&self) -> Option<[usize; 2]> {
         let with = |one: usize| {
             let mut met = None;
@@ -126,14 +129,14 @@ impl IntersectionSearch<'_> {
     }
 }
 
-/// Returns the box of a triangle in `f32`, rounded outwards.
+/// Returns the bounding box of a triangle in `f32`, rounded outwards.
 fn outer_box([a, b, c]: [DVec3; 3]) -> Aabb {
     let round = |p: DVec3, towards: fn(f32) -> f32| Vec3A::from_array(p.to_array().map(|x| towards(x as f32)));
     Aabb { min: round(a.min(b).min(c), f32::next_down), max: round(a.max(b).max(c), f32::next_up) }
 }
 
-/// Returns whether two triangles, each of which may have an area, intersect in more than the corners and edges that
-/// they share.
+/// Returns whether two triangles intersect in more than the corners and edges they share; each comes with whether its
+/// corners are not collinear. True where that can't be decided.
 fn meet(world: &[DVec3], [(one, one_has_area), (other, other_has_area)]: [([u32; 3], bool); 2]) -> bool {
     let have_area = one_has_area && other_has_area;
     let at = |corners: [u32; 3]| corners.map(|vertex| world[vertex as usize]);
@@ -166,16 +169,16 @@ fn opposite(one: Sign, other: Sign) -> bool {
     one.value() * other.value() < 0
 }
 
-/// A triangle and points of its plane in two dimensions, along an axis from which it has an area.
+/// A triangle projected along a coordinate axis in whose direction it has an area.
 struct FlatTriangle {
     axis: usize,
     corners: [DVec2; 3],
-    /// Which way its corners run.
+    /// The orientation of its projected corners.
     turn: Sign,
 }
 
 impl FlatTriangle {
-    /// `None` where the corners are collinear.
+    /// Projects a triangle along the first axis that leaves it an area; `None` where the corners are collinear.
     fn of(triangle: [DVec3; 3]) -> Option<FlatTriangle> {
         (0..3).find_map(|axis| {
             let corners = triangle.map(|corner| flat(corner, axis));
@@ -188,18 +191,19 @@ impl FlatTriangle {
         flat(point, self.axis)
     }
 
-    /// Positive where the point is on the inner side of the edge that begins at `corner`.
+    /// Returns 1 where the point is on the inner side of the edge that begins at `corner`, −1 on the outer side, 0 on
+    /// its line.
     fn inside_of(&self, corner: usize, point: DVec2) -> i32 {
         let edge = [self.corners[corner], self.corners[(corner + 1) % 3]];
         side_of_line(edge, point).value() * self.turn.value()
     }
 
-    /// Is some edge a line with the triangle on one side and all of `points` on the other?
+    /// Returns whether some edge's line has the triangle on one side and all of `points` strictly on the other.
     fn keeps_out(&self, points: &[DVec2]) -> bool {
         (0..3).any(|corner| points.iter().all(|point| self.inside_of(corner, *point) < 0))
     }
 
-    /// Is the direction from corner 0 to `point` strictly outside the wedge of the edges there?
+    /// Returns whether the direction from corner 0 to `point` is strictly outside the wedge of the two edges there.
     fn wedge_keeps_out(&self, point: DVec2) -> bool {
         self.inside_of(0, point) < 0 || self.inside_of(2, point) < 0
     }
@@ -209,8 +213,8 @@ fn flat(point: DVec3, axis: usize) -> DVec2 {
     DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
 }
 
-/// Returns whether triangles (from, to, tip) and (from, to, other tip) intersect beyond the edge: only where they are
-/// folded onto each other.
+/// Returns whether the triangles (from, to, tip) and (from, to, other_tip) intersect in more than their edge, which
+/// they do only where they are folded onto each other.
 fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
     if side([from, to, tip], other_tip) != Sign::Zero {
         return false;
@@ -219,7 +223,7 @@ fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
     flat.inside_of(0, flat.flat(other_tip)) >= 0
 }
 
-/// Triangles with corner 0 in common.
+/// Returns whether two triangles that share their corner 0 intersect in more than that.
 fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     let same_side = |signs: [Sign; 2]| signs[0] != Sign::Zero && signs[0] == signs[1];
     let of_other = [side(one, other[1]), side(one, other[2])];
@@ -251,7 +255,7 @@ fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     }
 }
 
-/// Wedges of one plane with a common apex: does a line along an edge of either part them?
+/// Returns whether two wedges in one plane with a common apex are separated by a line along an edge of either.
 fn wedges_are_apart(one: &FlatTriangle, other: [DVec3; 2]) -> bool {
     let apex = one.corners[0];
     let [c, d] = other.map(|point| one.flat(point));
@@ -264,7 +268,7 @@ fn wedges_are_apart(one: &FlatTriangle, other: [DVec3; 2]) -> bool {
         && [a, b].iter().all(|p| other.wedge_keeps_out(*p))
 }
 
-/// Triangles with nothing in common.
+/// Returns whether two triangles that share no corner intersect.
 fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     let one_side = |signs: [Sign; 3]| signs[0] != Sign::Zero && signs[0] == signs[1] && signs[1] == signs[2];
     let of_other = other.map(|corner| side(one, corner));
@@ -289,13 +293,14 @@ fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     pierces(one, &flat_one, other, of_other) || pierces(other, &flat_other, one, of_one)
 }
 
-/// A triangle along a given axis; it has an area there, since it lies in a plane that has.
+/// Projects a triangle along an axis in whose direction its plane has an area.
 fn flat_along(triangle: [DVec3; 3], axis: usize) -> FlatTriangle {
     let corners = triangle.map(|corner| flat(corner, axis));
     FlatTriangle { axis, corners, turn: side_of_line([corners[0], corners[1]], corners[2]) }
 }
 
-/// Returns whether a segment intersects a closed triangle. `sides` are those of its ends.
+/// Returns whether a segment intersects a closed triangle. `sides` has the side of the triangle's plane that each end
+/// is on.
 fn segment_meets(triangle: [DVec3; 3], flat: &FlatTriangle, [from, to]: [DVec3; 2], sides: [Sign; 2]) -> bool {
     if sides[0] == sides[1] {
         // In the plane: apart if an edge of the triangle keeps both ends out, or the segment's line

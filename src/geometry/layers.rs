@@ -11,11 +11,11 @@
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
 
-/// How often a cell is halved each way.
+/// How often a cell of directions is divided into quarters at most.
 const MOST_HALVINGS: u32 = 12;
 
-/// Returns whether a ray of the light can hit more than `limit` of these triangles, world space. True where a corner is
-/// no number.
+/// Returns whether a ray of the light may hit more than `limit` of these triangles (world space). Conservative: true
+/// where that can't be ruled out, or where a corner is not finite.
 pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> bool {
     if triangles.len() <= limit {
         return false;
@@ -40,7 +40,8 @@ pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> boo
     })
 }
 
-/// Relative to a lamp; before a light that is nowhere, all lies at distance 1: its cones' planes are parallel.
+/// Returns the triangles relative to a point light; for a directional one, in a frame in which all its rays are (x, y,
+/// 1).
 fn seen_from(mut triangles: Vec<[DVec3; 3]>, light: DVec4) -> Vec<[DVec3; 3]> {
     let corners = triangles.iter_mut().flatten();
     if light.w != 0.0 {
@@ -53,21 +54,21 @@ fn seen_from(mut triangles: Vec<[DVec3; 3]>, light: DVec4) -> Vec<[DVec3; 3]> {
     triangles
 }
 
-/// Boxes along each side of what triangles cover of a face, at most.
+/// The most boxes along each side of a face's grid.
 const MOST_BOXES: usize = 1024;
-/// Full boxes that are looked into one by one; of more, all directions are divided.
+/// The most full boxes that are examined one by one; with more, all directions are divided instead.
 const MOST_FULL: usize = 256;
-/// Triangles in them together that are always looked at, some 70 bytes each.
+/// How many triangles in full boxes are examined in any case, some 70 bytes each.
 const MOST_IN_FULL: usize = 1 << 16;
-/// More than rounding moves a place on a face by, in parts of its half or, beyond that, of the place.
+/// An upper bound for the rounding error of a position on a face, relative to 1 or, beyond that, to the position.
 const BESIDE: f64 = 1e-9;
 
-/// A place on a face, and as far beside it as rounding may have moved it.
+/// Returns a range on a face, widened by its rounding error.
 fn around(low: f64, high: f64) -> [f64; 2] {
     [low - BESIDE * low.abs().max(1.0), high + BESIDE * high.abs().max(1.0)]
 }
 
-/// A face of the cube around a light: its axis, and on which side.
+/// A face of the cube around a light: its axis (0, 1, 2) and side (1 or −1).
 #[derive(Debug, Clone, Copy)]
 struct CubeFace {
     axis: usize,
@@ -85,7 +86,7 @@ impl CubeFace {
         CubeFace { axis: 2, side: -1.0 },
     ];
 
-    /// Of each corner, how far it is across, across and ahead.
+    /// Returns each corner's coordinates for this face: the two across it, and the distance ahead.
     fn seen<const N: usize>(self, corners: &[DVec3; N]) -> [DVec3; N] {
         corners.map(|corner| {
             let [across, other] = [1, 2].map(|step| corner[(self.axis + step) % 3]);
@@ -94,12 +95,12 @@ impl CubeFace {
     }
 }
 
-/// What triangles may cover of a face, in boxes.
+/// A grid of boxes over the part of a face that triangles may cover.
 struct CoverageGrid {
     face: CubeFace,
     cell: DirectionCell,
     boxes: usize,
-    /// Boxes for a step across.
+    /// Boxes per unit along both sides.
     scale: [f64; 2],
 }
 
@@ -110,8 +111,8 @@ impl CoverageGrid {
         CoverageGrid { face, cell, boxes: boxes as usize, scale }
     }
 
-    /// Which boxes the box around a triangle touches: first and last along both sides; `None` where it is beyond them.
-    /// What reaches behind the light may be anywhere.
+    /// Returns which boxes the bounding box of a triangle touches: first and last along both sides. `None` where it
+    /// touches none; all boxes where the triangle reaches behind the light.
     fn touched(&self, corners: &[DVec3; 3]) -> Option<[[usize; 2]; 2]> {
         let [a, b, c] = self.face.seen(corners);
         if a.z.max(b.z).max(c.z) < 0.0 {
@@ -132,7 +133,7 @@ impl CoverageGrid {
         Some([along(0)?, along(1)?])
     }
 
-    /// The directions through a box.
+    /// Returns the cell of directions through a box.
     fn directions(&self, at: [usize; 2]) -> DirectionCell {
         let border = |axis: usize, index: usize| self.cell.low[axis] + index as f64 / self.scale[axis];
         let borders = |more: usize| [border(0, at[0] + more), border(1, at[1] + more)];
@@ -140,15 +141,15 @@ impl CoverageGrid {
     }
 }
 
-/// A box that more may reach into than the limit.
+/// A box that more triangles may reach into than the limit, with those triangles.
 struct OverLimit<'a> {
     grid: &'a CoverageGrid,
     at: [usize; 2],
     inner: Vec<[DVec3; 3]>,
 }
 
-/// Returns whether a ray can hit more than `limit` triangles. In each of many boxes, the triangles that may reach into
-/// it are counted, with one look at each triangle; only full boxes are divided further. `None` where they are many.
+/// Returns whether a ray may hit more than `limit` triangles: counts the triangles that reach into each box, and
+/// divides only full boxes further. `None` where full boxes are too many.
 fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[CoverageGrid], limit: usize) -> Option<bool> {
     let mut full: Vec<OverLimit> = Vec::new();
     let mut in_full = 0;
@@ -193,10 +194,10 @@ fn exceeds_in_boxes(triangles: &[[DVec3; 3]], grids: &[CoverageGrid], limit: usi
     Some(full.iter().any(|full| full.grid.directions(full.at).exceeds(&full.inner, limit, MOST_HALVINGS)))
 }
 
-/// What rounding may make of a sine of 0: some hundred times more than it does.
+/// The largest sine that rounding may make of 0, with a wide margin.
 const FLAT: f64 = 1e-13;
 
-/// Directions (x, y, 1) with x and y in a range.
+/// A cell of directions (x, y, 1), with x and y between `low` and `high`.
 #[derive(Clone, Copy)]
 struct DirectionCell {
     low: [f64; 2],
@@ -204,12 +205,13 @@ struct DirectionCell {
 }
 
 impl DirectionCell {
-    /// A face of the cube around a light.
+    /// The directions through a face of the cube around a light.
     const FACE: DirectionCell = DirectionCell { low: [-1.0 - BESIDE; 2], high: [1.0 + BESIDE; 2] };
-    /// All that is ahead.
+    /// All directions with positive z.
     const PLANE: DirectionCell = DirectionCell { low: [f64::NEG_INFINITY; 2], high: [f64::INFINITY; 2] };
 
-    /// What of it a box can cover whose corners these are; all, where it reaches behind the light.
+    /// Returns the part of this cell that a box with these corners can cover: all of it where the box reaches behind
+    /// the light, `None` where it covers none.
     fn part_before(&self, corners: &[DVec3; 8]) -> Option<DirectionCell> {
         if corners.iter().any(|corner| corner.z <= 0.0) {
             return self.may_hold(corners).then_some(*self);
@@ -248,8 +250,8 @@ impl DirectionCell {
         })
     }
 
-    /// Returns whether something with these corners may reach into the cell, as far as the four planes around it
-    /// decide.
+    /// Returns whether something with these corners may reach into the cell: false only where all corners are outside
+    /// one of the planes around it.
     fn may_hold<const N: usize>(&self, corners: &[DVec3; N]) -> bool {
         let some = |inside: &dyn Fn(&DVec3) -> bool| corners.iter().any(inside);
         some(&|p| p.z >= 0.0)
@@ -259,8 +261,8 @@ impl DirectionCell {
             && some(&|p| p.y <= self.high[1] * p.z)
     }
 
-    /// Does a plane through the light and an edge of the triangle have the triangle on its one side, and
-    /// all of the cell on the other?
+    /// Returns whether a plane through the light and an edge of the triangle separates the triangle from all of the
+    /// cell.
     fn is_beyond_an_edge(&self, corners: &[DVec3; 3]) -> bool {
         let ([left, lower], [right, upper]) = (self.low, self.high);
         let cell = [[left, lower], [right, lower], [left, upper], [right, upper]].map(|[x, y]| DVec3::new(x, y, 1.0));

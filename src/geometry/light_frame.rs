@@ -10,28 +10,28 @@ use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::{AxisBox, Sign, projection, side_of_triangle};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-/// Half the widest cone that one map covers, in degrees.
+/// Half the opening angle, in degrees, of the widest cone that one map covers.
 const WIDEST_HALF_ANGLE: f64 = 60.0;
-/// How much of its picture a silhouette fills.
+/// The share of its picture's half width that a silhouette with a border reaches.
 const SILHOUETTE_FILL: f64 = 0.98;
 /// Margin around the casters, in texels, so that no edge falls on the border.
 const BORDER_TEXELS: f64 = 2.0;
 
-/// A shadow map's frame.
+/// The coordinate systems of a shadow map: light space, and the clip space of each face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightFrame {
-    /// World position that map vertices are made relative to before rounding.
+    /// The world position that vertices of the map's passes are relative to before rounding to `f32`.
     pub origin: DVec3,
-    /// Light space (light at the origin or, directional, the casters' middle; rotated by
-    /// `light_from_relative`) from world space.
+    /// Light space from world space: the light (for a directional one the casters' middle) is at the origin, and the
+    /// axes are rotated by `light_from_relative`.
     pub light_from_world: DMat4,
-    /// The rotation part: light space from positions relative to `origin`.
+    /// Light space from positions relative to `origin`: a rotation.
     pub light_from_relative: DMat4,
-    /// Clip space of each face from light space: one face, or six in wgpu's order.
+    /// Clip space from light space, for each face: one, or six in the order of [`CUBE_FACES`].
     pub clip_from_light: Vec<DMat4>,
 }
 
-/// wgpu's order of cube faces: the direction each looks, and what is up in its picture.
+/// The faces of a cube map in wgpu's order: name, view direction, and the direction that is up in its picture.
 pub const CUBE_FACES: [(&str, DVec3, DVec3); 6] = [
     ("+x", DVec3::X, DVec3::Y),
     ("-x", DVec3::NEG_X, DVec3::Y),
@@ -41,25 +41,26 @@ pub const CUBE_FACES: [(&str, DVec3, DVec3); 6] = [
     ("-z", DVec3::NEG_Z, DVec3::Y),
 ];
 
-/// How a map is stored.
+/// The size of a shadow map, and how it stores depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapStorage {
     /// Texels along each side.
     pub size: u32,
-    /// How distance from the light becomes depth.
+    /// How distance from the light is mapped to depth.
     pub depth: DepthMapping,
-    /// The epsilon of the mapping that has one.
+    /// The epsilon of the mapping that uses one.
     pub epsilon: f64,
 }
 
 impl MapStorage {
-    /// Returns the mapping for casters between two distances along the map's axis.
+    /// Returns the mapping for casters between two distances from the light along the map's axis.
     fn curve(&self, nearest: f64, farthest: f64) -> DepthCurve {
         self.depth.curve(nearest, farthest.max(nearest * 2.0) * 1.01, self.epsilon)
     }
 }
 
-/// Fits a frame around the triangles that cast. `None` where nothing casts.
+/// Fits a shadow map's frame to the triangles that cast (world space): orthographic for a directional light, else one
+/// perspective face or a cube. `None` where nothing casts.
 pub fn fit(casters: &[[DVec3; 3]], light: DVec4, storage: &MapStorage) -> Option<LightFrame> {
     if casters.is_empty() {
         return None;
@@ -73,7 +74,8 @@ pub fn fit(casters: &[[DVec3; 3]], light: DVec4, storage: &MapStorage) -> Option
     Some(perspective(&relative, eye, border, storage).unwrap_or_else(|| cube(&relative, eye, storage)))
 }
 
-/// `None` where the casters do not fit the widest cone.
+/// Fits one perspective face around casters, given relative to the light; `None` where they do not fit into the widest
+/// cone.
 fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64, storage: &MapStorage) -> Option<LightFrame> {
     let points = || relative.iter().flatten().copied();
     let directions = || points().map(DVec3::normalize_or_zero);
@@ -128,24 +130,24 @@ fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed
     frame(origin, rotation, vec![clip])
 }
 
-/// How much of the light's view a silhouette's picture has.
+/// How the picture of a caster's silhouette is framed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SilhouetteView {
-    /// The caster's silhouette, with or without a clear border around it.
+    /// As large as the caster's silhouette.
     Fitted {
-        /// A border keeps the picture's edge clear.
+        /// Whether the silhouette stays clear of the picture's edge.
         has_border: bool,
     },
-    /// This much to each side of the direction of the caster's middle: of a lamp's view the tangent of half the angle, of a
-    /// sun's half the width in world units.
+    /// Of a fixed size around the direction of the caster's middle.
     Fixed {
-        /// That much.
+        /// Half of that size: the tangent of half the field of view for a point light, half the width in metres for a
+        /// directional one.
         half: f64,
     },
 }
 
-/// Clip space from world space of a picture of a caster's silhouette. `None` where a part of it is behind the light or level
-/// with it. All that is ahead of the light is at one depth.
+/// Returns clip space from world space for a picture of a caster's silhouette as the light sees it; all depths are
+/// equal. `None` where a vertex is behind the light or level with it.
 pub fn fit_silhouette(caster: &[DVec3], light: DVec4, view: SilhouetteView) -> Option<DMat4> {
     let from_light: Vec<DVec3> = caster.iter().map(|point| *point * light.w - light.truncate()).collect();
     let forward = from_light.iter().sum::<DVec3>().try_normalize()?;
@@ -191,19 +193,20 @@ fn frame(origin: DVec3, rotation: DMat3, clip_from_light: Vec<DMat4>) -> LightFr
     LightFrame { origin, light_from_world, light_from_relative, clip_from_light }
 }
 
-/// Can a triangle (relative to the light) show in a face? Conservative: false only where it lies
-/// wholly outside one of the frustum's sides or behind it.
+/// Returns whether a triangle, relative to the frame's origin, may show in a face of the map. Conservative: false only
+/// where it lies wholly behind the light or outside one of the frustum's sides.
 pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DVec3; 3]) -> bool {
     let clip = corners.map(|corner| clip_from_light * light_from_relative * corner.extend(1.0));
     let sides: [fn(DVec4) -> f64; 5] = [|c| c.w + c.x, |c| c.w - c.x, |c| c.w + c.y, |c| c.w - c.y, |c| c.w];
     sides.iter().all(|side| clip.iter().any(|corner| side(*corner) > 0.0))
 }
 
-/// Objects of more triangles are taken to darken something without looking: the look is triangles times vertices, and
-/// what it finds (floors, walls, rooms) is small.
+/// Objects of more triangles are assumed to darken something: the test takes triangles times vertices, and pays for
+/// small objects such as floors and walls.
 const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 
-/// Can an object darken any of `receivers`? Not where none of its triangles can; of many that is not asked.
+/// Returns whether an object can darken any of the points `receivers`: some triangle of it can. True without a test for
+/// an object of many triangles.
 pub fn object_can_darken<R: Iterator<Item = DVec3>>(
     world: &[DVec3],
     triangles: &[[u32; 3]],
@@ -214,8 +217,8 @@ pub fn object_can_darken<R: Iterator<Item = DVec3>>(
     triangles.len() > MOST_TRIANGLES_TO_LOOK_AT || triangles.iter().any(on_any)
 }
 
-/// Can a triangle darken any of `receivers`? No, where all of them lie on the light's side of its
-/// plane or on it (exact signs), or where the light lies in its plane.
+/// Returns whether a triangle can darken any of the points `receivers`. It can't where all of them lie on the light's
+/// side of its plane or in it (exact signs), or where the light lies in the plane.
 pub fn can_darken(corners: [DVec3; 3], light: DVec4, mut receivers: impl Iterator<Item = DVec3>) -> bool {
     let light_side = side_of_triangle(corners, light);
     let behind = |point: DVec3| {
@@ -225,8 +228,7 @@ pub fn can_darken(corners: [DVec3; 3], light: DVec4, mut receivers: impl Iterato
     light_side != Sign::Zero && receivers.any(behind)
 }
 
-/// Distance from the origin to a triangle (Ericson 2005, "Real-Time Collision Detection", 5.1.5:
-/// by the region of the plane that the nearest point falls into).
+/// Returns the distance from the origin to a triangle (Ericson 2005, "Real-Time Collision Detection", 5.1.5).
 fn distance_to_triangle([a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let over_inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(-*p).dot(normal) >= 0.0);

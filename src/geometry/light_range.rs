@@ -8,23 +8,24 @@ use crate::scene::Camera;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// The sphere is taken to be so much larger, for rounding on the GPU.
+/// By how much the sphere of a light's range is enlarged, relative to it, for rounding on the GPU.
 const MARGIN: f64 = 1e-4;
-/// How far `f32` may move a point, in parts of its distance from the eye.
+/// How far rounding to `f32` may move a point, relative to its distance from the eye.
 const ROUNDING: f64 = 1e-6;
 
-/// Which pixels a light of limited range can reach.
+/// The pixels that a light of limited range can reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RangeInView {
-    /// Perhaps all.
+    /// Possibly all pixels.
     All,
-    /// Those between left, top, and so many columns and rows.
+    /// Those in this rectangle: left, top, columns, rows.
     Pixels([u32; 4]),
-    /// None.
+    /// No pixel.
     Nothing,
 }
 
-/// The pixels of a picture of `size` pixels that points within `range` metres of `light` may show in.
+/// Returns which pixels of a picture of `size` pixels may show points within `range` metres of the world position
+/// `light`.
 pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) -> RangeInView {
     let center = camera.world_from_view().transpose() * (light - camera.eye);
     let radius = range * (1.0 + MARGIN) + center.length() * MARGIN;
@@ -72,8 +73,8 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
     }
 }
 
-/// Returns by how many metres all of some points lie beyond the range of a light; `None` where one may be within it.
-/// The GPU rounds places relative to `eye`.
+/// Returns by how many metres the box around some points lies beyond a light's range; `None` where a point may be
+/// within it. Allows for the GPU's rounding of positions relative to `eye`.
 pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> Option<f64> {
     let AxisBox { low, high } = AxisBox::around(points.iter().copied());
     let nearest = light.clamp(low.min(high), high.max(low));
@@ -82,7 +83,8 @@ pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> O
     (!points.is_empty() && distance > 0.0).then_some(distance)
 }
 
-/// Returns the box that contains all that a light of that range reaches, with places rounded relative to `eye`.
+/// Returns the world-space box that contains everything within a light's range, enlarged for rounding relative to
+/// `eye`.
 pub fn reached(light: DVec3, range: f64, eye: DVec3) -> AxisBox {
     let reach = range * (1.0 + MARGIN) + (range + light.distance(eye)) * ROUNDING;
     AxisBox::around([light - reach, light + reach])

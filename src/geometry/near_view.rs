@@ -9,13 +9,14 @@ use crate::math::depth::DepthMapping;
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 
-/// A light nearer to the near plane than this part of its distance to the eye lies in it.
+/// A light lies in the near plane if its distance from it is at most this, relative to its distance from the eye.
 const IN_PLANE: f64 = 1e-6;
-/// A point light's view begins at this part of the way from the light to the near plane.
+/// The near end of a point light's view, as a share of the way from the light to the near plane.
 const NEAREST: f64 = 1.0 / (1 << 20) as f64;
 
-/// Clip space, with depth from 0 (near plane) to 1 (towards the light), from positions relative to
-/// the eye. `points` are those that may cast, world space, `aspect` is width over height.
+/// Returns clip space from positions relative to the eye for the light's view through the camera's near rectangle, with
+/// depth from 0 (near plane) to 1 (towards the light). `points` are those that may cast, world space; `aspect` is width
+/// over height.
 ///
 /// # Errors
 /// Why there is no such view: the light lies in the near plane, or nothing lies between.

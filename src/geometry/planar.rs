@@ -13,22 +13,22 @@ use crate::scene::Pose;
 use glam::{DVec3, DVec4};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Distance from a plane, as a part of the mesh's size, up to which a vertex counts as on it.
+/// A vertex counts as on a plane up to this distance, relative to the mesh's size.
 const COPLANAR: f64 = 1e-9;
 
-/// A flat piece of a surface.
+/// A flat piece of a mesh: connected triangles in one plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receiver {
     /// Its plane in world space, oriented either way.
     pub plane: Plane,
     /// Indices into the mesh's triangles, ascending.
     pub triangles: Vec<u32>,
-    /// World area.
+    /// Its area in square metres.
     pub area: f64,
 }
 
-/// The planar receivers of a mesh at `world` positions; `object` are its positions before the
-/// transform. Triangles without area belong to none.
+/// Returns the flat pieces of a mesh with vertices `world`; `object` are its vertices in object space, by which it is
+/// decided what is coplanar. Triangles without area belong to none.
 pub fn receivers(object: &[DVec3], world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Vec<Receiver> {
     let edges_of = edges_of_triangles(triangles.len(), edges);
     let mut walk = EdgeTraversal { edges, edges_of, taken: vec![false; triangles.len()] };
@@ -58,7 +58,7 @@ fn plane_of(positions: &[DVec3], corners: [u32; 3]) -> Option<Plane> {
     (normal.length() > 0.0 && normal.is_finite()).then(|| Plane::through(a, normal))
 }
 
-/// The three edges of each triangle.
+/// Returns for each triangle the indices of its three edges.
 fn edges_of_triangles(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
     let mut of_triangle = vec![Vec::with_capacity(3); count];
     for edge in 0..edges.edges().len() {
@@ -67,7 +67,7 @@ fn edges_of_triangles(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
     of_triangle
 }
 
-/// Finds what can be reached over shared edges.
+/// A traversal of triangles over the edges they share.
 struct EdgeTraversal<'a> {
     edges: &'a EdgeList,
     edges_of: Vec<Vec<u32>>,
@@ -75,7 +75,7 @@ struct EdgeTraversal<'a> {
 }
 
 impl EdgeTraversal<'_> {
-    /// The triangles connected with `seed` that `belongs` lets in, ascending. They are taken then.
+    /// Returns the triangles connected with `seed` for which `belongs` is true, ascending, and marks them as taken.
     fn from(&mut self, seed: u32, belongs: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut members = vec![seed];
         let mut waiting = vec![seed];
@@ -96,7 +96,8 @@ impl EdgeTraversal<'_> {
     }
 }
 
-/// The plane by area-weighted normals and the mean corner, which a small triangle can't tilt.
+/// Makes a receiver of these triangles: its plane has their area-weighted normal and goes through the mean of their
+/// corners. `None` where they have no area.
 fn receiver(world: &[DVec3], triangles: &[[u32; 3]], members: Vec<u32>) -> Option<Receiver> {
     let corners = members.iter().map(|t| triangles[*t as usize].map(|v| world[v as usize]));
     let twice_areas: Vec<DVec3> = corners.clone().map(|[a, b, c]| (b - a).cross(c - a)).collect();
@@ -111,35 +112,34 @@ fn receiver(world: &[DVec3], triangles: &[[u32; 3]], members: Vec<u32>) -> Optio
     Some(Receiver { plane: Plane::through(middle, normal), triangles: members, area })
 }
 
-/// What of a caster is flattened.
+/// Which part of a caster is flattened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FlattenClip {
-    /// What lies between plane and light.
+    /// Only what lies between the plane and the light.
     BetweenPlaneAndLight,
-    /// All of it, as if there were no such limits: what is beyond the light gives an anti-shadow,
-    /// what is below the plane a false one.
+    /// All of it: what lies beyond the light gives an anti-shadow, what lies below the plane a false shadow.
     Off,
 }
 
-/// What a flattened caster depends on.
+/// What a flattened caster depends on; its key in the cache.
 #[derive(Debug, Clone, Copy)]
 pub struct FlattenedCaster {
-    /// Hash of the caster's mesh …
+    /// Hash of the caster's mesh.
     pub mesh: u64,
-    /// … and where it is placed.
+    /// Where the caster is placed.
     pub pose: Pose,
-    /// What it is flattened onto.
+    /// The plane that it is flattened onto.
     pub plane: Plane,
-    /// Homogeneous.
+    /// Homogeneous world position of the light.
     pub light: DVec4,
-    /// How much of it.
+    /// Which part of it is flattened.
     pub clip: FlattenClip,
-    /// The receiver's first triangle, where it is a part of the caster.
+    /// Index of the receiver's first triangle, where the receiver is a part of the caster; otherwise `None`.
     pub own: Option<u32>,
 }
 
 impl FlattenedCaster {
-    /// Equal for equal numbers, bit for bit.
+    /// Returns a hash of all fields, equal for equal values.
     pub fn key(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         // Debug text prints every number in full.
@@ -154,9 +154,10 @@ pub struct Flattener {
     plane: Plane,
     light: DVec4,
     clip: FlattenClip,
-    /// Signed distance of the light (point) or its direction's normal part (directional); > 0.
+    /// The light's height over the plane (point light), or its direction's component along the normal (directional);
+    /// positive.
     light_height: f64,
-    /// Homogeneous world positions of the shadows so far, three a triangle.
+    /// Homogeneous world positions of the shadow triangles so far.
     triangles: Vec<[DVec4; 3]>,
 }
 
@@ -168,8 +169,8 @@ impl Flattener {
         (light_height > 0.0).then(|| Flattener { plane, light, clip, light_height, triangles: Vec::new() })
     }
 
-    /// Adds the shadow of a mesh. `on_plane` names vertices of the receiver itself: they are on its
-    /// plane whatever rounding says.
+    /// Adds the shadow of a mesh. The vertices with the indices `on_plane` belong to the receiver and count as exactly
+    /// on its plane.
     pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
         let mut heights: Vec<f64> = world.iter().map(|position| self.plane.height(*position)).collect();
         on_plane.iter().for_each(|vertex| heights[*vertex as usize] = 0.0);
@@ -189,7 +190,8 @@ impl Flattener {
         }
     }
 
-    /// One triangle by its corners and their heights over the plane.
+    /// Adds the shadow of a triangle, clipped to what lies between plane and light; each corner has its height over the
+    /// plane.
     fn add_triangle(&mut self, corners: [(DVec3, f64); 3]) {
         let mut polygon = clip(&corners, 0.0, |h| h);
         if self.light.w != 0.0 {
@@ -201,8 +203,8 @@ impl Flattener {
         }
     }
 
-    /// `V − L (P·V) / (P·L)`, which is Blinn's `(P·L) V − (P·V) L` (1988) without its scale: w is 1
-    /// on the plane and exactly 0 for a corner that was cut level with the light.
+    /// Returns the shadow of a point: `V − L (P·V) / (P·L)`, Blinn's `(P·L) V − (P·V) L` (1988) without its scale. w is
+    /// 1 on the plane and exactly 0 for a corner that was clipped level with the light.
     fn shadow(&self, point: DVec3, height: f64) -> DVec4 {
         point.extend(1.0) - self.light * (height / self.light_height)
     }
@@ -214,7 +216,7 @@ impl Flattener {
         if shadow.w == 0.0 { shadow } else { shadow / shadow.w }
     }
 
-    /// The shadows: homogeneous world positions with `w ≥ 0`.
+    /// Returns the triangles of the shadow: homogeneous world positions, with w ≥ 0 unless clipping is off.
     pub fn finish(self) -> Vec<[DVec4; 3]> {
         self.triangles
     }

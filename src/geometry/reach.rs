@@ -12,45 +12,45 @@ use crate::math::Plane;
 use crate::scene::Camera;
 use glam::{DVec2, DVec3, DVec4};
 
-/// A light this near to the near plane, in parts of its distance from the eye, lies in it.
+/// A light lies in the near plane if its distance from it is at most this, relative to its distance from the eye.
 const IN_PLANE: f64 = 1e-6;
-/// How far `f32` moves a point, and rounding in the GPU's products, in parts of its distance from the eye.
+/// How far rounding to `f32` and in the GPU's products may move a point, relative to its distance from the eye.
 const ROUNDING: f64 = 1e-5;
 
-/// A view's planes, and the near rectangle, relative to the eye.
+/// The volume that a camera sees, without a far plane: its planes and its near rectangle, relative to the eye.
 #[derive(Debug, Clone)]
 pub struct ViewVolume {
-    /// Near, left, right, bottom, top; positive inside.
+    /// Near, left, right, bottom and top plane; positive inside.
     planes: [Plane; 5],
-    /// Corners of the near rectangle in order round it.
+    /// Corners of the near rectangle, counter-clockwise from the upper right.
     near_rectangle: [DVec3; 4],
-    /// World axes, relative to the eye.
+    /// Middle of the near rectangle.
     near_middle: DVec3,
     near: f64,
 }
 
-/// The space between the near rectangle and a light: a caster outside of it neither has a point of the rectangle in its
-/// shadow nor is cut by it.
+/// The near-clip volume: the space between the near rectangle and a light. A caster outside of it neither shadows a
+/// point of the rectangle nor is cut by the near plane where that matters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NearClipVolume {
-    /// Its planes, positive inside.
+    /// The planes around it, positive inside.
     Planes(Vec<Plane>),
-    /// The light lies in the near plane: all that this slab intersects may be between.
+    /// The light lies in the near plane, so that whatever touches this plane may be in between.
     Slab(Plane),
 }
 
-/// Where a body lies outside of a plane.
+/// The plane that a body lies wholly outside of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutsidePlane {
-    /// Which plane, by its place in the volume.
+    /// Index of the plane in the volume.
     pub plane: usize,
-    /// How far its nearest point is from it, metres; infinite where all its points are directions.
+    /// Distance of the body's nearest point from the plane, metres; infinite where all its points are at infinity.
     pub distance: f64,
 }
 
 impl ViewVolume {
-    /// What a camera sees, `aspect` being width over height. It has no far plane: a volume must not be
-    /// cut there.
+    /// Returns the volume that a camera sees; `aspect` is width over height. It has no far plane, as shadow volumes
+    /// must not be cut there.
     pub fn new(camera: &Camera, aspect: f64) -> ViewVolume {
         let world_from_view = camera.world_from_view();
         let rays = camera.rays(aspect);
@@ -85,30 +85,30 @@ impl ViewVolume {
         }
     }
 
-    /// The corners of the near rectangle in order round it, relative to the eye.
+    /// Returns the corners of the near rectangle, counter-clockwise from the upper right, relative to the eye.
     pub fn near_rectangle(&self) -> [DVec3; 4] {
         self.near_rectangle
     }
 
-    /// Where points lie outside of the view: nothing between them is seen. Points are homogeneous and
-    /// relative to the eye; `w = 0` is a direction.
+    /// Returns the first plane that all points are outside of; `None` where they may reach into the volume.
     pub fn outside(&self, points: &[DVec4]) -> Option<OutsidePlane> {
         outside(&self.planes, points)
     }
 
-    /// Are all points of space beyond the near plane, so that it cuts nothing between them?
+    /// Returns whether all points lie beyond the near plane, so that it does not cut their convex hull.
     pub fn is_beyond_near(&self, points: &[DVec4]) -> bool {
         outside(&[self.planes[0].flipped()], points).is_some()
     }
 
-    /// Returns the plane that has all of these points at infinity outside: the near plane does not matter there.
+    /// Returns the side plane of the view that all of these directions are outside of; `None` where they may be in
+    /// view. The near plane does not matter at infinity.
     pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<OutsidePlane> {
         let points: Vec<DVec4> = directions.iter().map(|direction| direction.extend(0.0)).collect();
         let sides = outside(&self.planes[1..], &points);
         sides.map(|found| OutsidePlane { plane: found.plane + 1, ..found })
     }
 
-    /// The space between the near rectangle and a light, homogeneous and relative to the eye.
+    /// Returns the near-clip volume of a light, whose position is homogeneous and relative to the eye.
     pub fn near_clip(&self, light: DVec4) -> NearClipVolume {
         let near_plane = &self.planes[0];
         let height = near_plane.at(light);
@@ -143,7 +143,7 @@ impl NearClipVolume {
     }
 }
 
-/// The first plane that all points are outside of.
+/// Returns the first plane that all points are outside of, by more than rounding may move them.
 fn outside(planes: &[Plane], points: &[DVec4]) -> Option<OutsidePlane> {
     let beyond = |plane: &Plane| {
         let mut nearest = f64::INFINITY;

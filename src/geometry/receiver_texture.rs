@@ -8,26 +8,25 @@
 use super::planar::Receiver;
 use glam::{DMat4, DVec3, DVec4};
 
-/// Depth of the clip box towards the light, small enough that what touches the light is cut off
-/// last.
+/// Depth of the clip box towards the light, so small that only what touches the light is clipped.
 const CLIP_DEPTH: f64 = 1e-6;
-/// By how much a fourth corner may be off, in parts of the edges, for four to be a parallelogram.
+/// How far the fourth corner of a parallelogram may be off, relative to the edges.
 const PARALLEL: f64 = 1e-9;
 
-/// A parallelogram around a flat receiver, in world space.
+/// A parallelogram around a flat receiver, world space: the area that its texture covers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReceiverParallelogram {
-    /// One corner.
+    /// The corner at the texture's origin.
     pub corner: DVec3,
-    /// The edge along which the texture's columns run.
+    /// The edge from that corner in the direction of the texture's x.
     pub ex: DVec3,
-    /// The edge along which its rows run.
+    /// The edge from that corner in the direction of the texture's y.
     pub ey: DVec3,
 }
 
 impl ReceiverParallelogram {
-    /// The receiver itself where it is one, else the smallest rectangle around it along one of
-    /// its edges.
+    /// Returns the receiver itself where it is a parallelogram, else the smallest rectangle around it that is parallel
+    /// to one of its edges.
     pub fn around(receiver: &Receiver, world: &[DVec3], triangles: &[[u32; 3]]) -> ReceiverParallelogram {
         let members = || receiver.triangles.iter().map(|triangle| triangles[*triangle as usize]);
         let mut vertices: Vec<u32> = members().flatten().collect();
@@ -73,8 +72,8 @@ impl ReceiverParallelogram {
         is_usable.then(|| DMat4::from_cols(x, y, z, w).transpose())
     }
 
-    /// Returns clip space from world space; clipping leaves what lies between receiver and light. The picture has x of
-    /// the box along columns and y along rows, downwards.
+    /// Returns clip space from world space for drawing casters into the texture: clipping leaves what lies between
+    /// receiver and light. x runs along `ex`, and `ey` runs downwards. `None` where the light lies in the plane.
     pub fn clip_from_world(&self, light: DVec4) -> Option<DMat4> {
         let clip_from_box = DMat4::from_cols(
             DVec4::new(2.0, 0.0, 0.0, 0.0),
@@ -86,14 +85,15 @@ impl ReceiverParallelogram {
     }
 }
 
-/// Of four corners, the last opposite to the first.
+/// Makes a parallelogram of a corner, its two neighbours and the opposite corner; `None` where they do not form one.
 fn parallelogram((corner, a, b, opposite): (DVec3, DVec3, DVec3, DVec3)) -> Option<ReceiverParallelogram> {
     let (ex, ey) = (a - corner, b - corner);
     let is_closed = (corner + ex + ey - opposite).length() <= PARALLEL * (ex.length() + ey.length());
     is_closed.then_some(ReceiverParallelogram { corner, ex, ey })
 }
 
-/// Around points of a plane, along a direction in it.
+/// Returns the smallest rectangle around points of a plane that is parallel to `along`; `None` where that has no
+/// length.
 fn rectangle(points: &[DVec3], along: DVec3, normal: DVec3) -> Option<ReceiverParallelogram> {
     let u = along.try_normalize()?;
     let v = normal.cross(u).try_normalize()?;

@@ -5,12 +5,12 @@
 
 use glam::{DVec3, DVec4};
 
-/// A point relative to `origin`.
+/// Returns a point relative to `origin` in single precision, with w = 1.
 pub fn point(position: DVec3, origin: DVec3) -> [f32; 4] {
     homogeneous(position.extend(1.0), origin)
 }
 
-/// A homogeneous point relative to `origin`: `(xyz − w·origin, w)`.
+/// Returns a homogeneous point relative to `origin` in single precision: `(xyz − w·origin, w)`.
 pub fn homogeneous(position: DVec4, origin: DVec3) -> [f32; 4] {
     let relative = position.truncate() - origin * position.w;
     [relative.x as f32, relative.y as f32, relative.z as f32, position.w as f32]

@@ -6,33 +6,29 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Blocks of edges a thread takes at once; fewer are not worth waking another for.
+/// Number of blocks of edges that one thread takes at once; fewer are not worth another thread.
 const SHARE: usize = 4 * 1024;
-/// Beyond so many triangles, searching all edges for each one's reverse takes seconds.
+/// The most triangles for [`silhouette_by_search`]: beyond, the quadratic search takes seconds.
 pub const MOST_TO_SEARCH: usize = 20_000;
 
-/// An edge that bounds a shadow: the oriented triangles around it run from low to high `multiplicity` times more often
-/// than back.
+/// An edge that bounds a shadow, and how many sides the volume has there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SilhouetteEdge {
-    /// Which edge.
+    /// The edge.
     pub edge: Edge,
-    /// Never 0.
+    /// How many more casting triangles, turned towards the light, run from low to high than back; never 0.
     pub multiplicity: i32,
 }
 
-/// The one facing of each triangle: the exact sign of the light's side. Caps and edges both read
-/// it, so a volume can't open. Zero: edge-on, the triangle casts nothing. The plain way that
-/// [`super::CasterPlanes`] must agree with.
+/// Returns for each triangle on which side a homogeneous `light` is, by exact signs; zero is edge-on, and casts
+/// nothing. The plain computation that [`super::CasterPlanes`] must agree with.
 pub fn facing(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> Vec<Sign> {
     triangles.iter().map(|corners| side_of_triangle(corners.map(|i| world[i as usize]), light)).collect()
 }
 
-/// The edges that bound the shadow when every casting triangle is turned towards the light, in
-/// order of (low, high): those where the sum over their triangles of +1 where the turned triangle
-/// runs from low to high and −1 where it runs back is not 0. Elsewhere the lit sheet goes on, and
-/// there is no side. Right for any triangle soup: the sides and caps that follow from it always
-/// close.
+/// Finds the edges that bound the shadow when every casting triangle is turned towards the light, sorted by (low,
+/// high): those where the triangles that run from low to high and those that run back do not cancel. Right for any
+/// triangle soup: sides and caps made from it always close.
 pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
     out.clear();
     let found = |blocks: Range<usize>, out: &mut Vec<SilhouetteEdge>| {
@@ -53,10 +49,8 @@ pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteE
     parts.iter().for_each(|part| out.extend_from_slice(part));
 }
 
-/// The same edges without an edge list: every side of every casting triangle goes into a list,
-/// unless its reverse is found there, which then leaves it. What stays bounds the shadow. The
-/// search makes it quadratic in the number of triangles, anew for each light; it is here for its
-/// lesson.
+/// Finds the same edges without an edge list: each side of each casting triangle is added to a list, unless its reverse
+/// is found there and removed. The search is quadratic in the number of triangles; it is here for its lesson.
 pub fn silhouette_by_search(triangles: &[[u32; 3]], facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
     let mut list: Vec<[u32; 2]> = Vec::new();
     for (&[a, b, c], sign) in triangles.iter().zip(facings.signs()) {

@@ -13,9 +13,9 @@ use super::winding::{crossings, winding_number};
 use crate::math::{AxisBox, Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
-/// Components times triangles that are looked at.
+/// The most work that is done: components times triangles.
 const MOST_WORK: usize = 200_000_000;
-/// How often the looks from either side are moved closer to the triangle.
+/// How often the points beside a triangle are moved closer to it before giving up.
 const TRIES: i32 = 4;
 
 /// Why a mesh is not proven to bound solids with their outside out. The fix is `casters = all`, which needs no proof.
@@ -32,37 +32,38 @@ pub enum NotSolid {
     /// Neighbours disagree on which side is out.
     #[error("its triangles are wound inconsistently along {edges} edges")]
     NotOriented {
-        /// How many.
+        /// How many edges are wound inconsistently.
         edges: usize,
     },
-    /// Triangles intersect, or are not proven not to.
+    /// These two triangles intersect, or are not proven not to.
     #[error("it meets itself, as at triangles {0} and {1}")]
     MeetsItself(usize, usize),
-    /// The winding number is negative somewhere.
+    /// The winding number beside a component is negative: it is inside out.
     #[error("part {component} is inside out: the winding number beside it is {winding}")]
     InsideOut {
         /// Counted from 0.
         component: usize,
-        /// Less than 0.
+        /// The winding number, less than 0.
         winding: i32,
     },
-    /// No look at a component could be decided.
+    /// The winding number beside a component could not be determined.
     #[error("no look at part {component} could be decided")]
     Undecided {
         /// Counted from 0.
         component: usize,
     },
-    /// Too many parts to look at.
+    /// Components times triangles are too many to examine.
     #[error("{components} parts of {triangles} triangles are too many to look at")]
     TooMany {
-        /// How many.
+        /// Number of components.
         components: usize,
         /// Number of the mesh's triangles.
         triangles: usize,
     },
 }
 
-/// Does a placed mesh bound solids with their outside out?
+/// Proves that a mesh with vertices `world` bounds solids with their outside out: closed, consistently wound, not
+/// intersecting itself, and no component inside out.
 ///
 /// # Errors
 /// What speaks against it, or is not proven.
@@ -98,15 +99,15 @@ pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivit
     Ok(())
 }
 
-/// Is a light outside a closed mesh? Exactly, and `false` where it is on the surface. A directional
-/// light is outside anything.
+/// Returns whether a light is outside a closed mesh, exactly: false where it is on the surface, always true for a
+/// directional light.
 pub fn light_is_outside(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> bool {
     let is_beyond = || !AxisBox::around(world.iter().copied()).holds(light.truncate() / light.w);
     light.w == 0.0 || is_beyond() || winding_number(world, triangles, light.truncate()) == Some(0)
 }
 
-/// Winding numbers on both sides of a triangle: at points so near to it that, of all triangles on
-/// the line through them, they are on different sides of this one alone.
+/// Returns the winding numbers on both sides of a triangle, at points so near to it that the line between them crosses
+/// no other triangle; `None` where no such points were found.
 fn windings_beside(world: &[DVec3], triangles: &[[u32; 3]], triangle: usize) -> Option<[i32; 2]> {
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
     let [a, b, c] = corners(triangle);

@@ -12,24 +12,24 @@ use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
 use std::sync::Arc;
 
-/// Distinct vertices nearer to each other than this part of the mesh's size are suspected to be
-/// one vertex, split.
+/// Distinct vertices nearer to each other than this, relative to the mesh's size, are suspected to be one vertex,
+/// split.
 const NEAR: f64 = 1e-6;
 
-/// How a mesh hangs together. Places of triangles are their centroids.
+/// The defects of a mesh that matter for shadow volumes: connectivity, split vertices and degenerate triangles. Places
+/// of triangles are their centroids.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Topology {
-    /// Triangles that the mesh has.
+    /// Number of the mesh's triangles.
     pub triangles: usize,
     /// How its triangles are connected by their edges.
     pub connectivity: Arc<Connectivity>,
-    /// Pairs of vertices that are not bit-identical, yet nearer than a millionth of the size: welding
-    /// joins equal positions only. (Positions that a file splits by normal or texture coordinate are
-    /// bit-identical, and whole again.)
+    /// Pairs of distinct vertices nearer to each other than a millionth of the mesh's size. Welding joins equal
+    /// positions only, so these leave cracks.
     pub split_vertices: FoundPlaces,
     /// Triangles whose corners are collinear.
     pub flat_triangles: FoundPlaces,
-    /// Triangles with two equal corners, which loading left out.
+    /// Number of triangles with two equal corners, which were left out on loading.
     pub dropped_triangles: usize,
 }
 
@@ -53,12 +53,12 @@ impl Topology {
         topology
     }
 
-    /// No edge ends the surface, and none joins more than two triangles.
+    /// Returns whether every edge joins exactly two triangles ([`Connectivity::is_closed`]).
     pub fn is_closed(&self) -> bool {
         self.connectivity.is_closed()
     }
 
-    /// Neighbouring triangles agree on which side is out.
+    /// Returns whether neighbouring triangles are wound alike ([`Connectivity::is_oriented`]).
     pub fn is_oriented(&self) -> bool {
         self.connectivity.is_oriented()
     }
@@ -102,7 +102,7 @@ impl Display for Topology {
     }
 }
 
-/// Exactly collinear: without area along all three axes.
+/// Returns whether the corners are exactly collinear: the triangle has no area along any axis.
 fn is_flat(corners: [DVec3; 3]) -> bool {
     let is_flat_along = |axis: usize| {
         let [a, b, c] = corners.map(|p| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]));
@@ -111,7 +111,7 @@ fn is_flat(corners: [DVec3; 3]) -> bool {
     (0..3).all(is_flat_along)
 }
 
-/// Pairs of vertices within [`NEAR`] of the size: looked for in a lattice of cells twice as wide.
+/// Finds pairs of vertices nearer to each other than [`NEAR`] times the mesh's size, in a grid of cells twice as wide.
 fn split_vertices(mesh: &Mesh) -> FoundPlaces {
     let mut found = FoundPlaces::default();
     let Some((low, high)) = mesh.bounds() else { return found };

@@ -10,19 +10,19 @@ use super::{Connectivity, EdgeList};
 use crate::math::{AxisBox, Plane};
 use glam::{DVec3, DVec4};
 
-/// How far inside the umbra a point must be, in parts of the occluder's size, and of the way to the light.
+/// How far inside the umbra a point must be, relative to the occluder's size, and to the distance to the light.
 const MARGIN: f64 = 1e-6;
 
-/// A convex body: a closed one, or a flat piece without thickness.
+/// A convex body: a solid, or a flat sheet without thickness.
 #[derive(Debug, Clone)]
 pub enum ConvexBody {
-    /// Planes of its faces, positive outside.
+    /// The planes of its faces, positive outside.
     Solid(Vec<Plane>),
-    /// Its plane, and planes upright on its border, positive outside.
+    /// Its plane, and the planes through its border that are perpendicular to it, positive outside.
     Sheet(Plane, Vec<Plane>),
 }
 
-/// A convex body with its size, in whose umbra others may lie.
+/// A convex body with its size, for testing whether others lie wholly in its umbra.
 #[derive(Debug, Clone)]
 pub struct ConvexOccluder {
     body: ConvexBody,
@@ -30,10 +30,11 @@ pub struct ConvexOccluder {
 }
 
 impl ConvexOccluder {
-    /// Meshes of more triangles are not looked at: what stands before others is mostly a wall, board or box.
+    /// Meshes of more triangles are not tested for convexity: what hides others is mostly a wall, board or box.
     pub const MOST_TRIANGLES: usize = 64;
 
-    /// A mesh, if it is convex and small. `edges` are those of `triangles`.
+    /// Returns a mesh as a convex occluder; `None` where it is not convex or has too many triangles. `edges` are those
+    /// of `triangles`.
     pub fn new(world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Option<ConvexOccluder> {
         if triangles.is_empty() || triangles.len() > ConvexOccluder::MOST_TRIANGLES {
             return None;
@@ -72,7 +73,7 @@ impl ConvexOccluder {
         (is_convex && !outside.is_empty()).then_some(ConvexOccluder { body, size })
     }
 
-    /// Are all these points deep in its umbra? With no points, no.
+    /// Returns whether all of these points (world space) are safely inside its umbra; false without points.
     pub fn darkens_all(&self, points: &[DVec3], light: DVec4) -> bool {
         !points.is_empty() && points.iter().all(|point| self.darkens(*point, light))
     }
@@ -118,13 +119,13 @@ impl ConvexOccluder {
     }
 }
 
-/// Meshes of more triangles are not asked for parts in the umbra of others: each plan would look at all of them.
+/// Meshes of more triangles are not asked for parts in the umbra of others, as each plan would test all of them.
 const MOST_TRIANGLES_OF_PARTS: usize = 65_536;
-/// How many parts, the largest, may contain others in their umbra.
+/// The most parts, the largest, that are tested as occluders of other parts.
 const MOST_HOLDERS: usize = 8;
 
-/// Returns, for each triangle of a mesh, whether its part lies wholly in the umbra of another part; empty where none
-/// does.
+/// Returns, for each triangle of a mesh, whether its component lies wholly in the umbra of another component; empty
+/// where none does.
 pub fn in_umbra_of_parts(
     world: &[DVec3],
     triangles: &[[u32; 3]],
@@ -164,7 +165,7 @@ pub fn in_umbra_of_parts(
     (0..triangles.len()).map(|index| in_umbra[connectivity.component_of(index)]).collect()
 }
 
-/// A part with its own vertices alone.
+/// Returns a part's own vertices, and its triangles as indices into them.
 fn alone(world: &[DVec3], part: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut used: Vec<u32> = part.iter().flatten().copied().collect();
     used.sort_unstable();

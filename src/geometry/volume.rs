@@ -24,33 +24,33 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Triangles of a cap that one thread writes at once.
+/// Number of a cap's triangles that one thread writes at once.
 const SHARE: usize = 64 * 1024;
 
-/// How far volumes reach.
+/// How far shadow volumes extend from their casters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Extrusion {
-    /// Far vertices are directions, `V·L.w − L` with `w = 0`: nothing lies beyond.
+    /// To infinity: far vertices are directions, `V·L.w − L` with `w = 0`.
     Infinite,
     /// Far vertices are points: `V + K·(V − L)` for a point light, `V − K·s·D/|D|` for a directional
     /// one, with `s` the length of the caster's bounding box's diagonal. What lies beyond is lit:
     /// a point light close to its caster moves vertices hardly at all.
     Finite(f64),
-    /// A known mistake: where [`Extrusion::Finite`] has `L + (K + 1)·(V − L)`, the light is not added back, and far
-    /// vertices are carried from the world's origin. A directional light has no place to add: the same as that.
+    /// A known mistake: `(K + 1)·(V − L)` without adding the light back, so that far vertices are carried from the
+    /// world's origin. For a directional light the same as [`Extrusion::Finite`].
     FromOrigin(f64),
-    /// Far vertices lie on a plane beyond all that is looked at. Not carried by a vertex shader.
+    /// To a plane beyond all that is looked at. Vertex shaders can't do this.
     Clamped(ClampedEnd),
 }
 
-/// What closes a volume away from the light.
+/// How a volume is closed at its far end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FarEnd {
-    /// Nothing: all sides meet in one point, where a directional light's rays go.
+    /// Not at all: all sides meet in the point at infinity of a directional light.
     Point,
-    /// A triangle for each quad of the sides, from its far edge to one direction.
+    /// With a fan: a triangle from the far edge of each side to one direction.
     Fan(CapFan),
-    /// The casting triangles, carried away.
+    /// With the casting triangles, carried away from the light.
     Caps,
 }
 
@@ -59,12 +59,12 @@ pub enum FarEnd {
 pub struct Extruder {
     light: DVec4,
     extrusion: Extrusion,
-    /// Length of the bounding box's diagonal.
+    /// Length of the diagonal of the caster's bounding box; 0 where it is not needed.
     size: f64,
 }
 
 impl Extruder {
-    /// Makes the extruder of a caster with these `world` positions.
+    /// Makes the extruder of a caster with vertices `world` under a homogeneous `light`.
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
         let size = match (extrusion, light.w == 0.0) {
             (Extrusion::Finite(_) | Extrusion::FromOrigin(_), true) => {
@@ -75,18 +75,18 @@ impl Extruder {
         Extruder { light, extrusion, size }
     }
 
-    /// Where the light is, if it is a point and volumes have no end.
+    /// Returns the world position of a point light whose volumes extend to infinity; otherwise `None`.
     pub fn infinite_from(&self) -> Option<DVec3> {
         let is_infinite = self.extrusion == Extrusion::Infinite && self.light.w != 0.0;
         is_infinite.then(|| self.light.truncate() / self.light.w)
     }
 
-    /// All vertices go to one point: a directional light's point at infinity.
+    /// Returns whether all far vertices are one point: the point at infinity of a directional light.
     pub fn is_one_point(&self) -> bool {
         self.light.w == 0.0 && self.extrusion == Extrusion::Infinite
     }
 
-    /// Where a vertex goes.
+    /// Returns the homogeneous position of a vertex's far copy.
     pub fn carry(&self, position: DVec3) -> DVec4 {
         let light = self.light.truncate();
         match self.extrusion {
@@ -115,37 +115,38 @@ impl Extruder {
         Carry { light, scale: (one.x - zero.x) as f32, offset: [x, y, z], w }
     }
 
-    /// The caster's vertices, then the far ones. A fan's follow them.
+    /// Returns the caster's vertices, then their far copies (one, where all are the same point), homogeneous in world
+    /// space. A fan's vertices follow them.
     pub fn vertices(&self, world: &[DVec3]) -> impl Iterator<Item = DVec4> {
         let far = if self.is_one_point() { &world[..1.min(world.len())] } else { world };
         world.iter().map(|position| position.extend(1.0)).chain(far.iter().map(|position| self.carry(*position)))
     }
 }
 
-/// Runs of a volume's triangles.
+/// The ranges of a volume's triangles that are its sides and caps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct VolumeParts {
-    /// Quads from the silhouette to the far vertices.
+    /// Quads from silhouette edges to their far vertices, except grazing ones.
     pub sides: Range<usize>,
-    /// Sides of the silhouette's last edges, which graze a triangle of their own.
+    /// Sides that graze a triangle at their own silhouette edge.
     pub grazing_sides: Range<usize>,
-    /// Casting triangles that face the light as they are.
+    /// Casting triangles that face the light.
     pub light_cap: Range<usize>,
-    /// Casting triangles that face away and count as flipped, in their own vertex order.
+    /// Casting triangles that face away; they keep their vertex order and count as flipped.
     pub light_cap_flipped: Range<usize>,
-    /// What closes the far end.
+    /// The triangles that close the far end.
     pub dark_cap: DarkCap,
 }
 
-/// What closes a volume's far end.
+/// The triangles that close a volume's far end.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum DarkCap {
-    /// Nothing needs to.
+    /// No triangles: the sides meet in one point.
     #[default]
     None,
-    /// Triangles of its own, that face outwards, with vertices after all others.
+    /// A range of triangles that face outwards, with vertices after all others.
     Fan(Range<usize>, CapFan),
-    /// The light cap's triangles with this added to their indices, the number of near vertices.
+    /// The light cap's triangles drawn with this base vertex: the number of near vertices.
     Carried(u32),
 }
 
@@ -162,7 +163,7 @@ impl VolumeParts {
         }
     }
 
-    /// How many triangles a volume with both caps has.
+    /// Returns how many triangles a volume with both caps has.
     pub fn triangles(&self) -> usize {
         let light_caps = self.light_cap.len() + self.light_cap_flipped.len();
         let dark_cap = match &self.dark_cap {
@@ -174,9 +175,9 @@ impl VolumeParts {
     }
 }
 
-/// Writes the indices of the volume of a caster of `vertex_count` vertices: three a triangle, into the vertices of
-/// [`Extruder::vertices`], front faces outwards except for flipped light-cap triangles. The last `grazing` edges' sides
-/// are a range of their own. What `out` contained is overwritten.
+/// Writes the vertex indices of a volume into `out` (overwritten): three a triangle, into the vertices of
+/// [`Extruder::vertices`], front faces outwards except for flipped light-cap triangles. The sides of the last `grazing`
+/// silhouette edges are a range of their own.
 pub fn write_indices(
     triangles: &[[u32; 3]],
     vertex_count: usize,
@@ -232,7 +233,7 @@ pub fn write_indices(
     parts
 }
 
-/// Where far vertices are.
+/// The indices of far vertices.
 #[derive(Clone, Copy)]
 struct FarVertices {
     first: u32,
@@ -244,20 +245,20 @@ impl FarVertices {
         if self.is_one_point { self.first } else { self.first + vertex }
     }
 
-    /// After as many far vertices as there are near ones.
+    /// Returns the index of a fan's apex, which follows as many far vertices as there are near ones.
     fn apex(self) -> u32 {
         2 * self.first
     }
 }
 
-/// Space for the cap's triangles: of those that face the light, and of those that are flipped.
+/// The output slices for a cap's triangles: those that face the light, and those that are flipped.
 struct CapIndices<'a> {
     towards: &'a mut [[u32; 3]],
     away: &'a mut [[u32; 3]],
 }
 
 impl<'a> CapIndices<'a> {
-    /// Returns the space that the next triangles take, with these signs; the rest stays.
+    /// Splits off the slices that triangles with these signs fill, and leaves the rest in `self`.
     fn split_off(&mut self, signs: &[i8]) -> CapIndices<'a> {
         let towards = signs.iter().filter(|sign| **sign > 0).count();
         let away = signs.iter().filter(|sign| **sign < 0).count();
@@ -283,7 +284,7 @@ impl<'a> CapIndices<'a> {
         }
     }
 
-    /// Writes triangles that all face the same way.
+    /// Writes triangles that all have the same facing.
     fn push(&mut self, triangles: &[[u32; 3]], sign: i8) {
         let space = match sign {
             1 => &mut self.towards,
@@ -294,7 +295,7 @@ impl<'a> CapIndices<'a> {
     }
 }
 
-/// Takes the first `count` places of `space`.
+/// Splits the first `count` elements off `space` and returns them.
 fn front<'a>(space: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
     let (taken, rest) = std::mem::take(space).split_at_mut(count);
     *space = rest;
@@ -322,7 +323,7 @@ fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVert
     }
 }
 
-/// Each side's quad runs along its far edge one way; the fan's triangle must run back.
+/// Writes the fan's triangles. Each runs along a side's far edge in the opposite direction to the side.
 fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
     let mut space = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {

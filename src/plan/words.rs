@@ -174,7 +174,8 @@ fn web_gpu(raster: &RasterState) -> Vec<String> {
     lines
 }
 
-/// Names of a stencil operation in OpenGL and in Direct3D.
+/// Returns a stencil operation's names in OpenGL and Direct3D, in this order and without prefix: `INCR_WRAP` and
+/// `INCR`.
 fn operation_in(op: StencilOperation) -> [&'static str; 2] {
     match op {
         StencilOperation::IncrementClamp => ["INCR", "INCR_SAT"],

@@ -151,7 +151,8 @@ pub fn sign(test: TestResult) -> &'static str {
     }
 }
 
-/// Returns a stencil operation in a few letters; wrapping or clamping is in the row's whole line.
+/// Returns a stencil operation in a few letters, such as `+1`. Wrapping and clamping look the same; [`line`]
+/// distinguishes them.
 pub fn short(operation: StencilOperation) -> &'static str {
     match operation {
         StencilOperation::Keep => "keep",

@@ -1,5 +1,5 @@
-//! What each light adds to a pixel's surface if it arrives, term by term, as `surface.wgsl` and `light.wgsl` compute it:
-//! light = colour of the light × fading × (colour of the surface × diffuse + highlight).
+//! What each light adds to a pixel's surface if it arrives, term by term, as `surface.wgsl` and `light.wgsl` compute
+//! it: light = colour of the light × fading × (colour of the surface × diffuse + highlight).
 
 use crate::capture::Capture;
 use crate::history::PixelHistory;
@@ -25,7 +25,8 @@ pub struct SurfaceShading {
     pub shading: &'static str,
     /// The diffuse term: `lambert`, `wrapped`.
     pub diffuse: &'static str,
-    /// Unit normal that it is shaded with, world space, to the side that the eye sees; Gouraud's corners have their own.
+    /// Unit normal that it is shaded with, world space, to the side that the eye sees; Gouraud's corners have their
+    /// own.
     pub normal: [f64; 3],
     /// Linear RGB reflectance, with its checks and its texture.
     pub color: [f64; 3],
@@ -208,7 +209,8 @@ impl SurfaceShading {
 }
 
 impl LightTerms {
-    /// Returns the cosine, and the formula with its numbers.
+    /// Describes what this light adds to the surface `of`: N·L, the shading sum with its numbers, and whether the light
+    /// arrives. Where the light is black, or adds nothing as the surface faces away, says so in place of the sum.
     fn text(&self, of: &SurfaceShading) -> String {
         let cosines = self.corner_cosines.map_or_else(String::new, |cosines| {
             format!(" (at the corners, where light is computed and then mixed: {})", three(cosines))
@@ -316,7 +318,9 @@ impl SeenTriangle<'_> {
     }
 }
 
-/// Returns the texture's value on a surface at a pixel, as `texture.wgsl` looks it up.
+/// Samples the draw's texture where the pixel's ray meets the triangle, as `texture.wgsl` does: UV, nearest texel, mip
+/// level and linear RGB. `first` is the index of the triangle's first corner (3 × its number) in the surface's
+/// per-corner UVs. Returns `None` where the draw has no texture, or the UVs are missing or not finite.
 fn texture(
     plan: &FramePlan,
     draw: &Draw,

@@ -34,7 +34,7 @@ use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
-/// What commands, tables and the inspector say of `auto`.
+/// Describes `auto` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
     lesson: Lesson {
@@ -59,10 +59,11 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// The largest count that eight bits of stencil hold.
+/// The largest count that an 8-bit stencil buffer holds.
 const MOST_IN_STENCIL: usize = 255;
 
-/// Plans a frame in which each volume is counted in the cheapest way that is right for it.
+/// Plans a frame in which each shadow volume is counted by z-pass or z-fail, whichever is cheaper while right, and what
+/// provably changes no pixel is left out.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = VolumeSettings::of_auto(&job.choice.common());
     let mut frame = FrameBuilder::new(job, StencilUse::Always)?;
@@ -78,24 +79,24 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(volume::finish(frame, &settings, begin))
 }
 
-/// Decides about the volumes of one light for `auto`: what is asked about them, prepared once.
+/// The policy of `auto` for one light: how each caster's volume is counted, from geometry that is computed once.
 struct AutoPolicy {
     light: LightId,
     position: DVec4,
     view: ViewVolume,
     near_clip: NearClipVolume,
-    /// The box, world space, around the eye and all that shows and receives within the light's range.
+    /// World-space box around the eye and every drawn receiver within the light's range.
     looked_at: AxisBox,
-    /// For each object, points whose convex hull contains it, and the box around them; world space.
+    /// For each object, world-space points whose convex hull contains it; `boxes` has the boxes around them.
     outlines: Vec<Vec<DVec3>>,
     boxes: Vec<AxisBox>,
-    /// For each object, the convex occluder that it is; `None` where it can hide nothing.
+    /// For each object, itself as a convex occluder; `None` where it is not one, or umbras are not asked about.
     occluders: Vec<Option<ConvexOccluder>>,
 }
 
-/// Points whose convex hull contains a volume; homogeneous, relative to the eye.
+/// Points whose convex hull contains a shadow volume; homogeneous, relative to the eye.
 struct VolumeHull {
-    /// First the caster's own points, then the same points carried away from the light.
+    /// First the points around the caster, then the same points carried away from the light.
     points: Vec<DVec4>,
 }
 
@@ -137,7 +138,7 @@ impl AutoPolicy {
         AutoPolicy { light, position, view, near_clip, looked_at, outlines, boxes, occluders }
     }
 
-    /// Index of an object whose umbra contains all of another.
+    /// Returns the index of an object whose umbra contains all of the object `index`; `None` where there is none.
     fn umbra_caster(&self, index: usize) -> Option<usize> {
         let corners = self.boxes[index].corners();
         let holds = |occluder: &Option<ConvexOccluder>| {
@@ -146,18 +147,19 @@ impl AutoPolicy {
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
 
-    /// Points whose hull contains the volume of a caster with this extrusion.
+    /// Returns points whose convex hull contains the volume of the caster `index` when it extends like this.
     fn hull(&self, frame: &FrameBuilder, index: usize, extrusion: Extrusion) -> VolumeHull {
         let outline = &self.outlines[index];
         VolumeHull::of(outline, &Extruder::new(outline, self.position, extrusion), frame.eye())
     }
 
-    /// Says in words how far a volume lies outside of the view; `None` where it may reach into it.
+    /// Returns in words by how many metres a volume lies outside a plane of the view; `None` where it may reach into
+    /// view.
     fn beside_view(&self, hull: &VolumeHull) -> Option<String> {
         self.view.outside(&hull.points).map(|outside| beyond(outside, VIEW_PLANES[outside.plane]))
     }
 
-    /// Decides how a caster's volume is counted when it extends to infinity.
+    /// Decides how the volume of the caster `index` is counted if it extends to infinity, or why it needs none.
     fn without_end(&self, frame: &FrameBuilder, index: usize) -> VolumeDecision {
         let object = frame.placed[index].object;
         let allowed = |decision: Decision| frame.common.allows(decision);
@@ -209,8 +211,8 @@ impl AutoPolicy {
         VolumeDecision { form: Some(form), left_out: not_needed }
     }
 
-    /// Ends volumes beyond everything that can be seen: casters that touch end on one plane, and only where all of them
-    /// are counted in front of surfaces.
+    /// Ends volumes on a plane beyond the eye and all receivers in view. Volumes of casters that touch end on one
+    /// plane, and only where all of them are counted in front of surfaces.
     fn end_volumes(&self, frame: &FrameBuilder, casters: &[usize], decided: &mut [VolumeDecision]) {
         let with_volume: Vec<usize> = (0..casters.len()).filter(|place| decided[*place].form.is_some()).collect();
         let caster = |place: &usize| (self.boxes[casters[*place]], &*frame.placed[casters[*place]].world);
@@ -227,8 +229,8 @@ impl AutoPolicy {
         }
     }
 
-    /// Ends the volume of one caster at a plane, or leaves it out where it then lies beyond the plane or outside the
-    /// view.
+    /// Ends one caster's volume at a plane; leaves the volume out where the caster lies beyond the plane, or the
+    /// shortened volume outside the view.
     fn end_at(&self, end: ClampedEnd, frame: &FrameBuilder, index: usize, decided: &mut VolumeDecision) {
         let name = &frame.placed[index].object.name;
         let (axis, at) = end.place();
@@ -263,8 +265,8 @@ impl AutoPolicy {
     }
 }
 
-/// Returns the box around the eye, the near rectangle, and all that shows, receives and is within a light's range.
-/// `boxes` are those around each object.
+/// Returns the world-space box around the eye, the near rectangle, and every drawn receiver within a light's range.
+/// `boxes` has the box around each object.
 fn looked_at(frame: &FrameBuilder, light: LightId, view: &ViewVolume, boxes: &[AxisBox]) -> AxisBox {
     let eye = frame.eye();
     let from = [eye].into_iter().chain(view.near_rectangle().map(|corner| eye + corner));

@@ -5,17 +5,17 @@ use crate::geometry::light_frame;
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
-/// What an object may darken.
+/// Which objects [`can_darken`] asks about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DarkenedObjects {
-    /// Anything, itself included.
+    /// Every receiver, the caster included.
     All,
-    /// Other objects only.
+    /// Every receiver except the caster.
     Others,
 }
 
-/// Can an object darken any of these that is drawn? No, where all that receives lies on the light's
-/// side of its triangles.
+/// Returns whether the object `index` may cast a shadow of this light on any drawn receiver. It can't where all of them
+/// lie on the light's side of each of its triangles, or in their planes.
 pub fn can_darken(frame: &FrameBuilder, index: usize, light: LightId, what: DarkenedObjects) -> bool {
     let receivers = || {
         let receives = |(other, placed): &(usize, &FrameObject)| {
@@ -41,7 +41,7 @@ pub fn darkens_nothing(frame: &FrameBuilder, index: usize, light: LightId) -> Op
     Some(LeftOut::new(Decision::Caster, &frame.placed[index].object.name, because))
 }
 
-/// The triangles of an object in world space.
+/// Returns the triangles of the object `index` in world space.
 pub fn world_triangles(frame: &FrameBuilder, index: usize) -> Vec<[DVec3; 3]> {
     let placed = &frame.placed[index];
     placed.object.mesh.triangles().iter().map(|corners| corners.map(|v| placed.world[v as usize])).collect()

@@ -4,7 +4,7 @@ use super::named::Technique;
 use super::settings::{self, CommonSettings, PlanarSettings, SettingMap, VolumeSettings};
 use crate::scene::{TechniqueRequest, suggestion};
 
-/// Why a request for a technique can't be met.
+/// Why a technique or a setting is refused: an unknown name, an unknown key, or a value that is not allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ChoiceError {
     /// No such technique.
@@ -39,7 +39,7 @@ pub enum ChoiceError {
     },
 }
 
-/// A technique with a value for each of its settings, all checked.
+/// A technique with a valid value for each of its settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     technique: Technique,
@@ -47,7 +47,7 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Returns the request that a scene file would hold: the technique, and the settings that differ from their
+    /// Returns this choice as a scene file writes it: the technique's name, and the settings that differ from their
     /// defaults.
     pub fn to_request(&self) -> TechniqueRequest {
         let changed = self.technique().settings().iter().filter_map(|spec| {
@@ -57,13 +57,13 @@ impl Choice {
         TechniqueRequest { name: self.technique().name().to_owned(), settings: changed.collect() }
     }
 
-    /// Returns a technique with the default of each of its settings.
+    /// Returns the technique with the default value of each setting.
     pub fn new(technique: Technique) -> Choice {
         let settings = technique.settings().iter().map(|spec| (spec.key.to_owned(), spec.default.to_owned()));
         Choice { technique, settings: settings.collect() }
     }
 
-    /// Checks the names and values of a request, and returns the choice that it asks for.
+    /// Checks the names and values of a request; settings that it does not name get their defaults.
     pub fn parse(request: &TechniqueRequest) -> Result<Choice, ChoiceError> {
         let technique = Technique::from_name(&request.name).ok_or_else(|| {
             let names: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
@@ -76,7 +76,7 @@ impl Choice {
         Ok(choice)
     }
 
-    /// Changes one setting.
+    /// Sets the setting `key` to `value`, after checking both.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
         let technique = self.technique.name();
         let specs = self.technique.settings();
@@ -99,17 +99,17 @@ impl Choice {
         self.technique
     }
 
-    /// Key and value of every setting.
+    /// Returns the value of every setting by its key.
     pub fn settings(&self) -> &SettingMap {
         &self.settings
     }
 
-    /// The settings that every technique has, as types.
+    /// Returns the settings that every technique has, parsed.
     pub fn common(&self) -> CommonSettings {
         CommonSettings::read(&self.settings)
     }
 
-    /// The settings of a technique that counts volumes, as types; `None` of another.
+    /// Returns the settings of shadow volumes, parsed; `None` for a technique that counts none.
     pub fn volumes(&self) -> Option<VolumeSettings> {
         match self.technique {
             Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => Some(VolumeSettings::read(&self.settings)),
@@ -123,20 +123,21 @@ impl Choice {
         }
     }
 
-    /// Texels along each side of maps, textures or silhouettes; `None` where the technique has none.
+    /// Returns the texels along each side of its shadow maps, receiver textures or silhouettes; `None` where the
+    /// technique has none.
     pub fn texels(&self) -> Option<u32> {
         let spec = self.technique.settings().iter().find(|spec| spec.key == settings::SIZE)?;
         spec.of(&self.settings).parse().ok()
     }
 
-    /// Technique and size: `shadow-map 1024`.
+    /// Returns the technique's name, followed by its texels a side if it has a map: `shadow-map 1024`.
     pub fn short_name(&self) -> String {
         let technique = self.technique().name();
         self.texels().map_or_else(|| technique.to_owned(), |texels| format!("{technique} {texels}"))
     }
 
-    /// This choice with shadow volumes counted in floats, and not in eight bits; `None` where they are, or where the
-    /// technique has no such setting.
+    /// Returns this choice with shadow volumes counted in a float target instead of the stencil; `None` where they are
+    /// counted in floats already, or the technique has no such setting.
     pub fn counting_in_floats(&self) -> Option<Choice> {
         let mut in_floats = self.clone();
         let [key, value] = VolumeSettings::in_floats();
@@ -144,8 +145,8 @@ impl Choice {
         (is_in_eight_bits && in_floats.set(key, value).is_ok()).then_some(in_floats)
     }
 
-    /// The ground truth in the same shading: its picture is what this choice's should be. How depth is stored is left as
-    /// it is by default, since it shades nothing, and what it cuts away should be there.
+    /// Returns the ray-traced ground truth with this choice's shading settings: its picture is what this choice's
+    /// should be. The `depth` setting stays at its default, as it changes no colour and other values may clip geometry.
     pub fn truth_in_same_shading(&self) -> Choice {
         let mut truth = Choice::new(Technique::RayTraced);
         let same = settings::SHADING_KEYS.into_iter().filter_map(|key| self.settings.get_key_value(key));
@@ -153,7 +154,8 @@ impl Choice {
         truth
     }
 
-    /// Returns why a setting does nothing while the others are as they are; `None` where it does something.
+    /// Returns why the setting `key` does nothing with the other settings as they are, in a sentence; `None` where it
+    /// has an effect.
     pub fn without_effect(&self, key: &str) -> Option<&'static str> {
         let of_planar = || (self.technique == Technique::Planar).then(|| PlanarSettings::read(&self.settings));
         CommonSettings::without_effect(&self.settings, key)

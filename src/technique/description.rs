@@ -5,41 +5,42 @@ use super::frame::PlanRequest;
 use super::lesson::Lesson;
 use crate::plan::FramePlan;
 
-/// Rows of a technique in a report: the settings that each changes.
+/// The rows that a technique has in a report: for each row, the (key, value) pairs of the settings that it changes.
 pub type ReportRows = &'static [&'static [(&'static str, &'static str)]];
 
-/// A report has one row of the technique, with its defaults.
+/// A single row with every setting at its default.
 pub(super) const ONE_ROW: ReportRows = &[&[]];
 
-/// A technique, as commands, tables and the inspector know it.
+/// The description of a technique: its help texts, the function that plans it, and its part in reports and stress
+/// tables.
 #[derive(Debug, Clone, Copy)]
 pub struct TechniqueDescription {
     /// What it does, in one sentence.
     pub summary: &'static str,
-    /// What a learner should know about it.
+    /// The help text: explanation, formula and sources.
     pub lesson: Lesson,
-    /// Makes a frame's plan.
+    /// The function that plans a frame with this technique.
     pub(super) plan: fn(PlanRequest) -> Result<FramePlan, PlanError>,
     /// The settings that a report compares by default.
     pub report_rows: ReportRows,
-    /// Its part where techniques are compared.
+    /// Whether stress tables compare it, and in which place.
     pub standing: ComparisonRole,
 }
 
-/// The part of a technique where techniques are compared.
+/// Whether stress tables compare a technique with others.
 #[derive(Debug, Clone, Copy)]
 pub enum ComparisonRole {
-    /// It makes shadows on the GPU, and runs in every stress case that does not say otherwise.
+    /// It makes shadows on the GPU, and runs in every stress case that does not list techniques.
     Rival {
         /// Its place in tables of stress cases, from 0.
         place: usize,
         /// Why it is expected to be right where no failure of it is known.
         right_because: &'static str,
-        /// For a technique that is never promised to be right: the share of pixels that texels may make wrong along a
-        /// shadow's edge, and why.
+        /// For a technique with texels, which is never promised to be exact: the share of pixels (0 to 1) that they may
+        /// make wrong along shadow edges, and why.
         texels: Option<(f64, &'static str)>,
     },
-    /// It is compared with no other.
+    /// It is compared with no other technique.
     Apart {
         /// Why it is not compared, in words.
         because: &'static str,

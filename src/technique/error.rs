@@ -2,7 +2,7 @@
 
 pub use crate::scene::MOST_LIGHTS;
 
-/// Why a scene can't be planned.
+/// Why no frame can be planned for a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// A camera, light or object that no technique can draw.

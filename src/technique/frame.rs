@@ -23,20 +23,20 @@ pub use drawn::SurfaceDrawing;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
-/// What a technique plans a frame from.
+/// The input from which a technique plans a frame.
 #[derive(Debug)]
 pub struct PlanRequest<'a> {
-    /// The scene at one time.
+    /// The scene, already moved to the frame's time.
     pub scene: &'a Scene,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Technique and settings.
+    /// The technique and its settings.
     pub choice: &'a Choice,
-    /// What is known of meshes, cached between plans.
+    /// Geometry that is derived from meshes, cached between plans.
     pub cache: &'a mut GeometryCache,
 }
 
-/// An object as a frame shows it: with its vertices in world space and its drawn surface.
+/// An object of the scene with its world-space vertices and the mesh of its drawn surface.
 #[derive(Debug)]
 pub struct FrameObject<'a> {
     /// The object of the scene.
@@ -47,58 +47,60 @@ pub struct FrameObject<'a> {
     pub surface: Option<MeshId>,
 }
 
-/// A part of a visible surface that is drawn by itself: one group of an object, or less.
+/// A range of a visible surface that is one draw: one group of an object, or some of its triangles.
 #[derive(Debug, Clone)]
 pub struct SurfacePiece {
-    /// A name for people: the object, and which of its groups.
+    /// A name for people: the object's, followed by the group's.
     pub name: String,
-    /// Index into [`FrameBuilder::placed`].
+    /// Index of its object in [`FrameBuilder::placed`].
     pub object: usize,
     /// The material of its surface.
     pub material: Material,
     /// The mesh that it is a part of.
     pub mesh: MeshId,
-    /// Which triangles of the mesh's index list.
+    /// Its triangles, as a range of the mesh's index list: the first index is 3 × the start.
     pub triangles: Range<u32>,
-    /// The layer of each light's map that belongs to it alone; `None` where it has none.
+    /// The layer of each light's texture array that is its own (receiver textures, silhouettes); `None` where it has
+    /// none.
     pub layer: Option<u32>,
     /// The texture on it, if any.
     pub texture: Option<TextureId>,
 }
 
-/// Builds a plan: objects and lights are placed, and passes are added in the order in which they run.
+/// Builds a frame's plan: places objects and lights, then adds passes in the order in which they run.
 #[derive(Debug)]
 pub struct FrameBuilder<'a> {
-    /// What the frame is planned from.
+    /// The input of the plan.
     pub job: PlanRequest<'a>,
     /// The settings that every technique has.
     pub common: CommonSettings,
-    /// Objects as the frame shows them, parallel to the scene's.
+    /// The objects as the frame shows them, in the scene's order.
     pub placed: Vec<FrameObject<'a>>,
     /// All visible surfaces, in the order in which they are drawn.
     pub pieces: Vec<SurfacePiece>,
-    /// The pieces that the next light's pass draws; `None`: all of them.
+    /// The pieces that the next light pass draws; `None` for all pieces.
     pub lit: Option<Vec<SurfacePiece>>,
     /// The plan so far; passes of other kinds than the methods make are pushed here.
     pub plan: FramePlan,
-    /// Clamped depth clips volumes at the near plane all the same: what counts in front of surfaces
-    /// must not begin before them.
+    /// Whether volumes are clipped at the near plane even where depth is clamped: faces that are counted in front of
+    /// surfaces must not begin before it.
     pub clips_volumes: bool,
     color: AttachmentId,
     depth_stencil: AttachmentId,
     has_stencil: bool,
-    /// The result of [`FrameBuilder::surfaces_coincide`], once it was asked for.
+    /// The cached result of [`FrameBuilder::surfaces_coincide`]; `None` before it is first asked for.
     coincide: Option<bool>,
     /// The light whose passes wrote the stencil last.
     stencil_of: Option<LightId>,
-    /// By light: the pixels that its passes are cut to.
+    /// For each light, the scissor rectangle of its passes (x, y, width, height in pixels); `None` for the whole
+    /// picture.
     scissors: Vec<Option<[u32; 4]>>,
 }
 
-/// What a technique needs the stencil buffer for.
+/// What a technique uses the stencil buffer for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StencilUse {
-    /// The technique counts or marks in it.
+    /// The technique counts or marks in it, so the frame always has one.
     Always,
     /// Only where triangles have the same three corners: there the stencil prevents that they are lit twice. Other
     /// triangles that overlap in one plane are lit twice where their depths round alike.
@@ -106,7 +108,7 @@ pub enum StencilUse {
 }
 
 impl<'a> FrameBuilder<'a> {
-    /// Places objects and lights, and makes the attachments.
+    /// Places objects and lights, and adds the attachments and the camera's view.
     pub fn new(job: PlanRequest<'a>, stencil: StencilUse) -> Result<FrameBuilder<'a>, PlanError> {
         let scene = job.scene;
         job.cache.next_plan();
@@ -157,23 +159,24 @@ impl<'a> FrameBuilder<'a> {
         Ok(frame)
     }
 
-    /// Returns the eye, world space: every vertex of the camera's passes is relative to it.
+    /// Returns the eye in world space; vertex positions of the camera's passes are relative to it.
     pub fn eye(&self) -> DVec3 {
         self.job.scene.camera.eye
     }
 
-    /// Returns where view rays meet, homogeneous, world space; for a parallel projection the direction towards the
-    /// camera.
+    /// Returns where view rays meet, homogeneous, in world space: the eye, or with w = 0 the direction towards a
+    /// parallel projection's camera.
     pub fn eye_position(&self) -> DVec4 {
         self.job.scene.camera.eye_position()
     }
 
-    /// Do any two drawn triangles have the same three corners? Then both are visible at one depth.
+    /// Returns whether any two drawn triangles have the same three corners, so that both are visible at one depth. The
+    /// result is cached.
     pub fn surfaces_coincide(&mut self) -> bool {
         *self.coincide.get_or_insert_with(|| coincident::coincide(&self.placed, self.job.cache))
     }
 
-    /// Returns the lights in order.
+    /// Returns the scene's lights in order.
     pub fn light_ids(&self) -> impl Iterator<Item = LightId> + use<> {
         (0..self.job.scene.lights.len()).map(LightId)
     }
@@ -183,19 +186,19 @@ impl<'a> FrameBuilder<'a> {
         self.job.scene.lights[light.0].homogeneous()
     }
 
-    /// Adds an attachment.
+    /// Adds an attachment to the plan and returns its id.
     pub fn add_attachment(&mut self, attachment: Attachment) -> AttachmentId {
         self.plan.attachments.push(attachment);
         AttachmentId(self.plan.attachments.len() - 1)
     }
 
-    /// Adds a mesh for draws.
+    /// Adds a mesh to the plan and returns its id.
     pub fn add_mesh(&mut self, mesh: DrawMesh) -> MeshId {
         self.plan.meshes.push(mesh);
         MeshId(self.plan.meshes.len() - 1)
     }
 
-    /// Returns the texture of a surface in the plan, which has each only once.
+    /// Returns the id of a material's texture in the plan, adding it unless the plan has the same one.
     pub(super) fn add_texture(&mut self, texture: &MaterialTexture) -> TextureId {
         let wanted = PlanTexture { picture: texture.picture.clone(), clamps: texture.clamps };
         let textures = &mut self.plan.textures;
@@ -206,32 +209,33 @@ impl<'a> FrameBuilder<'a> {
         }))
     }
 
-    /// Records that something is not needed.
+    /// Records in the plan that `of` is left out by `decision`, with the reason.
     pub fn leave_out(&mut self, decision: Decision, of: impl Into<String>, because: impl Into<String>) {
         self.plan.left_out.push(LeftOut::new(decision, of, because));
     }
 
-    /// Returns by how many metres an object lies beyond the light's range; `None` where it lies within, or the light
-    /// has no range.
+    /// Returns by how many metres the object `index` lies beyond the light's range; `None` where it lies within, or the
+    /// light has no range.
     pub fn beyond_range(&self, light: LightId, index: usize) -> Option<f64> {
         let (place, range) = self.range_of(light)?;
         geometry::beyond_range(&self.placed[index].world, place, range, self.eye())
     }
 
-    /// Returns the box that contains all that a light of limited range reaches.
+    /// Returns the world-space box that contains everything within a light's range; `None` for a light without a range.
     pub fn reached(&self, light: LightId) -> Option<AxisBox> {
         let (place, range) = self.range_of(light)?;
         Some(geometry::reached(place, range, self.eye()))
     }
 
-    /// Returns where a lamp is, world space, and its range in metres if it has one.
+    /// Returns a point light's world position and its range in metres; `None` for a light without a range, or a
+    /// directional one.
     fn range_of(&self, light: LightId) -> Option<(DVec3, f64)> {
         let light = &self.job.scene.lights[light.0];
         Some(light.position.truncate()).zip(light.range.filter(|_| !light.is_directional()))
     }
 
-    /// Returns the plan. Techniques are written for reversed depth: this reverses tests and clear values where another
-    /// mapping is set.
+    /// Returns the finished plan. Techniques are written for reversed depth: this reverses depth tests and clear values
+    /// where another mapping is set, and decides which draws are not clipped by depth.
     pub fn finish(mut self) -> FramePlan {
         let mapping = self.plan.depth.mapping;
         for pass in &mut self.plan.passes {

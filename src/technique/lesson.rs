@@ -1,24 +1,24 @@
 //! What a setting or a technique teaches; it stands beside the definition of each, which is not complete without it.
 
-/// What `stencilscope help` says of a setting or a technique, beside its values.
+/// The help text of a setting or a technique, beside its values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lesson {
-    /// A few sentences; a table's rows have lines of their own. For a setting it explains each word that can be chosen.
+    /// A few sentences, and a Markdown table for some. For a setting, explains each word that can be chosen.
     pub text: &'static str,
     /// The rule as a formula, with its letters explained.
     pub formula: &'static str,
-    /// Where it was described; empty where it is this program's own.
+    /// The publications that describe it; empty where it is this program's own.
     pub sources: &'static [Citation],
 }
 
-/// A publication.
+/// A publication that is cited.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Citation {
-    /// Who wrote it.
+    /// The authors' last names.
     pub authors: &'static str,
-    /// When it came out.
+    /// The year of publication.
     pub year: u16,
-    /// What it is called.
+    /// The title.
     pub title: &'static str,
 }
 
@@ -32,7 +32,7 @@ impl std::fmt::Display for Citation {
     }
 }
 
-/// What is cited, each once.
+/// All publications that lessons cite.
 pub(super) mod cited {
     use super::{Citation, source};
 

@@ -6,7 +6,7 @@ use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::Lesson;
 use crate::plan::{FramePlan, Visibility};
 
-/// What commands, tables and the inspector say of it.
+/// Describes `none` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Every light reaches every surface that faces it: the picture to compare others with.",
     lesson: Lesson {
@@ -19,7 +19,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     standing: ComparisonRole::Apart { because: "there is nothing to darken" },
 };
 
-/// Plans a frame without shadows.
+/// Plans a frame in which every light reaches every surface that faces it.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     frame.ambient_pass();

@@ -6,10 +6,10 @@ use crate::numbers;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Objects with more vertices are represented by the corners of their boxes.
+/// Objects with more vertices are represented by the 8 corners of their bounding boxes.
 const MOST_VERTICES_TO_LOOK_AT: usize = 4096;
 
-/// Names of the planes, in the order of [`ViewVolume`](crate::geometry::ViewVolume)'s.
+/// Names of the view volume's planes, in the order of [`ViewVolume`](crate::geometry::ViewVolume)'s.
 pub const VIEW_PLANES: [&str; 5] = [
     "the view's near plane",
     "the view's left side",
@@ -18,7 +18,7 @@ pub const VIEW_PLANES: [&str; 5] = [
     "the view's upper side",
 ];
 
-/// Returns text such as `0.8 m outside the view's left side`.
+/// Returns text such as `0.8 m outside the view's left side`; without the distance where that is infinite.
 pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     match outside.distance.is_finite() {
         true => format!("{} outside {plane}", numbers::metres(outside.distance)),
@@ -26,7 +26,8 @@ pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     }
 }
 
-/// Returns points whose convex hull contains an object: its vertices, or the corners of its box.
+/// Returns points whose convex hull contains an object's vertices: the vertices, or the corners of their box where they
+/// are many.
 pub fn outline(world: &[DVec3]) -> Cow<'_, [DVec3]> {
     if world.len() <= MOST_VERTICES_TO_LOOK_AT {
         return Cow::Borrowed(world);

@@ -8,13 +8,13 @@ use super::named::Technique;
 use super::{auto, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
 use crate::plan::FramePlan;
 
-/// Plans one frame.
+/// Plans a frame with the chosen technique: returns its passes and draws as data, without a GPU.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     (job.choice.technique().description().plan)(job)
 }
 
 impl Technique {
-    /// Returns all that is said of the technique.
+    /// Returns the technique's description: help texts, report rows, and its place in stress tables.
     pub const fn description(self) -> &'static TechniqueDescription {
         match self {
             Technique::None => &none::DESCRIPTION,
@@ -48,7 +48,7 @@ impl Technique {
 }
 
 impl Choice {
-    /// Returns what a report compares by default: every row of every technique.
+    /// Returns the choices that a report compares by default: every report row of every technique.
     pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
         let mut grid = Vec::new();
         for technique in Technique::ALL {

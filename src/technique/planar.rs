@@ -23,10 +23,10 @@ use crate::plan::{
 use std::sync::Arc;
 use wgpu::{CompareFunction, StencilOperation};
 
-/// Share of the light that is left where a shadow is blended over it.
+/// The factor by which a blended shadow multiplies the picture.
 const BLENDED: f32 = 0.4;
 
-/// What commands, tables and the inspector say of it.
+/// Describes `planar` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
     lesson: Lesson {
@@ -48,13 +48,13 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// A receiver that can show shadows, with its stencil mark.
+/// A flat receiver on which shadows show, with the stencil value that marks its pixels.
 struct MarkedReceiver {
     receiver: FlatReceiver,
     mark: u8,
 }
 
-/// Plans planar shadows.
+/// Plans a frame with planar shadows: casters flattened onto the planes of flat receivers.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let options = PlanarSettings::read(job.choice.settings());
     let stencil = if options.marks { StencilUse::Always } else { StencilUse::ToLightOnce };
@@ -73,13 +73,13 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Returns the state of a draw of flattened casters, before stencil and colour are set.
+/// Returns the raster state of flattened casters, before a stencil test is added.
 fn raster_of(options: &PlanarSettings, color: ColorWrite) -> RasterState {
     let PlanarSettings { depth_compare, depth_bias, .. } = *options;
     RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
 }
 
-/// Adds the passes that count shadows in the stencil: an odd number is in shadow.
+/// Adds the passes that mark receivers with even stencil values and raise those in shadow by 1: odd means shadow.
 fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     mark_pass(frame, marked, light);
     let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
@@ -101,7 +101,8 @@ fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.light_pass(light, purpose, &SurfaceDrawing::light_once_where_zero(1));
 }
 
-/// Adds the passes that blend shadows over the lit picture; on their receivers only, where those are marked.
+/// Adds the passes that light the scene and then blend shadows over it; limited to each receiver's marked pixels where
+/// `options.marks` is set.
 fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     let purpose = "Adds the light everywhere: shadows are blended over it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
@@ -128,7 +129,8 @@ fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.mask_pass_with(light, &[SurfaceDrawing::lit()], labels);
 }
 
-/// Returns the largest receivers whose lit side the eye sees: any other shows no shadow of this light.
+/// Returns the largest receivers that the eye sees from the light's side, each with a stencil mark; the others show no
+/// shadow of this light.
 fn shown_receivers(
     frame: &mut FrameBuilder,
     all: &[FlatReceiver],
@@ -186,7 +188,8 @@ fn mark_pass(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId
     }
 }
 
-/// Returns every caster flattened onto every receiver, drawn as `look` says for the receiver's mark.
+/// Returns a draw for every caster flattened onto every receiver; `look` returns the program and the state for a
+/// receiver's mark.
 fn shadow_draws(
     frame: &mut FrameBuilder,
     marked: &[MarkedReceiver],
@@ -214,7 +217,8 @@ fn shadow_draws(
     draws
 }
 
-/// Returns a caster flattened onto one receiver; `None` where no part of it is between plane and light.
+/// Returns the draw of one caster flattened onto one receiver; `None` where no part of the caster lies between plane
+/// and light.
 fn shadow_draw(
     frame: &mut FrameBuilder,
     one: &MarkedReceiver,

@@ -19,7 +19,7 @@ use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
 use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
-/// What commands, tables and the inspector say of it.
+/// Describes `planar-texture` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
     lesson: Lesson {
@@ -45,7 +45,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// Plans receiver textures.
+/// Plans a frame in which each flat receiver has a texture of the light that arrives on it.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     let mut receivers = receivers::all(&mut frame);
@@ -72,7 +72,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Returns the frame's pieces with each receiver as a piece of its own, so that it can read its own layer.
+/// Takes the frame's pieces and returns them with each receiver as a piece of its own, so that it reads its own layer.
 fn split_at(frame: &mut FrameBuilder, receivers: &[FlatReceiver]) -> Vec<SurfacePiece> {
     let mut split = Vec::new();
     for piece in std::mem::take(&mut frame.pieces) {
@@ -145,8 +145,8 @@ fn clip_from_world(frame: &FrameBuilder, receiver: &FlatReceiver, light: DVec4) 
         .clip_from_world(light)
 }
 
-/// Returns the triangles of a caster that are drawn into a receiver's texture: those that reach above its plane, on the
-/// light's side.
+/// Returns the indices of a caster's triangles that are drawn into a receiver's texture: those that reach above the
+/// receiver's plane on the light's side.
 fn caster_triangles(frame: &FrameBuilder, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
     let placed = &frame.placed[caster];
     let triangles = placed.object.mesh.triangles();

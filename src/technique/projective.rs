@@ -16,7 +16,7 @@ use crate::math::AxisBox;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
 
-/// What commands, tables and the inspector say of it.
+/// Describes `projective` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
     lesson: Lesson {
@@ -37,7 +37,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// Plans projective shadow textures.
+/// Plans a frame with projective shadow textures: each caster's silhouette is projected over the scene.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = TextureSettings::of_silhouettes(job.choice.settings());
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
@@ -68,7 +68,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Adds passes that light the scene first, and then darken it by one silhouette after another.
+/// Adds passes that light the scene first, then multiply the picture by one silhouette after another.
 fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_layers: &[usize]) {
     let purpose = "Adds the light everywhere: silhouettes darken it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
@@ -84,7 +84,8 @@ fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_
     frame.mask_pass(light, &[SurfaceDrawing::lit_by(Visibility::Projected)]);
 }
 
-/// Returns the objects that cast and can darken anything under any light, as many as there are layers for.
+/// Returns the indices of casters that can darken another object under any light, at most [`PlanMap::MOST_FACES`] of
+/// them; records how many are left out.
 fn casting_objects(frame: &mut FrameBuilder) -> Vec<usize> {
     let casts = |index: &usize| {
         let object = frame.placed[*index].object;
@@ -102,10 +103,10 @@ fn casting_objects(frame: &mut FrameBuilder) -> Vec<usize> {
     objects
 }
 
-/// Tangent of half the angle that a lamp's picture spans where it is not fitted.
+/// Tangent of half a point light's field of view where a silhouette is not fitted to its caster.
 const TANGENT_OF_45_DEGREES: f64 = 1.0;
 
-/// Returns the diagonal of the box around all objects, metres.
+/// Returns the length in metres of the diagonal of the box around all objects.
 fn size_of_scene(frame: &FrameBuilder) -> f64 {
     AxisBox::around(frame.placed.iter().flat_map(|placed| placed.world.iter().copied())).diagonal()
 }

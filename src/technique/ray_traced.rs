@@ -15,7 +15,7 @@ use crate::truth::Tracer;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-/// Makes the labels of one light by following rays, each time the frame runs.
+/// A CPU image of one light's labels, ray-traced anew each time the frame runs.
 #[derive(Debug)]
 struct LightLabels {
     tracer: Arc<Tracer>,
@@ -29,7 +29,7 @@ impl MakeImage for LightLabels {
     }
 }
 
-/// Labels that rays found before: no ray is followed again.
+/// A CPU image of labels that were traced before; it traces no ray.
 #[derive(Debug)]
 struct KnownLabels(Vec<u8>);
 
@@ -39,7 +39,7 @@ impl MakeImage for KnownLabels {
     }
 }
 
-/// What commands, tables and the inspector say of it.
+/// Describes `ray-traced` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
     lesson: Lesson {
@@ -56,11 +56,11 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     standing: ComparisonRole::Apart { because: "it is the truth" },
 };
 
-/// Others are measured against its colours. So no surface that receives shadows may be lit twice, not even where two
-/// overlap in one plane: the stencil marks what is lit, and nothing has to be proven of the scene.
+/// How the stencil is used: always, to light each pixel once. Other techniques are measured against these colours, so
+/// no receiver may be lit twice, not even where two surfaces overlap in one plane.
 const LIT_ONCE: StencilUse = StencilUse::Always;
 
-/// Plans a frame with traced shadows.
+/// Plans a frame whose shadows are ray-traced on the CPU.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let (scene, size) = (job.scene, job.size);
     let frame = FrameBuilder::new(job, LIT_ONCE)?;
@@ -69,14 +69,15 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(lit_by(frame, |light| Arc::new(LightLabels { tracer: tracer.clone(), light })))
 }
 
-/// Plans the ray-traced frame of known labels: a list for each light, a byte a pixel, row by row. No ray is followed.
+/// Plans the ray-traced frame of labels that are known: `labels` has a list for each light, with a byte for each pixel,
+/// row by row. Traces no ray.
 pub fn plan_of_labels(job: PlanRequest, labels: &[Vec<u8>]) -> Result<FramePlan, PlanError> {
     let frame = FrameBuilder::new(job, LIT_ONCE)?;
     let known = |light: LightId| labels.get(light.0).cloned().unwrap_or_default();
     Ok(lit_by(frame, |light| Arc::new(KnownLabels(known(light)))))
 }
 
-/// Returns a plan of the surfaces, to which each light is added where its labels say so.
+/// Returns a plan that draws the surfaces and adds each light at the pixels that its labels call lit.
 fn lit_by(mut frame: FrameBuilder, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> FramePlan {
     frame.ambient_pass();
     for light in frame.light_ids() {
@@ -109,7 +110,8 @@ fn ray_pass(frame: &mut FrameBuilder, light: LightId, source: Arc<dyn MakeImage>
     });
 }
 
-/// Returns a hash of the camera, the light and every object as it is placed.
+/// Returns a hash of what a light's labels depend on: the camera, the light's position and every object's mesh, pose
+/// and flags.
 fn content_hash(scene: &Scene, light: LightId) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{:?} {:?}", scene.camera, scene.lights[light.0].position).hash(&mut hasher);

@@ -6,20 +6,20 @@ use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
-/// At most this many receivers, the largest, get shadows; each costs a draw for every caster.
+/// The most flat receivers that get shadows, the largest first; each costs a draw for every caster.
 pub const MOST_RECEIVERS: usize = 64;
 
-/// A flat piece of an object that is drawn and receives.
+/// A flat piece of a drawn object on which planar shadows can fall.
 #[derive(Debug, Clone)]
 pub struct FlatReceiver {
     /// Index of its object in [`FrameBuilder::placed`].
     pub object: usize,
     pub receiver: planar::Receiver,
-    /// A name for people: its object, and which of all pieces it is, counted from 1.
+    /// A name for people: its object's, and its rank by area among all flat receivers, counted from 1.
     pub name: String,
 }
 
-/// Returns every flat receiver, the largest first.
+/// Returns every flat piece of drawn objects that receive, the largest first.
 pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
     let mut all = Vec::new();
     for (index, placed) in frame.placed.iter().enumerate() {
@@ -38,7 +38,8 @@ pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
 }
 
 impl FlatReceiver {
-    /// Returns whether the eye sees it from the side that a light is on. Any other shows no shadow of that light.
+    /// Returns whether the eye and the light are on the same side of this receiver. Otherwise it shows no shadow of
+    /// that light.
     pub fn shows_lit_side(&self, frame: &FrameBuilder, light: LightId) -> bool {
         let (eye, light) = (frame.eye_position(), frame.light_position(light));
         let placed = &frame.placed[self.object];
@@ -50,11 +51,11 @@ impl FlatReceiver {
     }
 }
 
-/// A piece with a smaller share of its object's surface is taken for a facet of something round.
+/// A flat piece with a smaller share of its object's surface is taken for a facet of a curved surface.
 const FACET: f64 = 1.0 / 20.0;
 
-/// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
-/// insides of closed ones. Without marks each would cast shadows over all that is in its plane.
+/// Removes from `shown` the receivers on which shadows could not be recognised: facets of curved objects and the
+/// insides of closed ones. Without stencil marks each would throw shadows over all that lies in its plane.
 pub fn leave_out_unmarked(frame: &mut FrameBuilder, shown: &mut Vec<&FlatReceiver>, of: &str) {
     let (eye, place) = (frame.eye_position(), frame.eye());
     let all = shown.len();
@@ -84,7 +85,7 @@ fn area(world: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     triangles.iter().map(of).sum()
 }
 
-/// Records how many receivers a light has beyond those that get shadows.
+/// Records how many of a light's `count` receivers are beyond the [`MOST_RECEIVERS`] that get shadows.
 pub fn leave_out_small(frame: &mut FrameBuilder, count: usize, of: &str) {
     if count > MOST_RECEIVERS {
         let because = "the 64 largest are kept: every one costs a draw for each caster";

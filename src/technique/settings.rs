@@ -20,11 +20,11 @@ pub use volume::{CasterRule, CountOperations, VolumeSettings};
 
 use super::named::Technique;
 
-/// The settings of techniques that have none of their own.
+/// The settings of techniques that only have the common ones.
 const COMMON: [SettingSpec; 6] = common::with_own([]);
 
 impl Technique {
-    /// Returns the technique's settings, in the order in which they are shown.
+    /// Returns the technique's settings in the order in which they are shown.
     pub fn settings(self) -> &'static [SettingSpec] {
         match self {
             Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,

@@ -21,21 +21,21 @@ use crate::plan::{
 use glam::{DMat4, DVec3};
 use wgpu::{DepthBiasState, TextureFormat};
 
-/// A caster in a light's map.
+/// A caster that is drawn into a light's shadow map.
 struct MapCaster {
     name: String,
     mesh: MeshId,
-    /// World positions of its triangles.
+    /// Its triangles, world space.
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// What the faces of a map are drawn into, and how.
+/// The attachment and the raster state for drawing a map's faces.
 struct MapTarget {
     attachment: AttachmentId,
     raster: RasterState,
 }
 
-/// What commands, tables and the inspector say of it.
+/// Describes `shadow-map` for commands, tables and the inspector.
 pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     summary: "Stores the depth of what the light sees, and darkens what lies behind it.",
     lesson: Lesson {
@@ -73,7 +73,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// Plans a frame with shadow maps.
+/// Plans a frame with shadow maps: one face for each light, or six of a cube map.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = MapSettings::read(job.choice.settings());
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
@@ -149,7 +149,7 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     });
 }
 
-/// Returns the casters behind which, seen from the light, something receives.
+/// Returns the indices of casters that may darken a receiver; records the others as left out of the map.
 fn darkening_casters(frame: &mut FrameBuilder, light: LightId) -> Vec<usize> {
     let mut darkening = Vec::new();
     for index in 0..frame.placed.len() {
@@ -176,7 +176,8 @@ fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> Mes
     frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
-/// Adds the pass of one face; adds none and returns `None` where the face sees no caster.
+/// Adds the view and the pass of one face of a map and returns the view; adds nothing and returns `None` where the face
+/// contains no caster and may be left out.
 fn add_face(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -230,7 +231,8 @@ fn add_face(
     Some(view)
 }
 
-/// Returns the state of a map's draws. With reversed depth, away from the light is smaller: biases change sign.
+/// Returns the raster state of a map's draws. Biases change sign, as with reversed depth farther from the light is
+/// smaller.
 fn map_raster(settings: &MapSettings) -> RasterState {
     let depth_bias =
         DepthBiasState { constant: -settings.bias_constant, slope_scale: -(settings.bias_slope as f32), clamp: 0.0 };

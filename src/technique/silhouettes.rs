@@ -11,18 +11,18 @@ use crate::scene::Material;
 use glam::{DMat4, Mat4};
 use wgpu::{CompareFunction, TextureFormat};
 
-/// The colour of a texel that lets all of the light through.
+/// The clear value of a layer: texels that let all of the light through.
 const ALL_OF_IT: [f64; 4] = [1.0; 4];
 
-/// The pass that draws one layer.
+/// The pass that draws casters into one layer of a light's texture array.
 pub struct LayerPass {
     pub layer: usize,
     pub name: String,
     pub draws: Vec<Draw>,
 }
 
-/// Gives a light a map with a layer for each name and matrix (clip space from world space), and adds a pass for each
-/// layer that is drawn. In the others all of the light arrives.
+/// Gives a light a texture array with a layer for each name and matrix (clip space from world space), and adds a pass
+/// for each layer that is drawn. The other layers let all of the light through.
 pub fn add_map(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -79,7 +79,7 @@ pub fn add_map(
     });
 }
 
-/// Returns draws of some triangles of a caster, one for each material.
+/// Returns the draws of some triangles (`of` has their indices) of a caster as a silhouette, one draw for each group.
 pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
     let placed = &frame.placed[caster];
     let (object, triangles) = (placed.object, placed.object.mesh.triangles());
@@ -123,8 +123,8 @@ pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
     draws
 }
 
-/// Returns how much of each colour of light a material lets through, and how much for labels, which take translucent
-/// casters for opaque.
+/// Returns the share of red, green and blue light that a material transmits, and 0 as the share for labels, which take
+/// translucent casters for opaque.
 fn let_through(material: &Material) -> [f32; 4] {
     let brightest = material.color.iter().copied().fold(0.0, f32::max);
     // Black has no colour of its own: it takes from all channels alike.

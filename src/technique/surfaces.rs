@@ -6,8 +6,8 @@ use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use std::cell::LazyCell;
 
-/// Returns the surface of `object` as a mesh, relative to the eye; shaded as its materials say unless the settings say
-/// otherwise.
+/// Returns the mesh of an object's surface: positions relative to the eye, normals, sides and texture coordinates.
+/// `shading` overrides the materials'.
 pub fn draw_mesh(
     object: &Object,
     world: &[DVec3],
@@ -39,7 +39,7 @@ pub fn draw_mesh(
     }
 }
 
-/// Returns [`SurfaceData::uvs`]: texture coordinates of all corners.
+/// Returns [`SurfaceData::uvs`]: texture coordinates of all corners; `None` where no group has a texture.
 fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
     let mesh = &object.mesh;
     mesh.groups().iter().find_map(|group| object.texture_of(group))?;
@@ -70,7 +70,8 @@ fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
     Some(uvs)
 }
 
-/// Returns [`SurfaceData::sides`]: which triangles face away from each light.
+/// Returns [`SurfaceData::sides`]: a word for each triangle, whose bit n is set where it faces away from light n as the
+/// eye sees it, and bit 31 where the eye sees its back.
 fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCache) -> Vec<u32> {
     let triangles = object.mesh.triangles();
     let planes = cache.planes(Caster { mesh: &object.mesh, pose: &object.pose, world });
@@ -87,7 +88,8 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCa
     sides
 }
 
-/// Returns unit world-space normals of all corners, on the side from which corners run counter-clockwise.
+/// Returns unit normals of all corners, world space, on the side from which corners run counter-clockwise: the
+/// triangle's, the mesh's own, or averaged, as each group's shading asks.
 fn corner_normals(object: &Object, world: &[DVec3], shadings: &[Shading]) -> Vec<[f32; 4]> {
     let mesh = &object.mesh;
     let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
@@ -118,7 +120,7 @@ fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Returns the sum of the area-weighted normals around each vertex.
+/// Returns for each vertex the sum of the area-weighted normals of its triangles.
 fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
     for (corners, normal) in mesh.triangles().iter().zip(face_normals) {
@@ -127,7 +129,7 @@ fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     sums
 }
 
-/// Returns a mesh of some triangles of a surface, with the same vertices, so that their depths are bit-equal.
+/// Returns a mesh of the triangles with these indices. It shares the surface's vertices, so that depths are bit-equal.
 pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
     fn pick<T: bytemuck::Pod>(blob: &Blob<T>, triangles: &[u32], per_triangle: usize) -> Blob<T> {
         let of = |triangle: &u32| {

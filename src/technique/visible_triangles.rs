@@ -10,10 +10,10 @@ use crate::geometry::{Caster, ViewVolume};
 use crate::plan::{Decision, DrawMesh, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
-/// A triangle this nearly edge-on to the eye, as a sine, may be rasterised as facing it.
+/// A triangle that turns away from the eye by less than this (sine of the angle) may still be rasterised as facing it.
 const EDGE_ON: f64 = 1e-4;
 
-/// Leaves out of the frame's surfaces the triangles that can't show.
+/// Leaves out of the frame's surfaces the triangles that can't show: out of view, or on the far side of a closed mesh.
 pub fn leave_out_hidden(frame: &mut FrameBuilder) {
     let [width, height] = frame.job.size.map(f64::from);
     let view = ViewVolume::new(&frame.job.scene.camera, width / height);
@@ -38,7 +38,7 @@ pub fn leave_out_hidden(frame: &mut FrameBuilder) {
 #[derive(Clone)]
 enum ShownTriangles {
     All,
-    /// Whether each triangle shows.
+    /// Whether each triangle of the mesh may show.
     Triangles(Vec<bool>),
     Nothing,
 }
@@ -96,8 +96,8 @@ fn subset(frame: &mut FrameBuilder, piece: SurfacePiece, shows: impl Fn(u32) -> 
     Some(SurfacePiece { mesh, triangles: 0..triangles.len() as u32, ..piece })
 }
 
-/// Returns the pieces that a light adds anything to: all of them where wrapped light reaches round edges, or where only
-/// the first of coinciding surfaces may be lit.
+/// Returns the pieces without the triangles that a light adds nothing to, as they face away from it or lie beyond its
+/// range. Returns all pieces where diffuse light is wrapped or surfaces coincide.
 pub fn lit_by(frame: &mut FrameBuilder, light: LightId) -> Vec<SurfacePiece> {
     let pieces = frame.pieces.clone();
     if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || frame.surfaces_coincide() {

@@ -46,7 +46,7 @@ use counting_purpose::{CountStart, CountingPurpose};
 use drawn::{CasterVolume, VolumeMesh, VolumePlan};
 use glam::{DVec3, DVec4};
 
-/// What commands, tables and the inspector say of z-pass.
+/// Describes `z-pass` for commands, tables and the inspector.
 pub(super) const Z_PASS: TechniqueDescription = TechniqueDescription {
     summary: "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on.",
     lesson: Lesson {
@@ -64,7 +64,7 @@ pub(super) const Z_PASS: TechniqueDescription = TechniqueDescription {
         texels: None,
     },
 };
-/// What commands, tables and the inspector say of z-fail.
+/// Describes `z-fail` for commands, tables and the inspector.
 pub(super) const Z_FAIL: TechniqueDescription = TechniqueDescription {
     summary: "Counts the same volumes from infinity back to the surface, so the eye may be inside one.",
     lesson: Lesson {
@@ -98,7 +98,7 @@ pub(super) const Z_FAIL: TechniqueDescription = TechniqueDescription {
     },
     ..Z_PASS
 };
-/// What commands, tables and the inspector say of z-pass-plus.
+/// Describes `z-pass-plus` for commands, tables and the inspector.
 pub(super) const Z_PASS_PLUS: TechniqueDescription = TechniqueDescription {
     summary: "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one.",
     lesson: Lesson {
@@ -117,21 +117,21 @@ pub(super) const Z_PASS_PLUS: TechniqueDescription = TechniqueDescription {
     ..Z_PASS
 };
 
-/// Decides how the volumes of one light are counted: all alike, or each as `auto` finds best.
+/// Decides how the shadow volumes of one light are counted: all alike, or each as `auto` finds cheapest.
 pub trait VolumePolicy {
-    /// Returns how volumes are counted where there are none that would show it.
+    /// Returns the counting mode that a light without any volume is described with.
     fn usual(&self) -> CountingMode;
 
-    /// Returns whether a pass without any volume is added to the plan all the same.
+    /// Returns whether the counting pass is kept in the plan where it would draw nothing.
     fn keeps_empty_pass(&self) -> bool {
         true
     }
 
-    /// Decides about the volumes of these casters (indices into [`FrameBuilder::placed`]), one decision for each.
+    /// Returns a decision for each of these casters (indices into [`FrameBuilder::placed`]), in the same order.
     fn forms(&self, frame: &FrameBuilder, casters: &[usize]) -> Vec<VolumeDecision>;
 
     /// Returns, for each triangle of a caster, whether another part of the caster contains it in its umbra, so that it
-    /// needs no volume; empty where none is. The second part says so for the plan.
+    /// needs no volume (empty where none is), and the record of that for the plan.
     fn in_umbra_of_parts(&self, _frame: &mut FrameBuilder, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
         (Vec::new(), None)
     }
@@ -143,12 +143,12 @@ pub trait VolumePolicy {
     }
 }
 
-/// What a policy decides about a caster's volume.
+/// A policy's decision about one caster's volume.
 #[derive(Debug, Clone)]
 pub struct VolumeDecision {
-    /// How the volume is counted; `None` where the caster needs none.
+    /// How the volume is made and counted; `None` where the caster needs none.
     pub form: Option<VolumeSpec>,
-    /// The parts that are not needed, or why the whole volume is not.
+    /// Records for the plan: the parts that are not needed, or why the whole volume is not.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -159,12 +159,12 @@ impl VolumeDecision {
     }
 }
 
-/// Counts every caster's volume alike.
+/// The policy of z-pass, z-fail and z-pass-plus: counts every caster's volume in the same way.
 struct UniformPolicy {
     light: LightId,
     counting: CountingMode,
     extrusion: Extrusion,
-    /// A caster behind which nothing receives gets no volume: all that receives reads 0 of it either way.
+    /// Whether a caster behind which nothing receives gets no volume.
     only_what_darkens: bool,
 }
 
@@ -194,7 +194,7 @@ impl VolumePolicy for UniformPolicy {
     }
 }
 
-/// Plans z-pass, z-fail or z-pass-plus.
+/// Plans a frame with z-pass, z-fail or z-pass-plus shadow volumes.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let counting = CountingMode::of(job.choice.technique());
     let settings = VolumeSettings::read(job.choice.settings());
@@ -217,7 +217,7 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(finish(frame, &settings, begin))
 }
 
-/// Refuses settings that would take minutes on this scene.
+/// Refuses `silhouette = edge-list` for casters on which its quadratic search would take minutes.
 fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
     let searches = settings.silhouette == SilhouetteBy::Search && !extruded::can_serve(settings, scene);
     let too_large = |triangles: usize| searches && triangles > MOST_TO_SEARCH;
@@ -234,8 +234,8 @@ fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
     }
 }
 
-/// Adds all passes to a frame, and returns the plan. `begin` returns the policy for a light's volumes, or why the light
-/// needs no passes at all.
+/// Adds all passes of a frame with shadow volumes, and returns the plan. `begin` returns the policy for a light's
+/// volumes, or why the light needs no passes at all.
 pub fn finish<D: VolumePolicy>(
     mut frame: FrameBuilder,
     settings: &VolumeSettings,
@@ -267,15 +267,15 @@ fn add_light(frame: &mut FrameBuilder, light: LightId, settings: &VolumeSettings
     write_passes(frame, light, settings, decides, &volumes);
 }
 
-/// What a light's volumes add to a plan.
+/// The volumes of one light, with their meshes and records, before they are added to the plan.
 struct LightVolumes {
     volumes: Vec<VolumePlan>,
-    /// One for each volume; they follow the meshes that the plan has.
+    /// The mesh of each volume; they are added to the plan after the meshes that it has.
     meshes: Vec<DrawMesh>,
     left_out: Vec<LeftOut>,
 }
 
-/// Returns every volume that a light needs. It asks the frame's cache of geometry, and adds nothing to the plan.
+/// Returns every volume that a light needs, made with the frame's geometry cache; adds nothing to the plan.
 fn volumes_of(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -336,7 +336,7 @@ fn volumes_of(
     all
 }
 
-/// Adds the passes that count a light's volumes, and those that read the count.
+/// Adds the passes that count a light's volumes, then the mask and light passes that test the count.
 fn write_passes(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -387,7 +387,7 @@ fn write_passes(
     }
 }
 
-/// Counts in eight bits of stencil, and lets the light pass test them.
+/// Adds the passes that count volumes in the stencil, then the mask and light passes that test it.
 fn count_in_stencil(
     frame: &mut FrameBuilder,
     counts: &CountingPurpose,
@@ -418,8 +418,8 @@ fn count_in_stencil(
     frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
 }
 
-/// Counts in a float target: signed, and right beyond eight bits. It increments and decrements in one draw, and has no
-/// limits.
+/// Adds the pass that counts volumes in a float target, signed and not limited to 8 bits, then the mask and light
+/// passes that test it.
 fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at: u32, volumes: &[VolumePlan]) {
     let (light, step) = (counts.light, FaceSelection::BothFaces);
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(counts.options)).collect();
@@ -430,7 +430,8 @@ fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at:
     frame.light_pass(light, purpose, &frame.light_by(Visibility::Count));
 }
 
-/// Returns what a light's count begins at, and the reason where that is worth saying.
+/// Returns the number that a light's count begins at, and the reason for the pass's text; `None` where there is nothing
+/// to explain.
 fn begin(
     frame: &FrameBuilder,
     light: LightId,
@@ -446,7 +447,7 @@ fn begin(
     (start, Some(in_bits(start)).filter(|in_bits| *in_bits != 0).map(CountStart::FarEnd))
 }
 
-/// Returns what a count of these volumes is a count of; `None` if there are none.
+/// Returns what a count of these volumes counts: bodies, surfaces or both; `None` if there are no volumes.
 fn what_counts(volumes: &[VolumePlan]) -> Option<CountOf> {
     let bodies = volumes.iter().filter(|volume| volume.is_body).count();
     let others = volumes.iter().filter(|volume| !volume.is_body && !volume.darkens_nothing).count();
@@ -460,14 +461,13 @@ fn what_counts(volumes: &[VolumePlan]) -> Option<CountOf> {
     }
 }
 
-/// Returns how all of these volumes are counted, `usual` if there are none; `None` where they are counted in different
-/// ways.
+/// Returns the counting mode that all of these volumes share, `usual` if there are none; `None` where they differ.
 fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMode> {
     let first = volumes.first().map_or(usual, |volume| volume.counting);
     volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
-/// Returns which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no
+/// Returns which triangles of a caster cast its shadow volume with this choice; all of them for a technique without
 /// volumes.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
     let who = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
@@ -478,7 +478,8 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
     }
 }
 
-/// Returns which triangles of an object cast; for `by-topology`, with the decision to record.
+/// Returns which triangles of the object `index` cast, and for `casters = by-topology` the record for the plan of what
+/// was proven or not.
 fn who_casts(
     frame: &mut FrameBuilder,
     light: LightId,

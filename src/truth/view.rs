@@ -34,12 +34,14 @@ impl PictureRays {
         self.ray_through([self.across(x), self.down(y)])
     }
 
-    /// Maps a point's x in pixels to −1 at the left edge and 1 at the right.
+    /// Converts a point's x from pixels, 0 at the picture's left edge, to normalized device coordinates: −1 at the left
+    /// edge, 1 at the right.
     pub fn across(&self, x: f64) -> f64 {
         x / self.size[0] * 2.0 - 1.0
     }
 
-    /// Maps a point's y in pixels to 1 at the upper edge and −1 at the lower.
+    /// Converts a point's y from pixels, 0 at the picture's upper edge, to normalized device coordinates: 1 at the
+    /// upper edge, −1 at the lower.
     pub fn down(&self, y: f64) -> f64 {
         1.0 - y / self.size[1] * 2.0
     }

@@ -14,7 +14,10 @@ use glam::{DMat3, DVec2, DVec3};
 
 pub(crate) const RULES: &[CauseRule] = &[reverse_projection, between, edge_smear, self_shadow, aliasing, no_fit];
 
-/// Says why a silhouette's answer is wrong at a surface point, with the caster and a distance as evidence.
+/// Says why a silhouette's answer is wrong at a surface point: the cause, the caster's index, and a number as evidence.
+/// The number is in metres, from the caster to the light's position for [`Cause::ReverseProjection`], from the surface
+/// to the caster otherwise; for [`Cause::EdgeSmear`] it is the place across the caster's picture, 1 at its edge; 0 for
+/// [`Cause::Aliasing`] without a caster.
 pub(crate) fn look(
     facts: &FrameFacts,
     light: usize,
@@ -119,7 +122,8 @@ fn is_covered(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurfac
     points.any(|point| facts.tracer.along(light, point).iter().any(|met| met.place.object == caster))
 }
 
-/// Returns the caster's name and the distance of the first sample that shows a cause, and how many samples do.
+/// Returns, for the samples that show `cause`, the first one's caster name and measured number ([`look`]), and how many
+/// such samples there are. The name is "nothing" where there is no caster. `None` where no sample shows the cause.
 fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<((String, f64), usize)> {
     case.shown(|sample| {
         let (found, caster, far) = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;

@@ -207,8 +207,8 @@ fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, MarkCaption> {
     rows.iter().map(caption).collect()
 }
 
-/// Returns rows of one technique that differ in one number only, in its order. Where several numbers vary, the one that
-/// joins most rows is taken.
+/// Groups each technique's rows into chains whose settings differ in one number only, sorted by that number. Where
+/// several numbers vary, uses the one that gives the longest chain. Leaves out chains of one row.
 fn chains(report: &Report, rows: &[usize]) -> Vec<Vec<usize>> {
     let mut techniques: Vec<&str> = rows.iter().map(|index| report.rows[*index].technique.as_str()).collect();
     techniques.sort_unstable();

@@ -12,18 +12,18 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 use std::hash::BuildHasher;
 
-/// Objects with more triangles are compared pair by pair.
+/// Objects with more triangles are compared pair by pair, the others all at once.
 const MOST_OF_SMALL: usize = 256;
 
 /// How often each triangle may be compared in pairs of objects; where that would be more, all are compared at once.
 const MOST_LOOKS: usize = 4;
 
-/// A triangle's corners, in an order that does not depend on where it begins or which way it runs.
+/// A triangle's corners as bits, sorted: equal for triangles with the same corners, whatever their order or winding.
 type CornersKey = [[u64; 3]; 3];
 
 type CornersKeys = HashSet<CornersKey, RandomState>;
 
-/// Returns whether two of all drawn triangles coincide.
+/// Returns whether any two drawn triangles have the same three corners, bit for bit.
 pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> bool {
     let drawn: Vec<&FrameObject> = placed.iter().filter(|placed| placed.surface.is_some()).collect();
     let is_small = |placed: &FrameObject| placed.object.mesh.triangles().len() <= MOST_OF_SMALL;
@@ -64,14 +64,15 @@ pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> boo
     })
 }
 
-/// Adds an object's triangles to the keys, and returns whether one of them was there already.
+/// Adds the keys of an object's triangles to `keys`, and returns whether one of them was in there already.
 fn has_doubles(placed: &FrameObject, keys: &mut CornersKeys) -> bool {
     let triangles = placed.object.mesh.triangles();
     keys.reserve(triangles.len());
     triangles.iter().any(|corners| !keys.insert(key(placed, corners)))
 }
 
-/// Returns whether two triangles of an object have the same hash. This takes a tenth of the memory of the keys.
+/// Returns whether two triangles of an object have the same hash, so that they may coincide. Takes a tenth of the
+/// memory of [`has_doubles`].
 fn may_have_doubles(placed: &FrameObject) -> bool {
     let state = RandomState::default();
     let hash = |corners: &[u32; 3]| state.hash_one(key(placed, corners));
@@ -80,7 +81,7 @@ fn may_have_doubles(placed: &FrameObject) -> bool {
     hashes.windows(2).any(|pair| pair[0] == pair[1])
 }
 
-/// The triangles of an object that lie wholly in a box.
+/// Returns the keys of an object's triangles whose corners all lie in a box.
 fn keys_within(placed: &FrameObject, within: AxisBox) -> impl Iterator<Item = CornersKey> {
     let holds = move |vertex: &u32| within.holds(placed.world[*vertex as usize]);
     let inner = placed.object.mesh.triangles().iter().filter(move |corners| corners.iter().all(holds));

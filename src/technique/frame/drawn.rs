@@ -4,27 +4,27 @@ use crate::plan::{ColorWrite, Program, RasterState, StencilFace, Visibility};
 use crate::truth::{LIT, SHADOW};
 use wgpu::{CompareFunction, StencilOperation};
 
-/// How surfaces are drawn in a pass.
+/// How a pass draws visible surfaces: shader program, raster state and label.
 #[derive(Debug, Clone)]
 pub struct SurfaceDrawing {
     pub(super) program: Program,
     pub(super) raster: RasterState,
-    /// What a label program writes.
+    /// The label that a label program writes.
     pub(super) label: u32,
 }
 
 impl SurfaceDrawing {
-    /// Writes "lit" everywhere.
+    /// Returns a drawing that writes the label "lit" at every visible pixel.
     pub fn lit() -> SurfaceDrawing {
         SurfaceDrawing::label(LIT.into())
     }
 
-    /// Writes "in shadow" everywhere.
+    /// Returns a drawing that writes the label "in shadow" at every visible pixel.
     pub fn shadow() -> SurfaceDrawing {
         SurfaceDrawing::label(SHADOW.into())
     }
 
-    /// Writes "in shadow" where less than half of the light arrives.
+    /// Returns a drawing that writes the label "in shadow" where less than half of the light arrives, "lit" elsewhere.
     pub fn lit_by(how: Visibility) -> SurfaceDrawing {
         SurfaceDrawing { program: Program::Label(how), ..SurfaceDrawing::label(LIT.into()) }
     }
@@ -34,7 +34,8 @@ impl SurfaceDrawing {
         SurfaceDrawing { program: Program::Label(Visibility::Everywhere), raster, label }
     }
 
-    /// Draws only where the masked stencil equals `reference`.
+    /// Returns this drawing limited to pixels where the stencil, masked by `read_mask`, equals `reference`; it then
+    /// writes no stencil.
     pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> SurfaceDrawing {
         let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
         self.raster = self.raster.with_stencil(equal, reference);
@@ -43,8 +44,8 @@ impl SurfaceDrawing {
         self
     }
 
-    /// Adds light where the masked stencil is zero, and raises it there, so that of surfaces at one
-    /// depth only the first is lit.
+    /// Returns a drawing that adds the light where the masked stencil is 0, and increments the stencil there, so that
+    /// of surfaces at one depth only the first is lit.
     pub fn light_once_where_zero(read_mask: u32) -> SurfaceDrawing {
         let once = StencilFace {
             compare: CompareFunction::Equal,

@@ -16,7 +16,8 @@ use wgpu::TextureFormat;
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
 
 impl FrameBuilder<'_> {
-    /// Adds the light everywhere, and only once at each pixel where surfaces coincide.
+    /// Returns a drawing that adds a light without any shadow test; with a stencil buffer only once at each pixel,
+    /// where surfaces coincide.
     pub fn light_everywhere(&self) -> SurfaceDrawing {
         let once = SurfaceDrawing::light_once_where_zero(0xff);
         if self.has_stencil {
@@ -26,24 +27,24 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// Adds the light as far as it arrives: the shader asks `how`.
+    /// Returns a drawing that adds the share of a light that arrives, which the shader finds as `how` says.
     pub fn light_by(&self, how: Visibility) -> SurfaceDrawing {
         SurfaceDrawing { program: Program::Light(how), ..self.light_everywhere() }
     }
 
-    /// Multiplies what is visible by what one layer of a light's map lets through.
+    /// Returns a drawing that multiplies the picture by what one layer of a light's texture lets through.
     pub fn darken_through(&self) -> SurfaceDrawing {
         let raster = RasterState::visible_surface(ColorWrite::Multiply);
         SurfaceDrawing { program: Program::Through, raster, label: LIT.into() }
     }
 
-    /// Adds a pass of a light that writes the stencil alone, over the camera's depth. The first such pass of a light
-    /// clears what the light before has left.
+    /// Adds a pass of a light that writes the stencil alone, tested against the camera's depth. The first such pass of
+    /// a light clears the stencil if another light wrote it.
     pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         self.stencil_pass_from(0, light, name, purpose, draws);
     }
 
-    /// Adds a stencil pass; the first one of a light clears the stencil to `start`.
+    /// Adds a stencil pass whose stencil begins at `start`; with `start` 0, clears it only where that may matter.
     pub fn stencil_pass_from(&mut self, start: u8, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let is_untouched = self.stencil_of.is_none();
         let is_cleared = start != 0 || (is_untouched && !self.common.allows(Decision::Clear));
@@ -57,8 +58,8 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// Adds a timed pass of a light, seen by the camera. The first one of a light clears what another has left in the
-    /// stencil.
+    /// Adds a timed pass of a light that the camera sees. The first pass of a light clears the stencil if another light
+    /// wrote it.
     fn push_pass(&mut self, light: LightId, name: &str, purpose: &str, color: Option<ColorTarget>, draws: Vec<Draw>) {
         let depth_stencil = self.depth_stencil_of(light);
         self.stencil_of = Some(light);
@@ -77,12 +78,12 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// The picture as a target that is not cleared.
+    /// Returns the picture as a colour target that keeps its content.
     fn stored_color(&self) -> ColorTarget {
         ColorTarget { attachment: self.color, layer: 0, clear: None }
     }
 
-    /// Gives a light a float target to count its volumes in.
+    /// Gives a light a float attachment to count its shadow volumes in.
     pub fn add_count(&mut self, light: LightId) {
         let count = self.add_attachment(Attachment {
             name: format!("{} count", light.name()),
@@ -94,8 +95,8 @@ impl FrameBuilder<'_> {
         self.plan.lights[light.0].count = Some(count);
     }
 
-    /// Adds a pass of a light that adds to its float count, over the camera's depth. The first one clears the count to
-    /// `start`.
+    /// Adds a pass that adds to a light's float count, tested against the camera's depth. The light's first such pass
+    /// clears the count to `start`.
     pub fn count_pass(&mut self, start: u32, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let Some(attachment) = self.plan.lights[light.0].count else { return };
         let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
@@ -104,7 +105,7 @@ impl FrameBuilder<'_> {
         self.push_pass(light, name, purpose, Some(target), draws);
     }
 
-    /// Adds the pass that draws the depth of all surfaces, and their colour under ambient light.
+    /// Adds the first pass of the picture: draws the depth of all surfaces, and their colour in ambient light.
     pub fn ambient_pass(&mut self) {
         // Clamped depth lets through what lies between eye and near plane.
         let from_near = self.common.depth.clamps();
@@ -136,8 +137,8 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// Adds the pass that adds a light's diffuse light and highlight to the visible surfaces; `shadowed` says how on
-    /// objects that receive shadows. Others are lit as if nothing were between.
+    /// Adds the pass that adds a light's diffuse and specular light to visible surfaces: receivers are drawn as
+    /// `shadowed` says, other objects are lit without shadows.
     pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &SurfaceDrawing) {
         let unshadowed = SurfaceDrawing {
             program: Program::Light(Visibility::Everywhere),
@@ -152,24 +153,25 @@ impl FrameBuilder<'_> {
         self.push_pass(light, "light", purpose, Some(self.stored_color()), draws);
     }
 
-    /// Adds the mask and light passes of a light that arrives as far as `how` says.
+    /// Adds a light's mask pass and light pass, where the shader finds as `how` says whether the light arrives.
     pub fn mask_and_light_passes(&mut self, light: LightId, how: Visibility, purpose: &str) {
         self.mask_pass(light, &[SurfaceDrawing::lit_by(how)]);
         self.light_pass(light, purpose, &self.light_by(how));
     }
 
-    /// Adds a pass that blends draws over the picture, and tests depth and stencil without changing them.
+    /// Adds a pass that blends draws over the picture; it tests depth, and changes it as little as the draws say.
     pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         self.push_pass(light, name, purpose, Some(self.stored_color()), draws);
     }
 
-    /// Adds the pass that writes the light's labels, later layers over earlier ones. Triangles and draws run in
-    /// reverse, so that of surfaces at one depth the first drawn decides here too.
+    /// Adds the pass that writes each pixel's label of the light (lit or in shadow) for measuring accuracy; later
+    /// layers overwrite earlier ones. Draws and triangles run in reverse, so that of surfaces at one depth the first
+    /// drawn decides here too.
     pub fn mask_pass(&mut self, light: LightId, layers: &[SurfaceDrawing]) {
         self.mask_pass_with(light, layers, Vec::new());
     }
 
-    /// Adds a mask pass whose surfaces are followed by the draws `over` them.
+    /// Adds a mask pass ([`FrameBuilder::mask_pass`]) with more draws after its surfaces.
     pub fn mask_pass_with(&mut self, light: LightId, layers: &[SurfaceDrawing], over: Vec<Draw>) {
         let mut draws = Vec::new();
         let unshadowed = SurfaceDrawing::lit();
@@ -204,8 +206,8 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// Returns draws that darken what is visible and receives by one layer of the light's map, except for the layer's
-    /// own pieces.
+    /// Returns draws that darken visible receivers by one layer of the light's texture, except the pieces that own the
+    /// layer.
     pub fn draws_through(&self, layer: usize) -> Vec<Draw> {
         let drawn = self.darken_through();
         let mut draws = self.surface_draws(|object| object.receives.then_some(&drawn));
@@ -214,8 +216,8 @@ impl FrameBuilder<'_> {
         draws
     }
 
-    /// Returns one draw for each piece of every visible object, drawn as `look` says for the object; none where it says
-    /// `None`.
+    /// Returns a draw for each piece of every visible object, in the way that `look` returns for the object; skips
+    /// objects for which it returns `None`.
     fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d SurfaceDrawing>) -> Vec<Draw> {
         self.draws_of(&self.pieces, look)
     }
@@ -248,16 +250,16 @@ impl FrameBuilder<'_> {
         pieces.iter().filter_map(draw).collect()
     }
 
-    /// Returns the picture's depth-stencil target for a pass of `light`: what another light has left in the stencil is
-    /// cleared.
+    /// Returns the picture's depth-stencil target for a pass of `light`; clears the stencil to 0 if another light wrote
+    /// it.
     fn depth_stencil_of(&self, light: LightId) -> DepthStencilTarget {
         let is_of_another = self.stencil_of.is_some_and(|other| other != light);
         let clear_stencil = (self.has_stencil && is_of_another).then_some(0);
         DepthStencilTarget { attachment: self.depth_stencil, layer: 0, clear_depth: None, clear_stencil }
     }
 
-    /// Limits later passes of each lamp with a range to the pixels that it can reach. Returns, for each light, whether
-    /// it reaches none.
+    /// Computes the scissor rectangle of every point light with a range: the pixels it can reach; later passes use it.
+    /// Returns, for each light, whether it reaches no pixel.
     pub fn cut_to_ranges(&mut self) -> Vec<bool> {
         let scene = self.job.scene;
         let mut misses = vec![false; scene.lights.len()];
@@ -285,7 +287,8 @@ impl FrameBuilder<'_> {
     }
 }
 
-/// Returns [`DrawConstants::checks_from`]: small wherever the eye is, so that single precision is exact enough.
+/// Returns [`DrawConstants::checks_from`]: the eye's x and z within one period of the checkers, small enough for single
+/// precision.
 fn checks_from(eye: DVec3, checks: f32) -> [f32; 2] {
     let pair = f64::from(checks) * 2.0;
     if pair > 0.0 { [eye.x, eye.z].map(|at| at.rem_euclid(pair) as f32) } else { [0.0; 2] }

@@ -9,9 +9,9 @@ use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec3, DVec4};
 use wgpu::TextureFormat;
 
-/// Beyond this distance, metres, products of single-precision coordinates overflow.
+/// The largest coordinate relative to the eye, metres: beyond it, products of single-precision coordinates overflow.
 const MOST_DISTANCE: f64 = 1e18;
-/// Factor by which a far plane that the scene does not give lies behind the farthest surface.
+/// Where the scene gives no far plane, it is placed at the farthest surface's distance times this.
 const FAR_MARGIN: f64 = 1.01;
 
 impl FrameBuilder<'_> {
@@ -91,13 +91,13 @@ impl FrameBuilder<'_> {
         Ok(())
     }
 
-    /// Records what a file of this name contains and nothing here shows.
+    /// Records in the plan what a file contains and this program does not support.
     fn name_not_taken(&mut self, decision: Decision, name: &str, list: &[Unsupported]) {
         let named = |one: &Unsupported| LeftOut::named(decision, &one.what, name, one.because.as_str());
         self.plan.left_out.extend(list.iter().map(named));
     }
 
-    /// Returns one piece for each group of the object that is placed next.
+    /// Returns a piece for each group of the object that is placed next.
     fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<SurfacePiece> {
         let (shading, index) = (self.common.shading, self.placed.len());
         let piece = |group: &MeshGroup| SurfacePiece {
@@ -118,8 +118,9 @@ impl FrameBuilder<'_> {
         object.mesh.groups().iter().map(piece).collect()
     }
 
-    /// Returns how depth is stored, as the settings say. Where the camera has no far plane, one is placed behind the
-    /// farthest surface; a parallel camera's depth ends behind all that is drawn or casts within the view's sides.
+    /// Returns the mapping from distance to depth that the settings ask for. Where the camera has no far plane, one is
+    /// placed behind the farthest surface; a parallel camera's depth ends behind all that is drawn or casts within the
+    /// view's sides.
     pub(super) fn depth_curve(&self) -> DepthCurve {
         let camera = &self.job.scene.camera;
         let ahead = (camera.target - camera.eye).normalize_or_zero();
@@ -138,7 +139,7 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// Returns the objects that are drawn or cast, and lie within the sides of the view or in front of it.
+    /// Returns the objects that are drawn or cast, and do not lie wholly outside a plane of the view.
     fn in_view(&self) -> impl Iterator<Item = &FrameObject<'_>> {
         let [width, height] = self.job.size.map(f64::from);
         let view = ViewVolume::new(&self.job.scene.camera, width / height);

@@ -123,7 +123,7 @@ const OCCLUSION: WordSetting<bool> = words(
         sources: &[cited::BITTNER],
     },
 );
-/// Keys of the settings that decide how bright a lit surface is.
+/// Keys of the settings that change the brightness of lit surfaces.
 pub(in crate::technique) const SHADING_KEYS: [&str; 2] = [DIFFUSE.spec.key, SHADING.spec.key];
 const SPECS: [SettingSpec; 6] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec];
 
@@ -141,20 +141,20 @@ pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
     all
 }
 
-/// The settings that every technique has, as types.
+/// The settings that every technique has, parsed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommonSettings {
-    /// How distance becomes depth.
+    /// How distance is mapped to depth.
     pub depth: DepthMapping,
-    /// By how much `standard-infinite-epsilon` pulls infinity in.
+    /// By how much `standard-infinite-epsilon` moves the depth of infinity below 1.
     pub epsilon: f64,
-    /// Diffuse light wraps round the edge at which Lambert's ends.
+    /// Whether diffuse light is wrapped, (cos a + 1) / 2, instead of Lambert's max(0, cos a).
     pub wraps_diffuse: bool,
-    /// How all surfaces are shaded; `None`: each as its material says.
+    /// The shading of all surfaces; `None` where each is shaded as its material says.
     pub shading: Option<Shading>,
-    /// An earlier frame finds out what shows, by occlusion queries.
+    /// Whether a frame before this one finds by occlusion queries which draws show.
     pub asks_what_shows: bool,
-    /// For each decision that may be forbidden, whether it is allowed.
+    /// For each decision that may be forbidden, in the order of [`Decision::NAMES`], whether it is allowed.
     allowed: [bool; Decision::NAMES.len()],
 }
 
@@ -175,14 +175,14 @@ impl CommonSettings {
         }
     }
 
-    /// Returns why a setting does nothing while the others are as they are; `None` where it does something.
+    /// Returns why a setting does nothing with the other settings as they are; `None` where it has an effect.
     pub(in crate::technique) fn without_effect(values: &SettingMap, key: &str) -> Option<&'static str> {
         let is_off = key == EPSILON.spec.key && DEPTH.read(values) != DepthMapping::StandardInfiniteEpsilon;
         is_off.then_some("No effect: only depth = standard-infinite-epsilon pulls infinity in")
     }
 
-    /// Returns whether something may be left out by this decision. Depth that is not reversed and infinite cuts volumes
-    /// off, or gives surfaces equal depths that are apart: what hides nothing elsewhere may decide a pixel there.
+    /// Returns whether this decision may leave something out. Decisions that ask about depth need reversed infinite
+    /// depth: other mappings clip volumes, or give equal depths to surfaces that are apart.
     pub fn allows(&self, decision: Decision) -> bool {
         use Decision::{Clear, Light, MapFaces, Scissor, Stencil};
         let asks_no_depth = matches!(decision, Light | Stencil | Clear | MapFaces | Scissor);

@@ -6,25 +6,25 @@
 use super::super::lesson::Lesson;
 use std::collections::BTreeMap;
 
-/// Key and value of settings, as on the command line, in files and in a capture.
+/// The values of settings by their keys, as written on the command line, in scene files and in captures.
 pub type SettingMap = BTreeMap<String, String>;
 
-/// The description of one setting of a technique.
+/// The description of one setting of a technique: key, allowed values, default and help texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SettingSpec {
     /// The key, as in `--set KEY=VALUE`.
     pub key: &'static str,
-    /// The values that are allowed.
+    /// The values that it accepts.
     pub values: SettingValues,
-    /// The value unless another is set.
+    /// The value where none is set.
     pub default: &'static str,
-    /// What it does, in a few words.
+    /// What it changes, in a few words.
     pub meaning: &'static str,
-    /// What it teaches a learner.
+    /// The help text: explanation, formula and sources.
     pub lesson: Lesson,
 }
 
-/// The kinds of values that a setting may have.
+/// The values that a setting accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SettingValues {
     /// One of these words.
@@ -33,39 +33,39 @@ pub enum SettingValues {
     Integer(i64, i64),
     /// A finite number in this range, ends included.
     Number(f64, f64),
-    /// `all`, `none`, or some of these words between commas.
+    /// `all`, `none`, or some of these words separated by commas.
     SomeOf(&'static [&'static str]),
-    /// One of these words, or a number in this range behind a prefix, as in `pcf:3`.
+    /// One of these words, or a prefix and a number in this range, as in `pcf:3`.
     WordOr {
         /// The words.
         words: &'static [&'static str],
-        /// What the number follows, its colon included.
+        /// The text before the number, its colon included: `pcf:`.
         prefix: &'static str,
         /// The smallest number.
         low: f64,
         /// The largest.
         high: f64,
-        /// Without a fraction.
+        /// Whether the number must be an integer.
         whole: bool,
     },
 }
 
 impl SettingSpec {
-    /// Returns the value that is set, or the default; also the default where the value is not one of those allowed, as
-    /// a folder may contain anything.
+    /// Returns this setting's value in `values`; the default where none is set, or where it is not allowed (a capture
+    /// folder may contain anything).
     pub(in crate::technique) fn of(self, values: &SettingMap) -> &str {
         let set = values.get(self.key).map(String::as_str);
         set.filter(|value| self.values.check(value).is_ok()).unwrap_or(self.default)
     }
 }
 
-/// A setting that is one of some words, the first unless set.
+/// A setting whose value is one of some words, each of which stands for a `T`; the first is the default.
 pub(in crate::technique) struct WordSetting<T: 'static> {
     pub spec: SettingSpec,
     values: &'static [T],
 }
 
-/// Makes a setting of words, each with what it stands for.
+/// Makes a setting of `words`, which stand for `values` in the same order.
 pub(in crate::technique) const fn words<T>(
     key: &'static str,
     words: &'static [&'static str],
@@ -81,13 +81,13 @@ pub(in crate::technique) const fn words<T>(
 }
 
 impl<T: Copy + PartialEq> WordSetting<T> {
-    /// Returns the word for a value.
+    /// Returns the word that stands for a value.
     pub fn word(&self, value: T) -> &'static str {
         let SettingValues::OneOf(words) = self.spec.values else { return self.spec.default };
         words[self.values.iter().position(|one| *one == value).unwrap_or(0)]
     }
 
-    /// Returns what the value that is set stands for.
+    /// Returns what this setting's word in `values` stands for.
     pub fn read(&self, values: &SettingMap) -> T {
         let SettingValues::OneOf(words) = self.spec.values else { return self.values[0] };
         let set = self.spec.of(values);
@@ -100,7 +100,7 @@ pub(in crate::technique) struct NumberSetting {
     pub spec: SettingSpec,
 }
 
-/// Makes a setting that is a whole number.
+/// Makes a setting that is an integer from `low` to `high`.
 pub(in crate::technique) const fn whole(
     key: &'static str,
     [low, high]: [i64; 2],
@@ -111,7 +111,7 @@ pub(in crate::technique) const fn whole(
     NumberSetting { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning, lesson } }
 }
 
-/// Makes a setting that is a number with or without a fraction.
+/// Makes a setting that is a number from `low` to `high`, with or without a fraction.
 pub(in crate::technique) const fn number(
     key: &'static str,
     [low, high]: [f64; 2],
@@ -123,17 +123,18 @@ pub(in crate::technique) const fn number(
 }
 
 impl NumberSetting {
+    /// Returns this setting's number in `values`, or its default.
     pub fn read(&self, values: &SettingMap) -> f64 {
         self.spec.of(values).parse().unwrap_or(0.0)
     }
 }
 
-/// A setting that is one word, or a number behind a prefix.
+/// A setting whose value is one word, or a prefix and a number, as in `pcf:3`.
 pub(in crate::technique) struct NumberOrWordSetting {
     pub spec: SettingSpec,
 }
 
-/// Makes such a setting, whose word is the default.
+/// Makes a setting whose value is the one word of `words`, its default, or a prefix and a number from `low` to `high`.
 pub(in crate::technique) const fn number_or(
     key: &'static str,
     words: &'static [&'static str; 1],
@@ -146,7 +147,7 @@ pub(in crate::technique) const fn number_or(
 }
 
 impl NumberOrWordSetting {
-    /// Returns the number; `None` where the word is set.
+    /// Returns the number; `None` where the value is the word.
     pub fn read(&self, values: &SettingMap) -> Option<f64> {
         let SettingValues::WordOr { prefix, .. } = self.spec.values else { return None };
         self.spec.of(values).strip_prefix(prefix)?.parse().ok()
@@ -154,6 +155,7 @@ impl NumberOrWordSetting {
 }
 
 impl SettingValues {
+    /// Checks a value.
     pub(in crate::technique) fn check(self, value: &str) -> Result<(), String> {
         let in_range = match self {
             SettingValues::OneOf(words) => words.contains(&value),

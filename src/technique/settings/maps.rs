@@ -7,7 +7,7 @@ use super::face::{
 };
 use wgpu::Face;
 
-/// The key of the setting for texels along each side.
+/// The key of the setting for the number of texels along each side.
 pub(in crate::technique) const SIZE: &str = "size";
 
 const fn size(default: &'static str, most: i64, meaning: &'static str) -> NumberSetting {
@@ -111,7 +111,7 @@ const FILTER: NumberOrWordSetting = number_or(
     },
 );
 
-/// In the order in which they are shown.
+/// The settings of `shadow-map`, in the order in which they are shown.
 pub(super) const SHADOW_MAP: [SettingSpec; 14] = with_own([
     MAP_SIZE.spec,
     CONSTANT.spec,
@@ -123,29 +123,29 @@ pub(super) const SHADOW_MAP: [SettingSpec; 14] = with_own([
     REDRAW.spec,
 ]);
 
-/// The settings of shadow maps, as types.
+/// The settings of shadow maps, parsed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapSettings {
     /// Texels along each side.
     pub size: u32,
-    /// Steps of depth by which the map is pushed away from the light.
+    /// Constant bias, in the smallest steps of depth: how far the map is pushed away from the light.
     pub bias_constant: i32,
-    /// Bias in units of a triangle's depth slope across one texel.
+    /// Slope-scaled bias: how far the map is pushed away, in units of a triangle's depth slope across one texel.
     pub bias_slope: f64,
-    /// Texels by which a lookup is moved along the surface's normal.
+    /// Normal offset: how many texels a lookup is moved along the surface's normal.
     pub bias_normal: f64,
-    /// Each texel is compared with the surface's own plane there.
+    /// Receiver-plane bias: whether each texel is compared with the depth of the surface's plane at its centre.
     pub bias_receiver_plane: bool,
-    /// Which faces the map leaves out.
+    /// The faces that the map leaves out; `None` keeps both.
     pub cull: Option<Face>,
-    /// Texels that are compared and averaged along each side.
+    /// PCF kernel width: texels along each side that are compared and averaged; 1 without a filter.
     pub filter_width: u32,
-    /// Maps are cached from frame to frame while nothing that makes them changes.
+    /// Whether maps are kept from frame to frame while nothing that they depend on changes.
     pub keeps: bool,
 }
 
 impl MapSettings {
-    /// Reads the values that are set, in a choice or in a capture.
+    /// Parses the values that a choice or a capture has; settings without a valid value have their defaults.
     pub fn read(values: &SettingMap) -> MapSettings {
         MapSettings {
             size: MAP_SIZE.read(values) as u32,
@@ -216,31 +216,31 @@ const BORDER: WordSetting<bool> = words(
     },
 );
 
-/// In the order in which they are shown.
+/// The settings of `planar-texture`, in the order in which they are shown.
 pub(super) const PLANAR_TEXTURE: [SettingSpec; 8] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
-/// In the order in which they are shown.
+/// The settings of `projective`, in the order in which they are shown.
 pub(super) const PROJECTIVE: [SettingSpec; 12] =
     with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
-/// The settings of techniques that store in textures what casters let through, as types.
+/// The settings of receiver textures and silhouettes, parsed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureSettings {
     /// Texels along each side.
     pub size: u32,
-    /// Textures are cached from frame to frame while nothing that makes them changes.
+    /// Whether textures are kept from frame to frame while nothing that they depend on changes.
     pub keeps: bool,
-    /// Silhouettes are read while lighting, and do not darken the lit picture one by one.
+    /// Whether silhouettes are read in the light pass; otherwise each darkens the lit picture in a pass of its own.
     pub is_single_pass: bool,
-    /// Silhouettes also fall on what is behind the light.
+    /// Whether silhouettes also fall on what lies behind the light (reverse projection).
     pub projects_backwards: bool,
-    /// The picture is as large as the caster's silhouette.
+    /// Whether each silhouette's picture is fitted to its caster.
     pub fits: bool,
-    /// Beyond the picture its last texels go on, as no clear border separates them from it.
+    /// Whether lookups beyond the picture are clamped to its edge; otherwise a clear border surrounds the silhouette.
     pub repeats_edge: bool,
 }
 
 impl TextureSettings {
-    /// Reads the settings of receivers' textures.
+    /// Parses the settings of receiver textures.
     pub fn of_receivers(values: &SettingMap) -> TextureSettings {
         let (is_single_pass, projects_backwards) = (true, false);
         TextureSettings {
@@ -253,7 +253,7 @@ impl TextureSettings {
         }
     }
 
-    /// Reads the settings of casters' silhouettes.
+    /// Parses the settings of silhouettes.
     pub fn of_silhouettes(values: &SettingMap) -> TextureSettings {
         TextureSettings {
             size: SILHOUETTE_SIZE.read(values) as u32,

@@ -7,8 +7,7 @@ use crate::geometry::planar::FlattenClip;
 use wgpu::{CompareFunction, DepthBiasState};
 
 const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0, clamp: 0.0 };
-/// Towards the eye, in steps of depth and in depth slopes a pixel: enough for a plane that is
-/// projected apart from the surface that lies in it.
+/// A depth bias towards the eye, enough to separate a flattened caster from the surface in whose plane it lies.
 const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
 
 const STENCIL: WordSetting<bool> = words(
@@ -80,29 +79,29 @@ const CACHE: WordSetting<bool> = words(
     },
 );
 
-/// In the order in which they are shown.
+/// The settings of `planar`, in the order in which they are shown.
 pub(super) const SETTINGS: [SettingSpec; 11] =
     with_own([STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
 
-/// The settings of planar shadows, as types.
+/// The settings of planar shadows, parsed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarSettings {
-    /// Receivers are marked in the stencil first.
+    /// Whether each receiver's pixels are marked in the stencil first, which keeps shadows on them.
     pub marks: bool,
-    /// The stencil prevents that a pixel is darkened twice.
+    /// Whether the stencil keeps overlapping triangles from darkening a pixel twice.
     pub blends_once: bool,
-    /// Which part of a caster is flattened.
+    /// Which part of a caster is flattened: what lies between plane and light, or all of it.
     pub clip: FlattenClip,
     /// The depth test of a shadow against the surface that it lies on.
     pub depth_compare: CompareFunction,
-    /// The depth offset of a shadow from that surface.
+    /// The depth bias of a shadow against the surface that it lies on.
     pub depth_bias: DepthBiasState,
-    /// Flattened casters are cached between plans.
+    /// Whether flattened casters are cached between plans.
     pub keeps: bool,
 }
 
 impl PlanarSettings {
-    /// Reads the values that are set.
+    /// Parses the values that are set; settings without a valid value have their defaults.
     pub fn read(values: &SettingMap) -> PlanarSettings {
         let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
         PlanarSettings {
@@ -115,7 +114,7 @@ impl PlanarSettings {
         }
     }
 
-    /// Returns why a setting does nothing while the others are as they are.
+    /// Returns why a setting does nothing with the other settings as they are; `None` where it has an effect.
     pub(in crate::technique) fn without_effect(&self, key: &str) -> Option<&'static str> {
         let is_off = key == BLEND.spec.key && !self.marks;
         is_off.then_some("No effect: without the stencil nothing keeps a pixel from being darkened twice")

@@ -208,85 +208,87 @@ const OWN: [SettingSpec; 13] = [
     START.spec,
 ];
 
-/// In the order in which they are shown.
+/// The settings of `z-pass`, in the order in which they are shown.
 pub(super) const Z_PASS: [SettingSpec; 19] = with_own(OWN);
-/// The settings of z-pass without the start: a count that begins at infinity or at the near plane has no other.
+/// The settings of `z-fail`: those of z-pass without `start`, as a count from infinity always begins in the same way.
 pub(super) const Z_FAIL: [SettingSpec; 18] = with_own({
     let [own @ .., _] = OWN;
     own
 });
-/// Also without vertex shaders: casting triangles are drawn at the near plane, and the CPU has to know them.
+/// The settings of `z-pass-plus`: those of z-pass without `start` and `extruded-by`, as the CPU has to know the casting
+/// triangles to draw them at the near plane.
 pub(super) const Z_PASS_PLUS: [SettingSpec; 17] = with_own({
     let [own @ .., _, _] = OWN;
     own
 });
 
-/// The settings of techniques that count volumes, as types.
+/// The settings of shadow volumes, parsed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeSettings {
-    /// Which triangles cast.
+    /// Which of a caster's triangles cast.
     pub casters: CasterRule,
-    /// How far volumes reach.
+    /// How far volumes extend.
     pub extrusion: Extrusion,
-    /// Front and back faces in passes of their own.
+    /// Whether faces that increment and faces that decrement are drawn in separate passes.
     pub two_pass: bool,
-    /// In passes of their own, faces that decrement come before those that increment.
+    /// Whether, with two passes, the faces that decrement are drawn first.
     pub takes_away_first: bool,
-    /// How a face changes the stencil.
+    /// The stencil operations that faces use.
     pub operations: CountOperations,
-    /// The bits of the stencil that are counted in.
+    /// The stencil read and write mask: the bits that are counted in.
     pub bits: u8,
-    /// Whether light caps and dark caps are drawn, where they are needed.
+    /// Whether light caps and dark caps are drawn where the count needs them, in this order.
     pub caps: [bool; 2],
-    /// The count begins with the volumes around the eye.
+    /// Whether the count begins at the number of volumes around the eye instead of 0.
     pub starts_at_eye: bool,
-    /// Volumes are counted in a float target instead of the stencil.
+    /// Whether volumes are counted in a float target instead of the stencil.
     pub counts_in_float: bool,
-    /// Light caps never pass the depth test, whatever is in front of them.
+    /// Whether light caps always fail the depth test (compare function Never).
     pub light_caps_never_pass: bool,
-    /// How shared edges are found for the silhouette.
+    /// How shared edges are found for the silhouette: by adjacency, or by searching all edges.
     pub silhouette: SilhouetteBy,
-    /// A vertex shader carries volumes away from the light.
+    /// Whether a vertex shader extrudes volumes instead of the CPU.
     pub by_vertex_shader: bool,
 }
 
-/// How a volume's face changes the stencil.
+/// The stencil operations with which volume faces count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CountOperations {
-    /// It increments or decrements, and wraps at the ends.
+    /// Increment and decrement, wrapping around at the ends.
     Wrapping,
-    /// It increments or decrements, and stops at 0 and 255.
+    /// Increment and decrement, clamped to 0 and 255.
     Clamping,
-    /// It inverts one bit, which distinguishes odd from even.
+    /// Invert one bit, which only distinguishes odd counts from even.
     Inverting,
 }
 
-/// Which triangles cast, or what decides it.
+/// Which of a caster's triangles cast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CasterRule {
-    /// The same triangles of every caster.
+    /// These triangles of every caster.
     Always(Casters),
-    /// Those that face the light where that is proven to be enough, otherwise all.
+    /// The light-facing triangles where they are proven to suffice, otherwise all.
     ByTopology,
 }
 
 impl VolumeSettings {
-    /// Returns whether volumes are closed and in their place, and every face counts: then a surface that no volume
-    /// contains reads 0.
+    /// Returns whether these settings make closed volumes in their right place and lose no step of the count, so that a
+    /// surface outside all volumes reads 0.
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
         let loses_steps = self.operations == CountOperations::Clamping && !self.counts_in_float;
         self.caps == [true; 2] && !self.light_caps_never_pass && !is_misplaced && !loses_steps
     }
 
-    /// Returns the settings that `auto` decides itself: triangles cast by topology unless that is forbidden.
+    /// Returns the settings that `auto` uses: the defaults, with casters by topology unless the decision
+    /// `away-triangles` is forbidden.
     pub fn of_auto(common: &CommonSettings) -> VolumeSettings {
         let by_topology = common.allows(Decision::AwayTriangles);
         let casters = if by_topology { CasterRule::ByTopology } else { CasterRule::Always(Casters::All) };
         VolumeSettings { casters, ..VolumeSettings::read(&SettingMap::new()) }
     }
 
-    /// Reads the values that are set.
+    /// Parses the values that are set; settings without a valid value have their defaults.
     pub fn read(values: &SettingMap) -> VolumeSettings {
         VolumeSettings {
             casters: CASTERS.read(values),
@@ -308,12 +310,12 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns the bits that faces write and the light pass reads: one bit for parity.
+    /// Returns the stencil mask that faces write and the light pass reads: 1 for parity, otherwise the chosen bits.
     pub fn mask(&self) -> u8 {
         if self.operations == CountOperations::Inverting { 1 } else { self.bits }
     }
 
-    /// Returns why a setting does nothing while the others are as they are.
+    /// Returns why a setting does nothing with the other settings as they are; `None` where it has an effect.
     pub(in crate::technique) fn without_effect(&self, key: &str) -> Option<&'static str> {
         let is = |spec: SettingSpec| key == spec.key;
         if is(FAR_VERTICES.spec) && self.extrusion == Extrusion::Infinite {
@@ -348,7 +350,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns the key and value that count in floats.
+    /// Returns the key and the value of the setting that counts volumes in floats.
     pub(in crate::technique) fn in_floats() -> [&'static str; 2] {
         [COUNTER.spec.key, COUNTER.word(true)]
     }

@@ -17,15 +17,15 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 /// tangent of the light's height.
 const GRAZING_BIAS: i32 = -4;
 
-/// A range of a volume's triangles that counts, with how.
+/// A range of a volume's triangles that counts, and how.
 #[derive(Debug, Clone)]
 pub struct CountedPart {
     pub part: DrawPart,
-    /// Its triangles face inwards: the operations of front and back faces are swapped.
+    /// Whether its triangles face inwards, so that the operations of front and back faces are swapped.
     pub flipped: bool,
-    /// Its sides graze the surface that casts them: they are drawn behind their place.
+    /// Whether its sides graze the surface that casts them, so that a depth bias moves them behind it.
     pub grazes: bool,
-    /// The number that is added to each index.
+    /// The number that is added to each index of its draw.
     pub base_vertex: u32,
     pub triangles: Range<usize>,
 }
@@ -36,18 +36,18 @@ impl CountedPart {
     }
 }
 
-/// On which side of the visible surface a volume's faces count.
+/// Which faces of a volume count: those in front of the visible surface (z-pass) or behind it (z-fail).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CountingMode {
     /// In front of the surface.
     InFront,
-    /// In front of the surface, on top of what the near plane's count began with.
+    /// In front of the surface, starting from the near plane's own count (z-pass-plus).
     InFrontPlus,
     /// Behind the surface.
     Behind,
 }
 
-/// How a volume is made and counted: the side that counts, how far it extends, and which caps it needs.
+/// How a volume is made and counted: the side that counts, its extrusion, and the caps that the count needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeSpec {
     pub counting: CountingMode,
@@ -57,26 +57,26 @@ pub struct VolumeSpec {
 }
 
 impl VolumeSpec {
-    /// Returns whether the volume ends on a plane, to which no vertex shader can carry it.
+    /// Returns whether the volume ends on a plane; no vertex shader extrudes such volumes.
     pub fn ends_on_plane(&self) -> bool {
         matches!(self.extrusion, Extrusion::Clamped(_))
     }
 }
 
-/// Which faces one pass draws.
+/// Which volume faces a counting pass draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceSelection {
-    /// All, with an operation each.
+    /// All faces, with two-sided stencil operations.
     BothFaces,
-    /// Those that add.
+    /// Only the faces that increment.
     Adding,
-    /// Those that take away.
+    /// Only the faces that decrement.
     TakingAway,
 }
 
 impl FaceSelection {
-    /// The passes of one light, in order. What adds comes first, unless the other order is asked for: a clamped
-    /// count then only fails beyond 255.
+    /// Returns the counting passes of a light in their order: one for both faces, or one each. Incrementing first keeps
+    /// clamped counts right up to 255.
     pub fn all(options: &VolumeSettings) -> &'static [FaceSelection] {
         match (options.two_pass, options.takes_away_first) {
             (false, _) => &[FaceSelection::BothFaces],
@@ -95,6 +95,8 @@ impl FaceSelection {
 }
 
 impl CountingMode {
+    /// Returns how a volume technique counts: z-pass and z-pass+ in front of the surface, every other technique behind
+    /// it.
     pub fn of(technique: Technique) -> CountingMode {
         match technique {
             Technique::ZPass => CountingMode::InFront,
@@ -103,7 +105,7 @@ impl CountingMode {
         }
     }
 
-    /// On which side of the surface its faces count.
+    /// Returns whether this mode counts volume faces in front of the visible surface (z-pass) or behind it (z-fail).
     pub fn side(self) -> CountedSide {
         match self {
             CountingMode::InFront | CountingMode::InFrontPlus => CountedSide::InFront,
@@ -111,8 +113,9 @@ impl CountingMode {
         }
     }
 
-    /// The state that a part counts with. What counts behind surfaces asks not to be clipped, as far as the frame
-    /// can do without ([`Frame::finish`](crate::technique::frame::Frame::finish)).
+    /// Returns the raster state with which a part counts in the stencil. Z-fail asks for unclipped depth;
+    /// [`FrameBuilder::finish`](crate::technique::frame::FrameBuilder::finish) clears that where the frame can't or
+    /// needn't have it.
     pub(super) fn raster(self, part: &CountedPart, options: &VolumeSettings, step: FaceSelection) -> RasterState {
         let (add, take) = operations(options);
         let adds_in_front = (self != CountingMode::Behind) != part.flipped;
@@ -137,9 +140,8 @@ impl CountingMode {
         state.with_faces(front, back, 0).writing(options.mask())
     }
 
-    /// The state for counting in a float target, and what a front face adds there (of a turned part: a
-    /// back face that counts as one). What fails the depth test writes nothing, so counting behind
-    /// the surface tests the other way round.
+    /// Returns the raster state with which a part counts in a float target, and what a front face adds there, 1 or −1
+    /// (a back face the opposite). As fragments that fail the depth test write nothing, z-fail reverses the test.
     pub(super) fn float_raster(self, part: &CountedPart, options: &VolumeSettings) -> (RasterState, f32) {
         let surface = RasterState::surface();
         let never_passes = options.light_caps_never_pass && part.part == DrawPart::LightCap;
@@ -171,7 +173,7 @@ fn depth_bias(part: &CountedPart) -> DepthBiasState {
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
 
-/// Returns the stencil operations that add 1 and subtract 1.
+/// Returns the stencil operations that add 1 and take 1 away, in this order; both invert for parity.
 pub fn operations(options: &VolumeSettings) -> (StencilOperation, StencilOperation) {
     match options.operations {
         CountOperations::Wrapping => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),

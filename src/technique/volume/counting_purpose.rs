@@ -4,7 +4,7 @@ use super::counting::{CountingMode, FaceSelection};
 use crate::plan::{CountBits, LightId};
 use crate::technique::settings::{CountOperations, VolumeSettings};
 
-/// What a count begins at, and because of what.
+/// The number that a count begins at, by its reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CountStart {
     /// The number of volumes around the eye.
@@ -13,26 +13,26 @@ pub enum CountStart {
     FarEnd(u32),
 }
 
-/// What the sentence about a counting pass depends on.
+/// The facts from which the sentences about a counting pass are written.
 pub struct CountingPurpose<'a> {
     /// How all volumes are counted; `None` where they are counted in different ways.
     pub by: Option<CountingMode>,
     pub light: LightId,
     pub options: &'a VolumeSettings,
-    /// What the count begins at, if that is not 0.
+    /// What the count begins at, and why; `None` for 0.
     pub start: Option<CountStart>,
-    /// Volumes are only counted in front of the surface where neither the eye nor the near plane is in them.
+    /// Whether each volume's side is chosen (`auto`): in front only where neither the eye nor the near plane is in it.
     pub chooses_side: bool,
     /// The name of the place that [`CountStart::Eye`] is counted around.
     pub place: &'static str,
-    /// View rays are parallel: they begin at the near plane, and meet in no eye.
+    /// Whether view rays are parallel, and so begin at the near plane and not at an eye.
     pub is_parallel: bool,
-    /// Whether light caps and dark caps would count that are not drawn.
+    /// Whether light caps and dark caps are left out though they would count, in this order.
     pub lacks: [bool; 2],
 }
 
 impl CountingPurpose<'_> {
-    /// Returns what a pass is for, in sentences.
+    /// Returns sentences that say what a counting pass does and what is left in the count.
     pub fn purpose(&self, step: FaceSelection) -> String {
         let what = self.what();
         let is_inverting = self.options.operations == CountOperations::Inverting && !self.options.counts_in_float;
@@ -81,7 +81,7 @@ impl CountingPurpose<'_> {
         }
     }
 
-    /// Says what is left when all has been counted.
+    /// Returns the sentence that says what the count means when all faces are counted.
     fn left(&self) -> String {
         let begins = self.begins();
         let what = match self.by {
@@ -94,7 +94,7 @@ impl CountingPurpose<'_> {
         format!("{begins}{what} the surface{}.", self.condition())
     }
 
-    /// Returns the bits that the count is stored in; all of them for a float.
+    /// Returns the bits that the count is stored in; eight, so not worth mentioning, for a float.
     fn bits(&self) -> CountBits {
         if self.options.counts_in_float { CountBits::EIGHT } else { CountBits::of_mask(self.options.mask().into()) }
     }
@@ -115,7 +115,7 @@ impl CountingPurpose<'_> {
         }
     }
 
-    /// Says on which condition that is so.
+    /// Returns the words that say under which condition the count is right.
     fn condition(&self) -> String {
         let eye = match (self.by, self.start) {
             (Some(CountingMode::InFront), _) if self.chooses_side && self.is_parallel => {

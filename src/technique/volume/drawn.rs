@@ -13,62 +13,64 @@ use crate::technique::settings::VolumeSettings;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
 
-/// What replaces a volume's far end where view rays are parallel.
+/// What replaces the dark cap of an infinite volume where view rays are parallel: a number that the count begins at.
 #[derive(Debug, Clone, Copy)]
 pub struct ParallelFarEnd {
-    /// Number of casting triangles that the light's ray along the view hits: so many volumes contain the far end.
+    /// How many casting triangles the ray from the light along the view direction hits: so many volumes contain the far
+    /// end.
     pub met: u32,
-    /// How far beside the light far vertices are carried from: metres, or radians for a directional light.
+    /// How far beside the light lies the point that far vertices are carried away from: metres, or radians for a
+    /// directional light; 0 at the light itself.
     pub beside: f64,
-    /// The light is a point light.
+    /// Whether the light is a point light.
     pub is_point: bool,
 }
 
-/// A caster's volume with all that its draws are made from.
+/// A caster's volume, with all that its draws are made from.
 pub struct VolumePlan {
     /// Index of its caster in [`FrameBuilder::placed`].
     pub object: usize,
     pub caster: String,
     pub counting: CountingMode,
-    /// A body that is proven closed, of which one side casts.
+    /// Whether the caster is a body that is proven closed, of which only light-facing triangles cast.
     pub is_body: bool,
-    /// No surface is behind the caster: the volume's count is 0 at each.
+    /// Whether no receiver is behind the caster, so that the volume's count is 0 at each.
     pub darkens_nothing: bool,
     pub mesh: MeshId,
     pub casting: CastingTriangles,
-    /// The parts that the volume pass counts.
+    /// The parts that the counting pass draws.
     pub needed: Vec<CountedPart>,
-    /// Whether a light cap and a dark cap would count that the settings leave out.
+    /// Whether a light cap and a dark cap that would count are left out by the settings, in this order.
     pub lacks_caps: [bool; 2],
-    /// What the count begins at because of it, where no dark cap is drawn for it.
+    /// The number that this volume adds to the start of the count, where no dark cap is drawn for it; otherwise 0.
     pub begins_with: u32,
 }
 
 /// Which triangles of a volume's caster cast.
 #[derive(Debug, Clone)]
 pub enum CastingTriangles {
-    /// Ranges of the volume's mesh: triangles that face the light, and flipped ones.
+    /// Ranges of triangles of the volume's mesh: those that face the light, then those that were flipped to face it.
     Runs([Range<usize>; 2]),
-    /// The triangles of the caster from which its vertex shader chooses.
+    /// The rule by which the vertex shader chooses them from all triangles of the caster.
     Picked(Casters),
 }
 
-/// A volume's mesh, and which parts of it count.
+/// A volume's mesh, and the parts of it that count.
 pub struct VolumeMesh {
     pub mesh: DrawMesh,
     pub casting: CastingTriangles,
     pub needed: Vec<CountedPart>,
-    /// What the count begins at because of it, where no dark cap is drawn for it.
+    /// The number that this volume adds to the start of the count, where no dark cap is drawn for it; otherwise 0.
     pub begins_with: u32,
-    /// What of the volume is not needed, with the reasons.
+    /// Records for the plan: the parts of the volume that are not needed.
     pub left_out: Vec<LeftOut>,
 }
 
-/// The inputs of a volume: one caster under one light.
+/// The input for making the volume of one caster under one light.
 #[derive(Debug, Clone, Copy)]
 pub struct CasterVolume<'a> {
     pub light: LightId,
-    /// Its caster, an index into [`FrameBuilder::placed`].
+    /// Index of its caster in [`FrameBuilder::placed`].
     pub index: usize,
     /// Which of the caster's triangles cast.
     pub casters: Casters,
@@ -78,7 +80,8 @@ pub struct CasterVolume<'a> {
 }
 
 impl VolumePlan {
-    /// Returns the casting triangles as parts to be drawn; empty where a vertex shader chooses them.
+    /// Returns the casting triangles as parts that can be drawn, those that face the light first; empty where a vertex
+    /// shader chooses them.
     pub fn casting(&self) -> impl Iterator<Item = CountedPart> {
         let runs = match &self.casting {
             CastingTriangles::Runs([light_cap, flipped]) => vec![(false, light_cap), (true, flipped)],
@@ -89,7 +92,7 @@ impl VolumePlan {
         parts.filter(|part| !part.triangles.is_empty())
     }
 
-    /// Returns the casting triangles in world space.
+    /// Returns the casting triangles, world space, each turned towards the light unless a vertex shader chooses them.
     pub fn casting_triangles(&self, frame: &FrameBuilder, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
         let placed = &frame.placed[self.object];
         let (corners, casters) = match &self.casting {
@@ -148,7 +151,7 @@ impl VolumePlan {
     }
 }
 
-/// Makes a volume whose far vertices the CPU carries away from the light.
+/// Makes the volume of a caster with far vertices that the CPU extrudes away from the light.
 ///
 /// # Errors
 /// Returns what to record where the caster needs no volume.
@@ -174,7 +177,8 @@ pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSetting
     Ok(made)
 }
 
-/// Returns the mesh of a volume, what its ranges of triangles are, and its far end where view rays are parallel.
+/// Returns the mesh of a volume, the ranges of triangles that are its parts, and what replaces its far end where view
+/// rays are parallel.
 fn outlined(
     frame: &mut FrameBuilder,
     of: &CasterVolume,
@@ -216,7 +220,8 @@ fn outlined(
 }
 
 impl VolumeMesh {
-    /// Adds the parts that count. What is left out is recorded, except for dark caps that are not drawn anyway.
+    /// Adds the parts that count. Records those that are not needed, except dark caps that the settings leave out
+    /// anyway.
     fn add_parts(
         &mut self,
         form: VolumeSpec,
@@ -267,7 +272,7 @@ impl VolumeMesh {
 }
 
 impl ParallelFarEnd {
-    /// Says from where the sides lead, where that is not the light itself.
+    /// Returns words for the point that the sides lead away from; empty where that is the light itself.
     fn beside(self) -> String {
         match self.beside > 0.0 {
             true => {
@@ -281,7 +286,7 @@ impl ParallelFarEnd {
         }
     }
 
-    /// Says why the volume has no dark cap.
+    /// Returns the reason why the volume has no dark cap.
     fn because(self) -> String {
         let beside = self.beside();
         format!(

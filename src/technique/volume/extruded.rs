@@ -17,14 +17,15 @@ use crate::scene::Scene;
 use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 
-/// Returns whether a vertex shader carries volumes in this scene, as the settings ask.
+/// Returns whether a vertex shader can extrude volumes in this scene and the settings ask for it. It can't for infinite
+/// volumes under parallel view rays.
 pub fn can_serve(options: &VolumeSettings, scene: &Scene) -> bool {
     let ends_in_a_point = scene.camera.is_parallel() && options.extrusion == Extrusion::Infinite;
     options.by_vertex_shader && !ends_in_a_point
 }
 
-/// Returns whether a vertex shader carries the volumes of a light, and what to record where the settings ask for it and
-/// it can't.
+/// Returns whether a vertex shader extrudes the volumes of a light, and the record for the plan where the settings ask
+/// for that and it can't.
 pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) -> (bool, Option<LeftOut>) {
     let can = can_serve(options, frame.job.scene);
     let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
@@ -33,7 +34,7 @@ pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) ->
     (can, cannot.then(|| LeftOut::new(Decision::VertexExtrusion, light.name(), because)))
 }
 
-/// Makes the volume of one caster.
+/// Makes the volume of a caster that the vertex shader extrudes away from the light.
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume) -> VolumeMesh {
     let CasterVolume { light, index, casters, form, .. } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());

@@ -18,8 +18,8 @@ pub fn at(frame: &FrameBuilder, light: LightId, volumes: &[VolumePlan]) -> u32 {
     casting.filter(|corners| holds(*corners, light, place)).count() as u32
 }
 
-/// Returns whether a point is in the volume of a triangle: beyond it, seen from the light. A point on a side plane is
-/// not.
+/// Returns whether the volume of one triangle, extended to infinity, contains a point; not if the point is on a side
+/// plane.
 fn holds(corners: [DVec3; 3], light: DVec4, point: DVec3) -> bool {
     let [of_light, of_point] = [light, point.extend(1.0)].map(|place| side_of_triangle(corners, place));
     let [a, b, c] = corners;

@@ -16,15 +16,14 @@ use crate::math::{Sign, side_of_triangle};
 use crate::scene::{Camera, Projection};
 use glam::{DVec2, DVec3, DVec4};
 
-/// What rounding to single precision may turn a direction by, and more: twice the units of its parts, their products
-/// with a matrix and the sums.
+/// An upper bound for the relative error of a direction that is computed in single precision.
 const MARGIN: f64 = 1e-6;
-/// How far beside the light is tried at first, in margins.
+/// The distance beside the light that is tried first, in multiples of the possible error.
 const FIRST_STEP: f64 = 4.0;
-/// How much farther each time, and by how much of a turn: no two tries lie in a line.
+/// The factor by which each try is farther from the light than the one before; each is turned by [`GOLDEN_ANGLE`].
 const GROWTH: f64 = 1.25;
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
-/// After as many, far vertices are carried from the light itself.
+/// After this many tries, far vertices are carried from the light itself.
 const MOST_TRIES: u32 = 40;
 
 /// The point at infinity where parallel view rays end.
@@ -49,15 +48,15 @@ impl FarPoint {
         })
     }
 
-    /// Returns where a direction leads in the picture, and how far ahead.
+    /// Returns where a world direction leads in the picture (right and up, metres), and how far ahead.
     fn seen(&self, direction: DVec3) -> (DVec2, f64) {
         let ahead = direction.dot(self.across[1].cross(self.across[0]));
         let [right, up] = self.across.map(|axis| axis.dot(direction));
         (DVec2::new(right, up) + self.shear * ahead, ahead)
     }
 
-    /// Returns the light itself, or a homogeneous place beside it from which none of these edges, world space, is seen
-    /// end on as far as single precision can decide.
+    /// Returns the light, or a homogeneous place beside it, from which none of these edges (world space) is seen end on
+    /// as far as single precision can decide. Returns the light where no such place is found.
     pub fn settled(&self, light: DVec4, edges: &[[DVec3; 2]]) -> DVec4 {
         // The edge that takes the widest step, of those that the ray may hit.
         let widest = |light: DVec4| edges.iter().filter_map(|edge| self.doubt(light, *edge)).max_by(f64::total_cmp);
@@ -69,7 +68,8 @@ impl FarPoint {
         (0..MOST_TRIES).map(beside).find(|place| widest(*place).is_none()).unwrap_or(light)
     }
 
-    /// Returns how far single precision may move the directions to an edge, where that may bring it to the ray.
+    /// Returns the error that single precision may make in the directions from the light to an edge, where that may
+    /// move the edge onto the view direction's ray; `None` where it can't.
     fn doubt(&self, light: DVec4, edge: [DVec3; 2]) -> Option<f64> {
         let [a, b] = edge.map(|corner| corner * light.w - light.truncate());
         let doubt = MARGIN * a.length().max(b.length()) * (1.0 + self.shear.length());
@@ -81,8 +81,8 @@ impl FarPoint {
         (nearest.length() <= doubt && ahead >= -doubt).then_some(doubt)
     }
 
-    /// Returns how many of these triangles, world space, the ray of a homogeneous light in this direction hits. Exact;
-    /// a ray through an edge is taken to run a little beside it, so that it hits one of the two triangles there.
+    /// Returns how many of these triangles (world space) the ray from a point light along the view direction hits; 0
+    /// for a directional light. Exact: a ray through an edge hits one of the two triangles there.
     pub fn count(&self, light: DVec4, casting: impl Iterator<Item = [DVec3; 3]>) -> u32 {
         // All rays of a directional light have its own direction.
         if light.w == 0.0 {

@@ -21,7 +21,8 @@ use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::{CountOperations, VolumeSettings};
 use wgpu::CompareFunction;
 
-/// Adds the light's view and the pass; adds none where nothing can count.
+/// Adds the pass that counts, from the light through the near rectangle, the volumes around each point of the near
+/// plane (z-pass-plus). Adds nothing, and records why, where no caster can count.
 pub fn pass(frame: &mut FrameBuilder, light: LightId, options: &VolumeSettings, volumes: &[VolumePlan]) {
     let name = light.name();
     let position = frame.light_position(light);
@@ -70,7 +71,7 @@ pub fn pass(frame: &mut FrameBuilder, light: LightId, options: &VolumeSettings, 
     }
 }
 
-/// Either face adds 1, whatever the depth.
+/// Returns a raster state in which either face adds 1, whatever the depth.
 fn raster(options: &VolumeSettings) -> RasterState {
     let count = StencilFace {
         compare: CompareFunction::Always,
