@@ -166,7 +166,7 @@ impl GeometryCache {
             None if of.extruder.is_one_point() => FarEnd::Point,
             _ => FarEnd::Caps,
         };
-        write_indices(triangles, caster.world.len(), &self.facings, (found, grazing), far_end, out)
+        write_indices(triangles, caster.world.len(), &self.facings, found, grazing, far_end, out)
     }
 
     /// A caster's volume for a vertex shader: made again only if caster or origin changed.

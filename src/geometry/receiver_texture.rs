@@ -35,7 +35,7 @@ impl ReceiverParallelogram {
         vertices.dedup();
         let points: Vec<DVec3> = vertices.iter().map(|vertex| world[*vertex as usize]).collect();
         let whole = match points[..] {
-            [a, b, c, d] => [(a, b, c, d), (a, b, d, c), (a, c, d, b)].into_iter().find_map(parallelogram),
+            [a, b, c, d] => [[a, b, c, d], [a, b, d, c], [a, c, d, b]].into_iter().find_map(parallelogram),
             _ => None,
         };
         whole.unwrap_or_else(|| {
@@ -87,7 +87,7 @@ impl ReceiverParallelogram {
 }
 
 /// Of four corners, the last opposite to the first.
-fn parallelogram((corner, a, b, opposite): (DVec3, DVec3, DVec3, DVec3)) -> Option<ReceiverParallelogram> {
+fn parallelogram([corner, a, b, opposite]: [DVec3; 4]) -> Option<ReceiverParallelogram> {
     let (ex, ey) = (a - corner, b - corner);
     let is_closed = (corner + ex + ey - opposite).length() <= PARALLEL * (ex.length() + ey.length());
     is_closed.then_some(ReceiverParallelogram { corner, ex, ey })
