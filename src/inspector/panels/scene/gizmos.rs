@@ -92,8 +92,8 @@ fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
 
 /// Returns the name of a handle, as shown.
 fn name_of(scene: &OpenScene, grip: HandleKind) -> String {
-    let object = if let HandleKind::Object(index) = grip { scene.object(index) } else { None };
-    object.map_or_else(|| grip.name(), |object| object.name)
+    let object = if let HandleKind::Object(index) = grip { scene.placed(index) } else { None };
+    object.map_or_else(|| grip.name(), |(object, _)| object.name.clone())
 }
 
 fn is_directional(draft: &RunRequest, grip: HandleKind) -> bool {
@@ -124,9 +124,9 @@ fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DV
         HandleKind::Eye => Some(draft.camera.eye),
         HandleKind::Target => Some(draft.camera.target),
         HandleKind::Object(index) => {
-            let object = scene.object(index)?;
-            let pose = object.motion.apply(&object.pose, draft.time);
-            Some(pose.world_from_object().transform_point3(scene.middle_of(index, &object)))
+            let (object, pose) = scene.placed(index)?;
+            let pose = object.motion.apply(&pose, draft.time);
+            Some(pose.world_from_object().transform_point3(scene.middle_of(index, object)))
         }
     }
 }
