@@ -206,7 +206,7 @@ impl Viewports {
             attributes: &LINE,
         };
         // The format that a pass writes to, and the samples a pixel.
-        let pipeline = |[vertex, fragment]: [&str; 2], buffer, cull_mode, (samples, format): (u32, TextureFormat)| {
+        let pipeline = |[vertex, fragment]: [&str; 2], buffer, cull_mode, samples: u32, format: TextureFormat| {
             let is_solid = fragment == "fs_solid";
             let topology = match vertex {
                 "vs_line" => wgpu::PrimitiveTopology::TriangleStrip,
@@ -245,7 +245,7 @@ impl Viewports {
         Viewports {
             pipelines: SAMPLES.map(|samples| {
                 let of = |names, buffer: &wgpu::VertexBufferLayout<'static>, cull| {
-                    pipeline(names, Some(buffer.clone()), cull, (samples, COLOR))
+                    pipeline(names, Some(buffer.clone()), cull, samples, COLOR)
                 };
                 [
                     of(["vs_solid", "fs_solid"], &corners, None),
@@ -255,7 +255,7 @@ impl Viewports {
                     of(["vs_line", "fs_line"], &lines, None),
                 ]
             }),
-            window: pipeline(["vs_window", "fs_window"], None, None, (1, target)),
+            window: pipeline(["vs_window", "fs_window"], None, None, 1, target),
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,

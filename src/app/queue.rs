@@ -3,6 +3,7 @@
 use crate::ask::{PendingQuestion, QuestionKind, RunRequest};
 use crate::stress::{Entrant, StressCase};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
 /// An order of the window to the worker.
@@ -29,7 +30,7 @@ pub enum Order {
         /// Number of the scene that is meant.
         scene: u64,
         /// The changed request.
-        request: Box<RunRequest>,
+        request: Arc<RunRequest>,
     },
     /// Write the scene, as it is run, into a file.
     SaveScene {
@@ -177,7 +178,7 @@ mod tests {
     fn run(width: u32) -> Order {
         let scene = crate::scene::open(&crate::scene::OpenSpec::new("table")).expect("a built-in scene");
         let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [width, 1]);
-        Order::Run { scene: 1, request: Box::new(request) }
+        Order::Run { scene: 1, request: Arc::new(request) }
     }
 
     fn asked(ticket: u64, ask: impl Into<Ask>) -> Order {

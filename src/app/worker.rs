@@ -481,7 +481,7 @@ impl WorkerState {
 
     fn run(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(open) = &self.open else { return Ok(()) };
-        let scene = request.applied_to(open).at(request.time);
+        let scene = request.applied_to(open).advanced(request.time);
         self.take_over(request);
         self.capture(scene, request).map_err(|error| error.to_string())
     }

@@ -91,10 +91,17 @@ impl RunRequest {
         Ok(())
     }
 
+    /// Returns whether another request differs in nothing but the time.
+    pub fn is_same_but_for_time(&self, other: &RunRequest) -> bool {
+        let RunRequest { choice, size, camera, lights, time: _, off, objects } = other;
+        let own = (&self.choice, &self.size, &self.camera, &self.lights, &self.off, &self.objects);
+        own == (choice, size, camera, lights, off, objects)
+    }
+
     /// Returns the scene with this camera, these lights, its objects changed, and without those that are switched off;
     /// still at its start.
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
-        let scene = without(&self.objects.applied_to(loaded), &self.off);
+        let scene = without(self.objects.applied_to(loaded), &self.off);
         Scene { camera: self.camera, lights: self.lights.clone(), ..scene }
     }
 }
@@ -168,8 +175,7 @@ fn carried_lights(own: &[Light], before: &[Light], after: &[Light]) -> Option<Ve
 }
 
 /// Returns a scene without some of its objects, by index.
-pub fn without(scene: &Scene, off: &BTreeSet<usize>) -> Scene {
-    let mut scene = scene.clone();
+pub fn without(mut scene: Scene, off: &BTreeSet<usize>) -> Scene {
     let mut index = 0;
     scene.objects.retain(|_| {
         index += 1;

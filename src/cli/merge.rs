@@ -57,7 +57,7 @@ fn deliver_stress(merged: &StressResults, command: &str, results: &ReportResults
     if csv.is_some() {
         return Err(CliError::Usage("results of `stress` have no CSV: choose `--json`".to_owned()));
     }
-    stress::deliver(merged, command, [&json, &markdown, &page], (&results.output, &results.plot))
+    stress::deliver(merged, command, [&json, &markdown, &page], &results.output, &results.plot)
 }
 
 fn read(file: &str) -> Result<String, CliError> {

@@ -40,7 +40,7 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
 #[cfg(feature = "inspector")]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     let window = arguments.window.map(|side| side as f32);
-    shots::run(&arguments.output, arguments.adapter.as_deref(), &arguments.only, (window, arguments.scale))
+    shots::run(&arguments.output, arguments.adapter.as_deref(), &arguments.only, window, arguments.scale)
 }
 
 #[cfg(feature = "inspector")]
@@ -166,12 +166,7 @@ mod shots {
         ]
     }
 
-    pub fn run(
-        folder: &str,
-        adapter: Option<&str>,
-        only: &str,
-        (window, scale): ([f32; 2], f32),
-    ) -> Result<(), CliError> {
+    pub fn run(folder: &str, adapter: Option<&str>, only: &str, window: [f32; 2], scale: f32) -> Result<(), CliError> {
         let wanted: Vec<PictureSubject> = shots().into_iter().filter(|shot| shot.name.contains(only)).collect();
         let wants_tour = TOUR.contains(only);
         if wanted.is_empty() && !wants_tour {
@@ -181,7 +176,7 @@ mod shots {
         std::fs::create_dir_all(folder)
             .map_err(|source| CliError::Output { path: folder.display().to_string(), source })?;
         for shot in &wanted {
-            let picture = take(shot, adapter, (window, scale))?;
+            let picture = take(shot, adapter, window, scale)?;
             write(folder, &format!("{}.png", shot.name), &picture.to_png().map_err(encoding)?)?;
         }
         if wants_tour {
@@ -212,7 +207,8 @@ mod shots {
         scene: &str,
         technique: Technique,
         adapter: Option<&str>,
-        (window, scale): ([f32; 2], f32),
+        window: [f32; 2],
+        scale: f32,
     ) -> Result<Headless, CliError> {
         let spec = OpenSpec::new(scene);
         let request = ViewRequest {
@@ -233,8 +229,8 @@ mod shots {
         Ok(panels)
     }
 
-    fn take(shot: &PictureSubject, adapter: Option<&str>, window: ([f32; 2], f32)) -> Result<Picture, CliError> {
-        let mut panels = opened(shot.scene, shot.technique, adapter, window)?;
+    fn take(shot: &PictureSubject, adapter: Option<&str>, window: [f32; 2], scale: f32) -> Result<Picture, CliError> {
+        let mut panels = opened(shot.scene, shot.technique, adapter, window, scale)?;
         let inspector = panels.inspector();
         inspector.model.theme = shot.theme;
         let steps = inspector.model.frame.capture.as_ref().map_or_else(Vec::new, |capture| capture.steps.clone());
@@ -265,7 +261,7 @@ mod shots {
 
     /// Returns the tour of z-fail as an animated PNG, one picture for each stop.
     fn tour(adapter: Option<&str>) -> Result<Vec<u8>, CliError> {
-        let mut panels = opened("tori", Technique::ZFail, adapter, (TOUR_WINDOW, 1.0))?;
+        let mut panels = opened("tori", Technique::ZFail, adapter, TOUR_WINDOW, 1.0)?;
         let stops = Inspector::stops_of(Technique::ZFail);
         let size = TOUR_WINDOW.map(|side| side as u32);
         let format = AnimationFormat { size, pictures: stops as u32, milliseconds: STOP_MS, colors: ColorDepth::Exact };

@@ -110,7 +110,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
             format!(", {frames} from {from} to {to} s, {} moves", moves.name())
         });
         let how = format!("stencilscope {} report, {} timed frames{moving}", env!("CARGO_PKG_VERSION"), arguments.runs);
-        ShardPart::new(shard, places, how, blocks.iter().flat_map(names_of))
+        ShardPart::new(shard, places, how, blocks.iter().flat_map(|(name, block)| names_of(name, block)))
     });
     let report = Report { part, ..Report::new(session.adapter().clone(), rows) };
     arguments.results.deliver(command, &report)
@@ -145,7 +145,7 @@ fn blocks(
 }
 
 /// Returns the names of a block's rows, which are the same in all parts of a run.
-fn names_of((name, SweepBlock { what, swept, .. }): &(String, SweepBlock)) -> Vec<String> {
+fn names_of(name: &str, SweepBlock { what, swept, .. }: &SweepBlock) -> Vec<String> {
     let [width, height] = what.size;
     let swept = swept.as_ref().map_or_else(String::new, |swept| format!(" · {} {}", swept.name, swept.text));
     let named = |choice: &Choice| {

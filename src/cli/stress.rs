@@ -82,7 +82,7 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     let stress = StressResults { adapter: session.adapter().clone(), size: arguments.size, rows, part };
     let page = results::target(&arguments.output);
     let forms = [&arguments.json, &arguments.markdown, &page];
-    deliver(&stress, command, forms, (&arguments.output, &arguments.plot))
+    deliver(&stress, command, forms, &arguments.output, &arguments.plot)
 }
 
 /// Checks that every technique that is asked for runs in a chosen case, and that every case that is named runs one: a
@@ -116,7 +116,8 @@ pub fn deliver(
     stress: &StressResults,
     command: &str,
     [json, markdown, page]: [&ResultTarget; 3],
-    (page_file, plot): (&Option<String>, &Option<String>),
+    page_file: &Option<String>,
+    plot: &Option<String>,
 ) -> Result<(), CliError> {
     if let Some(file) = plot {
         let plot = stress.to_plot();

@@ -167,7 +167,7 @@ impl GeometryCache {
             None if of.extruder.is_one_point() => FarEnd::Point,
             _ => FarEnd::Caps,
         };
-        write_indices(triangles, caster.world.len(), &self.facings, (found, grazing), far_end, out)
+        write_indices(triangles, caster.world.len(), &self.facings, found, grazing, far_end, out)
     }
 
     /// Returns a caster's volume for a vertex shader, with positions relative to `origin`; made only if caster, origin

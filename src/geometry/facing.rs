@@ -161,11 +161,10 @@ impl CasterPlanes {
         let (low, high) = world.iter().fold((*first, *first), |(low, high), p| (low.min(*p), high.max(*p)));
         let middle = low + (high - low) / 2.0;
         let reach = (high - middle).max(middle - low).max_element();
-        let frame = (middle, reach);
         let block = |corners: &[[u32; 3]]| {
             let mut block = PlaneBlock { normal: [[f32::NAN; LANES]; 3], offset: [0.0; LANES] };
             for (lane, corners) in corners.iter().enumerate() {
-                if let Some((normal, offset)) = plane(corners.map(|vertex| world[vertex as usize]), frame) {
+                if let Some((normal, offset)) = plane(corners.map(|vertex| world[vertex as usize]), middle, reach) {
                     (0..3).for_each(|axis| block.normal[axis][lane] = normal[axis] as f32);
                     block.offset[lane] = offset as f32;
                 }
@@ -317,7 +316,7 @@ impl PlaneExtremes {
 
 /// Returns the scaled normal and offset of a triangle's plane; `None` where rounding may have moved the normal by more
 /// than 2^-26 of its largest component, or the numbers are out of range.
-fn plane([a, b, c]: [DVec3; 3], (middle, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
+fn plane([a, b, c]: [DVec3; 3], middle: DVec3, reach: f64) -> Option<(DVec3, f64)> {
     let (u, v) = (b - a, c - a);
     let normal = u.cross(v);
     let scale = normal.abs().max_element();

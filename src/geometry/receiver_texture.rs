@@ -34,7 +34,7 @@ impl ReceiverParallelogram {
         vertices.dedup();
         let points: Vec<DVec3> = vertices.iter().map(|vertex| world[*vertex as usize]).collect();
         let whole = match points[..] {
-            [a, b, c, d] => [(a, b, c, d), (a, b, d, c), (a, c, d, b)].into_iter().find_map(parallelogram),
+            [a, b, c, d] => [[a, b, c, d], [a, b, d, c], [a, c, d, b]].into_iter().find_map(parallelogram),
             _ => None,
         };
         whole.unwrap_or_else(|| {
@@ -86,7 +86,7 @@ impl ReceiverParallelogram {
 }
 
 /// Makes a parallelogram of a corner, its two neighbours and the opposite corner; `None` where they do not form one.
-fn parallelogram((corner, a, b, opposite): (DVec3, DVec3, DVec3, DVec3)) -> Option<ReceiverParallelogram> {
+fn parallelogram([corner, a, b, opposite]: [DVec3; 4]) -> Option<ReceiverParallelogram> {
     let (ex, ey) = (a - corner, b - corner);
     let is_closed = (corner + ex + ey - opposite).length() <= PARALLEL * (ex.length() + ey.length());
     is_closed.then_some(ReceiverParallelogram { corner, ex, ey })

@@ -182,7 +182,8 @@ pub fn write_indices(
     triangles: &[[u32; 3]],
     vertex_count: usize,
     facings: &Facings,
-    (silhouette, grazing): (&[SilhouetteEdge], usize),
+    silhouette: &[SilhouetteEdge],
+    grazing: usize,
     far_end: FarEnd,
     out: &mut Vec<u32>,
 ) -> VolumeParts {
@@ -363,7 +364,7 @@ mod tests {
                 None => FarEnd::Caps,
             };
             let grazing = edges.len() / 3;
-            let parts = write_indices(corners, world.len(), &facings, (&edges, grazing), far_end, &mut indices);
+            let parts = write_indices(corners, world.len(), &facings, &edges, grazing, far_end, &mut indices);
             let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
             // As they face outwards: the light cap's flipped range, and the carried dark cap's other one.
             if let DarkCap::Carried(base) = parts.dark_cap {
@@ -473,7 +474,7 @@ mod tests {
         let sign_of = |i: u32| [Sign::Positive, Sign::Negative, Sign::Zero][(i / 40 % 7 % 3) as usize];
         let facings = Facings::from_signs((0..count).map(sign_of));
         let mut indices = vec![9; 7];
-        let parts = write_indices(&triangles, count as usize + 2, &facings, (&[], 0), FarEnd::Caps, &mut indices);
+        let parts = write_indices(&triangles, count as usize + 2, &facings, &[], 0, FarEnd::Caps, &mut indices);
         let of = |sign: Sign| triangles.iter().zip(0..count).filter(move |(_, i)| sign_of(*i) == sign).map(|(t, _)| *t);
         let written = indices.as_chunks::<3>().0;
         let expected: Vec<[u32; 3]> = of(Sign::Positive).chain(of(Sign::Negative)).collect();

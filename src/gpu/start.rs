@@ -27,7 +27,7 @@ pub(super) fn record(encoder: &mut CommandEncoder, target: &StartTarget, content
         copy_stencil(encoder, device, stencil, wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin, aspect });
     }
     if let (Some(depth), Some(pipeline)) = (&content.depth, pipeline) {
-        draw_depth(encoder, device, depth, pipeline, (view, texture));
+        draw_depth(encoder, device, depth, pipeline, view, texture);
     }
 }
 
@@ -87,7 +87,8 @@ fn draw_depth(
     device: &Device,
     depth: &Blob<f32>,
     pipeline: &RenderPipeline,
-    (view, texture): (&wgpu::TextureView, &wgpu::Texture),
+    view: &wgpu::TextureView,
+    texture: &wgpu::Texture,
 ) {
     let contents = &[&texture.width().to_le_bytes(), depth.bytes()].concat();
     let usage = BufferUsages::STORAGE;

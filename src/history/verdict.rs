@@ -89,7 +89,7 @@ impl Verdict {
             (_, None, _) => VerdictEvidence::Decision(decided_by),
             (_, Some(_), None) => VerdictEvidence::NoCount,
             (_, Some(side), Some(count)) => {
-                VerdictEvidence::Count(TestedCount::new(capture, light, (side, count), in_float))
+                VerdictEvidence::Count(TestedCount::new(capture, light, side, count, in_float))
             }
         };
         Verdict { light, label, count, evidence }
@@ -174,7 +174,8 @@ impl TestedCount {
     fn new(
         capture: &Capture,
         light: usize,
-        (side, count): (CountedSide, VolumeCount),
+        side: CountedSide,
+        count: VolumeCount,
         in_float: Option<f32>,
     ) -> TestedCount {
         let settings = VolumeSettings::read(&capture.settings);

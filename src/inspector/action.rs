@@ -4,6 +4,7 @@
 use crate::ask::{PendingQuestion, RunRequest};
 use crate::stress::Entrant;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A request that needs files, windows or the GPU.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +16,7 @@ pub enum Action {
     /// Ask for a capture folder with the system's dialog, which shows files or folders, not both.
     BrowseFolder,
     /// Render again with this request.
-    Run(Box<RunRequest>),
+    Run(Arc<RunRequest>),
     /// Answer a question, with [`Inspector::answer`](super::Inspector::answer).
     Ask(PendingQuestion),
     /// Load the open scene again from its file, which changed.

@@ -110,7 +110,7 @@ impl FramePlan {
         for (pass_index, pass) in passes.filter(|(_, pass)| self.is_of_picture(pass) && pass.reaches(pixel)) {
             let viewport = pass.viewport(self.size);
             for (draw_index, draw) in pass.draws.iter().enumerate() {
-                search.add((pass_index, pass.view, &viewport), draw_index, draw, &mut covering);
+                search.add(pass_index, pass.view, &viewport, draw_index, draw, &mut covering);
             }
         }
         covering
@@ -132,7 +132,9 @@ struct CoverageSearch<'a> {
 impl CoverageSearch<'_> {
     fn add(
         &mut self,
-        (pass, view, viewport): (usize, ViewId, &Viewport),
+        pass: usize,
+        view: ViewId,
+        viewport: &Viewport,
         draw_index: usize,
         draw: &Draw,
         covering: &mut Vec<Covering>,

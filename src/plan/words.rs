@@ -52,7 +52,7 @@ pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
         said.push("There is no depth and no stencil buffer in this pass.".to_owned());
     }
     if raster.stencil.is_enabled() {
-        let [front, back] = [true, false].map(|is_front| face_sentence(raster.face(is_front)));
+        let [front, back] = [true, false].map(|is_front| face_sentence(raster, is_front));
         if front == back {
             said.push(format!("Stencil, both faces: {front}."));
         } else {
@@ -87,7 +87,8 @@ fn relation(compare: CompareFunction) -> &'static str {
     }
 }
 
-fn face_sentence((face, masks): (&StencilFace, FaceMasks)) -> String {
+fn face_sentence(raster: &RasterState, is_front: bool) -> String {
+    let (face, masks) = raster.face(is_front);
     let test = match face.compare {
         CompareFunction::Always => "its test always passes".to_owned(),
         CompareFunction::Never => "its test never passes".to_owned(),
@@ -346,13 +347,10 @@ mod tests {
 
     #[test]
     fn faces_that_do_the_same_are_reported_once() {
-        let face = face_sentence(z_fail().face(false));
+        let face = face_sentence(&z_fail(), false);
         assert_eq!(face, "its test always passes; one that fails the depth test adds 1 (255 becomes 0)");
         let light = RasterState::visible_surface(ColorWrite::Add)
             .with_stencil(StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE }, 0);
-        assert_eq!(
-            face_sentence(light.face(true)),
-            "it passes where 0 is equal to the stored count; nothing changes it"
-        );
+        assert_eq!(face_sentence(&light, true), "it passes where 0 is equal to the stored count; nothing changes it");
     }
 }

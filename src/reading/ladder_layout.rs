@@ -66,7 +66,7 @@ pub fn place(
     let is_whole = |marks: &Vec<LadderMark>| LEAST_LINE * (marks.len() - 1) as f32 <= height;
     let mut marks_of = [(MOST_RUNGS, ENDS), (fitting, ENDS), (fitting, 1)]
         .into_iter()
-        .map(|(most, ends)| marks(ladder, near, selected, open, [most, ends]));
+        .map(|(most, ends)| marks(ladder, near, selected, open, most, ends));
     let all = marks_of.next().unwrap_or_default();
     // What the user has opened stays open, however little space there is.
     let marks = if is_whole(&all) || !open.is_empty() {
@@ -134,7 +134,8 @@ fn marks(
     near: f64,
     selected: Option<usize>,
     open: &[Range<usize>],
-    [most, ends]: [usize; 2],
+    most: usize,
+    ends: usize,
 ) -> Vec<LadderMark> {
     let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
     let before_surface = ladder.surface.map(|surface| {

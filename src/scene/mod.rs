@@ -74,14 +74,18 @@ impl Scene {
     /// on their pendulums. The motions remain, so `scene.at(a)` is not the start of `at(b)`: always call it on the
     /// scene as loaded.
     pub fn at(&self, seconds: f64) -> Scene {
-        let mut moved = self.clone();
-        for object in &mut moved.objects {
+        self.clone().advanced(seconds)
+    }
+
+    /// Returns what [`Scene::at`] does, without a copy.
+    pub fn advanced(mut self, seconds: f64) -> Scene {
+        for object in &mut self.objects {
             object.pose = object.motion.apply(&object.pose, seconds);
         }
-        for light in &mut moved.lights {
+        for light in &mut self.lights {
             light.position = light.motion.apply_to_light(light.position, seconds);
         }
-        moved
+        self
     }
 
     /// Returns whether anything moves.

@@ -266,7 +266,8 @@ impl ImageLoader {
     pub fn load_bytes(
         &mut self,
         path: &Path,
-        [name, described]: [&str; 2],
+        name: &str,
+        described: &str,
         bytes: impl FnOnce() -> Result<Vec<u8>, String>,
     ) -> Result<Arc<TextureImage>, String> {
         if let Some(known) = self.known.get(path) {

@@ -92,7 +92,7 @@ impl Session {
         let of_scene = || scene.ok_or(SessionError::NoScene);
         Ok(match ask {
             Ask::WallsOf(WallsOf { off, objects, time }) => {
-                let scene = without(&objects.applied_to(of_scene()?), off).at(*time);
+                let scene = without(objects.applied_to(of_scene()?), off).advanced(*time);
                 Answer::WallsOf(Arc::new(self.walls.walls(&scene)))
             }
             Ask::MeshesOf(MeshesOf { added }) => {
@@ -102,7 +102,7 @@ impl Session {
                 Answer::MeshesOf(Arc::new(meshes))
             }
             Ask::CaptureOf(CaptureOf { request }) => {
-                let scene = request.applied_to(of_scene()?).at(request.time);
+                let scene = request.applied_to(of_scene()?).advanced(request.time);
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
                 Answer::CaptureOf(Arc::new(self.capture(&scene, &request)?))
             }

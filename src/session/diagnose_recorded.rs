@@ -67,7 +67,7 @@ impl Session {
                 });
             }
             if wrong > 0 && of_light.iter().all(|found| found.proof != Proof::Proven) {
-                of_light.extend(self.together(plan, (id, light.position), &of_light, &mut judge, proof_of)?);
+                of_light.extend(self.together(plan, id, light.position, &of_light, &mut judge, proof_of)?);
             }
             causes.extend(of_light);
         }
@@ -90,7 +90,8 @@ impl Session {
     fn together(
         &mut self,
         plan: &FramePlan,
-        (light, position): (LightId, DVec4),
+        light: LightId,
+        position: DVec4,
         found: &[FrameCauseFound],
         judge: &mut impl FnMut(&mut Session, &FramePlan) -> Result<u64, SessionError>,
         proof_of: impl Fn(u64) -> Proof,

@@ -27,7 +27,7 @@ impl Session {
                 progress.advance();
                 let Some(DrawState { snapshot: Snapshot::Frame(after), .. }) = &summary.after else { continue };
                 if is_followed {
-                    let alone = alone(plan, pass, draw, (index == 0, before.as_ref()));
+                    let alone = alone(plan, pass, draw, index == 0, before.as_ref());
                     summary.differs = self.differs(&alone, after)?;
                 }
                 before = Some(after.clone());
@@ -65,7 +65,7 @@ impl Session {
 }
 
 /// Returns a frame of one draw, whose targets begin with what was stored before it.
-fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, Option<&FrameSnapshot>)) -> FramePlan {
+fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Option<&FrameSnapshot>) -> FramePlan {
     let mut pass = Pass { draws: vec![Draw { mesh: MeshId(0), ..draw.clone() }], light: None, ..pass.clone() };
     if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
         (target.clear_depth, target.clear_stencil) = (None, None);

@@ -91,7 +91,7 @@ impl StressResults {
         let x_ticks = across.ticks().into_iter().map(tick).collect();
         let outer = PlotRect { min: [left, TOP], max: [right, CHART[1] - BOTTOM] };
         let percent = |row: &StressRow| row.error.wrong_fraction() * 100.0;
-        let axes = Axes::new(outer, (entrants.len(), LANE), rows().map(percent), 22.0, x_ticks);
+        let axes = Axes::new(outer, entrants.len(), LANE, rows().map(percent), 22.0, x_ticks);
         let place = |row: &StressRow, lane| [across.position(row.parameter.1), axes.height(percent(row), lane)];
         let mut lines = axes.grid();
         let (mut spots, mut wishes, mut segments) = (Vec::new(), Vec::new(), Vec::new());

@@ -135,7 +135,7 @@ fn add_textures(frame: &mut FrameBuilder, receivers: &[FlatReceiver], light: Lig
     let settings = TextureSettings::of_receivers(frame.job.choice.settings());
     let shapes = shapes.into_iter().map(|shape| shape.unwrap_or(DMat4::IDENTITY)).collect();
     let names = receivers.iter().map(|receiver| receiver.name.clone()).collect();
-    silhouettes::add_map(frame, light, &settings, (names, shapes), passes, purpose);
+    silhouettes::add_map(frame, light, &settings, names, shapes, passes, purpose);
     frame.plan.lights[light.0].decided_by = DecidedBy::ReceiverTextures;
 }
 

@@ -145,6 +145,6 @@ fn add_silhouettes(frame: &mut FrameBuilder, light: LightId, layers: &[usize], s
         "Draws the caster as the light sees it, in {frame_of_it}: not how far it is, but how much light it lets through."
     );
     let names = layers.iter().map(|object| frame.placed[*object].object.name.clone()).collect();
-    silhouettes::add_map(frame, light, settings, (names, matrices), passes, &purpose);
+    silhouettes::add_map(frame, light, settings, names, matrices, passes, &purpose);
     frame.plan.lights[light.0].decided_by = DecidedBy::Silhouettes;
 }

@@ -27,7 +27,8 @@ pub fn add_map(
     frame: &mut FrameBuilder,
     light: LightId,
     settings: &TextureSettings,
-    (layer_names, clip_from_world): (Vec<String>, Vec<DMat4>),
+    layer_names: Vec<String>,
+    clip_from_world: Vec<DMat4>,
     passes: Vec<LayerPass>,
     purpose: &str,
 ) {

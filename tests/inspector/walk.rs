@@ -20,7 +20,7 @@ fn walking() -> Harness<'static, Seen> {
 /// The walls that were asked for last, as the app makes them.
 fn answer_walls(harness: &mut Harness<Seen>, scene: &Scene) {
     let WallsOf { off, time, .. } = walls_asked(harness).pop().expect("walls are asked for");
-    let scene = without(scene, &off).at(time);
+    let scene = without(scene.clone(), &off).advanced(time);
     reply::<WallsOf>(harness, Ok(WallCache::default().walls(&scene)));
 }
 

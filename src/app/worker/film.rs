@@ -70,7 +70,7 @@ impl WorkerState {
             FilmSubject::LightRound { request, light } => {
                 let open = self.open.as_ref().filter(|_| of[0] == self.scenes);
                 let open = open.ok_or("another scene is open by now: export it again")?;
-                let scene = request.applied_to(open).at(request.time);
+                let scene = request.applied_to(open).advanced(request.time);
                 let round = LightRound::new(scene, *light, PLACES).map_err(|error| error.to_string())?;
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
                 FilmContent::LightRound {

@@ -149,7 +149,7 @@ fn what_was_set_for_one_scene_is_not_set_for_the_next() {
     let (scene, mut request) = wait_for_request(&worker, &news);
     request.choice = Choice::new(Technique::ZFail);
     request.choice.set("casters", "light-facing").expect("a setting");
-    assert!(worker.order(Order::Run { scene, request: Box::new(request) }));
+    assert!(worker.order(Order::Run { scene, request: Arc::new(request) }));
     assert_eq!(captured(&news).1["casters"], "light-facing");
     assert!(worker.order(Order::Open("tori".to_owned())));
     let (technique, settings, _) = captured(&news);
@@ -272,7 +272,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
     let scene = table();
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
     request.off = (1..scene.objects.len()).collect();
-    assert!(worker.order(Order::Run { scene: 1, request: Box::new(request) }));
+    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request) }));
     let (names, _) = casters_of_z_fail(&news);
     assert!(names.iter().all(|name| *name == scene.objects[0].name), "{names:?}");
 }
@@ -367,7 +367,7 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     request.lights.push(Light::directional([0.4, 1.0, 0.3]));
     request.off.insert(2);
     let count = scene.objects.len();
-    assert!(worker.order(Order::Run { scene: 1, request: Box::new(request.clone()) }));
+    assert!(worker.order(Order::Run { scene: 1, request: Arc::new(request.clone()) }));
     let (casters, plan) = casters_of_z_fail(&news);
     assert!(casters.contains("new box") && !casters.contains(scene.objects[2].name.as_str()), "{casters:?}");
     assert_eq!(plan.lights.len(), scene.lights.len() + 1);

@@ -44,21 +44,20 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     }
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     map.lookup?;
-    let nothing = MapComparison {
-        cause: Cause::OutsideMap,
-        caster: None,
-        texel: 0.0,
-        slope: 0.0,
-        gap: 0.0,
-        bias: 0.0,
-        place: 0.0,
-    };
     let relative = seen.point - facts.scene.camera.eye;
     let Some((face, device)) = find_face(map, relative) else {
         let caster = facts.tracer.between(light, seen).last().map(|met| met.place.object);
-        return Some(MapComparison { caster, place: farthest(map, relative), ..nothing });
+        return Some(MapComparison {
+            cause: Cause::OutsideMap,
+            caster,
+            texel: 0.0,
+            slope: 0.0,
+            gap: 0.0,
+            bias: 0.0,
+            place: farthest(map, relative),
+        });
     };
-    texel_look(facts, light, kind, seen, (map, face, device), nothing)
+    texel_look(facts, light, kind, seen, map, face, device)
 }
 
 /// Returns the face that a point is on, and where on it.
@@ -84,8 +83,9 @@ fn texel_look(
     light: usize,
     kind: RegionKind,
     seen: &SeenSurface,
-    (map, face, device): (&PlanMap, usize, DVec3),
-    nothing: MapComparison,
+    map: &PlanMap,
+    face: usize,
+    device: DVec3,
 ) -> Option<MapComparison> {
     let image = facts.capture.lights.get(light)?.map.as_ref()?.faces.get(face)?.clone();
     let size = f64::from(image.size()[0]);
@@ -115,21 +115,13 @@ fn texel_look(
     let clear = map.lookup.map_or(0.0, |lookup| f64::from(lookup.clear_depth));
     let height_of = |z: f64| facts.tracer.towards(light, target).dot(unproject(center.x, center.y, z) - target);
     let bias = first.filter(|_| stored != clear).map_or(0.0, |first| first.towards_light - height_of(stored));
-    let look = MapComparison {
-        caster: first.map(|first| first.place.object),
-        texel: width,
-        slope,
-        gap: first.map_or(0.0, |first| first.towards_light - receiver),
-        bias,
-        place: device.truncate().abs().max_element(),
-        ..nothing
-    };
+    let gap = first.map_or(0.0, |first| first.towards_light - receiver);
     let filter = map.lookup.map_or(1, |lookup| lookup.filter_width).max(1);
     let cause = match (kind, first) {
         (RegionKind::Wrong(Finding::FalseShadow), Some(first)) => {
             let is_own = first.place.object == seen.place.object;
             let reach = (slope + width) * 1.5 * f64::from(filter) + 1e-6 * origin_side.min(1e6);
-            if is_own && look.gap.abs() <= reach { Cause::Acne } else { Cause::Aliasing }
+            if is_own && gap.abs() <= reach { Cause::Acne } else { Cause::Aliasing }
         }
         (RegionKind::Wrong(Finding::MissingShadow), Some(first)) => {
             let point = seen.point;
@@ -143,9 +135,17 @@ fn texel_look(
     // A missing shadow was looked up at the target, which the bias has to pass.
     let gap = match (cause, first) {
         (Cause::PeterPanning, Some(first)) => first.towards_light,
-        _ => look.gap,
+        _ => gap,
     };
-    Some(MapComparison { cause, gap, ..look })
+    Some(MapComparison {
+        cause,
+        caster: first.map(|first| first.place.object),
+        texel: width,
+        slope,
+        gap,
+        bias,
+        place: device.truncate().abs().max_element(),
+    })
 }
 
 /// Returns the comparison of the first sample that shows a cause, and how many samples do.

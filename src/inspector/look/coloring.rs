@@ -13,6 +13,15 @@ use egui::Color32;
 /// Opacity of an overlay of colours.
 pub const OVER: f32 = 0.62;
 
+/// What the texels of a shown picture mean, with the ends of its grey ramp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ColorMapping {
+    /// What they mean.
+    pub coloring: Coloring,
+    /// The depths that are drawn black and white.
+    pub range: [f64; 2],
+}
+
 /// What the texels of a picture mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coloring {

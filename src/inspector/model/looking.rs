@@ -6,7 +6,7 @@ use super::selection::same_step;
 use crate::ask::{CaptureOf, Reply, RunRequest, TestsOf};
 use crate::capture::{Capture, CapturedLight, Image};
 use crate::inspector::action::Overlay;
-use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::texture::PictureCache;
 use crate::numbers::percent;
 use crate::reading::capture_point::CapturePoint;
@@ -252,13 +252,14 @@ impl Model {
 }
 
 impl Model {
-    /// Returns what the texels of `shown` mean in the current modes, and the ends of the grey ramp.
-    pub fn shown_coloring(&mut self, shown: &ShownPicture) -> (Coloring, [f64; 2]) {
+    /// Returns the colours of `shown` in the current modes.
+    pub fn shown_coloring(&mut self, shown: &ShownPicture) -> ColorMapping {
         let range = self.shown_range(shown);
-        match (Coloring::of_shown(shown, range), self.modes.bit) {
-            (Coloring::Stencil, Some(bit)) => (Coloring::Bit(bit), range),
-            (coloring, _) => (coloring, range),
-        }
+        let coloring = match (Coloring::of_shown(shown, range), self.modes.bit) {
+            (Coloring::Stencil, Some(bit)) => Coloring::Bit(bit),
+            (coloring, _) => coloring,
+        };
+        ColorMapping { coloring, range }
     }
 
     /// Returns the grey ramp's ends: as set by the user, or those of all shown pictures.

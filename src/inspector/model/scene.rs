@@ -51,13 +51,15 @@ impl OpenScene {
 
     /// Returns the object of an index with the draft's changes.
     pub fn object(&self, index: usize) -> Option<Object> {
+        self.placed(index).map(|(object, pose)| Object { pose, ..object.clone() })
+    }
+
+    /// Returns the object of an index as it was loaded or added, and its pose in the draft.
+    pub fn placed(&self, index: usize) -> Option<(&Object, Pose)> {
         let changes = &self.draft.objects;
         match self.loaded.get(index) {
-            Some(object) => {
-                let pose = changes.moved.get(&index).copied().unwrap_or(object.pose);
-                Some(Object { pose, ..object.clone() })
-            }
-            None => changes.added.get(index - self.loaded.len()).cloned(),
+            Some(object) => Some((object, changes.moved.get(&index).copied().unwrap_or(object.pose))),
+            None => changes.added.get(index - self.loaded.len()).map(|object| (object, object.pose)),
         }
     }
 
@@ -165,7 +167,9 @@ impl Model {
         if let Some((question, report)) = self.scene.as_ref().and_then(|scene| self.reports.get(&scene.key())) {
             self.answers.take_in(question.clone(), Ok(Arc::clone(report)));
         }
-        self.note_for_undo();
+        if let Some(scene) = &self.scene {
+            self.note_for_undo(Arc::new(scene.draft.clone()));
+        }
     }
 
     /// Chooses a technique, with the settings that it had when it was last chosen, and runs it.
@@ -198,19 +202,20 @@ impl Model {
         if let Some(scene) = &mut self.scene {
             scene.problem = scene.draft.check().err();
             if scene.problem.is_none() {
-                actions.push(Action::Run(Box::new(scene.draft.clone())));
+                let request = Arc::new(scene.draft.clone());
+                actions.push(Action::Run(Arc::clone(&request)));
                 self.activity.is_waiting = true;
-                self.note_for_undo();
+                self.note_for_undo(request);
             }
         }
     }
 
-    /// Adds the present run to the undo history.
-    fn note_for_undo(&mut self) {
+    /// Adds a run of the present draft to the undo history.
+    fn note_for_undo(&mut self, request: Arc<RunRequest>) {
         if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
             self.undo.note(undo::RunState {
                 source: scene.source.clone(),
-                request: scene.draft.clone(),
+                request,
                 lights_opened: scene.lights_opened.clone(),
             });
         }
@@ -233,7 +238,7 @@ impl Model {
         self.animation.is_running = false;
         match &mut self.scene {
             Some(scene) if scene.source == state.source => {
-                scene.draft = state.request;
+                scene.draft = Arc::unwrap_or_clone(state.request);
                 scene.lights_opened = state.lights_opened;
                 self.run_draft(actions);
             }
@@ -253,7 +258,7 @@ impl Model {
             && let Some(scene) = &mut self.scene
         {
             scene.choices.insert(state.request.choice.technique(), state.request.choice.clone());
-            scene.draft = state.request;
+            scene.draft = Arc::unwrap_or_clone(state.request);
             scene.lights_opened = state.lights_opened;
             self.run_draft(actions);
         }

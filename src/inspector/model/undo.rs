@@ -5,6 +5,7 @@
 //! step.
 
 use crate::ask::RunRequest;
+use std::sync::Arc;
 
 /// How many steps are stored.
 const MOST: usize = 200;
@@ -15,7 +16,7 @@ pub struct RunState {
     /// The source that opens the scene: a built-in name or a path; `None` where it can't be opened again by name.
     pub source: Option<String>,
     /// The run.
-    pub request: RunRequest,
+    pub request: Arc<RunRequest>,
     /// For each light its index among those that the scene was opened with; `None`: it was added.
     pub lights_opened: Vec<Option<usize>>,
 }
@@ -41,15 +42,10 @@ impl UndoHistory {
 
     /// Records how the scene is run now.
     pub fn note(&mut self, state: RunState) {
-        let Some(before) = self.now.replace(state.clone()) else { return };
-        if before == state {
-            return;
-        }
-        let only_time_runs = RunRequest { time: state.request.time, ..before.request.clone() } == state.request
-            && before.source == state.source;
-        if only_time_runs {
-            return;
-        }
+        let is_other =
+            |before: &RunState| before.source != state.source || !before.request.is_same_but_for_time(&state.request);
+        let is_step = self.now.as_ref().is_some_and(is_other);
+        let Some(before) = self.now.replace(state).filter(|_| is_step) else { return };
         self.future.clear();
         if self.has_begun {
             return;
@@ -108,7 +104,7 @@ mod tests {
         let choice = Choice::new(Technique::ZFail);
         let (off, objects) = (BTreeSet::new(), ObjectChanges::default());
         let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off, objects };
-        RunState { source: Some("tori".to_owned()), request, lights_opened: Vec::new() }
+        RunState { source: Some("tori".to_owned()), request: Arc::new(request), lights_opened: Vec::new() }
     }
 
     fn widths(undo: &mut UndoHistory) -> Vec<u32> {

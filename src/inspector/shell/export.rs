@@ -120,18 +120,17 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     if kind == ExportKind::Data {
         return Some(ExportData::Data(shown.images));
     }
-    let coloring = model.shown_coloring(&shown);
+    let mapping = model.shown_coloring(&shown);
     if kind == ExportKind::AsShown {
         let is_one = shown.images.len() == 1;
-        return is_one
-            .then(|| ExportData::AsShown(Box::new(as_shown::drawing(own, model, &capture, &shown, coloring))));
+        return is_one.then(|| ExportData::AsShown(Box::new(as_shown::drawing(own, model, &capture, &shown, mapping))));
     }
     if let Some((ground, change)) = picture::change_of(own, model, &capture, &shown) {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
         texture::lay_over(&mut picture, &change.image, Coloring::of_change(change.kind), 0..ground.size()[0]);
         return Some(ExportData::Picture(picture));
     }
-    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, coloring.0)).collect();
+    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, mapping.coloring)).collect();
     Some(ExportData::Picture(side_by_side(&images)))
 }
 

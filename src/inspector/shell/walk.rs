@@ -250,7 +250,7 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     let by = direction(&scene.draft.camera, goes, floats && !model.walk.collides) * (model.walk.speed * passed);
     let radius = RADIUS.max(before.near * RADIUS_OF_NEAR);
     let eye = match (&walls, floats) {
-        (Some(walls), false) if moves => fallen(model, before.eye, (by, passed), (walls, &WalkerBody::new(radius))),
+        (Some(walls), false) if moves => fallen(model, before.eye, by, passed, walls, &WalkerBody::new(radius)),
         (Some(walls), true) if model.walk.collides => walls.walk(before.eye, by, radius),
         (_, true) => before.eye + by,
         (_, false) => before.eye,
@@ -266,18 +266,13 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
 
 /// Returns the eye of a walker with gravity after moving by `by` in `seconds`. One who falls beyond the whole scene is
 /// set back to where they stood last; one who has stood nowhere floats again.
-fn fallen(
-    model: &mut Model,
-    eye: DVec3,
-    (by, seconds): (DVec3, f64),
-    (walls, body): (&Arc<Walls>, &WalkerBody),
-) -> DVec3 {
+fn fallen(model: &mut Model, eye: DVec3, by: DVec3, seconds: f64, walls: &Arc<Walls>, body: &WalkerBody) -> DVec3 {
     let Some(weight) = &mut model.walk.weight else { return eye };
     // A camera that was set by something else starts again from the ground below it.
     let known = weight.standing.filter(|standing| body.eye_of(standing.feet).distance(eye) < SAME_PLACE);
     let began_at = *weight.began_at.get_or_insert(eye);
     let from = known.unwrap_or_else(|| body.under(eye, walls));
-    let now = body.walk(from, by, seconds, (walls, model.walk.collides));
+    let now = body.walk(from, by, seconds, walls, model.walk.collides);
     weight.within = Some(walls.clone());
     weight.standing = Some(now);
     if now.is_on_ground {

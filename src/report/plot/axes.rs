@@ -59,7 +59,8 @@ impl Axes {
     /// and a band of `lanes` below.
     pub fn new(
         outer: PlotRect,
-        (lanes, lane_height): (usize, f64),
+        lanes: usize,
+        lane_height: f64,
         percents: impl Iterator<Item = f64>,
         apart: f64,
         x_ticks: Vec<Tick>,

@@ -59,7 +59,7 @@ impl ChartFrame {
         let x_ticks = Tick::along(&across, across.ticks(39.0), "ms");
         let outer = PlotRect { min: [x0, top], max: [x1, size[1] - below] };
         let percents = rows().map(|row| row.wrong_fraction * 100.0);
-        let axes = Axes::new(outer, (lanes, LANE), percents, 17.0, x_ticks);
+        let axes = Axes::new(outer, lanes, LANE, percents, 17.0, x_ticks);
         ChartFrame { size, axes, across, lanes, compact }
     }
 

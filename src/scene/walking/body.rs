@@ -76,7 +76,7 @@ impl WalkerBody {
 
     /// Returns the state of a body that should move by `by` over the ground, some seconds later; with `collides` off,
     /// walls do not stop it, and only the ground supports it. A move that is not finite moves nothing.
-    pub fn walk(&self, from: Footing, by: DVec3, seconds: f64, (walls, collides): (&Walls, bool)) -> Footing {
+    pub fn walk(&self, from: Footing, by: DVec3, seconds: f64, walls: &Walls, collides: bool) -> Footing {
         let by = by.with_y(0.0);
         if !(by.is_finite() && from.feet.is_finite() && seconds.is_finite() && seconds > 0.0) {
             return from;
@@ -88,22 +88,22 @@ impl WalkerBody {
         let time = seconds / steps;
         let mut now = from;
         for _ in 0..steps as usize {
-            now = self.step(now, way, time, (walls, collides));
+            now = self.step(now, way, time, walls, collides);
         }
         now.is_beyond = walls.lowest().is_none_or(|lowest| now.feet.y < lowest - BEYOND);
         now
     }
 
-    fn step(&self, from: Footing, by: DVec3, step: f64, (walls, collides): (&Walls, bool)) -> Footing {
+    fn step(&self, from: Footing, by: DVec3, step: f64, walls: &Walls, collides: bool) -> Footing {
         let aside = self.gone(walls, from.feet, by, collides);
-        let gone = self.settled(walls, (from, aside), step);
+        let gone = self.settled(walls, from, aside, step);
         let head_meets = gone.feet.y > from.feet.y + LEVEL && collides && self.is_blocked(walls, gone.feet);
         // A step up that leaves no space for the head is not made, and the ground under the feet stops their fall.
-        if head_meets { self.settled(walls, (from, from.feet), step) } else { gone }
+        if head_meets { self.settled(walls, from, from.feet, step) } else { gone }
     }
 
     /// Returns the state on its feet over a place, or a step of time farther down.
-    fn settled(&self, walls: &Walls, (from, at): (Footing, DVec3), step: f64) -> Footing {
+    fn settled(&self, walls: &Walls, from: Footing, at: DVec3, step: f64) -> Footing {
         let fallen = at.y - from.falls_by * step - GRAVITY * step * step / 2.0;
         // A body on the ground goes down steps on its feet.
         let lowest = if from.is_on_ground { at.y - STEP } else { fallen };
@@ -260,7 +260,7 @@ mod tests {
     /// Walks for some seconds at 2 metres a second, 60 frames a second.
     fn walked(walls: &Walls, from: Footing, way: DVec3, seconds: f64) -> Footing {
         let frames = (seconds * 60.0).round() as usize;
-        (0..frames).fold(from, |now, _| BODY.walk(now, way * (2.0 / 60.0), 1.0 / 60.0, (walls, true)))
+        (0..frames).fold(from, |now, _| BODY.walk(now, way * (2.0 / 60.0), 1.0 / 60.0, walls, true))
     }
 
     #[test]
@@ -281,7 +281,7 @@ mod tests {
     fn nobody_falls_through_a_floor_at_any_speed_and_equal_steps_end_alike() {
         let walls = world(&[]);
         let fast = Footing { falls_by: 5_000.0, ..at([0.0, 900.0, 0.0]) };
-        let landed = BODY.walk(fast, DVec3::ZERO, 0.25, (&walls, true));
+        let landed = BODY.walk(fast, DVec3::ZERO, 0.25, &walls, true);
         assert!(landed.is_on_ground && landed.feet.y == 0.0, "{landed:?}");
         let twice = [0, 1].map(|_| walked(&walls, at([0.1, 3.0, 0.0]), DVec3::X, 2.0));
         assert_eq!(twice[0], twice[1]);
@@ -325,7 +325,7 @@ mod tests {
         let slid = walked(&walls, at([0.0, 0.0, 0.0]), DVec3::new(1.0, 0.0, 1.0).normalize(), 3.0);
         assert!((slid.feet.x - 0.75).abs() < 1e-6, "{slid:?}");
         assert!((slid.feet.z - 6.0 / 2.0_f64.sqrt()).abs() < 1e-6 && slid.feet.y == 0.0, "{slid:?}");
-        let through = BODY.walk(at([0.0, 0.0, 0.0]), DVec3::X * 3.0, 1.0, (&walls, false));
+        let through = BODY.walk(at([0.0, 0.0, 0.0]), DVec3::X * 3.0, 1.0, &walls, false);
         assert!((through.feet - DVec3::X * 3.0).length() < 1e-9, "walls switched off stop nobody: {through:?}");
     }
 
@@ -358,7 +358,7 @@ mod tests {
         assert!(!off.is_on_ground && !off.is_beyond && off.feet.y < 0.0, "{off:?}");
         let gone = walked(&walls, off, DVec3::ZERO, 1.0);
         assert!(gone.is_beyond && gone.feet.y < -BEYOND, "{gone:?}");
-        let nothing = BODY.walk(at([0.0; 3]), DVec3::ZERO, 0.1, (&Walls::default(), true));
+        let nothing = BODY.walk(at([0.0; 3]), DVec3::ZERO, 0.1, &Walls::default(), true);
         assert!(nothing.is_beyond, "where nothing is there is nothing to land on");
     }
 
@@ -389,7 +389,7 @@ mod tests {
         let mut now = at([1.5, 1.0, 0.0]);
         for round in 0..600 {
             let by = DVec3::new(unit(), unit(), unit()) * 10_f64.powf(1.5 * unit());
-            now = BODY.walk(now, by, 0.05, (&walls, true));
+            now = BODY.walk(now, by, 0.05, &walls, true);
             assert!(now.feet.x.abs() <= 1.75 + 1e-5 && now.feet.z.abs() <= 1.75 + 1e-5, "{round}: {now:?}");
             assert!((-1e-9..1.0).contains(&now.feet.y), "{round}: {now:?}");
         }
@@ -414,7 +414,7 @@ mod tests {
         let walls = world(&[]);
         let now = at([0.0, 1.0, 0.0]);
         for (by, seconds) in [(DVec3::NAN, 0.1), (DVec3::X, f64::NAN), (DVec3::INFINITY, 0.1), (DVec3::X, -1.0)] {
-            assert_eq!(BODY.walk(now, by, seconds, (&walls, true)), now);
+            assert_eq!(BODY.walk(now, by, seconds, &walls, true), now);
         }
     }
 }

@@ -138,7 +138,9 @@ pub(in crate::technique) struct NumberOrWordSetting {
 pub(in crate::technique) const fn number_or(
     key: &'static str,
     words: &'static [&'static str; 1],
-    (prefix, [low, high], whole): (&'static str, [f64; 2], bool),
+    prefix: &'static str,
+    [low, high]: [f64; 2],
+    whole: bool,
     meaning: &'static str,
     lesson: Lesson,
 ) -> NumberOrWordSetting {

@@ -101,7 +101,9 @@ const CULL: WordSetting<Option<Face>> = words(
 const FILTER: NumberOrWordSetting = number_or(
     "filter",
     &["none"],
-    ("pcf:", [1.0, 15.0], true),
+    "pcf:",
+    [1.0, 15.0],
+    true,
     "how many texels along each side are compared and averaged",
     Lesson {
         text: "`pcf:K` compares K by K texels and averages: softer edges that look right, but labels are no righter \

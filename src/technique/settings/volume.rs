@@ -31,7 +31,9 @@ const CASTERS: WordSetting<CasterRule> = words(
 const EXTRUSION: NumberOrWordSetting = number_or(
     "extrusion",
     &["infinite"],
-    ("finite:", [0.0, 1e6], false),
+    "finite:",
+    [0.0, 1e6],
+    false,
     "how far volumes reach: without end, or K times a vertex's distance from the light",
     Lesson {
         text: "With `infinite`, volumes end nowhere. `finite:K` ends volumes at K times a vertex's distance from \

@@ -38,7 +38,7 @@ pub fn ui(
             );
         }
         for (index, found) in region.causes.iter().enumerate() {
-            cause(ui, own, model, (diagnosis, found), index == 0, actions);
+            cause(ui, own, model, diagnosis, found, index == 0, actions);
         }
     }
     meshes_and_flags(ui, diagnosis);
@@ -63,7 +63,8 @@ fn cause(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
     model: &mut Model,
-    (diagnosis, found): (&Diagnosis, &CauseFound),
+    diagnosis: &Diagnosis,
+    found: &CauseFound,
     is_first: bool,
     actions: &mut Vec<Action>,
 ) {

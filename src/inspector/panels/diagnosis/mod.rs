@@ -117,7 +117,7 @@ fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: 
         ui.label(theme::note("No pixel is wrong."));
     }
     for (index, region) in diagnosis.regions.iter().enumerate() {
-        region_row(ui, own, model, (diagnosis, region), index);
+        region_row(ui, own, model, diagnosis, region, index);
     }
     if diagnosis.rest.regions > 0 {
         let pixels = format::counted(diagnosis.rest.pixels, "pixel");
@@ -129,7 +129,8 @@ fn region_row(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
     model: &mut Model,
-    (diagnosis, region): (&Diagnosis, &RegionFound),
+    diagnosis: &Diagnosis,
+    region: &RegionFound,
     index: usize,
 ) {
     let is_selected = own.selected == index;

@@ -37,7 +37,7 @@ pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &
     let listed = if own.all_draws == Some(model.selection.step) { draws.len() } else { short };
     let fetched = model.want_draws();
     for draw in 0..listed {
-        row(ui, model, (capture, &fetched), draw);
+        row(ui, model, capture, &fetched, draw);
         if model.selection.draw == Some(draw) {
             note(ui, model, capture, &fetched);
         }
@@ -57,7 +57,7 @@ pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &
 }
 
 /// Draws the row of one draw, which can be selected, and shows when its state is being fetched.
-fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Reply<StepDraws>), index: usize) {
+fn row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, fetched: &Reply<StepDraws>, index: usize) {
     let draw = &capture.steps[model.selection.step].draws[index];
     let is_selected = model.selection.draw == Some(index);
     let is_missing = is_selected && !model.selected().is_known(capture);
@@ -85,7 +85,7 @@ fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Repl
         paint_change(ui, model, capture, index, rect);
     }
     let right = if is_fetched { "fetching …".to_owned() } else { format::count(draw.triangles) };
-    paint_words(ui, draw, is_selected, (mark.as_deref(), &right), rect);
+    paint_words(ui, draw, is_selected, mark.as_deref(), &right, rect);
     let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
     let recorded = debug_groups::explained(model, draw, index);
     let part = if draw.part.is_of_volume() && draw.caster.is_none() { "volume" } else { draw.part.name() };
@@ -110,7 +110,7 @@ fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row
 }
 
 /// Draws the part's swatch, the draw's name, and at the right its mark and its number of triangles.
-fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, (mark, right): (Option<&str>, &str), row: Rect) {
+fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, mark: Option<&str>, right: &str, row: Rect) {
     let left = row.left() + INDENT;
     if let Some(color) = theme::of(ui).part(draw.part) {
         let swatch = Rect::from_center_size(pos2(left + 5.0, row.center().y), vec2(10.0, 10.0));

@@ -9,7 +9,7 @@ use super::{PictureLayers, PicturePanel, compared_names, layers};
 use crate::capture::Capture;
 use crate::inspector::canvas::divider;
 use crate::inspector::canvas::placement::Placement;
-use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::coloring::ColorMapping;
 use crate::inspector::look::texture;
 use crate::inspector::look::theme;
 use crate::inspector::look::triangles;
@@ -51,15 +51,15 @@ pub fn drawing(
     model: &mut Model,
     capture: &Capture,
     shown: &ShownPicture,
-    coloring: (Coloring, [f64; 2]),
+    mapping: ColorMapping,
 ) -> PictureDrawing {
     let size = shown.images[0].size();
     let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
     let seam = own.seam;
     let compare = model.modes.compare;
     let compare = compare.map(|compare| Comparison { at: seam.unwrap_or(compare.at).clamp(0.0, 1.0), ..compare });
-    let mut picture = texture::picture(&shown.images[0], coloring.0);
-    let PictureLayers { sheets, compared, .. } = layers(own, model, (capture, rect), shown, coloring, compare);
+    let mut picture = texture::picture(&shown.images[0], mapping.coloring);
+    let PictureLayers { sheets, compared, .. } = layers(own, model, capture, rect, shown, mapping, compare);
     for sheet in &sheets {
         let columns = sheet.part.left().round() as u32..sheet.part.right().round() as u32;
         texture::lay_over(&mut picture, &sheet.image, sheet.coloring, columns);

@@ -18,7 +18,7 @@ use crate::inspector::action::Action;
 use crate::inspector::canvas::divider;
 use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, PictureSheet, marks};
-use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::coloring::{ColorMapping, Coloring};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{ButtonSegment, at_right, segments, segments_of};
 use crate::inspector::model::Model;
@@ -73,11 +73,11 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     let Some(shown) = model.shown(&capture) else { return nothing(ui, model, &capture, rect) };
-    let (coloring, range) = model.shown_coloring(&shown);
     let corners = walking::under_banner(model, rect);
     if shown.images.len() == 1 {
-        single(ui, own, model, (&capture, rect), &shown, (coloring, range), actions);
+        single(ui, own, model, &capture, rect, &shown, actions);
     } else {
+        let ColorMapping { coloring, range } = model.shown_coloring(&shown);
         face_grid::ui(ui, model, rect, &shown, coloring);
         legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
     }
@@ -93,13 +93,15 @@ fn single(
     ui: &mut Ui,
     own: &mut PicturePanel,
     model: &mut Model,
-    (capture, rect): (&Capture, Rect),
+    capture: &Capture,
+    rect: Rect,
     shown: &ShownPicture,
-    (coloring, range): (Coloring, [f64; 2]),
     actions: &mut Vec<Action>,
 ) {
+    let mapping = model.shown_coloring(shown);
+    let ColorMapping { coloring, range } = mapping;
     let PictureLayers { change, sheets, compared } =
-        layers(own, model, (capture, rect), shown, (coloring, range), model.modes.compare);
+        layers(own, model, capture, rect, shown, mapping, model.modes.compare);
     let canvas = Canvas {
         name: canvas::PICTURE,
         view: &mut model.view,
@@ -159,9 +161,10 @@ pub struct PictureLayers {
 pub fn layers(
     own: &mut PicturePanel,
     model: &mut Model,
-    (capture, rect): (&Capture, Rect),
+    capture: &Capture,
+    rect: Rect,
     shown: &ShownPicture,
-    (coloring, range): (Coloring, [f64; 2]),
+    ColorMapping { coloring, range }: ColorMapping,
     compare: Option<Comparison>,
 ) -> PictureLayers {
     let mut sheets = Vec::new();

@@ -170,7 +170,7 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
     let seen = placement.rect().intersect(rect);
     paint(ui, own, &model.modes.overlays, seen, placement);
     if let Some(pointer) = ui.input(|input| input.pointer.hover_pos()).filter(|_| model.selection.hover.is_some()) {
-        number_under(ui, (own, &model.modes.overlays), seen, placement, pointer);
+        number_under(ui, own, &model.modes.overlays, seen, placement, pointer);
     }
     card(ui, own, model, rect);
 }
@@ -198,7 +198,7 @@ pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, pl
 }
 
 /// Draws beside the pointer the multiplicity of the edge under it, where it is not 1. Short edges have no number.
-fn number_under(ui: &Ui, (own, on): (&Overlays, &BTreeSet<Overlay>), seen: Rect, placement: Placement, pointer: Pos2) {
+fn number_under(ui: &Ui, own: &Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement, pointer: Pos2) {
     let made = own.made.as_ref().filter(|_| on.contains(&Overlay::Silhouettes));
     let Some((lines, _)) = made.and_then(|made| made.silhouettes.as_ref()) else { return };
     if let Some(times) = lines.number_near(placement, pointer, REACH) {

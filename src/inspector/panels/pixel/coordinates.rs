@@ -12,13 +12,7 @@ use egui::{CollapsingHeader, Grid, Label, Ui};
 const DIGITS: u32 = 4;
 
 /// Draws the section, folded at first.
-pub fn ui(
-    ui: &mut Ui,
-    own: &mut PixelPanel,
-    model: &Model,
-    (capture, at): (&Capture, [u32; 2]),
-    picked: &PickedHistory,
-) {
+pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, at: [u32; 2], picked: &PickedHistory) {
     // Another program's camera is a guess, and so is its unit.
     if capture.origin.is_some() {
         return;

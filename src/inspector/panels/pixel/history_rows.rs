@@ -26,7 +26,8 @@ pub fn ui(
     own: &mut PixelPanel,
     model: &mut Model,
     picked: &PickedHistory,
-    (capture, at): (&Capture, [u32; 2]),
+    capture: &Capture,
+    at: [u32; 2],
     rows: HistoryRows,
 ) -> f32 {
     heading(ui, own, model, picked, at);
@@ -48,7 +49,7 @@ pub fn ui(
         }
         wrong(ui, &picked.wrong);
         let shown = shown(own, model, history);
-        table(ui, own, model, (capture, history), &shown, rows);
+        table(ui, own, model, capture, history, &shown, rows);
         let end = ui.cursor().top();
         selected(ui, model, capture, history);
         end
@@ -117,7 +118,8 @@ fn table(
     ui: &mut Ui,
     own: &mut PixelPanel,
     model: &mut Model,
-    (capture, history): (&Capture, &PixelHistory),
+    capture: &Capture,
+    history: &PixelHistory,
     shown: &[usize],
     HistoryRows { height: row_height, most }: HistoryRows,
 ) {

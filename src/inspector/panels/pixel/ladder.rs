@@ -39,7 +39,8 @@ pub fn ui(
     own: &mut PixelPanel,
     model: &mut Model,
     picked: &PickedHistory,
-    (capture, light): (&Capture, usize),
+    capture: &Capture,
+    light: usize,
     height: f32,
 ) {
     let top = ui.cursor().top();
@@ -63,13 +64,7 @@ pub fn ui(
         if picked.is_late {
             ui.set_opacity(0.4);
         }
-        match history.ladder(light, &capture.depth) {
-            Some(ladder) => drawn(ui, own, model, (capture, history), (light, &ladder), top + height),
-            None => {
-                let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
-                ui.add(egui::Label::new(theme::note(none)).wrap());
-            }
-        }
+        drawn(ui, own, model, capture, history, light, top + height);
     });
 }
 
@@ -147,15 +142,21 @@ impl LadderColumns {
     }
 }
 
-/// Draws the ladder itself, down to `bottom` if possible.
+/// Draws the ladder itself, down to `bottom` if possible, or says that no face is on it.
 fn drawn(
     ui: &mut Ui,
     own: &mut PixelPanel,
     model: &mut Model,
-    (capture, history): (&Capture, &PixelHistory),
-    (light, ladder): (usize, &Ladder),
+    capture: &Capture,
+    history: &PixelHistory,
+    light: usize,
     bottom: f32,
 ) {
+    let Some(ladder) = &history.ladder(light, &capture.depth) else {
+        let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
+        ui.add(egui::Label::new(theme::note(none)).wrap());
+        return;
+    };
     ui.add(egui::Label::new(theme::note(direction(ladder))).wrap());
     let chosen = model.selected_in(history);
     let selected = chosen.and_then(|event| ladder.rungs.iter().position(|rung| rung.event == event));
@@ -173,7 +174,7 @@ fn drawn(
     // Rungs first, as the selected one has a background.
     for (mark, y) in &placed {
         match mark {
-            LadderMark::Rung(index) => rung(ui, own, model, (capture, history), &ladder.rungs[*index], row(*y)),
+            LadderMark::Rung(index) => rung(ui, own, model, capture, history, &ladder.rungs[*index], row(*y)),
             LadderMark::More(from, to) => {
                 if let Some(opened) = fold(ui, ladder, *from..*to, row(*y)) {
                     own.unfolded.entry(light).or_default().push(opened);
@@ -202,7 +203,8 @@ fn rung(
     ui: &mut Ui,
     own: &mut PixelPanel,
     model: &mut Model,
-    (capture, history): (&Capture, &PixelHistory),
+    capture: &Capture,
+    history: &PixelHistory,
     rung: &Rung,
     rect: Rect,
 ) {

@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let bottom = ui.cursor().top() + size.y;
         let light = light_in_question(model, &capture, at);
         let map = map::decision(model, &capture, light, at);
-        sentence(ui, own, model, &picked, (&capture, at), map.as_ref());
+        sentence(ui, own, model, &picked, &capture, at, map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
@@ -65,7 +65,7 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
             }
         }
         shading::ui(ui, model, &capture, &picked);
-        coordinates::ui(ui, own, model, (&capture, at), &picked);
+        coordinates::ui(ui, own, model, &capture, at, &picked);
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);
         ui.add_space(gap);
@@ -73,9 +73,9 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
         let rows = row_budget::rows(bottom - ui.cursor().top(), events, ladder::is_shown(&picked, &capture));
         // The card of a selected event moves the ladder, and takes none of its height: else its rungs would fold under
         // the pointer.
-        let end = history_rows::ui(ui, own, model, &picked, (&capture, at), rows);
+        let end = history_rows::ui(ui, own, model, &picked, &capture, at, rows);
         ui.add_space(gap);
-        ladder::ui(ui, own, model, &picked, (&capture, light), bottom - end - gap);
+        ladder::ui(ui, own, model, &picked, &capture, light, bottom - end - gap);
     });
 }
 
@@ -121,7 +121,8 @@ fn sentence(
     own: &mut PixelPanel,
     model: &Model,
     picked: &PickedHistory,
-    (capture, at): (&Capture, [u32; 2]),
+    capture: &Capture,
+    at: [u32; 2],
     map: Option<&MapDecision>,
 ) {
     let light = light_in_question(model, capture, at);

@@ -93,7 +93,7 @@ fn plot_of(
     // A little less than the space: a scroll bar would ask for another width.
     let height = Some(f64::from((height - 2.0).floor()));
     let page = PlotPage { width, height, most_columns: 4, compact: true };
-    plot::ui(ui, model, (&measured.report, &own.plot(measured, page)), actions);
+    plot::ui(ui, model, &measured.report, &own.plot(measured, page), actions);
 }
 
 /// Draws the buttons, and the progress.

@@ -20,7 +20,7 @@ const TARGET: f32 = 18.0;
 const RING: f32 = 9.0;
 
 /// Draws `plot` at the next free place and acts on its marks.
-pub fn ui(ui: &mut Ui, model: &Model, (report, plot): (&Report, &Plot), actions: &mut Vec<Action>) {
+pub fn ui(ui: &mut Ui, model: &Model, report: &Report, plot: &Plot, actions: &mut Vec<Action>) {
     let size = vec2(plot.size[0] as f32, plot.size[1] as f32);
     let (rect, canvas) = ui.allocate_exact_size(size, Sense::hover());
     canvas.widget_info(|| WidgetInfo::labeled(Role::Image, true, &plot.summary));
@@ -38,20 +38,14 @@ pub fn ui(ui: &mut Ui, model: &Model, (report, plot): (&Report, &Plot), actions:
     for chart in &plot.charts {
         for spot in &chart.spots {
             if let Some(row) = report.rows.get(spot.row) {
-                mark(ui, model, &sheet, (spot, row), actions);
+                mark(ui, model, &sheet, spot, row, actions);
             }
         }
     }
 }
 
 /// Draws a row's mark, which is a button.
-fn mark(
-    ui: &mut Ui,
-    model: &Model,
-    sheet: &PlotSheet,
-    (spot, row): (&PlotPoint, &ReportRow),
-    actions: &mut Vec<Action>,
-) {
+fn mark(ui: &mut Ui, model: &Model, sheet: &PlotSheet, spot: &PlotPoint, row: &ReportRow, actions: &mut Vec<Action>) {
     let at = sheet.place(spot.at);
     let target = Rect::from_center_size(at, Vec2::splat(TARGET));
     let response = ui.interact(target, ui.scope_id().with(("report mark", spot.row)), Sense::click());

@@ -47,13 +47,7 @@ fn layouts(ui: &mut Ui, view: &mut SceneView) {
 }
 
 /// Draws the legend: the kinds of geometry with their colours, each entry a switch.
-pub fn legend(
-    ui: &mut Ui,
-    view: &mut SceneView,
-    (anatomy, is_of_frame): (&Anatomy, bool),
-    stage: &SceneStage,
-    rect: Rect,
-) {
+pub fn legend(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy, is_of_frame: bool, stage: &SceneStage, rect: Rect) {
     ui.painter().rect_filled(rect, egui::CornerRadius::ZERO, theme::of(ui).panel);
     let builder = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 6.0))).id_salt("scene legend");
     ui.scope_builder(builder, |ui| {

@@ -29,14 +29,13 @@ pub fn ui(
     ui: &Ui,
     model: &mut Model,
     view: &mut SceneView,
-    (anatomy, stage): (&Anatomy, &SceneStage),
-    (pane, lens, rect): (Pane, &Lens, Rect),
+    anatomy: &Anatomy,
+    here: &GizmoView,
     actions: &mut Vec<Action>,
 ) {
-    let anchor = HandleAnchor { middle: stage.middle, reach: 0.85 * stage.radius };
-    let here = GizmoView { pane, lens, rect, anchor };
+    let GizmoView { lens, rect, anchor, .. } = *here;
     let Some(scene) = model.scene.as_mut() else {
-        return signs(ui, anatomy, view.shown.names, &here);
+        return signs(ui, anatomy, view.shown.names, here);
     };
     let painter = ui.painter_at(rect);
     let mut changed = false;
@@ -55,12 +54,12 @@ pub fn ui(
     }
     for grip in grips {
         let Some(at) = spot(scene, grip).filter(|at| rect.contains(*at)) else { continue };
-        sign(ui, &painter, (grip, is_directional(&scene.draft, grip)), at, &here);
+        sign(ui, &painter, grip, is_directional(&scene.draft, grip), at, here);
         // The camera looks at the middle of a model: a user who wants to move the model must not move the target
         // instead.
         let is_hidden = grip == HandleKind::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
         if view.gizmos && !is_hidden {
-            changed |= handle(ui, view, scene, (grip, at), &here);
+            changed |= handle(ui, view, scene, grip, at, here);
         }
         if view.shown.names {
             name(ui, &painter, &name_of(scene, grip), at);
@@ -80,7 +79,7 @@ fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &GizmoView) {
     });
     for (grip, place, is_directional) in std::iter::once((HandleKind::Eye, anatomy.camera.eye, false)).chain(lights) {
         let Some(at) = here.lens.place(place).filter(|at| here.rect.contains(*at)) else { continue };
-        sign(ui, &painter, (grip, is_directional), at, here);
+        sign(ui, &painter, grip, is_directional, at, here);
         if has_names {
             name(ui, &painter, &grip.name(), at);
         }
@@ -93,8 +92,8 @@ fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
 
 /// Returns the name of a handle, as shown.
 fn name_of(scene: &OpenScene, grip: HandleKind) -> String {
-    let object = if let HandleKind::Object(index) = grip { scene.object(index) } else { None };
-    object.map_or_else(|| grip.name(), |object| object.name)
+    let object = if let HandleKind::Object(index) = grip { scene.placed(index) } else { None };
+    object.map_or_else(|| grip.name(), |(object, _)| object.name.clone())
 }
 
 fn is_directional(draft: &RunRequest, grip: HandleKind) -> bool {
@@ -102,11 +101,19 @@ fn is_directional(draft: &RunRequest, grip: HandleKind) -> bool {
 }
 
 /// The view that is drawn.
-struct GizmoView<'a> {
+pub struct GizmoView<'a> {
     pane: Pane,
     lens: &'a Lens,
     rect: Rect,
     anchor: HandleAnchor,
+}
+
+impl<'a> GizmoView<'a> {
+    /// Returns a pane's view of the stage in a rectangle.
+    pub fn new(pane: Pane, lens: &'a Lens, rect: Rect, stage: &SceneStage) -> GizmoView<'a> {
+        let anchor = HandleAnchor { middle: stage.middle, reach: 0.85 * stage.radius };
+        GizmoView { pane, lens, rect, anchor }
+    }
 }
 
 /// Returns where a thing is at the draft's time, world space.
@@ -117,9 +124,9 @@ fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DV
         HandleKind::Eye => Some(draft.camera.eye),
         HandleKind::Target => Some(draft.camera.target),
         HandleKind::Object(index) => {
-            let object = scene.object(index)?;
-            let pose = object.motion.apply(&object.pose, draft.time);
-            Some(pose.world_from_object().transform_point3(scene.middle_of(index, &object)))
+            let (object, pose) = scene.placed(index)?;
+            let pose = object.motion.apply(&pose, draft.time);
+            Some(pose.world_from_object().transform_point3(scene.middle_of(index, object)))
         }
     }
 }
@@ -155,7 +162,7 @@ fn moved_object(object: &Object, time: f64, by: DVec3) -> Pose {
 }
 
 /// Draws the sign of a thing, whether it can be moved or not.
-fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (HandleKind, bool), at: Pos2, here: &GizmoView) {
+fn sign(ui: &Ui, painter: &Painter, grip: HandleKind, is_directional: bool, at: Pos2, here: &GizmoView) {
     let colors = theme::of(ui);
     match grip {
         HandleKind::Light(_) => {
@@ -186,13 +193,7 @@ fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (HandleKind, bool), 
 }
 
 /// Draws the handle and, where it is the chosen one, its axes. Returns true where it was moved.
-fn handle(
-    ui: &Ui,
-    view: &mut SceneView,
-    scene: &mut OpenScene,
-    (grip, at): (HandleKind, Pos2),
-    here: &GizmoView,
-) -> bool {
+fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, grip: HandleKind, at: Pos2, here: &GizmoView) -> bool {
     let in_view = format!("in the {} view", here.pane.name());
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
     let called = name_of(scene, grip);

@@ -55,9 +55,9 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
     if std::mem::take(&mut model.requests.triangle_in_scene) {
         view.go_to_triangle();
     }
-    let stage = view.stage(anatomy, theme::of(ui));
+    let built = view.stage(anatomy, theme::of(ui));
     if std::mem::take(&mut view.wants_triangle)
-        && let Some(middle) = rays::middle_of_selected(model, &stage, anatomy)
+        && let Some(middle) = rays::middle_of_selected(model, &built.stage, anatomy)
     {
         view.views.iter_mut().for_each(|one| one.center = middle);
     }
@@ -65,17 +65,17 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
         rect
     } else {
         let (legend, views) = rect.split_left_right_at_x(rect.left() + LEGEND_WIDTH);
-        bar::legend(ui, view, (anatomy, reply.ready.is_some()), &stage, legend);
+        bar::legend(ui, view, anatomy, reply.ready.is_some(), &built.stage, legend);
         views
     };
     match view.layout {
-        PaneLayout::One(pane) => pane::ui(ui, model, view, anatomy, &stage, (pane, views), actions),
+        PaneLayout::One(pane) => pane::ui(ui, model, view, &built, pane, views, actions),
         PaneLayout::Four => {
             for (index, pane) in Pane::ALL.into_iter().enumerate() {
                 let size = views.size() / 2.0;
                 let corner = vec2((index % 2) as f32 * size.x, (index / 2) as f32 * size.y);
                 let rect = Rect::from_min_size(views.min + corner, size);
-                pane::ui(ui, model, view, anatomy, &stage, (pane, rect), actions);
+                pane::ui(ui, model, view, &built, pane, rect, actions);
             }
         }
     }

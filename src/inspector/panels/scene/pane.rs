@@ -1,10 +1,10 @@
 //! One view: mouse and keys rotate, move and scale it; labels, rays and handles are drawn over the stage.
 
+use super::gizmos::GizmoView;
 use super::lens::{Lens, LensProjection};
 use super::stage::SceneStage;
-use super::view::{Pane, SceneView, index_of};
+use super::view::{BuiltStage, Pane, SceneView, index_of};
 use super::{gizmos, rays};
-use crate::anatomy::Anatomy;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::{keep_arrows, plate};
@@ -14,7 +14,6 @@ use egui::{
     Align2, CornerRadius, Key, PointerButton, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder,
     WidgetInfo, vec2,
 };
-use std::sync::Arc;
 
 /// Degrees of rotation for each point of dragging.
 const TURN: f64 = 0.4;
@@ -32,11 +31,12 @@ pub fn ui(
     ui: &mut Ui,
     model: &mut Model,
     view: &mut SceneView,
-    anatomy: &Anatomy,
-    stage: &Arc<SceneStage>,
-    (pane, rect): (Pane, Rect),
+    built: &BuiltStage,
+    pane: Pane,
+    rect: Rect,
     actions: &mut Vec<Action>,
 ) {
+    let BuiltStage { anatomy, stage, .. } = built;
     let response = ui.interact(rect, ui.scope_id().with(("scene view", pane.name())), Sense::click_and_drag());
     let name = format!("{} view of the scene", pane.name());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, &name));
@@ -55,7 +55,7 @@ pub fn ui(
         rays::ui(ui, model, view.choice, stage, anatomy, &lens, rect);
     }
     labels(ui, stage, &lens, rect);
-    gizmos::ui(ui, model, view, (anatomy, stage), (pane, &lens, rect), actions);
+    gizmos::ui(ui, model, view, anatomy, &GizmoView::new(pane, &lens, rect, stage), actions);
     let outline = if response.has_focus() { theme::of(ui).focus } else { theme::of(ui).line };
     painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Inside);
     title(ui, view, pane, rect);

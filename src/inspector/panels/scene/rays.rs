@@ -25,7 +25,7 @@ pub fn ui(
     rect: Rect,
 ) {
     let (Some(capture), Some(at)) = (&model.frame.capture, model.selection.pick) else { return };
-    selected_triangle(ui, model, capture, (stage, anatomy, lens, rect));
+    selected_triangle(ui, model, capture, stage, anatomy, lens, rect);
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
     let reach = 4.0 * stage.radius;
@@ -91,7 +91,10 @@ fn selected_triangle(
     ui: &Ui,
     model: &Model,
     capture: &Capture,
-    (stage, anatomy, lens, rect): (&SceneStage, &Anatomy, &Lens, Rect),
+    stage: &SceneStage,
+    anatomy: &Anatomy,
+    lens: &Lens,
+    rect: Rect,
 ) {
     let Some(corners) = selected(model, capture, stage, anatomy) else { return };
     let painter = ui.painter_at(rect);

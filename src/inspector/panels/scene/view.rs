@@ -67,7 +67,7 @@ pub struct SceneView {
     pub wants_triangle: bool,
     /// The scene of this state, as the number of scenes opened.
     scenes_opened: u64,
-    built: Option<BuiltStage>,
+    built: Option<Arc<BuiltStage>>,
 }
 
 impl Default for SceneView {
@@ -90,12 +90,14 @@ impl Default for SceneView {
 
 /// A stage, with its inputs.
 #[derive(Debug)]
-struct BuiltStage {
-    anatomy: Arc<Anatomy>,
+pub struct BuiltStage {
+    /// What is shown.
+    pub anatomy: Arc<Anatomy>,
     shown: SceneToggles,
     choice: VolumeFilter,
     is_dark: bool,
-    stage: Arc<SceneStage>,
+    /// Its geometry.
+    pub stage: SceneStage,
 }
 
 impl SceneView {
@@ -163,18 +165,19 @@ impl SceneView {
         self.layout = PaneLayout::One(Pane::Free);
     }
 
-    pub fn stage(&mut self, anatomy: &Arc<Anatomy>, theme: &theme::Theme) -> Arc<SceneStage> {
+    pub fn stage(&mut self, anatomy: &Arc<Anatomy>, theme: &theme::Theme) -> Arc<BuiltStage> {
         let is_dark = *theme == theme::DARK;
         if let Some(built) = &self.built
             && Arc::ptr_eq(&built.anatomy, anatomy)
             && (built.shown, built.choice, built.is_dark) == (self.shown, self.choice, is_dark)
         {
-            return built.stage.clone();
+            return built.clone();
         }
-        let stage = Arc::new(SceneStage::new(anatomy, &self.shown, self.choice, theme));
-        let (anatomy, stage_too) = (anatomy.clone(), stage.clone());
-        self.built = Some(BuiltStage { anatomy, shown: self.shown, choice: self.choice, is_dark, stage: stage_too });
-        stage
+        let stage = SceneStage::new(anatomy, &self.shown, self.choice, theme);
+        let anatomy = anatomy.clone();
+        let built = Arc::new(BuiltStage { anatomy, shown: self.shown, choice: self.choice, is_dark, stage });
+        self.built = Some(built.clone());
+        built
     }
 }
 

@@ -6,7 +6,8 @@ use egui::Ui;
 /// Draws one setting in a row: a reset button where it was changed, its name, its widget. Returns true when it changes.
 pub fn row<T: PartialEq + Clone>(
     ui: &mut Ui,
-    (name, label): (&str, &str),
+    name: &str,
+    label: &str,
     value: &mut T,
     before: &T,
     widget: impl FnOnce(&mut Ui, &mut T) -> bool,

@@ -66,20 +66,20 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
     let of = |what: &str| format!("{name} {what}");
     theme::heading(ui, &format!("Light {}", index + 1));
     grid(ui, ("light settings", index), |ui| {
-        let mut changed = row(ui, (&of("on"), "on"), &mut light.is_on, &before.is_on, |ui, is_on| {
+        let mut changed = row(ui, &of("on"), "on", &mut light.is_on, &before.is_on, |ui, is_on| {
             let tick = ui.checkbox(is_on, "").accessible_name(of("is on"));
             tick.on_hover_text("Off, it adds nothing; its passes stay, so that what they do can be seen").changed()
         });
-        changed |= row(ui, (&of("kind"), "kind"), &mut light.position.w, &before.position.w, |ui, w| {
+        changed |= row(ui, &of("kind"), "kind", &mut light.position.w, &before.position.w, |ui, w| {
             light_kind(ui, &of("kind"), w)
         });
         let place = if light.is_directional() { "towards" } else { "position" };
         let mut position = light.position.truncate();
-        changed |= row(ui, (&of(place), place), &mut position, &before.position.truncate(), |ui, position| {
+        changed |= row(ui, &of(place), place, &mut position, &before.position.truncate(), |ui, position| {
             vector(ui, &of(place), position)
         });
         light.position = position.extend(light.position.w);
-        changed |= row(ui, (&of("colour"), "colour"), &mut light.color, &before.color, |ui, color| {
+        changed |= row(ui, &of("colour"), "colour", &mut light.color, &before.color, |ui, color| {
             // The widget rounds what it displays; only an edit may change the value.
             let mut edited = *color;
             let picker = ui.color_edit_button_rgb(&mut edited).accessible_name(of("colour"));
@@ -92,11 +92,10 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
             }
             is_edited
         });
-        changed |=
-            row(ui, (&of("intensity"), "intensity"), &mut light.intensity, &before.intensity, |ui, intensity| {
-                let widget = DragValue::new(intensity).range(0.0..=1000.0).speed(0.01);
-                ui.add(widget).accessible_name(of("intensity")).changed()
-            });
+        changed |= row(ui, &of("intensity"), "intensity", &mut light.intensity, &before.intensity, |ui, intensity| {
+            let widget = DragValue::new(intensity).range(0.0..=1000.0).speed(0.01);
+            ui.add(widget).accessible_name(of("intensity")).changed()
+        });
         changed
     })
 }
@@ -124,16 +123,15 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
             ("camera up", "up", &mut camera.up, &before.up),
         ];
         for (name, label, value, before) in vectors {
-            changed |= row(ui, (name, label), value, before, |ui, value| vector(ui, name, value));
+            changed |= row(ui, name, label, value, before, |ui, value| vector(ui, name, value));
         }
         changed |= projection::rows(ui, camera, before);
-        changed |= row(ui, ("near plane", "near plane"), &mut camera.near, &before.near, |ui, near| {
+        changed |= row(ui, "near plane", "near plane", &mut camera.near, &before.near, |ui, near| {
             let widget = DragValue::new(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
             ui.add(widget.update_while_editing(false)).accessible_name("Near plane").changed()
         });
         let near = camera.near;
-        changed |=
-            row(ui, ("far plane", "far plane"), &mut camera.far, &before.far, |ui, far| far_plane(ui, far, near));
+        changed |= row(ui, "far plane", "far plane", &mut camera.far, &before.far, |ui, far| far_plane(ui, far, near));
         changed
     })
 }
@@ -163,7 +161,7 @@ fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
 fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: bool) -> bool {
     theme::heading(ui, "Picture");
     grid(ui, "picture settings", |ui| {
-        let mut changed = row(ui, ("picture size", "size"), &mut draft.size, &opened.size, |ui, size| {
+        let mut changed = row(ui, "picture size", "size", &mut draft.size, &opened.size, |ui, size| {
             let mut changed = false;
             ui.horizontal(|ui| {
                 for (side, name) in size.iter_mut().zip(["Picture width", "Picture height"]) {
@@ -174,7 +172,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
             changed
         });
         if animated {
-            changed |= row(ui, ("scene time", "time"), &mut draft.time, &opened.time, |ui, time| {
+            changed |= row(ui, "scene time", "time", &mut draft.time, &opened.time, |ui, time| {
                 let widget = DragValue::new(time).speed(0.02).suffix(" s").update_while_editing(false);
                 ui.add(widget).accessible_name("Scene time").changed()
             });

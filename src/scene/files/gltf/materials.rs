@@ -149,7 +149,7 @@ impl<'a> GltfMaterials<'a> {
             (None, Some(view)) => document.view(view).map(<[u8]>::to_vec),
             (None, None) => Err("it names no picture".to_owned()),
         };
-        let picture = self.pictures.load_bytes(&key, [&name, &quoted(&name)], bytes)?;
+        let picture = self.pictures.load_bytes(&key, &name, &quoted(&name), bytes)?;
         if picture.has_alpha() {
             refusals.refuse(format!("the alpha of {}", quoted(&name)), "opacity is the material's (baseColorFactor)");
         }
