@@ -1,6 +1,7 @@
 //! What geometry is worth keeping between plans: edge lists by the mesh's content, planes by the
 //! mesh and its place, and buffers.
 
+use super::caster::Caster;
 use super::grazing::{has_edge_on, move_grazing_last};
 use super::planar::FlattenedCaster;
 use super::{
@@ -8,7 +9,7 @@ use super::{
     FarEnd, SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
 use crate::last_used::LastUsed;
-use crate::scene::{Mesh, Pose, PoseBits, Shading};
+use crate::scene::{Mesh, PoseBits, Shading};
 use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -73,17 +74,6 @@ pub enum SilhouetteBy {
     Adjacency,
     /// By searching a list for every edge's reverse, anew for each light.
     Search,
-}
-
-/// A mesh with its pose and its vertices in world space.
-#[derive(Debug, Clone, Copy)]
-pub struct Caster<'a> {
-    /// Its triangles.
-    pub mesh: &'a Mesh,
-    /// Where the mesh is placed.
-    pub pose: &'a Pose,
-    /// World positions of the mesh's vertices.
-    pub world: &'a [DVec3],
 }
 
 /// The input for the indices of a shadow volume ([`GeometryCache::volume_indices`]).
@@ -275,6 +265,7 @@ mod tests {
     use super::*;
     use crate::geometry::planar::FlattenClip;
     use crate::math::Plane;
+    use crate::scene::Pose;
 
     #[test]
     fn a_caster_is_flattened_again_only_if_something_changed() {

@@ -56,7 +56,7 @@ impl Carry {
 /// The vertices of a volume that a vertex shader extrudes, and how it carries them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extruded {
-    /// One a vertex.
+    /// One for each vertex.
     pub corners: Blob<ExtrudedCorner>,
     /// How they are carried away from the light.
     pub carry: Carry,

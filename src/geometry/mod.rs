@@ -5,6 +5,7 @@
 
 mod blob;
 mod cache;
+mod caster;
 mod clamping;
 mod connectivity;
 mod edges;
@@ -29,7 +30,8 @@ mod volume;
 mod winding;
 
 pub use blob::Blob;
-pub use cache::{Caster, DrawnSurface, GeometryCache, SilhouetteBy, VolumeRequest};
+pub use cache::{DrawnSurface, GeometryCache, SilhouetteBy, VolumeRequest};
+pub use caster::Caster;
 pub use clamping::{ClampedEnd, touching};
 pub use connectivity::{Connectivity, FoundPlaces};
 pub use edges::{Edge, EdgeList};

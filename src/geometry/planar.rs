@@ -19,7 +19,7 @@ const COPLANAR: f64 = 1e-9;
 /// A flat piece of a mesh: connected triangles in one plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receiver {
-    /// Its plane in world space, oriented either way.
+    /// Its plane in world space; the normal may point to either side.
     pub plane: Plane,
     /// Indices into the mesh's triangles, ascending.
     pub triangles: Vec<u32>,

@@ -50,7 +50,8 @@ impl ReceiverParallelogram {
         self.ex.cross(self.ey).length()
     }
 
-    /// Box space from world space for a homogeneous light; `None` where it lies in the plane.
+    /// Returns the matrix that maps the space between the parallelogram and a homogeneous light to a box; `None` where
+    /// the light lies in the plane.
     pub fn box_from_world(&self, light: DVec4) -> Option<DMat4> {
         let ReceiverParallelogram { corner: b, ex, ey } = *self;
         // From the light to the corner; for a directional light against its direction.

@@ -4,7 +4,7 @@
 use super::answer::{self, LabelsAndPicture};
 use super::budget::MemoryBudget;
 use super::collect::{Collector, ExecutorOutput, SnapshotMemory, SnapshotStorage};
-use super::fragment_log::LogCache;
+use super::log_pipelines::LogCache;
 use super::pipelines::Pipelines;
 use super::prepared::{PlanResources, Prepared, PreparedDraw};
 use super::queries::{DrawSamples, FrameQueries, PassTimestamps};

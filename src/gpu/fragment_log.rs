@@ -10,47 +10,14 @@
 //! triangle at first, the shader counts on when it is full, and a replay with more capacity follows: nothing is lost
 //! silently. No buffer of the picture's size is cleared or read, so the cost is that of the triangles over one pixel.
 
+use super::log_pipelines::{LogCorner, LogKey};
 use super::prepared::layer_view;
 use super::readback::mapped_bytes;
-use super::{Executor, GpuError, shaders, uniforms};
+use super::{Executor, GpuError, uniforms};
 use crate::plan::{Covering, Draw, FragmentLog, FramePlan, LoggedFragment, Pass, Viewport};
 use bytemuck::{Pod, Zeroable};
-use std::collections::HashMap;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{
-    BindGroupDescriptor, BindGroupEntry, BindGroupLayout, Buffer, BufferUsages, Device, LoadOp, Operations,
-    RenderPipeline, ShaderStages, StoreOp, Texture, TextureFormat,
-};
-
-/// What a pipeline of the log is made from.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-struct LogKey {
-    unclipped_depth: bool,
-    bias: wgpu::DepthBiasState,
-    cull: Option<wgpu::Face>,
-    front_face: wgpu::FrontFace,
-    /// Corners are in clip space.
-    is_recorded: bool,
-    depth_format: TextureFormat,
-}
-
-/// What is cached between logs.
-#[derive(Debug, Default)]
-pub(super) struct LogCache {
-    module: Option<wgpu::ShaderModule>,
-    layout: Option<BindGroupLayout>,
-    pipelines: HashMap<LogKey, RenderPipeline>,
-    /// A depth buffer whose content is not used: depth bias only has an effect where there is one.
-    target: Option<Texture>,
-}
-
-/// A corner of a triangle, as `LogCorner` of `fragment_log.wgsl`.
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct LogCorner {
-    relative: [f32; 4],
-    triangle: u32,
-}
+use wgpu::{BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, LoadOp, Operations, StoreOp, TextureFormat};
 
 /// `Fragment` of `fragment_log.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -63,8 +30,6 @@ struct LogRecord {
 
 /// Before the records: their count.
 const HEAD_BYTES: u64 = 4;
-
-const CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x4, 1 => Uint32];
 
 impl Executor {
     /// Draws the triangles of `covering` again, behind a scissor of `pixel`, and writes down their
@@ -222,102 +187,5 @@ fn read(buffer: &Buffer) -> Result<FragmentLog, GpuError> {
     Ok(FragmentLog { fragments, counted })
 }
 
-impl LogCache {
-    fn layout(&mut self, device: &Device) -> &BindGroupLayout {
-        self.layout.get_or_insert_with(|| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("fragment log"),
-                entries: &[wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Storage { read_only: false },
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                    count: None,
-                }],
-            })
-        })
-    }
-
-    fn target(&mut self, device: &Device, format: TextureFormat, size: [u32; 2]) -> &Texture {
-        let cached =
-            self.target.take().filter(|cached| cached.format() == format && [cached.width(), cached.height()] == size);
-        self.target.insert(cached.unwrap_or_else(|| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("fragment log"),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
-        }))
-    }
-
-    fn pipeline(&mut self, device: &Device, view: &BindGroupLayout, key: &LogKey) -> RenderPipeline {
-        if let Some(pipeline) = self.pipelines.get(key) {
-            return pipeline.clone();
-        }
-        let groups = [Some(view), Some(&self.layout(device).clone())].map(|group| group.cloned());
-        let module = self.module.get_or_insert_with(|| {
-            let source = wgpu::ShaderSource::Wgsl(shaders::fragment_log().into());
-            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("fragment log"), source })
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("fragment log"),
-            bind_group_layouts: &[groups[0].as_ref(), groups[1].as_ref()],
-            ..wgpu::PipelineLayoutDescriptor::default()
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("fragment log"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some(if key.is_recorded { "vs_log_clip" } else { "vs_log" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<LogCorner>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &CORNER_ATTRIBUTES,
-                })],
-            },
-            primitive: wgpu::PrimitiveState {
-                cull_mode: key.cull,
-                front_face: key.front_face,
-                unclipped_depth: key.unclipped_depth,
-                ..wgpu::PrimitiveState::default()
-            },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: key.depth_format,
-                depth_write_enabled: Some(false),
-                depth_compare: Some(wgpu::CompareFunction::Always),
-                stencil: wgpu::StencilState::default(),
-                bias: key.bias,
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some("fs_log"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        if self.pipelines.len() >= MOST_PIPELINES {
-            // A slider moved over many biases has made one each.
-            self.pipelines.clear();
-        }
-        self.pipelines.insert(key.clone(), pipeline.clone());
-        pipeline
-    }
-}
-
 /// A larger target is made anew for each log; one of a picture of 8K is cached.
 const MOST_CACHED_TEXELS: u64 = 1 << 25;
-/// Most pipelines that are cached at once.
-const MOST_PIPELINES: usize = 64;

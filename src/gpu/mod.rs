@@ -27,6 +27,7 @@ mod error;
 mod executor;
 mod features;
 mod fragment_log;
+mod log_pipelines;
 mod maps;
 mod pictures;
 mod pipelines;

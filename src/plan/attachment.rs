@@ -4,29 +4,30 @@ use super::ids::LightId;
 use serde::{Deserialize, Serialize};
 use wgpu::TextureFormat;
 
-/// A picture that passes draw into.
+/// A texture that passes draw into: the picture, depth and stencil, a shadow map, a count, or labels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Attachment {
     /// Shown to people: `color`, `depth and stencil`, `light 0 map`, `light 0 labels`.
     pub name: String,
-    /// Purpose: how it is read back and shown.
+    /// What it is for, which decides how it is read back and shown.
     pub role: AttachmentRole,
     /// The GPU format of its texels.
     pub format: TextureFormat,
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// 1, or the faces of a shadow map; the memory is [`FramePlan::stored_layers`](super::FramePlan::stored_layers).
+    /// Number of layers: 1, or the faces of a shadow map. In memory there are
+    /// [`FramePlan::stored_layers`](super::FramePlan::stored_layers).
     pub layers: u32,
 }
 
 /// What an attachment is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum AttachmentRole {
-    /// The picture.
+    /// The picture's colour.
     Color,
-    /// Depth, and stencil where the format has it, of the picture.
+    /// The picture's depth, and stencil where the format has it.
     DepthStencil,
-    /// What a light sees: depth, or the colour of what it lets through.
+    /// A light's shadow map: depth, or the colour of what casters let through.
     Map(LightId),
     /// How many shadow volumes of a light contain each pixel's surface, signed.
     Count(LightId),
@@ -36,7 +37,8 @@ pub enum AttachmentRole {
 }
 
 impl Attachment {
-    /// The largest depth as an integer, where the format stores depths as integers: 2^bits − 1.
+    /// Returns the largest integer depth, 2^bits − 1, of a format that stores depths as integers; `None` for other
+    /// formats.
     pub fn depth_steps(&self) -> Option<u32> {
         match self.format {
             TextureFormat::Depth16Unorm => Some(0xffff),
@@ -45,8 +47,8 @@ impl Attachment {
         }
     }
 
-    /// The format that the attachment gets on the GPU. Depths of 16 and 24 bits can't be copied everywhere, so each is
-    /// stored as the nearest float; no two of them share one.
+    /// Returns the format that the attachment gets on the GPU. Depths of 16 and 24 bits can't be copied everywhere, so
+    /// they are stored as floats; no two of them share one.
     pub fn stored_format(&self) -> TextureFormat {
         match self.format {
             TextureFormat::Depth16Unorm | TextureFormat::Depth24Plus => TextureFormat::Depth32Float,
@@ -55,7 +57,7 @@ impl Attachment {
         }
     }
 
-    /// How far a recomputed depth may be from the one that was stored: sixteen steps of its format, or of 24 bits.
+    /// Returns how far a recomputed depth may be from the stored one: sixteen steps of its format, or of 24 bits.
     /// OpenGL's clip space begins at −w, and a corner's depth is rounded once more on its way to ours.
     pub fn depth_rounding(&self) -> f32 {
         16.0 / self.depth_steps().unwrap_or(0xff_ffff) as f32

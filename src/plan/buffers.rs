@@ -4,10 +4,10 @@ use crate::geometry::{Blob, Extruded};
 use crate::scene::TextureImage;
 use std::sync::Arc;
 
-/// An indexed triangle list.
+/// An indexed triangle list that draws refer to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawMesh {
-    /// Shown to people: `bunny`, `volume of bunny`.
+    /// A name for people: `bunny`, `volume of bunny`.
     pub name: String,
     /// Homogeneous positions relative to the origin of the pass's view; `w = 0` is at infinity.
     pub vertices: Blob<[f32; 4]>,
@@ -17,47 +17,47 @@ pub struct DrawMesh {
     pub surface: Option<SurfaceData>,
     /// The input of a vertex shader that computes the vertices; [`DrawMesh::vertices`] is its result.
     pub extruded: Option<Extruded>,
-    /// The fragments that another program's shader did not discard, where they were recorded, sorted: the pixel
-    /// ([`DrawMesh::pixel_word`]) and the triangle. Corners are not shared then: the three of triangle `t` begin at
-    /// `3t`.
+    /// For another program's shader that discards fragments, those that it did not discard, where recorded: pixel
+    /// ([`DrawMesh::pixel_word`]) and triangle, sorted. Corners are then not shared: triangle `t` has the corners from
+    /// `3t` on.
     pub retained: Option<Blob<[u32; 2]>>,
 }
 
 impl DrawMesh {
-    /// Returns a mesh that is drawn by position only; see [`relative`](crate::geometry::relative) for its vertices.
+    /// Makes a mesh that is drawn by position only. Vertices are relative to the view's origin, see
+    /// [`relative`](crate::geometry::relative); indices are three a triangle.
     pub fn of_positions(name: impl Into<String>, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
         DrawMesh::of_blobs(name, Blob::new(vertices), Blob::new(indices))
     }
 
-    /// Returns a mesh that is drawn by position only, of data that other meshes may share.
+    /// Makes a mesh that is drawn by position only from data that other meshes may share.
     pub fn of_blobs(name: impl Into<String>, vertices: Blob<[f32; 4]>, indices: Blob<u32>) -> DrawMesh {
         DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, retained: None }
     }
 
-    /// Returns a mesh whose vertices a vertex shader carries away from a light.
+    /// Makes a mesh whose vertices a vertex shader carries away from a light.
     pub fn of_extruded(name: impl Into<String>, extruded: Extruded, indices: Blob<u32>) -> DrawMesh {
         let vertices = extruded.vertices();
         DrawMesh { extruded: Some(extruded), ..DrawMesh::of_blobs(name, vertices, indices) }
     }
 
-    /// Packs the column and row of a pixel into one word, as [`DrawMesh::retained`] stores it.
+    /// Packs a pixel's column and row into one word, as [`DrawMesh::retained`] stores it: the row in the upper 16 bits.
     pub fn pixel_word([x, y]: [u32; 2]) -> u32 {
         x | y << 16
     }
 
-    /// Returns whether the fragment of `triangle` at `pixel` is retained by its shader. True where that was not
-    /// recorded.
+    /// Returns whether the shader kept the fragment of `triangle` at `pixel`; true where that was not recorded.
     pub fn keeps(&self, pixel: [u32; 2], triangle: u32) -> bool {
         let wanted = [DrawMesh::pixel_word(pixel), triangle];
         self.retained.as_ref().is_none_or(|retained| retained.data().binary_search(&wanted).is_ok())
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn triangles(&self) -> u32 {
         (self.indices.len() / 3) as u32
     }
 
-    /// Hash and bytes of each of its arrays.
+    /// Returns hash and size in bytes of each of its arrays on the GPU.
     pub(super) fn blobs(&self) -> Vec<(u64, u64)> {
         fn entry<T: bytemuck::Pod>(blob: &Blob<T>) -> (u64, u64) {
             (blob.hash(), (blob.len() * size_of::<T>()) as u64)
@@ -71,7 +71,7 @@ impl DrawMesh {
     }
 }
 
-/// Per-surface data beside the positions.
+/// Per-corner and per-triangle data with which a surface is shaded and labelled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceData {
     /// Unit world-space normal of each corner, parallel to the indices; the fourth is unused.
@@ -85,7 +85,7 @@ pub struct SurfaceData {
     pub uvs: Option<Blob<[f32; 2]>>,
 }
 
-/// A texture on surfaces.
+/// A texture on surfaces, with how lookups outside of it are answered.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanTexture {
     /// Its texels and their mip chain.
@@ -95,7 +95,7 @@ pub struct PlanTexture {
 }
 
 impl PlanTexture {
-    /// Bytes that all its mip levels take.
+    /// Returns how many bytes all its mip levels take.
     pub fn bytes(&self) -> u64 {
         let half = |side: u32, level: u32| u64::from((side >> level).max(1));
         let [width, height] = self.picture.size();

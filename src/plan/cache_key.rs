@@ -5,9 +5,9 @@ use foldhash::quality::FixedState;
 use std::hash::{BuildHasher, Hash, Hasher};
 
 impl FramePlan {
-    /// Returns a hash of all that decides what an attachment stores when the frame is done; stable within a process
-    /// only. `None` where passes that draw by position or in one colour are not all that decides it, and where the plan
-    /// does not say that the attachment is cached.
+    /// Returns a hash of all that decides an attachment's content at the end of the frame, stable within a process
+    /// only. `None` if the plan does not cache the attachment, or if a pass into it does more than draw by position or
+    /// in one colour.
     pub fn cache_key(&self, id: AttachmentId) -> Option<u64> {
         let map = self.map_in(id)?;
         if !map.is_cached {
@@ -50,7 +50,7 @@ impl FramePlan {
 }
 
 impl Pass {
-    /// The attachments that the pass draws into.
+    /// Returns the attachments that the pass draws into.
     pub(crate) fn targets(&self) -> impl Iterator<Item = AttachmentId> {
         let color = self.color.iter().map(|target| target.attachment);
         color.chain(self.depth_stencil.iter().map(|target| target.attachment))

@@ -2,27 +2,27 @@
 
 use std::fmt;
 
-/// The lowest bits of a stencil, as the masks of a plan leave them to a count.
+/// How many of the stencil's lowest bits a count of shadow volumes uses, 1 to 8.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct CountBits(u8);
 
 impl CountBits {
-    /// All eight bits of a stencil.
+    /// All eight bits of the stencil.
     pub const EIGHT: CountBits = CountBits(8);
 
-    /// The bits that a write mask has, from the lowest on; all eight where the mask has gaps, as no count fits then.
+    /// Returns the bits of a stencil write mask that has only the lowest bits; all eight for any other mask.
     pub fn of_mask(mask: u32) -> CountBits {
         let ones = (mask as u8).trailing_ones() as u8;
         if (1..8).contains(&ones) && mask == (1 << ones) - 1 { CountBits(ones) } else { CountBits::EIGHT }
     }
 
-    /// The number of different counts that the bits can store.
+    /// Returns how many different counts the bits can store: 2 to their number.
     pub fn modulus(self) -> i32 {
         1 << self.0
     }
 
-    /// Returns whether the bits store `sum` as this `byte` although the two differ. Of eight bits, the upper half reads
-    /// as negative.
+    /// Returns whether `byte` is what the bits store of `sum`, and yet reads as another number: the count has wrapped.
+    /// Of eight bits, 128 and more also read as negative.
     pub fn hold_otherwise(self, sum: i32, byte: u8) -> bool {
         let least = if self == CountBits::EIGHT { -128 } else { 0 };
         sum.rem_euclid(self.modulus()) == i32::from(byte) && !(least..self.modulus()).contains(&sum)

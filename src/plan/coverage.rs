@@ -14,48 +14,48 @@ use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, Program, ViewId,
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
-/// Half the side of the square round the centre within which a triangle is asked about, pixels.
+/// A triangle is looked at if it reaches within this many pixels of the pixel's centre along either axis.
 const DOUBT: f64 = 1.0;
-/// A centre this far inside of every edge is covered, however corners are rounded, pixels.
+/// The centre is surely covered if it is this many pixels inside of every edge, however corners are rounded.
 const SAFE: f64 = 1.0 / 16.0;
-/// Depths this near to 0 and 1 may round out of the range.
+/// Depths this near to 0 and 1 may be clipped or not, by rounding.
 const SAFE_DEPTH: f64 = 1e-6;
-/// How far `f32` may miss a corner's place in clip space, in parts of the largest term of its sum.
+/// The rounding error of a corner's clip-space position in `f32`, relative to the largest term of its sum.
 const ROUNDING: f32 = 1e-6;
 
-/// A triangle over a pixel, or near it.
+/// A triangle of a draw that covers a pixel's centre, or may.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Covering {
-    /// Index of the pass.
+    /// Index of the pass in the plan.
     pub pass: usize,
     /// Index of the draw in its pass.
     pub draw: usize,
-    /// Index among the draw's triangles, in drawing order.
+    /// Index among the draw's triangles, in the order in which they are drawn.
     pub primitive: u32,
     /// Index in the mesh's triangle list.
     pub triangle: u32,
-    /// The draw's part; for caps that a vertex shader carries, light cap or dark cap.
+    /// The draw's part; for caps that a vertex shader extrudes, which cap this triangle is.
     pub part: DrawPart,
     /// Corners as the mesh has them: homogeneous, relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
-    /// What geometry alone says about the triangle at the pixel.
+    /// Whether it leaves a fragment at the pixel, as far as geometry alone can say.
     pub coverage: Coverage,
 }
 
-/// What geometry alone says about a triangle at a pixel.
+/// Whether a triangle leaves a fragment at a pixel, as far as geometry alone can say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coverage {
     /// It leaves a fragment there.
     Sure,
     /// The pixel's centre is too near to an edge, or the triangle too thin, to decide.
     Doubtful,
-    /// It covers the pixel, but the draw throws this side of triangles away.
+    /// It covers the pixel, but the draw culls the side that is seen.
     Culled(VisibleFace),
-    /// It covers the pixel, but lies outside the depths that are drawn there.
+    /// It covers the pixel, but is clipped there: nearer than the near plane or beyond the far plane.
     Clipped(VisibleFace, ClipPlane),
 }
 
-/// The side of a triangle that is seen, and how deep it is at the pixel's centre.
+/// The side of a triangle that is seen at a pixel, and its depth there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VisibleFace {
     /// The front: corners run counterclockwise on the screen.
@@ -64,10 +64,10 @@ pub struct VisibleFace {
     pub depth: f32,
 }
 
-/// A fragment of a triangle.
+/// A fragment that the GPU made of a triangle at the pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoggedFragment {
-    /// Index into the triangles that were asked about.
+    /// Index of its triangle in the list of [`Covering`]s that was asked about.
     pub covering: usize,
     /// True for a fragment of the triangle's front.
     pub is_front: bool,
@@ -75,7 +75,7 @@ pub struct LoggedFragment {
     pub depth: f32,
 }
 
-/// The fragments of a pixel in the order in which their triangles were drawn.
+/// The GPU's log of the fragments at a pixel, in the order in which their triangles were drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FragmentLog {
     /// The fragments that fitted into the GPU's log.
@@ -85,8 +85,8 @@ pub struct FragmentLog {
 }
 
 impl FramePlan {
-    /// Returns whether a pass draws into the picture, or tests against its depth and stencil. Passes of shadow maps and
-    /// textures have pixels of their own.
+    /// Returns whether a pass draws into the picture, or tests against its depth and stencil: all passes but those of
+    /// shadow maps and textures.
     pub fn is_of_picture(&self, pass: &Pass) -> bool {
         let is_map = |id| matches!(self.attachment(id).role, super::AttachmentRole::Map(_));
         let color = pass.color.iter().map(|target| target.attachment);
@@ -94,13 +94,13 @@ impl FramePlan {
         !color.chain(depth).any(is_map)
     }
 
-    /// Returns whether a pass draws into a float count.
+    /// Returns whether a pass draws into a light's float count.
     pub fn counts_in_float(&self, pass: &Pass) -> bool {
         let role = pass.color.as_ref().map(|target| self.attachment(target.attachment).role);
         matches!(role, Some(super::AttachmentRole::Count(_)))
     }
 
-    /// Returns every triangle of every pass of the picture that lies over the centre of `pixel` or within a pixel of
+    /// Returns every triangle of every pass of the picture that covers the centre of `pixel` or comes within a pixel of
     /// it, in the order in which the GPU draws them.
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
         let mut search =
@@ -117,13 +117,14 @@ impl FramePlan {
     }
 }
 
-/// Key under which a mesh's triangles are searched once, however many draws show them.
+/// The key of a search result: mesh, view, viewport, and range of triangles with base vertex. Draws with the same key
+/// share the result.
 type SearchedMesh = (MeshId, ViewId, [u32; 4], [u32; 3]);
 
 struct CoverageSearch<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
-    /// For each vertex of the last mesh, a bit for each of the four planes that it is outside of.
+    /// For each vertex of the mesh last searched, four bits: which sides of the pixel's square it is outside of.
     sieve: Vec<u8>,
     sieve_of: Option<(MeshId, ViewId, Viewport)>,
     found: BTreeMap<SearchedMesh, Vec<u32>>,
@@ -210,18 +211,18 @@ impl FramePlan {
     }
 }
 
-/// A pixel's centre and the square round it, in normalized device coordinates.
+/// The square around a pixel's centre, in normalized device coordinates.
 struct PixelSquare {
     center: DVec2,
     /// Half of a pixel's width and height.
     half_pixel: DVec2,
-    /// How far the centre lies inside of the viewport, pixels.
+    /// How many pixels the centre lies inside of the viewport; negative outside.
     inside: f64,
 }
 
-/// Where the pixel's centre lies relative to a triangle.
+/// Whether a pixel's centre lies inside a triangle.
 enum CenterCoverage {
-    /// Inside, with its depth in clip space.
+    /// It is inside, with the triangle's depth there in clip space.
     Inside {
         runs_counterclockwise: bool,
         depth: f64,
@@ -239,8 +240,8 @@ impl PixelSquare {
         PixelSquare { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
     }
 
-    /// Computes four bits for each vertex: right of, left of, above and below the square, as far as `f32` can decide
-    /// with certainty.
+    /// Computes four bits for each vertex: whether it is right of, left of, above or below the square; set only where
+    /// `f32` decides that with certainty.
     fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]], sieve: &mut Vec<u8>) {
         let clip = clip_from_relative.as_dmat4();
         let reach = self.half_pixel * (2.0 * DOUBT);
@@ -263,7 +264,8 @@ impl PixelSquare {
         sieve.extend(vertices.iter().map(outside));
     }
 
-    /// Returns where the centre lies; `None` where the triangle is farther from it than [`DOUBT`].
+    /// Returns where the centre lies relative to a triangle; `None` where the triangle is farther from it than
+    /// [`DOUBT`].
     fn look(&self, clip_from_relative: Option<Mat4>, corners: [[f32; 4]; 3]) -> Option<CenterCoverage> {
         let corners = corners.map(|corner| DVec4::from_array(corner.map(f64::from)));
         let clip = clip_from_relative.map_or(corners, |matrix| corners.map(|corner| matrix.as_dmat4() * corner));

@@ -5,43 +5,43 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What decides whether a light's shadow is at a pixel.
+/// What a light pass reads to decide whether a pixel is in shadow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum DecidedBy {
-    /// How many shadow volumes contain the surface, as eight bits of stencil: 0 is lit.
+    /// The count of shadow volumes around the surface in the stencil, in eight bits: 0 is lit.
     StencilCount {
         /// On which side of the surface faces count.
         side: CountedSide,
     },
-    /// How many shadow volumes contain the surface, as a signed float: 0 is lit.
+    /// The count of shadow volumes around the surface in a float target, signed: 0 is lit.
     FloatCount {
         /// On which side of the surface faces count.
         side: CountedSide,
     },
-    /// The depth that the light sees, in its shadow map.
+    /// A shadow map: the depth that the light sees.
     Map,
-    /// The light that arrives on a flat receiver, drawn into a texture of its own.
+    /// A texture on each flat receiver of the light that arrives on it.
     ReceiverTextures,
-    /// The light that the casters let through, drawn as silhouettes and projected onto the scene.
+    /// Projected silhouettes of casters: the light that they let through.
     Silhouettes,
-    /// Casters flattened onto flat receivers.
+    /// Casters flattened onto flat receivers (planar shadows).
     Flattened,
-    /// Labels computed with rays on the CPU.
+    /// Labels that were ray-traced on the CPU.
     Labels,
-    /// Nothing is read: the light reaches all that faces it.
+    /// Nothing: the light reaches every surface that faces it.
     Nothing,
 }
 
 named_enum! {
-    /// On which side of the visible surface the faces of shadow volumes count.
+    /// On which side of the visible surface the faces of shadow volumes are counted.
     pub enum CountedSide(
         /// `behind`, as in "faces behind the surface".
         preposition
     ) {
-        /// Between the eye and the surface: z-pass.
+        /// Between the eye and the surface (z-pass).
         InFront = "in-front" ("in front of"),
-        /// Between the surface and infinity: z-fail.
+        /// Between the surface and infinity (z-fail).
         Behind = "behind" ("behind"),
         /// In front of the surface for some volumes, behind it for others.
         AsNeeded = "as-needed" ("on either side of"),
@@ -49,7 +49,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// What a light's count of shadow volumes counts.
+    /// What 1 in a light's count of shadow volumes stands for: a closed body, or a single surface.
     pub enum CountOf(
         /// `bodies`, `surfaces`, `bodies and surfaces`.
         what,
@@ -79,17 +79,17 @@ named_enum! {
 }
 
 impl DecidedBy {
-    /// Returns whether shadow volumes are counted, in the stencil or in floats.
+    /// Returns whether shadow volumes are counted, in the stencil or in a float target.
     pub fn counts_volumes(self) -> bool {
         self.counted_side().is_some()
     }
 
-    /// Returns whether shadow volumes are counted in a float for each pixel instead of eight bits.
+    /// Returns whether shadow volumes are counted in a float target instead of the stencil.
     pub fn counts_in_floats(self) -> bool {
         matches!(self, DecidedBy::FloatCount { .. })
     }
 
-    /// The side on which shadow volumes count; `None` where none are counted.
+    /// Returns on which side of the surface shadow volumes are counted; `None` where none are.
     pub fn counted_side(self) -> Option<CountedSide> {
         match self {
             DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side } => Some(side),

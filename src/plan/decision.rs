@@ -3,8 +3,8 @@
 use crate::numbers;
 
 named_enum! {
-    /// Why something is not in a frame. The first decisions can be forbidden by their names (`leave-out`); the rest is
-    /// what a technique can't do, does not do, or has done before.
+    /// Why something is not in a frame. The first 16 decisions can be forbidden by name in the setting `leave-out`; the
+    /// others record what a technique can't do, does not do, or has done before.
     pub enum Decision(
         /// What is left out, in words, with places for a name and a number.
         template
@@ -13,7 +13,7 @@ named_enum! {
         Light = "light" ("all passes"),
         /// A caster behind which, as the light sees it, there is nothing: its volume.
         Caster = "caster" ("volume"),
-        /// A volume that misses the view.
+        /// A volume that lies outside the view.
         View = "view" ("volume"),
         /// A caster wholly in the umbra of another, or a part of one in that of another part: its volume.
         Umbra = "umbra" ("volume"),
@@ -89,7 +89,7 @@ named_enum! {
 }
 
 impl Decision {
-    /// The names of the decisions that can be forbidden: the values of `leave-out`, in order.
+    /// The names of the decisions that can be forbidden, in order: the values of the setting `leave-out`.
     pub const NAMES: [&str; 16] = {
         let mut names = [""; 16];
         let mut index = 0;
@@ -100,8 +100,8 @@ impl Decision {
         names
     };
 
-    /// Returns what is left out, in words: `dark cap`, `texture of floor`, `3 flat receivers`. `count`: how many
-    /// triangles or things; `name`: which of several.
+    /// Returns what is left out, in words: `dark cap`, `texture of floor`, `3 flat receivers`. `count` is how many
+    /// triangles or things, `name` which of several.
     pub(super) fn what(self, name: Option<&str>, count: Option<u64>) -> String {
         let (name, of) = (name.unwrap_or("it"), numbers::count(count.unwrap_or(0)));
         match self {

@@ -6,24 +6,24 @@ use super::{DrawMesh, RasterState};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// One draw call.
+/// One draw call: mesh, shader, raster state and constants.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Draw {
-    /// Short: `sides of bunny`.
+    /// A short name for people: `sides of bunny`.
     pub name: String,
-    /// The object that it shows, or whose shadow it draws.
+    /// Name of the object that it shows, or whose shadow it draws.
     pub caster: Option<String>,
     /// Which part of the object or of its shadow it draws.
     pub part: DrawPart,
     /// The shader.
     pub program: Program,
-    /// The whole raster state.
+    /// Depth, stencil, culling and colour state.
     pub raster: RasterState,
     /// Vertices and indices.
     pub mesh: MeshId,
     /// Range of triangles in the mesh's index list.
     pub triangles: Range<u32>,
-    /// Added to every index: a dark cap is its light cap at the far vertices.
+    /// Added to every index: a dark cap is its light cap drawn with the far vertices.
     pub base_vertex: u32,
     /// For a part of a shadow volume: true where its triangles' fronts face into the volume, and their backs outwards.
     /// Caps are runs of the caster's own triangles, so either is possible.
@@ -33,7 +33,8 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// Returns which part a triangle of the draw is: of caps that a vertex shader carries, light cap or dark cap.
+    /// Returns which part the triangle with these vertex indices is: the draw's part, or for caps that a vertex shader
+    /// extrudes, light cap or dark cap.
     pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> DrawPart {
         match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
             (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
@@ -42,7 +43,7 @@ impl Draw {
         }
     }
 
-    /// Returns a draw of a whole mesh by position only, as into the stencil.
+    /// Makes a draw of a mesh's first `triangles` triangles by position only, as into the stencil.
     pub fn of_positions(
         name: impl Into<String>,
         part: DrawPart,
@@ -64,7 +65,7 @@ impl Draw {
         }
     }
 
-    /// Returns whether the draw's shader may discard fragments and no record says which. `mesh` is the draw's.
+    /// Returns whether the draw's shader may discard fragments without a record of which. `mesh` is the draw's mesh.
     pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
         matches!(self.program, Program::Recorded { may_discard: ShaderEffect::Yes | ShaderEffect::Unknown, .. })
             && mesh.retained.is_none()
@@ -72,7 +73,7 @@ impl Draw {
 }
 
 named_enum! {
-    /// Which part of a frame's geometry a draw is.
+    /// Which part of a frame's geometry a draw shows: a surface, or a part of a shadow.
     pub enum DrawPart {
         /// Visible surface.
         Surface = "surface",
@@ -88,7 +89,7 @@ named_enum! {
         Receiver = "receiver",
         /// A caster flattened onto a receiver.
         PlanarShadow = "planar-shadow",
-        /// Surface as a light sees it.
+        /// A caster drawn into a light's map.
         Map = "map",
     }
 }
@@ -105,7 +106,7 @@ impl DrawPart {
     }
 }
 
-/// Values that one draw passes to its shader.
+/// Values that one draw passes to its shader (uniforms).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct DrawConstants {
     /// Material of the surface.
@@ -116,12 +117,12 @@ pub struct DrawConstants {
     pub flat: [f32; 4],
     /// What [`Program::Count`] adds for a front face: 1 or −1.
     pub count: f32,
-    /// Index of the draw's own layer in the light's map.
+    /// Index of the draw's own layer in the light's texture array; `None` where it has none.
     pub layer: Option<u32>,
-    /// The eye's world X and Z, less whole periods of the material's checks: where their pattern begins, in metres.
+    /// The eye's world x and z modulo the period of the material's checks, metres: where their pattern begins.
     #[serde(default)]
     pub checks_from: [f32; 2],
-    /// The texture that the material's colour is multiplied with.
+    /// The texture that the material's colour is multiplied by; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texture: Option<TextureId>,
 }

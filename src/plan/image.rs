@@ -3,16 +3,16 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Computes a picture each time the frame runs: its time is part of the frame's.
+/// Computes a picture on the CPU each time the frame runs; its time is part of the frame's.
 pub trait MakeImage: Debug + Send + Sync {
     /// Returns the texels of the pass's colour target, row by row without padding.
     fn make(&self) -> Vec<u8>;
 }
 
-/// How the CPU computes a pass's picture.
+/// A picture that the CPU computes in place of a pass's draws.
 #[derive(Debug, Clone)]
 pub struct CpuImage {
-    /// Shown to people: `rays of light 1`.
+    /// A name for people: `rays of light 1`.
     pub name: String,
     /// Hash of all that the picture depends on.
     pub content: u64,

@@ -3,7 +3,7 @@
 use super::{Decision, LightId, Pass};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Something the plan leaves out, with the reason: absence is a lesson too.
+/// Something that the plan leaves out, with the decision and the reason, to be shown to the user.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LeftOut {
     /// The decision; `None` in a folder that does not state it, or states one that this version does not know.
@@ -16,7 +16,7 @@ pub struct LeftOut {
     pub what: String,
     /// The object, light or pass it would have belonged to.
     pub of: String,
-    /// How many triangles or things, where that is counted.
+    /// How many triangles or things are left out, where that is counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
     /// Why nothing changes without it.
@@ -24,7 +24,7 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Records that what `decision` leaves out of `of` is not needed, because of `because`.
+    /// Records that `decision` leaves something of `of` (an object, light or pass) out, for the reason `because`.
     pub fn new(decision: Decision, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
         LeftOut::made(decision, None, None, of.into(), because.into())
     }
@@ -45,7 +45,8 @@ impl LeftOut {
         LeftOut::named(Decision::Cached, &pass.name, of, "nothing that makes it has changed since")
     }
 
-    /// Records that `count` triangles are left out that a light does not reach.
+    /// Records that `count` triangles are left out of a light's pass, as they face away from the light or, if it has a
+    /// range, lie beyond that.
     pub fn unlit(count: u64, light: LightId, has_range: bool) -> LeftOut {
         let of = format!("the pass of {}", light.name());
         let mut left_out = LeftOut::counted(Decision::UnlitTriangles, count, of, "it adds nothing to them");
@@ -53,12 +54,12 @@ impl LeftOut {
         left_out
     }
 
-    /// Returns whether `decision` was made about that object, light or pass.
+    /// Returns whether this is the record of `decision` about that object, light or pass.
     pub fn is(&self, decision: Decision, of: &str) -> bool {
         self.decision == Some(decision) && self.of == of
     }
 
-    /// Returns whether `decision` left out the thing called `name`.
+    /// Returns whether this is the record of `decision` about the thing called `name`.
     pub fn names(&self, decision: Decision, name: &str) -> bool {
         self.decision == Some(decision) && self.name.as_deref() == Some(name)
     }

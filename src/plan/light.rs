@@ -5,30 +5,31 @@ use super::{CountOf, DecidedBy};
 use glam::{DMat4, Mat4};
 use serde::{Deserialize, Serialize};
 
-/// The data of a light that shaders get.
+/// A light as shaders get it, with the attachments that its passes use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanLight {
     /// Homogeneous, relative to the eye: `(L.xyz − L.w·eye, L.w)`.
     pub relative_position: [f32; 4],
     /// Linear RGB times intensity.
     pub color: [f32; 3],
-    /// Distance at which the light has faded to nothing; `None`: no falloff.
+    /// Distance in metres at which the light has faded to nothing; `None` without falloff.
     pub range: Option<f32>,
-    /// What its light pass reads to decide where the shadow is.
+    /// What its light pass reads to decide whether a pixel is in shadow.
     pub decided_by: DecidedBy,
-    /// What a count of its volumes counts, where that is known.
+    /// What 1 in the count of its volumes stands for; `None` where that is not known.
     #[serde(default)]
     pub count_of: Option<CountOf>,
-    /// Its shadow map or textures, where the technique makes any.
+    /// Its shadow map or textures; `None` where the technique makes none.
     pub map: Option<PlanMap>,
-    /// Where its volumes are counted, if not in the stencil.
+    /// The float attachment in which its volumes are counted; `None` where they are counted in the stencil, or not at
+    /// all.
     pub count: Option<AttachmentId>,
-    /// Where its mask pass writes labels.
+    /// The attachment to which its mask pass writes labels.
     pub labels: AttachmentId,
 }
 
-/// What a light sees, in layers: the face of a shadow map or the six of a cube in wgpu's order
-/// (+x −x +y −y +z −z), the texture of each receiver, or the silhouette of each caster.
+/// A light's texture array: the faces of a shadow map (one, or six of a cube in wgpu's order +x −x +y −y +z −z), the
+/// texture of each receiver, or the silhouette of each caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanMap {
     /// The attachment that stores its texels.
@@ -39,27 +40,27 @@ pub struct PlanMap {
     pub light_from_world: DMat4,
     /// Clip space of each face from light space.
     pub clip_from_light: Vec<DMat4>,
-    /// Clip space of each face from positions relative to the eye: receivers' fragments are projected with it.
+    /// Clip space of each face from positions relative to the eye, with which shaders look fragments up.
     pub clip_from_relative: Vec<Mat4>,
     /// Name of the receiver or caster of each layer, where the map stores colours. Empty for the faces of a depth map.
     pub layer_names: Vec<String>,
-    /// How depths are looked up; `None` where the map stores colours.
+    /// How depths are compared; `None` where the map stores colours.
     pub lookup: Option<MapLookup>,
-    /// Projected colours reach behind the light too.
+    /// Whether silhouettes are projected behind the light too (reverse projection).
     pub projects_backwards: bool,
     /// True clamps lookups outside of the map to its edge; false lets all of the light through there.
     #[serde(default)]
     pub repeats_edge: bool,
-    /// Its texture is cached from frame to frame while what draws it is the same.
+    /// Whether its texture is kept from frame to frame while what draws it is the same.
     pub is_cached: bool,
 }
 
 impl PlanMap {
-    /// The largest number of faces that a shader's light has space for.
+    /// The most faces that a light in a shader has space for.
     pub const MOST_FACES: usize = 64;
 }
 
-/// How a shadow map is looked up.
+/// How a shader compares a fragment with a shadow map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapLookup {
     /// Depth of texels that no caster covers; 0 where depth is reversed.

@@ -5,19 +5,19 @@ use super::{
     Viewport, Visibility,
 };
 
-/// A rule that a plan breaks.
+/// A rule for plans that a pass breaks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("pass {pass} ({name}): {problem}")]
 pub struct LintError {
     /// Index of the pass.
     pub pass: usize,
-    /// Its name.
+    /// Name of the pass.
     pub name: String,
     /// What is wrong, in words.
     pub problem: String,
 }
 
-/// Returns every broken rule, in the order of passes.
+/// Checks a plan before it runs; returns every broken rule, in the order of passes.
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
     let in_range = |mesh: &DrawMesh| {
         let vertex_count = mesh.vertices.len();

@@ -57,24 +57,24 @@ use glam::{DVec3, Mat4, Vec4};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One frame, ready to be run.
+/// A frame as data, ready to be run: attachments, meshes, lights, and passes with their draws.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FramePlan {
     /// Name of the technique that planned it.
     pub technique: String,
-    /// Every setting of the technique, defaults included, as in `--set`.
+    /// The value of every setting of the technique by its key, defaults included.
     pub settings: BTreeMap<String, String>,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
-    /// How the camera's distance becomes stored depth.
+    /// The mapping from distance to stored depth.
     pub depth: DepthCurve,
-    /// Diffuse light wraps round the edge that Lambert's ends at.
+    /// Whether diffuse light is wrapped around surfaces instead of Lambert's.
     pub wraps_diffuse: bool,
-    /// Pictures that passes draw into.
+    /// Textures that passes draw into.
     pub attachments: Vec<Attachment>,
-    /// The camera first, then the faces of shadow maps.
+    /// The views that passes are drawn from: the camera first, then lights.
     pub views: Vec<PlanView>,
-    /// Parallel to the scene's lights.
+    /// The lights, in the scene's order.
     pub lights: Vec<PlanLight>,
     /// Linear RGB light that reaches every surface.
     pub ambient: [f32; 3],
@@ -86,19 +86,19 @@ pub struct FramePlan {
     pub textures: Vec<PlanTexture>,
     /// Passes in the order in which they run.
     pub passes: Vec<Pass>,
-    /// Work that this scene does not need.
+    /// What was left out, with reasons.
     pub left_out: Vec<LeftOut>,
 }
 
-/// The view that a pass is drawn from.
+/// A view that passes are drawn from: the camera, or a light.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanView {
-    /// Shown to people: `camera`, `light 0 face +x`.
+    /// A name for people: `camera`, `light 0 face +x`.
     pub name: String,
     /// World position that the vertices of this view's meshes are relative to.
     pub origin: DVec3,
-    /// Where view rays begin, homogeneous and relative to `origin`; of a parallel view the direction towards its eye.
-    /// Specular highlights use it.
+    /// Where view rays meet, homogeneous and relative to `origin`, for specular highlights; for a parallel view the
+    /// direction towards its eye (w = 0).
     #[serde(default = "PlanView::at_origin")]
     pub eye: Vec4,
     /// Clip space from positions relative to `origin`.
@@ -106,7 +106,7 @@ pub struct PlanView {
 }
 
 impl PlanView {
-    /// An eye at the origin that vertices are relative to.
+    /// Returns an eye at the view's origin.
     pub fn at_origin() -> Vec4 {
         Vec4::W
     }
@@ -121,14 +121,14 @@ impl FramePlan {
         &self.attachments[id.0]
     }
 
-    /// The number of triangles that the frame submits, without those of mask passes.
+    /// Returns how many triangles the frame submits, without mask passes.
     pub fn triangles(&self) -> u64 {
         let draws = self.timed_passes().flat_map(|pass| &pass.draws);
         draws.map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
     }
 
-    /// Bytes of GPU memory that the frame needs for attachments, vertices, indices and textures. What only mask passes
-    /// need is left out.
+    /// Returns how many bytes of GPU memory the frame's attachments, vertices, indices and textures take, without what
+    /// only mask passes use.
     pub fn bytes(&self) -> u64 {
         let (mut attachments, mut blobs, mut textures) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         for pass in self.timed_passes() {

@@ -5,18 +5,18 @@ use super::ids::{AttachmentId, LightId, ViewId};
 use super::{CpuImage, RecordedPass, Viewport};
 use serde::{Deserialize, Serialize};
 
-/// One render pass.
+/// One render pass: its targets, its view and its draws.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
-    /// Short, lower case: `ambient`, `volumes`, `light`.
+    /// A short name, lower case: `ambient`, `volumes`, `light`.
     pub name: String,
     /// One sentence that explains the pass to a learner.
     pub purpose: String,
-    /// The light it belongs to; `None` for the scene's own passes.
+    /// The light that it belongs to; `None` for the scene's own passes.
     pub light: Option<LightId>,
-    /// True for passes whose time counts for the frame; mask passes do not count.
+    /// Whether its time counts for the frame; that of mask passes does not.
     pub timed: bool,
-    /// The view it is drawn from.
+    /// The view that it is drawn from.
     pub view: ViewId,
     /// Colour target, if any.
     pub color: Option<ColorTarget>,
@@ -30,13 +30,13 @@ pub struct Pass {
     /// array.
     #[serde(skip)]
     pub image: Option<CpuImage>,
-    /// Further data of a pass of another program's frame.
+    /// Further data of a pass of another program's frame; `None` for our own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recorded: Option<Box<RecordedPass>>,
 }
 
 impl Pass {
-    /// Returns whether its draws may change a pixel, by its scissor rectangle.
+    /// Returns whether a pixel lies within the pass's scissor rectangle.
     pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
         let holds = |[left, top, columns, rows]: [u32; 4]| {
             (left..left.saturating_add(columns)).contains(&x) && (top..top.saturating_add(rows)).contains(&y)
@@ -44,13 +44,13 @@ impl Pass {
         self.scissor.is_none_or(holds)
     }
 
-    /// Returns whether the pass counts the volumes that contain the near plane, as z-pass-plus begins. Its view is from
-    /// the light.
+    /// Returns whether the pass counts, from the light, the volumes around the near plane, with which z-pass-plus
+    /// begins.
     pub fn counts_at_near_plane(&self) -> bool {
         self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
     }
 
-    /// Returns the viewport of its draws in a target of that size.
+    /// Returns the viewport of its draws in a target of `size` texels.
     pub fn viewport(&self, size: [u32; 2]) -> Viewport {
         self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
     }

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The shader of a draw. All share one vertex transformation, so depths are bit-equal.
+/// The shader of a draw. All of them transform vertices in the same way, so that depths are bit-equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Program {
     /// Writes depth and stencil only: volumes, caps, planar shadows, shadow maps, receiver marks.
     Position,
-    /// Writes the draw's flat colour.
+    /// Writes the draw's flat colour ([`DrawConstants::flat`](super::DrawConstants::flat)).
     Flat,
     /// Writes the draw's label, whichever way the surface faces.
     FlatLabel,
@@ -20,7 +20,7 @@ pub enum Program {
     },
     /// Adds the pass's light, as far as it arrives.
     Light(Visibility),
-    /// Writes what the draw's layer of the light's map lets through, to darken what is there.
+    /// Writes what the draw's layer of the light's texture lets through; the blend state multiplies the picture by it.
     Through,
     /// Writes a label: 3 where the triangle faces away from the light or is beyond its range, 1 where less than half of
     /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
@@ -36,7 +36,7 @@ pub enum Program {
     },
 }
 
-/// What a shader reads to find how much of a light arrives at a point.
+/// What a shader reads to find which share of a light arrives at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Visibility {
     /// Nothing: all that passes the depth and stencil tests is lit.
@@ -54,7 +54,7 @@ pub enum Visibility {
 }
 
 impl Visibility {
-    /// All six, in order.
+    /// All values, in order.
     pub const ALL: [Visibility; 6] = [
         Visibility::Everywhere,
         Visibility::Map,
@@ -71,7 +71,7 @@ impl Visibility {
 }
 
 impl Program {
-    /// Returns all programs of our own frames.
+    /// Returns all programs, for compiling their shaders; another program's shader only once.
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
@@ -80,8 +80,8 @@ impl Program {
         flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
     }
 
-    /// Returns the clip plane beyond which the shader discards a fragment of this depth: where depth is clamped,
-    /// nothing else clips at near and far (`discard` in the shaders' files).
+    /// Returns the clip plane beyond which the shader discards a fragment of this depth; `None` where it keeps it.
+    /// Where depth is clamped, only this clips at the near and far plane (`discard` in the shaders' files).
     pub fn discards(self, depth: f32) -> Option<ClipPlane> {
         match self {
             Program::Ambient { from_near: true } if depth < 0.0 => Some(ClipPlane::Near),
@@ -90,17 +90,17 @@ impl Program {
         }
     }
 
-    /// Returns whether it shows a surface's texture, where there is one.
+    /// Returns whether the shader multiplies colour by the surface's texture.
     pub fn shows_texture(self) -> bool {
         matches!(self, Program::Ambient { .. } | Program::Light(_))
     }
 
-    /// Returns whether it reads nothing but positions and the draw's flat colour.
+    /// Returns whether the shader reads nothing but positions and the draw's flat colour.
     pub fn is_flat(self) -> bool {
         matches!(self, Program::Position | Program::Flat)
     }
 
-    /// What it reads to find how much light arrives; `None` for programs that do not light.
+    /// Returns what the shader reads to find how much light arrives; `None` for programs that do not light.
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
@@ -114,7 +114,7 @@ impl Program {
         }
     }
 
-    /// Returns whether it is another program's shader. Its vertices are in clip space, and go through unchanged.
+    /// Returns whether it is another program's shader, whose vertices are in clip space already.
     pub fn is_recorded(self) -> bool {
         matches!(self, Program::Recorded { .. })
     }
@@ -132,11 +132,11 @@ named_enum! {
     }
 }
 
-/// Which plane clipped a triangle away.
+/// The plane that clips a triangle away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ClipPlane {
-    /// It is nearer than the near plane.
+    /// The near plane: the triangle is nearer.
     Near,
-    /// It is beyond the far plane.
+    /// The far plane: the triangle is beyond.
     Far,
 }

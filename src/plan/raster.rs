@@ -3,23 +3,23 @@
 use serde::{Deserialize, Serialize};
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
-/// The stencil test of one face.
+/// The stencil test and operations of one face.
 pub type StencilFace = wgpu::StencilFaceState;
 
-/// The whole raster state of a draw. Surfaces are never culled unless [`RasterState::cull`] says so.
+/// The raster state of a draw: depth, stencil, culling and colour.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RasterState {
     /// A fragment passes when `compare(fragment depth, stored depth)` is true.
     pub depth_compare: CompareFunction,
-    /// Depths beyond near and far are clamped instead of clipped.
+    /// Whether depths beyond near and far are clamped instead of clipped.
     pub unclipped_depth: bool,
-    /// True stores the depth of fragments that pass.
+    /// Whether fragments that pass store their depth.
     pub depth_write: bool,
-    /// Added to depth before the test.
+    /// The depth bias (polygon offset) that is added before the test.
     pub depth_bias: DepthBiasState,
     /// Functions, operations and masks of each face; off where [`wgpu::StencilState::is_enabled`] is false.
     pub stencil: wgpu::StencilState,
-    /// The stencil reference of both faces, unless `back` has another.
+    /// The stencil reference value of both faces, unless `back` has another.
     pub stencil_reference: u8,
     /// Reference and masks of back faces where they differ from the front's, as OpenGL and Vulkan allow; WebGPU needs a
     /// second draw for them.
@@ -27,13 +27,13 @@ pub struct RasterState {
     pub back: Option<FaceMasks>,
     /// Which way round a triangle's corners run on the screen where its front is seen.
     pub front_face: wgpu::FrontFace,
-    /// Faces that are culled.
+    /// The faces that are culled; `None` for neither.
     pub cull: Option<wgpu::Face>,
-    /// What passing fragments do to the colour target.
+    /// The blend operation: what passing fragments do to the colour target.
     pub color: ColorWrite,
 }
 
-/// The reference and the masks of a face's stencil test.
+/// The reference value and the masks of a face's stencil test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct FaceMasks {
     /// The value that stored values are compared with and replaced by.
@@ -44,25 +44,26 @@ pub struct FaceMasks {
     pub write: u8,
 }
 
-/// What passing fragments do to the colour target.
+/// The blend operation: what passing fragments do to the colour target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ColorWrite {
-    /// Nothing.
+    /// They leave it as it is.
     None,
-    /// Overwrite it.
+    /// They overwrite it.
     Replace,
-    /// Add to it.
+    /// They are added to it.
     Add,
-    /// Multiply with it.
+    /// They are multiplied with it.
     Multiply,
-    /// Store the smaller of both, channel by channel.
+    /// The smaller of both is stored, channel by channel.
     Minimum,
-    /// Blend with it in a way of another program that has no name here.
+    /// They are blended with it in a way of another program that has no name here.
     Blend,
 }
 
 impl RasterState {
-    /// The state that draws surfaces first: nearest wins, both sides, reversed depth.
+    /// Returns the state in which surfaces are drawn first: the nearest fragment wins (reversed depth), both sides are
+    /// drawn.
     pub fn surface() -> RasterState {
         RasterState {
             depth_compare: CompareFunction::Greater,
@@ -78,18 +79,18 @@ impl RasterState {
         }
     }
 
-    /// The state that draws again exactly where a surface is already visible, without changing depth.
+    /// Returns the state that draws a surface again exactly where it is visible (depth equal), without changing depth.
     pub fn visible_surface(color: ColorWrite) -> RasterState {
         RasterState { depth_compare: CompareFunction::Equal, depth_write: false, color, ..RasterState::surface() }
     }
 
-    /// Returns this state with `face` as the stencil test of both faces, and masks 0xff.
+    /// Returns this state with `face` as the stencil test of both faces, and all mask bits set.
     #[must_use]
     pub fn with_stencil(self, face: StencilFace, reference: u8) -> RasterState {
         self.with_faces(face, face, reference)
     }
 
-    /// Returns this state with the given stencil tests of front and back faces, and masks 0xff.
+    /// Returns this state with these stencil tests of front and back faces, and all mask bits set.
     #[must_use]
     pub fn with_faces(mut self, front: StencilFace, back: StencilFace, reference: u8) -> RasterState {
         self.stencil = wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
@@ -121,14 +122,15 @@ impl RasterState {
         self
     }
 
-    /// Returns the stencil test of a face, with its reference and masks.
+    /// Returns the stencil test of front or back faces, with its reference and masks.
     pub fn face(&self, is_front: bool) -> (&StencilFace, FaceMasks) {
         let wgpu::StencilState { front, back, read_mask, write_mask } = &self.stencil;
         let shared = FaceMasks { reference: self.stencil_reference, read: *read_mask as u8, write: *write_mask as u8 };
         if is_front { (front, shared) } else { (back, self.back.unwrap_or(shared)) }
     }
 
-    /// Returns the state as states without [`RasterState::back`]: itself, or one for each face.
+    /// Returns states that together do the same and need no [`RasterState::back`]: this one, or one for each face that
+    /// is not culled.
     pub fn by_face(&self) -> Vec<RasterState> {
         let Some(back) = self.back else {
             return vec![RasterState { back: None, ..self.clone() }];
@@ -150,7 +152,7 @@ impl RasterState {
         keeps(self.face(true)) && keeps(self.face(false))
     }
 
-    /// Returns whether a draw with this state can change the stored stencil.
+    /// Returns whether a draw with this state may change the stencil.
     pub fn writes_stencil(&self) -> bool {
         let writes = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write != 0

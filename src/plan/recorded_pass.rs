@@ -3,19 +3,19 @@
 use crate::geometry::Blob;
 use serde::{Deserialize, Serialize};
 
-/// Further data of a pass of another program's frame.
+/// Data of a pass of another program's frame that our own passes do not have.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPass {
     /// The viewport of its draws.
     pub viewport: Viewport,
     /// The program's debug groups around it, outermost first.
     pub groups: Vec<String>,
-    /// Content of its depth and stencil as it begins, where that is not what the pass before left.
+    /// Depth and stencil as the pass begins; `None` where that is what the pass before left.
     #[serde(skip)]
     pub start: Option<StartContent>,
 }
 
-/// The rectangle and depth range of a target that clip space is mapped to.
+/// The rectangle and the depth range of a target that clip space is mapped to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Viewport {
     /// Left, top, width and height in pixels.
@@ -25,20 +25,20 @@ pub struct Viewport {
 }
 
 impl Viewport {
-    /// The viewport of a whole target, with all depths.
+    /// Returns the viewport of a whole target of `size` pixels, with depths 0 to 1.
     pub fn whole(size: [u32; 2]) -> Viewport {
         let [width, height] = size.map(|side| side as f32);
         Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
     }
 
-    /// Returns the depth that a clip depth is stored as.
+    /// Converts a clip-space depth to the depth that is stored.
     pub fn stored(&self, depth: f64) -> f64 {
         let [near, far] = self.depth.map(f64::from);
         near + (far - near) * depth
     }
 }
 
-/// Content of a depth-stencil target, row by row from the top, without padding.
+/// Content of a depth-stencil target before a pass, row by row from the top, without padding.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StartContent {
     /// Depths as stored; `None` where the target has none.

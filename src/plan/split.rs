@@ -4,14 +4,13 @@
 use super::{ColorTarget, DepthStencilTarget, FramePlan, Pass};
 
 impl FramePlan {
-    /// Splits every pass at its draws: the first part clears what the pass clears, the others load what is stored. The
-    /// attachments after the last part of a pass are those after the pass. A pass of one draw, or of none, stays as it
-    /// is.
+    /// Returns the plan with each pass split into one pass for each draw, so that the state after every draw can be
+    /// read back. The first part clears what the pass clears, the others load what is stored. Caching of maps is off.
     pub fn split_at_draws(&self) -> FramePlan {
         self.split_where(|_| true)
     }
 
-    /// Returns the frame up to and including pass `index`, with only that pass split.
+    /// Returns the plan of the frame up to and including pass `index`, with only that pass split at its draws.
     pub fn split_pass_at_draws(&self, index: usize) -> FramePlan {
         let mut plan = self.split_where(|pass| pass == index);
         let parts = self.passes.get(index).map_or(0, |pass| pass.draws.len().max(1));

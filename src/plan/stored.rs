@@ -3,8 +3,8 @@
 use super::{Attachment, AttachmentId, FramePlan, PlanMap};
 
 impl PlanMap {
-    /// Returns the layer of a face in the map's texture, which has only faces that are drawn; `None` for one that is
-    /// left out, or that the map does not have.
+    /// Returns the layer of a face in the map's texture, which stores only faces that are drawn; `None` for a face that
+    /// is left out or does not exist.
     pub fn stored_layer(&self, face: u32) -> Option<u32> {
         let before = self.faces.get(..=face as usize)?;
         before.last()?.map(|_| before.iter().flatten().count() as u32 - 1)
@@ -12,12 +12,12 @@ impl PlanMap {
 }
 
 impl FramePlan {
-    /// The map that is stored in an attachment.
+    /// Returns the light's map that is stored in an attachment; `None` for other attachments.
     pub(crate) fn map_in(&self, id: AttachmentId) -> Option<&PlanMap> {
         self.lights.iter().filter_map(|light| light.map.as_ref()).find(|map| map.attachment == id)
     }
 
-    /// Returns where a layer of an attachment is in its texture; `None` where it is left out.
+    /// Returns the layer of an attachment's texture that stores `layer`; `None` where that is left out.
     pub fn stored_layer(&self, id: AttachmentId, layer: u32) -> Option<u32> {
         match self.map_in(id) {
             Some(map) => map.stored_layer(layer),
@@ -25,7 +25,7 @@ impl FramePlan {
         }
     }
 
-    /// The number of layers of an attachment's texture, at least one.
+    /// Returns the number of layers of an attachment's texture, at least one.
     ///
     /// # Panics
     /// If the id is of another plan.
@@ -34,13 +34,13 @@ impl FramePlan {
         self.map_in(id).map_or_else(|| self.attachment(id).layers, drawn)
     }
 
-    /// The number of texels in all layers of an attachment's texture.
+    /// Returns the number of texels in all layers of an attachment's texture.
     pub(crate) fn stored_texels(&self, id: AttachmentId) -> u64 {
         let [width, height] = self.attachment(id).size.map(u64::from);
         width * height * u64::from(self.stored_layers(id))
     }
 
-    /// Bytes of all its texels.
+    /// Returns how many bytes all texels of an attachment take.
     pub(crate) fn attachment_bytes(&self, id: AttachmentId) -> u64 {
         let Attachment { format, .. } = self.attachment(id);
         // Depth32FloatStencil8 has no fixed size; drivers use four bytes and one.

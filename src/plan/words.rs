@@ -13,7 +13,7 @@ use std::fmt;
 use wgpu::{CompareFunction, StencilOperation};
 
 named_enum! {
-    /// The API whose words are used.
+    /// The API in whose terms a raster state is written out.
     #[derive(Default)]
     pub enum RasterApi {
         /// A WebGPU pipeline descriptor.
@@ -26,7 +26,7 @@ named_enum! {
     }
 }
 
-/// Returns the state as lines that one would write in `api`, in the order depth, stencil, raster, colour.
+/// Writes a raster state as lines of code for `api`, in the order depth, stencil, raster, colour.
 pub fn lines(raster: &RasterState, api: RasterApi) -> Vec<String> {
     match api {
         RasterApi::WebGpu => web_gpu(raster),
@@ -35,7 +35,7 @@ pub fn lines(raster: &RasterState, api: RasterApi) -> Vec<String> {
     }
 }
 
-/// Says what a fragment of this draw does, in a sentence for each buffer.
+/// Describes what a fragment of a draw does, in a sentence for each of depth, stencil and colour.
 pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
     let mut said = Vec::new();
     if pass.depth_stencil.is_some() {
@@ -122,7 +122,7 @@ fn operation(op: StencilOperation, reference: u8) -> String {
     }
 }
 
-/// Spells a name with words joined by `between`: `DecrementWrap` as `decrement-wrap`, `DECREMENT_WRAP` ….
+/// Returns a name in camel case as lower-case words joined by `between`: `DecrementWrap` as `decrement-wrap`.
 pub(crate) fn spelled(name: impl fmt::Debug, between: char) -> String {
     let mut words = String::new();
     for letter in format!("{name:?}").chars() {

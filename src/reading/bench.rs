@@ -7,10 +7,11 @@ use crate::plan::{ColorWrite, RasterState, StencilFace};
 use crate::stencil_machine::{self, DepthStencil, IncomingFragment, TestOutcome};
 use wgpu::{CompareFunction, StencilOperation};
 
-/// How many tested fragments are listed; older ones are dropped.
+/// The most tested fragments that are listed; older ones are dropped.
 const MOST_PUSHED: usize = 200;
 
-/// Every compare function with its name and the sign that stands between two numbers.
+/// Every compare function with its name and the comparison sign between two numbers; the sign is empty for never and
+/// always.
 pub const COMPARES: [(CompareFunction, &str, &str); 8] = [
     (CompareFunction::Never, "never", ""),
     (CompareFunction::Less, "less", "<"),
@@ -21,10 +22,11 @@ pub const COMPARES: [(CompareFunction, &str, &str); 8] = [
     (CompareFunction::GreaterEqual, "greater-equal", "≥"),
     (CompareFunction::Always, "always", ""),
 ];
-/// A pixel, a draw's tests, and what went through them.
+/// A single pixel on which a user tries depth and stencil tests: the raster state, the stored values, and the fragments
+/// tested so far.
 #[derive(Debug)]
 pub struct TestBench {
-    /// The draw's tests.
+    /// The depth and stencil tests.
     pub state: RasterState,
     /// The depth and stencil that the pixel stores.
     pub stored: DepthStencil,
@@ -36,7 +38,7 @@ pub struct TestBench {
     count: usize,
 }
 
-/// A fragment that went through the tests.
+/// A fragment that was tested, with its outcome in words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestedDraw {
     /// The fragment's number, counted from 1.
@@ -66,7 +68,8 @@ impl Default for TestBench {
 }
 
 impl TestBench {
-    /// Tests a front- or back-facing fragment, stores the result in the pixel and lists the fragment.
+    /// Tests a fragment of [`TestBench::depth`], updates the pixel's stored depth and stencil, and adds the fragment to
+    /// the list. `front_facing` selects the stencil face.
     pub fn push(&mut self, front_facing: bool) {
         let fragment = IncomingFragment { depth: self.depth, front_facing };
         let before = self.stored;
@@ -114,7 +117,7 @@ fn sign(compare: CompareFunction) -> Option<&'static str> {
     COMPARES.iter().find(|(one, ..)| *one == compare).map(|(_, _, sign)| *sign).filter(|sign| !sign.is_empty())
 }
 
-/// Returns a compare function's name.
+/// Returns a compare function's name, such as `less-equal`.
 pub fn name(compare: CompareFunction) -> &'static str {
     COMPARES.iter().find(|(one, ..)| *one == compare).map_or("", |(_, name, _)| name)
 }

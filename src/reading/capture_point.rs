@@ -8,10 +8,10 @@ use crate::capture::{Capture, DrawState, DrawSummary, FrameSnapshot, FrameTarget
 use crate::reading::steps;
 use std::sync::Arc;
 
-/// A point of the frame: after a step, or after one of its draws.
+/// A point in time within a captured frame: after a step, or after one of its draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CapturePoint {
-    /// Index of the step.
+    /// Index of the step in [`Capture::steps`].
     pub step: usize,
     /// Index of the draw; `None` means after the whole step.
     pub draw: Option<usize>,
@@ -30,19 +30,19 @@ impl CapturePoint {
         self.draw.map_or_else(|| step.clone(), |draw| format!("draw {} of {step}", draw + 1))
     }
 
-    /// Returns whether the capture knows the state at this point.
+    /// Returns whether the capture has the state at this point; that of some draws is not captured.
     pub fn is_known(self, capture: &Capture) -> bool {
         let Some(index) = self.draw else { return true };
         let draws = draws(capture, self.step);
         index + 1 >= draws.len() || draws[index].after.is_some()
     }
 
-    /// Returns the state after the draw, where a draw is selected and was captured.
+    /// Returns the state after the draw; `None` for a whole step, or where the draw's was not captured.
     fn state(self, capture: &Capture) -> Option<&DrawState> {
         draws(capture, self.step).get(self.draw?)?.after.as_ref()
     }
 
-    /// Returns the picture's aspects after the draw, or after the step where the draw's are not known.
+    /// Returns colour, depth and stencil after the draw, or after the step where the draw's are not known.
     pub fn frame(self, capture: &Capture) -> Option<&FrameSnapshot> {
         match self.state(capture).map(|state| &state.snapshot) {
             Some(Snapshot::Frame(frame)) => Some(frame),
@@ -50,12 +50,13 @@ impl CapturePoint {
         }
     }
 
-    /// Returns the light whose labels the draw writes, and the labels after it.
+    /// Returns the index of the light whose labels the draw writes, and the labels after it; `None` if it writes none.
     pub fn labels(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
         self.own(capture, FrameTarget::Labels)
     }
 
-    /// Returns the light whose count the draw changes, and the count after it.
+    /// Returns the index of the light whose float count the draw changes, and the count after it; `None` if it changes
+    /// none.
     pub fn count(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
         self.own(capture, FrameTarget::Count)
     }
@@ -67,7 +68,8 @@ impl CapturePoint {
         state.target.as_ref().filter(|_| is_it).map(|aspect| (light, &aspect.image))
     }
 
-    /// Returns light, layer and texels of the layer of a light's map that the draw draws into.
+    /// Returns the layer of a light's map that the draw draws into: index of the light, index of the layer, and its
+    /// texels after the draw; `None` for other draws.
     pub fn layer(self, capture: &Capture) -> Option<(usize, usize, &Arc<Image>)> {
         let state = self.state(capture)?;
         match &state.snapshot {

@@ -9,12 +9,12 @@ use crate::reading::depth::DepthMeasure;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How many changes are cached.
+/// The most results of each kind that are cached.
 const MOST_CACHED: usize = 6;
-/// Brightness of the grey picture under a change, as a factor.
+/// The factor by which the grey picture under a change is darkened.
 const GROUND_LIGHT: f32 = 0.42;
 
-/// What changed between two pictures.
+/// The difference between two pictures of the same format, texel by texel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepChange {
     /// The change at each texel, drawn in the colours of [`ChangeKind`].
@@ -23,33 +23,34 @@ pub struct StepChange {
     pub kind: ChangeKind,
     /// How many texels changed.
     pub texels: u64,
-    /// The texels that changed, sorted by how they changed.
+    /// The number of changed texels by kind of change.
     pub sorts: ChangedTexels,
 }
 
-/// What kind of values changed.
+/// The kind of values that changed, and how [`StepChange::image`] stores the change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// Bytes: the difference as a signed byte.
+    /// Bytes, such as stencil counts: new minus old, as a signed byte.
     Count,
-    /// Floats: the difference in metres or in stored depth; infinite where a surface came or went.
+    /// Depths, stored as floats: new minus old, in metres or in stored depth; −∞ where a surface appeared, ∞ where one
+    /// was cleared.
     Depth,
-    /// The new colour; alpha is 0 where the colour did not change.
+    /// Colours: the new colour, with alpha 0 where the colour did not change.
     Color,
 }
 
-/// The texels that changed, sorted by how they changed.
+/// The number of changed texels by kind of change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ChangedTexels {
     /// The number of texels for each difference in count.
     Counts(BTreeMap<i8, u64>),
-    /// The numbers of texels where the surface is nearer, is farther, has come, is gone.
+    /// The numbers of texels whose surface came nearer, went farther, appeared, and was cleared.
     Depths([u64; 4]),
     /// Colours are not sorted further.
     Colors,
 }
 
-/// Changes of pictures, made on first use.
+/// A small cache of differences between pictures, computed on first use.
 #[derive(Debug, Default)]
 pub struct ChangeCache {
     changes: Vec<([Arc<Image>; 2], DepthMeasure, Option<StepChange>)>,
@@ -63,7 +64,8 @@ impl ChangeCache {
         *self = ChangeCache::default();
     }
 
-    /// Returns what changed from the first picture to the second; `None` where they can't be compared.
+    /// Returns what changed from the first picture to the second, with depths in the unit of `measure`; `None` where
+    /// formats or sizes differ, or for float counts.
     pub fn change(&mut self, pair: [&Arc<Image>; 2], measure: DepthMeasure) -> Option<StepChange> {
         let is_it = |of: &[Arc<Image>; 2]| is_pair(of, pair);
         if let Some((_, _, change)) = self.changes.iter().find(|(of, by, _)| is_it(of) && *by == measure) {
@@ -74,7 +76,7 @@ impl ChangeCache {
         change
     }
 
-    /// Returns a picture of colours as dim greys.
+    /// Returns a colour picture in dim greys, to be drawn under a change.
     pub fn ground(&mut self, colors: &Arc<Image>) -> Arc<Image> {
         if let Some((_, ground)) = self.grounds.iter().find(|(of, _)| Arc::ptr_eq(of, colors)) {
             return ground.clone();
@@ -156,7 +158,8 @@ fn depths(before: &Image, after: &Image, measure: DepthMeasure) -> StepChange {
     StepChange { image, kind: ChangeKind::Depth, texels: sorts.iter().sum(), sorts: ChangedTexels::Depths(sorts) }
 }
 
-/// Returns how much farther the new depth is, in the measure's unit; never 0, as the stored bits differ.
+/// Returns by how much the new depth is farther than the old, in the measure's unit: infinite where a surface appeared
+/// (−∞) or was cleared (∞), never 0, as the stored bits differ.
 fn moved(measure: DepthMeasure, [old, new]: [f32; 2]) -> f32 {
     let by = match (measure.value(old), measure.value(new)) {
         (None, Some(_)) => f64::NEG_INFINITY,
@@ -192,7 +195,7 @@ fn ground(colors: &Image) -> Image {
     Image::packed(PixelFormat::Rgba8Srgb, colors.size(), bytes)
 }
 
-/// Returns the number with its sign; `None` for 0.
+/// Returns a difference with its sign, such as `+2`; `None` for 0.
 pub fn signed(by: i8) -> Option<String> {
     match by {
         0 => None,

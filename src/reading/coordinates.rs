@@ -14,13 +14,13 @@ use glam::{DMat4, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Bits of the depth buffers that are compared; the last one compared is the 32-bit float that is stored here.
+/// Bits of the fixed-point depth buffers that are compared with the stored 32-bit float.
 const BITS: [u32; 3] = [8, 16, 24];
 
-/// Digits of numbers in text.
+/// Significant digits of numbers in text.
 const DIGITS: u32 = 6;
 
-/// A point in every space.
+/// A point's coordinates in every space from world to window.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Coordinates {
     /// World space, metres.
@@ -31,16 +31,16 @@ pub struct Coordinates {
     pub clip: [f64; 4],
     /// Normalized device coordinates: x and y from −1 to 1, z as depth.
     pub ndc: [f64; 3],
-    /// Pixels from the top left of the picture, and depth.
+    /// Window space: x and y in pixels from the picture's upper left, z as depth.
     pub window: [f64; 3],
 }
 
-/// A vertex in every space.
+/// A vertex of an object with its coordinates in every space from world to window.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VertexCoordinates {
     /// Name of the object that the vertex belongs to.
     pub object: String,
-    /// Which vertex of its mesh, counted from 0.
+    /// Index of the vertex in its mesh.
     pub index: u32,
     /// World space, metres.
     pub world: [f64; 3],
@@ -48,17 +48,16 @@ pub struct VertexCoordinates {
     pub eye: [f64; 3],
     /// Clip space, homogeneous.
     pub clip: [f64; 4],
-    /// Normalized device coordinates; `None` where w is not positive: the vertex is not before the eye, and nothing is
-    /// divided.
+    /// Normalized device coordinates; `None` where w is not positive, as the vertex is then not in front of the eye.
     pub ndc: Option<[f64; 3]>,
-    /// Pixels from the top left of the picture, and depth; `None` where w is not positive.
+    /// Window space: x and y in pixels from the picture's upper left, z as depth; `None` where w is not positive.
     pub window: Option<[f64; 3]>,
     /// The planes of the view that it lies beyond: `left`, `right`, `bottom`, `top`, `near`, `far`; empty where it is
     /// in view.
     pub beyond: Vec<&'static str>,
 }
 
-/// Why there is no such vertex.
+/// Why a text such as `floor:0` names no vertex.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoVertex {
     /// The text is not of the form `OBJECT:INDEX`.
@@ -84,10 +83,10 @@ pub enum NoVertex {
     },
 }
 
-/// Vertices in every space, without a pixel.
+/// Coordinates of vertices that a user asked for, with the transforms.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VertexPlaces {
-    /// The camera around its target.
+    /// The camera's position in spherical coordinates around its target.
     pub camera: Spherical,
     /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
@@ -95,10 +94,10 @@ pub struct VertexPlaces {
     pub vertices: Vec<VertexCoordinates>,
 }
 
-/// A matrix of the chain, in rows, and its inverse.
+/// A matrix of the transform chain, by rows, with its inverse.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TransformStep {
-    /// `eye from world`, `clip from eye`, `window from NDC`.
+    /// The matrix's name: `eye from world`, `clip from eye`, `window from NDC`.
     pub name: &'static str,
     /// The matrix by rows; it is multiplied with points as columns on its right.
     pub matrix: [[f64; 4]; 4],
@@ -106,38 +105,39 @@ pub struct TransformStep {
     pub inverse: [[f64; 4]; 4],
 }
 
-/// How finely a depth buffer distinguishes distances at a point.
+/// The depth resolution of a buffer at a point: the distance between neighbouring depths.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthStep {
-    /// `8 bits`, `32-bit float`.
+    /// The buffer's format: `8 bits`, `32-bit float`.
     pub stored_in: String,
     /// Metres from one stored depth to the next; `None` where the next is at infinity.
     pub metres: Option<f64>,
 }
 
-/// Where the camera stands, seen from what it looks at.
+/// The camera's position in spherical coordinates around its target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spherical {
-    /// Distance, metres.
+    /// Distance from the target, metres.
     pub r: f64,
-    /// From the pole (+Y) down, degrees: 90 is level.
+    /// Polar angle from +Y, degrees: 90 is level with the target.
     pub theta_degrees: f64,
-    /// Around the pole from +Z towards +X, degrees.
+    /// Azimuth around Y, from +Z towards +X, degrees.
     pub phi_degrees: f64,
 }
 
-/// A pixel's place in every space, with the transforms and the depth resolution there.
+/// The coordinates of the surface at a pixel in every space, with the transforms and the depth resolution there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PixelCoordinates {
-    /// The camera around its target.
+    /// The camera's position in spherical coordinates around its target.
     pub camera: Spherical,
     /// The transforms from world space to window space, in order.
     pub chain: Vec<TransformStep>,
-    /// The surface at the pixel's middle; `None` where the picture shows none.
+    /// The surface point at the pixel's centre; `None` where the picture shows no surface.
     pub point: Option<Coordinates>,
     /// The corners of the triangle that the pixel shows, as the GPU is given them; empty where it shows none.
     pub vertices: Vec<VertexCoordinates>,
-    /// How finely depth is stored there, the coarsest buffer first; empty without a surface.
+    /// Depth resolution there of depth buffers of 8, 16 and 24 bits and of 32-bit floats, in this order; empty without
+    /// a surface.
     pub depth_steps: Vec<DepthStep>,
 }
 
@@ -146,12 +146,12 @@ struct CameraMatrices {
     eye_from_world: DMat4,
     clip_from_eye: DMat4,
     window_from_ndc: DMat4,
-    /// Depth is reversed: 1 at the near plane.
+    /// Whether depth is reversed: 1 at the near plane.
     is_reversed: bool,
 }
 
 impl PixelCoordinates {
-    /// Returns the coordinates of a pixel of a capture, with the depth that its picture ends with.
+    /// Returns the coordinates of a pixel, by the depth that it has at the end of the frame; without vertices.
     pub fn of(capture: &Capture, pixel: [u32; 2]) -> PixelCoordinates {
         let matrices = CameraMatrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -167,7 +167,7 @@ impl PixelCoordinates {
         }
     }
 
-    /// Adds the corners of the triangle that the pixel's history ends with.
+    /// Adds the corners of the triangle that the pixel shows at the end of its history.
     #[must_use]
     pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> PixelCoordinates {
         PixelCoordinates { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
@@ -224,12 +224,13 @@ impl VertexPlaces {
 }
 
 impl VertexCoordinates {
-    /// Returns the vertex's name: `vertex 3 of floor`.
+    /// Returns the vertex in words: `vertex 3 of floor`.
     pub fn name(&self) -> String {
         format!("vertex {} of {}", self.index, self.object)
     }
 
-    /// Returns name and value for each space, in order, and then where the vertex lies in the view.
+    /// Returns the name and the coordinates of each space, with so many significant digits, and then the planes of the
+    /// view that the vertex lies beyond.
     pub fn rows(&self, digits: u32) -> [(&'static str, String); 6] {
         let divided = |values: Option<[f64; 3]>| match values {
             Some(values) => vector(&values, digits),
@@ -385,25 +386,25 @@ fn chain_text(chain: &[TransformStep]) -> String {
 }
 
 impl Coordinates {
-    /// Returns name and values for each space, in order.
+    /// Returns the name and the coordinates of each space, from world to window.
     pub fn rows(&self) -> [(&'static str, &[f64]); 5] {
         [("world", &self.world), ("eye", &self.eye), ("clip", &self.clip), ("NDC", &self.ndc), ("window", &self.window)]
     }
 }
 
-/// Returns numbers with `digits` decimals, separated by commas.
+/// Returns numbers as text with so many significant digits, separated by commas.
 pub fn vector(values: &[f64], digits: u32) -> String {
     let texts: Vec<String> = values.iter().map(|value| number(*value, digits)).collect();
     texts.join(", ")
 }
 
-/// Returns a row of a matrix, in columns of one width.
+/// Returns a matrix row as text with so many significant digits, in columns of equal width.
 pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
     let width = digits as usize + 5;
     row.map(|value| format!("{:>width$}", number(value, digits))).concat()
 }
 
-/// Returns a number with so many decimals, and without a sign where it rounds to 0.
+/// Returns a number with so many significant digits, and without a sign where it rounds to 0.
 fn number(value: f64, shown: u32) -> String {
     let digits = if value == 0.0 || !value.is_finite() { 0.0 } else { value.abs().log10().floor() };
     let decimals = (f64::from(shown) - 1.0 - digits).clamp(0.0, f64::from(shown) + 3.0) as usize;

@@ -4,15 +4,15 @@ use crate::capture::{Capture, FrameTarget, Image, Snapshot};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The number of texels for each count, rounded.
+/// Number of texels for each count, rounded to an integer.
 pub type Tally = BTreeMap<i64, u64>;
 
-/// Returns what an eight-bit stencil would store for a count.
+/// Returns the value that an eight-bit stencil would store for a float count: the count modulo 256.
 pub fn in_eight_bits(count: f32) -> u8 {
     (count.round() as i64).rem_euclid(256) as u8
 }
 
-/// Returns the number of texels for each count.
+/// Returns how many texels of a picture of float counts have each count.
 pub fn tally(image: &Image) -> Tally {
     let mut tally = Tally::new();
     // Neighbouring texels mostly agree, so the map is looked up once for a run of them.
@@ -30,8 +30,8 @@ pub fn tally(image: &Image) -> Tally {
     tally
 }
 
-/// Returns the light whose counts a step finishes (the last of its passes that count) and those counts. What earlier
-/// passes left is not captured.
+/// Returns the index of the light whose float counts the step finishes (its last counting pass), and those counts;
+/// `None` for other steps, as counts in between are not captured.
 pub fn finished_by(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
     let light = capture.steps.get(index).filter(|step| counts(step))?.light?;
     let is_last = !capture.steps[index + 1..].iter().any(|step| counts(step) && step.light == Some(light));
@@ -42,7 +42,7 @@ fn counts(step: &crate::capture::Step) -> bool {
     matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Count)
 }
 
-/// Returns the counts that are known after a step: those of the light that was finished last.
+/// Returns the light, and its float counts, that a step up to this one finished last; `None` if there is none.
 pub fn known_after(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
     (0..=index).rev().find_map(|earlier| finished_by(capture, earlier))
 }

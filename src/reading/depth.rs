@@ -6,7 +6,7 @@ use crate::capture::{Capture, Image};
 use crate::math::depth::DepthCurve;
 use glam::DMat4;
 
-/// How a stored depth is shown.
+/// How a stored depth is converted for display: as it is, or to metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DepthMeasure {
     /// The stored value.
@@ -31,10 +31,10 @@ pub enum DepthMeasure {
     },
 }
 
-/// Bits of the fixed-point depth buffer that is shown beside `f32`.
+/// Bits of the fixed-point depth buffer that is compared with `f32`.
 pub const FIXED_BITS: u32 = 24;
 
-/// A measure with the range that the grey ramp covers, near (or small) first.
+/// A depth measure with the range that the grey ramp covers, low end first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthScale {
     /// The measure.
@@ -85,8 +85,8 @@ impl DepthMeasure {
         }
     }
 
-    /// Returns what `depth` stands for, in the measure's unit; `None` where nothing was drawn and the measure is a
-    /// distance.
+    /// Returns the value of a stored depth in the measure's unit; `None` where the depth is the clear value and the
+    /// measure is in metres.
     pub fn value(self, depth: f32) -> Option<f64> {
         let stored = f64::from(depth);
         match self {
@@ -97,13 +97,15 @@ impl DepthMeasure {
         }
     }
 
-    /// How much one step of the stored `f32` is worth at `depth`, in metres.
+    /// Returns the distance from a stored `f32` depth to the next one that can be stored, in metres (raw depth: in
+    /// depth); `None` where nothing was drawn.
     pub fn step_at(self, depth: f32) -> Option<f64> {
         // Towards 0 floats are finer, so the coarser neighbour is the one above.
         self.between(f64::from(depth), f64::from(depth.next_up()), depth)
     }
 
-    /// One step of a fixed-point buffer of `bits` bits, 31 at most, which stores `floor((2^k − 1) · depth)`.
+    /// Returns the same for a fixed-point buffer of `bits` bits, 31 at most, which stores `floor((2^bits − 1) ·
+    /// depth)`.
     pub fn fixed_step_at(self, depth: f32, bits: u32) -> Option<f64> {
         let steps = f64::from((1_u32 << bits) - 1);
         let stored = (f64::from(depth) * steps).floor();
@@ -112,7 +114,8 @@ impl DepthMeasure {
         self.between(stored / steps, next / steps, depth)
     }
 
-    /// Returns the metres between two stored depths; `None` where nothing was drawn.
+    /// Returns the distance between two stored depths in the measure's unit; `None` where `depth` says that nothing was
+    /// drawn.
     fn between(self, one: f64, other: f64, depth: f32) -> Option<f64> {
         self.value(depth)?;
         Some(match self {
@@ -124,7 +127,8 @@ impl DepthMeasure {
         })
     }
 
-    /// Returns the smallest and the largest value in `image`; `None` where it has none.
+    /// Returns the smallest and the largest finite value of the depths in `image`, in the measure's unit; `None` where
+    /// there is none.
     pub fn range_of(self, image: &Image) -> Option<[f64; 2]> {
         let mut range: Option<[f64; 2]> = None;
         for row in image.rows() {
@@ -141,7 +145,7 @@ impl DepthMeasure {
 }
 
 impl DepthScale {
-    /// Returns where a stored depth lies between the ends, from near (0) to far (1); `None` where there is no surface.
+    /// Returns where a stored depth lies in the range, from near (0) to far (1); `None` where nothing was drawn.
     pub fn place(self, depth: f32) -> Option<f32> {
         let value = self.measure.value(depth)?;
         let [low, high] = self.range;

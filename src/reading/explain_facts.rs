@@ -16,7 +16,7 @@ use crate::technique::{CountOperations, VolumeSettings};
 use crate::truth::{LIT, PixelLabel, SHADOW};
 use std::collections::BTreeSet;
 
-/// A formula, and its values in this frame.
+/// A formula that a step computes, with its values in this frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExplainFact {
     /// The formula.
@@ -25,24 +25,24 @@ pub struct ExplainFact {
     pub here: Vec<String>,
 }
 
-/// What is known of the frame that is shown.
+/// What is known of the shown frame: the input of [`facts`].
 #[derive(Debug, Clone, Copy)]
 pub struct ExplainContext<'a> {
     /// The frame.
     pub capture: &'a Capture,
-    /// Index of the step.
+    /// Index of the step in [`Capture::steps`].
     pub step: usize,
     /// The scene's lights; empty for a capture folder.
     pub lights: &'a [Light],
-    /// The picked pixel.
+    /// The picked pixel (column, row).
     pub pick: Option<[u32; 2]>,
     /// The picked pixel's history.
     pub history: Option<&'a PixelHistory>,
-    /// How a light's shadow map decides the picked pixel.
+    /// How a light's shadow map decides the picked pixel; `None` where that is not known.
     pub map: Option<&'a MapDecision>,
 }
 
-/// The facts of a step, the most important first.
+/// Returns the formulas of a step with their values, the most important first.
 pub fn facts(known: &ExplainContext) -> Vec<ExplainFact> {
     let Some(step) = known.capture.steps.get(known.step) else { return Vec::new() };
     let has = |part: DrawPart| step.draws.iter().any(|draw| draw.part == part);
@@ -74,7 +74,7 @@ fn fact(formula: &str, here: Vec<String>) -> ExplainFact {
     ExplainFact { formula: formula.to_owned(), here }
 }
 
-/// `stored depth = offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
+/// Explains how depth is stored: `offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
 fn depth(known: &ExplainContext) -> ExplainFact {
     let curve = known.capture.depth;
     // With fewer digits the sum would differ from what is stored.
@@ -103,7 +103,8 @@ fn depth(known: &ExplainContext) -> ExplainFact {
     fact(&format!("stored depth = offset + scale {by} distance along the view"), here)
 }
 
-/// Returns the rule of counting, by the side of the surface on which the light's volumes count.
+/// Explains how a step counts shadow volumes, on the side of the surface where they count, with the picked pixel's
+/// numbers.
 fn volumes(known: &ExplainContext) -> ExplainFact {
     let light = known.capture.steps.get(known.step).and_then(|step| step.light);
     let side = light.and_then(|light| known.capture.decided_by(light).counted_side());
@@ -186,7 +187,7 @@ fn has_volumes(step: &Step) -> bool {
     step.draws.iter().any(|draw| draw.part.is_of_volume())
 }
 
-/// Describes the counts of the whole picture after a step, in the stencil or in floats.
+/// Returns lines about the counts in the whole picture after a step, in the stencil or in floats.
 fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
     let of_light = light.and_then(|light| known.capture.lights.get(light));
     let in_floats = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
@@ -323,7 +324,7 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     fact(&formula, here)
 }
 
-/// Returns the bits in which a count is stored, where these are not all eight.
+/// Returns words for the bits in which a count is stored; empty where these are all eight.
 fn in_bits(settings: &VolumeSettings) -> String {
     match CountBits::of_mask(settings.mask().into()) {
         CountBits::EIGHT => String::new(),
@@ -331,7 +332,7 @@ fn in_bits(settings: &VolumeSettings) -> String {
     }
 }
 
-/// Returns how the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.
+/// Explains how the light's shadow map decides, with the picked pixel's numbers; `None` where no map decides.
 fn compared(known: &ExplainContext, light: usize) -> Option<ExplainFact> {
     if known.capture.decided_by(light) != DecidedBy::Map {
         return None;

@@ -2,7 +2,7 @@
 
 pub use crate::numbers::{count, depth, digits, length, light, metres, precise};
 
-/// Returns `count(value)` with the noun in singular or plural: `1 draw`, `2 draws`.
+/// Returns a number with its noun in singular or plural: `1 draw`, `2 draws`.
 pub fn counted(value: u64, noun: &str) -> String {
     format!("{} {noun}{}", count(value), if value == 1 { "" } else { "s" })
 }
@@ -12,7 +12,7 @@ pub fn light_title(index: usize) -> String {
     format!("Light {}", index + 1)
 }
 
-/// Returns milliseconds as text, or a dash where they were not measured.
+/// Returns milliseconds as text, or a dash where they were not measured (`None`).
 pub fn milliseconds(value: Option<f64>) -> String {
     match value {
         None => "–".to_owned(),
@@ -32,7 +32,7 @@ pub fn bytes(value: u64) -> String {
     }
 }
 
-/// Returns the shares of red, green and blue light as text: `20 % 0 % 100 %`.
+/// Returns the shares of red, green and blue light as text; a byte of 255 is 100 %: `20 % 0 % 100 %`.
 pub fn shares([red, green, blue, _]: [u8; 4]) -> String {
     let share = |byte: u8| format!("{:.0} %", f32::from(byte) / 2.55);
     [red, green, blue].map(share).join("  ")

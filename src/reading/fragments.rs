@@ -13,32 +13,32 @@ use crate::scene::{CameraRays, Ray};
 use glam::{DVec2, DVec3, DVec4};
 use std::sync::Arc;
 
-/// The view of the camera.
+/// The id of the camera's view.
 const CAMERA: ViewId = ViewId(0);
-/// A bit of a triangle's side flags: the eye sees its back.
+/// The bit of a triangle's side flags that is set where the eye sees its back.
 const SEES_BACK: u32 = 1 << 31;
-/// A drawn point that is farther than this from the point that the stored depth gives is of another surface, as a share
-/// of its distance.
+/// A drawn point belongs to the surface of the stored depth if the two are nearer to each other than this share of
+/// their distance from the eye.
 const SAME_SURFACE: f64 = 0.01;
 
-/// The inputs of the fragment shader at a pixel.
+/// The interpolated inputs of the fragment shader at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentInputs {
-    /// The seen triangle is one that the plan draws; else `normal`, `reads` and `layer` are guesses.
+    /// Whether they are of a triangle that the plan draws; otherwise `normal`, `reads` and `layer` are guesses.
     pub is_drawn: bool,
     /// Position in world space, metres.
     pub world: DVec3,
-    /// The normal that it is shaded with: of unit length, towards the side that the eye sees.
+    /// The unit shading normal, towards the side that the eye sees.
     pub normal: DVec3,
-    /// The normal of its triangle's plane, of unit length.
+    /// The unit normal of its triangle's plane.
     pub plane: DVec3,
-    /// Its shader looks up the light's map or textures.
+    /// Whether its shader looks up the light's map or textures.
     pub reads: bool,
-    /// The layer of the light's textures that belongs to it; `None` where it has none, or that is not known.
+    /// Index of its own layer in the light's texture array; `None` where it has none, or where that is not known.
     pub layer: Option<u32>,
 }
 
-/// The fragments of a picture's visible surfaces.
+/// The fragment shader's inputs at every pixel of the final picture.
 #[derive(Debug)]
 pub struct SurfaceFragments {
     surface: PixelUnprojection,
@@ -47,20 +47,20 @@ pub struct SurfaceFragments {
 }
 
 impl SurfaceFragments {
-    /// Finds the fragments of the picture after a frame, and which of them look up the map of `light`; `None` where
-    /// nothing is drawn.
+    /// Finds the visible fragments at the end of the frame, and which of them look up the map of the light with this
+    /// index; `None` where nothing is drawn. Without a plan, normals are guessed from depths.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<SurfaceFragments> {
         let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
         let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| DrawnTriangles::new(capture, plan, light));
         Some(SurfaceFragments { surface: PixelUnprojection::new(capture), depth, drawn })
     }
 
-    /// Are planes and normals those of the triangles that were drawn?
+    /// Returns whether the plan's triangles are known, so that normals are those that were drawn and not guesses.
     pub fn are_drawn(&self) -> bool {
         self.drawn.is_some()
     }
 
-    /// Returns the fragment at a pixel; `None` where no surface is.
+    /// Returns the fragment at a pixel (column, row); `None` where the pixel shows no surface.
     pub fn at(&self, at: [u32; 2]) -> Option<FragmentInputs> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         let most = SAME_SURFACE * world.distance(self.surface.eye);
@@ -72,15 +72,15 @@ impl SurfaceFragments {
         }))
     }
 
-    /// Returns the surface's position at a pixel, world space, and whether its shader looks up the light's map, without
-    /// computing the normal; `None` where no surface is.
+    /// Returns the surface's world position at a pixel, and whether its shader looks up the light's map, without
+    /// computing the normal; `None` where the pixel shows no surface.
     pub fn place(&self, at: [u32; 2]) -> Option<(DVec3, bool)> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         Some((world, self.drawn.as_ref().and_then(|drawn| drawn.place(at)).is_none_or(|place| place.reads)))
     }
 
-    /// Returns where the corners of a pixel lie on a fragment's plane, world space, in order round it; `None` where a
-    /// view ray through a corner does not hit the plane.
+    /// Returns where the view rays through a pixel's four corners hit a fragment's plane, world space, in order round
+    /// it; `None` where one of them does not.
     pub fn corners(&self, [x, y]: [u32; 2], fragment: &FragmentInputs) -> Option<[DVec3; 4]> {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
@@ -92,9 +92,8 @@ impl SurfaceFragments {
         Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
     }
 
-    /// Returns the normal of the plane through a pixel's point and those of its neighbours: of two neighbours on
-    /// opposite sides the nearer, as the other may be beyond an edge. Points towards the eye where there are no
-    /// neighbours.
+    /// Returns a unit normal guessed from depths: of the plane through the pixel's point and its nearer horizontal and
+    /// vertical neighbours. Points towards the eye where there are none.
     fn guessed(&self, [x, y]: [u32; 2], world: DVec3) -> DVec3 {
         let point = |x: Option<u32>, y: Option<u32>| {
             let at = [x?, y?];
@@ -113,16 +112,16 @@ impl SurfaceFragments {
     }
 }
 
-/// The plan's triangle that is seen at each pixel.
+/// The triangle of the plan that each pixel shows.
 #[derive(Debug)]
 struct DrawnTriangles {
     plan: Arc<FramePlan>,
-    /// For each pixel the index of its triangle in the list plus 1; 0 where there is none.
+    /// For each pixel the index of its triangle in `places` plus 1; 0 where there is none.
     ids: Vec<u32>,
     places: Vec<PlanTriangle>,
 }
 
-/// The place of a triangle in a plan.
+/// The mesh and the index of a triangle in a plan, and how it is drawn.
 #[derive(Debug, Clone, Copy)]
 struct PlanTriangle {
     mesh: u32,
@@ -183,7 +182,7 @@ impl DrawnTriangles {
     }
 }
 
-/// The triangles that the camera's passes draw with normals, each once.
+/// Returns the triangles with normals that the camera's passes draw, each once.
 fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
     const DRAWN: u8 = 1;
     const READS: u8 = 2;
@@ -224,7 +223,7 @@ fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
     places.collect()
 }
 
-/// Returns the draw's mesh and the triangle's corners relative to the eye.
+/// Returns the triangle's mesh, and its corners relative to the eye; `None` where an index is out of range.
 fn triangle(plan: &FramePlan, place: PlanTriangle) -> Option<(&DrawMesh, [DVec3; 3])> {
     let mesh = plan.meshes.get(place.mesh as usize)?;
     let first = place.triangle as usize * 3;
@@ -237,12 +236,12 @@ fn xyz(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
 }
 
-/// Unprojects a pixel and its depth to world space.
+/// Converts a pixel and its stored depth to a world position.
 #[derive(Debug)]
 pub struct PixelUnprojection {
     measure: DepthMeasure,
     rays: CameraRays,
-    /// Position in world space, metres.
+    /// The eye's world position, metres.
     pub eye: DVec3,
     /// Where all view rays meet: homogeneous, world space.
     meeting: DVec4,
@@ -263,13 +262,14 @@ impl PixelUnprojection {
         }
     }
 
-    /// Returns the world position of the surface at the middle of a pixel; `None` where there is none.
+    /// Returns the world position of a surface with this stored depth at the centre of a pixel; `None` where the depth
+    /// is at infinity or nothing was drawn.
     pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
         let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
         Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
     }
 
-    /// Returns the view ray through a texel position.
+    /// Returns the view ray through a position in pixels.
     fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         let [width, height] = self.size;
         self.rays.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))

@@ -10,35 +10,35 @@ use crate::plan::{ClipPlane, DrawPart};
 use crate::reading::steps;
 use wgpu::StencilOperation;
 
-/// The cells of a row.
+/// The cells of one row of a pixel's history in the Pixel panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HistoryCells {
     /// Number of the pass, from 1; `None` for a mask.
     pub number: Option<usize>,
-    /// `pass 2`, `mask`.
+    /// The pass in words: `pass 2`, `mask`.
     pub pass: String,
     /// The part that the fragment belongs to, for its colour.
     pub part: Option<DrawPart>,
     /// The part in words, or what is cleared.
     pub what: String,
-    /// Name of the object.
+    /// Name of the object; empty where there is none.
     pub of: String,
-    /// `front` or `back`; empty for a clear.
+    /// Which side of the triangle is seen, `front` or `back`; empty for a clear.
     pub side: &'static str,
     /// The event's outcome.
     pub outcome: EventOutcome,
     /// The value before and after, or the value that did not change.
     pub change: String,
-    /// The event changed what the pixel stores.
+    /// Whether the event changed the value that the pixel stores.
     pub has_changed: bool,
 }
 
-/// The outcome of an event.
+/// The outcome of an event of a pixel's history, as its row shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventOutcome {
-    /// A clear.
+    /// The pass cleared the value.
     Cleared,
-    /// Tests and what they led to.
+    /// The fragment was tested.
     Tested {
         /// The depth test.
         depth: TestResult,
@@ -47,12 +47,12 @@ pub enum EventOutcome {
         /// The stencil operation; `None` without a stencil test.
         operation: Option<StencilOperation>,
     },
-    /// There was no fragment; the reason in a word.
+    /// The triangle left no fragment; the reason in a word.
     Nothing(&'static str),
 }
 
 impl HistoryCells {
-    /// Returns the cells of an event.
+    /// Returns the cells for an event of a pixel's history.
     pub fn of(history: &PixelHistory, event: &PixelEvent, capture: &Capture) -> HistoryCells {
         let (change, has_changed) = change(history, event, &capture.depth);
         let number = steps::number(capture, event.pass);
@@ -82,7 +82,7 @@ impl HistoryCells {
         cells
     }
 
-    /// Returns the row in words, with every sign that it shows.
+    /// Returns the row as text, for tooltips and screen readers.
     pub fn name(&self) -> String {
         let mut name = format!("{}: {}", self.pass, self.what);
         let mut add = |separator: &str, text: &str| {
@@ -106,12 +106,13 @@ impl HistoryCells {
     }
 }
 
-/// Returns the whole event in words; without arrows, as the font for words has none.
+/// Returns the whole event as one line of text, with `to` in place of arrows, which the font does not have.
 pub fn line(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> String {
     history.line(event, curve).replace('→', "to")
 }
 
-/// Returns the part of a face and the object it belongs to: `dark cap` and `torus 2`.
+/// Returns the part of a triangle and the object it belongs to, in words: `dark cap` and `torus 2`; the object is empty
+/// where the part is the object itself.
 pub fn named(one: &TriangleEvent) -> (String, String) {
     let caster = || one.caster.clone().unwrap_or_else(|| one.draw_name.clone());
     match one.part {
@@ -124,7 +125,7 @@ pub fn named(one: &TriangleEvent) -> (String, String) {
     }
 }
 
-/// Returns which side of a triangle is seen.
+/// Returns which side of a triangle is seen, `front` (the outside) or `back`.
 pub fn side(one: &TriangleEvent) -> &'static str {
     if one.shows_outside() { "front" } else { "back" }
 }
@@ -141,7 +142,7 @@ fn outcome(outcome: FragmentOutcome) -> EventOutcome {
     }
 }
 
-/// Returns the sign that stands for a test's result beside its colour.
+/// Returns the sign for a test's result: ✓, ✗, or a word where no test took place.
 pub fn sign(test: TestResult) -> &'static str {
     match test {
         TestResult::Passed => "✓",
@@ -164,7 +165,7 @@ pub fn short(operation: StencilOperation) -> &'static str {
     }
 }
 
-/// Returns a stencil value with its sign, without the stored byte beside it.
+/// Returns a stencil value read as a signed byte, such as `−1` for 255.
 pub fn signed(value: u8) -> String {
     numbers::signed(value).split(' ').next().unwrap_or_default().to_owned()
 }
@@ -174,7 +175,8 @@ fn float(value: f32) -> String {
     if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
 }
 
-/// Returns what changed at the pixel, and whether anything did: the count, else the depth, else the unchanged stencil.
+/// Returns the event's change of the pixel as text, such as `0 → +1`, and whether anything changed. Shows the count,
+/// else the depth, else the unchanged stencil.
 fn change(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> (String, bool) {
     let PixelValues { depth, stencil, count } = event.before;
     let after = event.after;

@@ -10,28 +10,28 @@ use crate::history::Ladder;
 use crate::plan::CountedSide;
 use std::ops::Range;
 
-/// Distance between two marks, points: the first where there is space for all, the second the least distance otherwise.
+/// Distance between two neighbouring marks of the ladder, in points.
 pub const LINE: f32 = 20.0;
 const LEAST_LINE: f32 = 14.0;
-/// The least height of a ladder where there is space for it, points.
+/// The least height of a ladder, in points, where its panel has the space.
 const LEAST_HEIGHT: f32 = 220.0;
-/// Rungs that are shown one by one.
+/// The most rungs that are shown one by one; with more, some are folded.
 const MOST_RUNGS: usize = 16;
-/// When rungs are folded, so many stay open at either end, and on either side of the surface and of the selected rung.
+/// With folded rungs, how many stay open at either end and on either side of the surface and of the selected rung.
 const ENDS: usize = 2;
-/// How many marks are not rungs.
+/// Number of marks that are not rungs.
 const OTHERS: usize = 4;
 
-/// Something on the view ray.
+/// A mark on the ladder, which draws a pixel's view ray with the volume faces it crosses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LadderMark {
     /// Where the ray begins.
     Eye,
     /// The near plane.
     Near,
-    /// A face: its index among the rungs.
+    /// A volume face that the ray crosses: its index in the ladder's rungs.
     Rung(usize),
-    /// Faces that are folded: index of the first, and of the one after the last.
+    /// Folded rungs: index of the first, and of the one after the last.
     More(usize, usize),
     /// The visible surface.
     Surface,
@@ -39,22 +39,23 @@ pub enum LadderMark {
     Infinity,
 }
 
-/// A mark and its height, points below the ladder's top.
+/// A mark and its position in points below the ladder's top.
 pub type PlacedMark = (LadderMark, f32);
 
-/// A stretch of the ray, between two heights, and the count there.
+/// A stretch of the ray between two neighbouring marks, with the count of volumes there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CountStretch {
-    /// Its nearer end, points below the ladder's top.
+    /// Its upper end, points below the ladder's top.
     pub top: f32,
-    /// Its farther end.
+    /// Its lower end, points below the ladder's top.
     pub bottom: f32,
-    /// The count in between.
+    /// The count of volumes along it.
     pub count: i32,
 }
 
-/// Places everything on the ray within `height` points, if necessary by folding more rungs. `near` is the near plane's
-/// distance in metres, `selected` a rung, `open` rungs that are not to be folded. Also returns the height of a line.
+/// Computes the position of each mark within `height` points, folding rungs where they do not fit. `near` is the near
+/// plane's distance in metres, `selected` the index of the selected rung, `open` has ranges of rungs that stay
+/// unfolded. Also returns the distance between neighbouring marks.
 pub fn place(
     ladder: &Ladder,
     near: f64,
@@ -101,8 +102,8 @@ pub fn place(
     (placed, line)
 }
 
-/// Returns the count along the ray: from where counting begins as far as the surface; where faces count on both sides
-/// of it, along all of the ray.
+/// Returns the count along the ray in stretches: from where counting begins as far as the surface; along the whole ray
+/// where faces count on both sides of the surface.
 pub fn stretches(ladder: &Ladder, placed: &[PlacedMark]) -> Vec<CountStretch> {
     let mut stretches = Vec::new();
     let mut count = ladder.start;
@@ -127,8 +128,8 @@ pub fn stretches(ladder: &Ladder, placed: &[PlacedMark]) -> Vec<CountStretch> {
     stretches
 }
 
-/// Returns everything on the ray in order of distance; where there are more than `most` rungs, only `ends` of them at
-/// either side of what matters, and the rest folded.
+/// Returns all marks in order of distance; where there are more than `most` rungs, only `ends` of them at either side
+/// of what matters, the rest folded.
 fn marks(
     ladder: &Ladder,
     near: f64,
@@ -181,7 +182,7 @@ fn marks(
     marks
 }
 
-/// Returns the middle of the finite distances.
+/// Returns the median of the rungs' finite distances, metres; `None` without any.
 fn middle_distance(ladder: &Ladder) -> Option<f64> {
     let finite = ladder.rungs.partition_point(|rung| rung.distance.is_finite());
     ladder.rungs[..finite].get(finite / 2).map(|rung| rung.distance)

@@ -8,7 +8,7 @@ use crate::plan::DecidedBy;
 pub const CUBE_FACES: [&str; 6] = ["+x", "−x", "+y", "−y", "+z", "−z"];
 
 named_enum! {
-    /// The content of the layers of a light's map. Its name is on the button of
+    /// What the layers of a light's map store. Its name is the text on the button of
     /// [`PictureKind::Map`](super::picture_view::PictureKind::Map).
     pub enum MapContent(
         /// What the picture shows.
@@ -27,7 +27,7 @@ named_enum! {
     }
 }
 
-/// One layer of a light's map.
+/// The names of one layer of a light's map.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapLayer {
     /// Short name: `−x`, `floor, flat piece 1`.
@@ -39,7 +39,7 @@ pub struct MapLayer {
 }
 
 impl MapContent {
-    /// Returns the content of a light's map; `None` where there is none.
+    /// Returns what the map of the light with this index stores; `None` where it has no map.
     pub fn of(capture: &Capture, light: usize) -> Option<MapContent> {
         let light = capture.lights.get(light)?;
         let map = light.map.as_ref()?;
@@ -50,7 +50,7 @@ impl MapContent {
         })
     }
 
-    /// Returns the content of the first light's map that exists.
+    /// Returns what the map of the first light that has one stores; `None` where no light has one.
     pub fn of_capture(capture: &Capture) -> Option<MapContent> {
         (0..capture.lights.len()).find_map(|light| MapContent::of(capture, light))
     }

@@ -2,8 +2,8 @@
 
 use crate::plan::LeftOut;
 
-/// Returns each reason with what was left out for it, in the order of the frame. The same decision is often made for
-/// every light and for many objects with one reason: it is listed once.
+/// Groups what a plan left out by reason, in the order of the frame: returns each reason with the things it was given
+/// for. A thing that is left out several times with one reason is listed once, with a count.
 pub fn by_reason(left_out: &[LeftOut]) -> Vec<(&str, Vec<String>)> {
     let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
     for entry in left_out {

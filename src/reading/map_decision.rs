@@ -8,40 +8,40 @@ use crate::reading::layers;
 use crate::reading::map_readers::{MapReaders, MapTexel};
 use crate::truth::{LIT, SHADOW};
 
-/// A texel that is compared with a pixel.
+/// A shadow map texel that is compared with a pixel's surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ComparedTexel {
     /// The texel.
     pub texel: MapTexel,
-    /// Its stored depth, with the bias.
+    /// The depth that the map stores there, bias included.
     pub stored: f32,
-    /// The depth of the pixel's surface at the texel.
+    /// The depth of the pixel's surface in the map, at this texel.
     pub depth: f32,
-    /// Its stored depth is a caster's, and not what the map was cleared to.
+    /// Whether a caster was drawn there; otherwise the texel has the clear value.
     pub is_caster: bool,
-    /// It stores no depth nearer to the light than the surface: the light passes.
+    /// Whether the comparison lets the light pass: nothing nearer to the light is stored.
     pub is_lit: bool,
 }
 
-/// How the map of a light decides a pixel.
+/// How a light's shadow map decides whether a pixel is lit, computed on the CPU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapDecision {
     /// Index of the light.
     pub light: usize,
-    /// The texels that are compared, row by row: one, or those of a filter.
+    /// The texels that are compared, row by row: one, or K × K of a filter.
     pub compared: Vec<ComparedTexel>,
-    /// The texel in the middle of them.
+    /// The texel in the middle of `compared`.
     pub middle: ComparedTexel,
-    /// Name of the map's face; empty where there is only one.
+    /// Name of the map's face, such as `−x`; empty where there is only one.
     pub face: String,
-    /// The measure of this face's depths, where it is known.
+    /// Converts depths of this face to metres; `None` where its matrix is not known.
     pub measure: Option<DepthMeasure>,
-    /// The technique's own answer where it differs: the depths are too close for the CPU to decide it again.
+    /// The GPU's answer, `lit` or `in shadow`, where this computation gives another one: the depths are too close.
     pub gpu_says: Option<&'static str>,
 }
 
 impl MapDecision {
-    /// Returns how the map of a light decides a pixel; `None` where the pixel reads no texel.
+    /// Computes how the map of the light with this index decides a pixel; `None` where the pixel reads no texel.
     pub fn of(capture: &Capture, readers: &MapReaders, light: usize, pixel: [u32; 2]) -> Option<MapDecision> {
         let map = capture.lights.get(light)?.map.as_ref()?;
         let clear = capture.depth.mapping.clear_depth();
@@ -68,29 +68,29 @@ impl MapDecision {
         Some(decision)
     }
 
-    /// Returns how many of the texels let the light pass.
+    /// Returns how many of the compared texels let the light pass.
     pub fn lit(&self) -> usize {
         self.compared.iter().filter(|one| one.is_lit).count()
     }
 
-    /// Returns a depth as stored, and its distance from the light, in words.
+    /// Returns a depth as text, followed by its distance from the light in metres where that is known.
     pub fn depth_words(&self, depth: f32) -> String {
         let metres = self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
         metres.map_or_else(|| format::depth(depth), |metres| format!("{} ({metres})", format::depth(depth)))
     }
 
-    /// Describes in words what the middle texel stores.
+    /// Returns the depth that the middle texel stores as text, or `no caster`.
     pub fn stored_words(&self) -> String {
         if self.middle.is_caster { self.depth_words(self.middle.stored) } else { "no caster".to_owned() }
     }
 
-    /// Returns where the texel is: `412, 300 of face −x`.
+    /// Returns the middle texel's column, row and face: `412, 300 of face −x`.
     pub fn place_words(&self) -> String {
         let [x, y] = self.middle.texel.at;
         if self.face.is_empty() { format!("{x}, {y}") } else { format!("{x}, {y} of face {}", self.face) }
     }
 
-    /// Describes the result of the comparison in a few words.
+    /// Returns the result of the comparison in a few words.
     pub fn outcome(&self) -> String {
         let all = self.compared.len();
         match (all, self.lit()) {
@@ -102,7 +102,7 @@ impl MapDecision {
         }
     }
 
-    /// Returns a sentence that says why the pixel is dark or lit.
+    /// Returns a sentence that explains why the pixel is dark or lit.
     pub fn sentence(&self) -> String {
         let place = self.place_words();
         let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);

@@ -9,10 +9,11 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Points on the border between two faces belong to both, as in `arriving_by_map.wgsl`.
+/// Factor by which a face is enlarged, so that points on the border between two faces belong to both, as in
+/// `arriving_by_map.wgsl`.
 const BORDER: f64 = 1.0001;
 
-/// A texel of a map.
+/// A texel of a light's map: its face, column and row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapTexel {
     /// Index of the face.
@@ -21,7 +22,7 @@ pub struct MapTexel {
     pub at: [u32; 2],
 }
 
-/// Which texel each pixel reads.
+/// For every pixel, which texels of a light's shadow map its shader reads.
 #[derive(Debug)]
 pub struct MapReaders {
     size: [u32; 2],
@@ -32,8 +33,8 @@ pub struct MapReaders {
 }
 
 impl MapReaders {
-    /// Finds the texels for the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing
-    /// is drawn.
+    /// Finds the texels that pixels read of the map of the light with this index, at the end of the frame; `None` where
+    /// the light has no shadow map, nothing is drawn, or another program drew the frame.
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
         // How another program looks its map up is not known.
         let lookup = MapProjection::new(capture, plan, light).filter(|_| capture.origin.is_none())?;
@@ -49,12 +50,12 @@ impl MapReaders {
         Some(MapReaders { size: capture.size, lookup, fragments, first })
     }
 
-    /// Returns whether the normals are those that the shader had; else they are guessed from depths.
+    /// Returns whether normals are those that the shader had; otherwise they are guessed from depths.
     pub fn knows_normals(&self) -> bool {
         self.fragments.are_drawn()
     }
 
-    /// Returns the texel that a pixel reads, the middle one of several; `None` where it reads none.
+    /// Returns the texel that a pixel (column, row) reads, with a filter the middle one; `None` where it reads none.
     pub fn texel_of(&self, [x, y]: [u32; 2]) -> Option<MapTexel> {
         let index = (y as usize).checked_mul(self.size[0] as usize)? + x as usize;
         let [face, column, row] = (*self.first.get(index).filter(|_| x < self.size[0])?)?;
@@ -66,7 +67,7 @@ impl MapReaders {
         Some(MapTexel { face: face as usize, at })
     }
 
-    /// Returns the pixels that read a texel.
+    /// Returns the pixels that read a texel, filters included.
     pub fn of_texel(&self, texel: MapTexel) -> Vec<[u32; 2]> {
         let reads = |first: [i16; 3]| {
             let is_in = |first: i16, at: u32, side: u32| {
@@ -84,14 +85,15 @@ impl MapReaders {
         found.map(|(index, _)| place(index)).collect()
     }
 
-    /// Returns the depth that the map's texels are compared with at a pixel; `None` where it reads none.
+    /// Returns the pixel's depth in the map, with which texels are compared; `None` where it reads none.
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (_, clip) = self.lookup.place(&fragment)?;
         Some(clip.z / clip.w)
     }
 
-    /// Returns the texels that a pixel is compared with, row by row, and its depth at each; empty where it reads none.
+    /// Returns the texels that a pixel is compared with, row by row, each with the depth of the pixel's surface there;
+    /// empty where it reads none.
     pub fn compared(&self, pixel: [u32; 2]) -> Vec<(MapTexel, f64)> {
         let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
         let found = found.and_then(|fragment| Some((fragment, self.lookup.place(&fragment)?)));
@@ -113,8 +115,8 @@ impl MapReaders {
         texels.map(compare).collect()
     }
 
-    /// Returns what a pixel covers of the map: its four corners on the plane of its surface, transformed into the face
-    /// that it reads, in texels and in order round it. `None` where it reads none, or a corner has no position there.
+    /// Returns the pixel's footprint in the map: the face that it reads, and its four corners on the plane of its
+    /// surface, in texels and in order round it. `None` where it reads none, or a corner is behind the light.
     pub fn footprint(&self, pixel: [u32; 2]) -> Option<(usize, [DVec2; 4])> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (face, _) = self.lookup.place(&fragment)?;
@@ -128,8 +130,8 @@ impl MapReaders {
         Some((face, [a?, b?, c?, d?]))
     }
 
-    /// Returns where a texel lies on the plane of the surface that a pixel shows: its four corners, world space, in
-    /// order round it. `None` where the pixel reads none, or the plane is edge-on to the light.
+    /// Projects a texel onto the plane of the surface that a pixel shows: returns its four corners, world space, in
+    /// order round it. `None` where the pixel reads no texel, or the plane is edge-on to the light.
     pub fn texel_on_surface(&self, texel: MapTexel, pixel: [u32; 2]) -> Option<[DVec3; 4]> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let pushed = self.lookup.push(texel.face, &fragment)?;
@@ -150,13 +152,13 @@ impl MapReaders {
         Some([corner(0, 0)?, corner(1, 0)?, corner(1, 1)?, corner(0, 1)?])
     }
 
-    /// Returns how wide a texel of a face is at a pixel's surface, metres; `None` where the face does not see it.
+    /// Returns the width in metres of a face's texel at a pixel's surface; `None` where the face does not see it.
     pub fn texel_width(&self, face: usize, pixel: [u32; 2]) -> Option<f64> {
         self.lookup.width(face, self.fragments.at(pixel)?.world)
     }
 }
 
-/// How points are transformed into a light's map.
+/// The transforms and settings with which points are looked up in a light's shadow map.
 #[derive(Debug)]
 struct MapProjection {
     /// Clip space of each face from world space.
@@ -167,11 +169,11 @@ struct MapProjection {
     size: [u32; 2],
     /// The light's position, homogeneous, world space.
     light: DVec4,
-    /// Texels that are compared along each side.
+    /// Texels along each side that are compared (PCF).
     filter: u32,
-    /// How far points are moved along their normals, texels.
+    /// Normal offset: how many texels points are moved along their normals.
     bias_normal: f64,
-    /// Each texel is compared with the surface's own plane there.
+    /// Receiver-plane bias: whether each texel is compared with the depth of the surface's plane there.
     by_plane: bool,
 }
 
@@ -194,7 +196,8 @@ impl MapProjection {
         })
     }
 
-    /// Returns the face that sees a point, and the point's position in its clip space.
+    /// Returns the face that sees a world position, and its clip-space position in that face; `None` where no face
+    /// does.
     fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
         let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
         let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
@@ -204,15 +207,15 @@ impl MapProjection {
         drawn.or_else(|| clips().find(|(_, clip)| is_in(clip)))
     }
 
-    /// Returns the face that a fragment reads, and the position in its clip space where it is looked up. The face is
-    /// chosen before the point is moved.
+    /// Returns the face that a fragment reads, and the clip-space position at which it is looked up: with normal
+    /// offset. The face is chosen before the offset.
     fn place(&self, fragment: &FragmentInputs) -> Option<(usize, DVec4)> {
         let (face, _) = self.seen(fragment.world)?;
         Some((face, self.matrices[face] * (fragment.world + self.push(face, fragment)?).extend(1.0)))
     }
 
-    /// Returns how far a fragment is moved off its surface before it is looked up in a face, metres: some texels along
-    /// its normal, more where light grazes it.
+    /// Returns the normal offset of a fragment for a lookup in a face, a vector in metres: texels times the sine of the
+    /// light's angle.
     fn push(&self, face: usize, fragment: &FragmentInputs) -> Option<DVec3> {
         if self.bias_normal == 0.0 {
             return Some(DVec3::ZERO);
@@ -223,7 +226,7 @@ impl MapProjection {
         Some(fragment.normal * (self.bias_normal * self.width(face, fragment.world)? * sine))
     }
 
-    /// Returns how wide a texel is at a world position, metres.
+    /// Returns the width of a face's texel at a world position, metres.
     fn width(&self, face: usize, world: DVec3) -> Option<f64> {
         let matrix = self.matrices.get(face)?;
         let distance = (*matrix * world.extend(1.0)).w;
@@ -231,14 +234,14 @@ impl MapProjection {
         (distance > 0.0 && focal > 0.0).then(|| 2.0 * distance / (focal * f64::from(self.size[0])))
     }
 
-    /// Returns the position in a face, texels.
+    /// Converts a clip-space position to texels of the face.
     fn texel(&self, clip: DVec4) -> DVec2 {
         let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
         (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size
     }
 
-    /// Returns how depth grows along x and y of a face on a plane with this normal; zero where the light sees it
-    /// edge-on.
+    /// Returns how depth changes along x and y of a face (normalized device coordinates) on a plane with this normal;
+    /// zero where the light sees the plane edge-on.
     fn slope(&self, face: usize, clip: DVec4, plane: DVec3) -> DVec2 {
         let along = |direction: DVec3| {
             let moved = self.matrices[face] * direction.extend(0.0);
@@ -259,7 +262,7 @@ impl MapProjection {
         Some(self.first_at(face, clip))
     }
 
-    /// Returns face, column and row of the first texel that a point reads when it is not moved.
+    /// Returns face, column and row of the first texel that a point reads without normal offset.
     fn first_of(&self, world: DVec3) -> Option<[i16; 3]> {
         self.seen(world).map(|(face, clip)| self.first_at(face, clip))
     }

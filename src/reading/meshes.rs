@@ -5,7 +5,7 @@ use crate::reading::format;
 use crate::scene::{MaterialTexture, Object};
 use std::sync::Arc;
 
-/// An object of the open scene, and its mesh's topology.
+/// An object of the open scene with its mesh's topology.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectMesh {
     /// The object's name.
@@ -14,7 +14,7 @@ pub struct ObjectMesh {
     pub topology: Arc<Topology>,
 }
 
-/// Describes the pictures on an object and how they are mapped, one in a line.
+/// Returns a line for each texture on an object: its name, its size, and how it is mapped.
 pub fn pictures(object: &Object) -> Vec<String> {
     let line = |texture: &MaterialTexture| {
         let [width, height] = texture.picture.size();
@@ -29,12 +29,12 @@ pub fn pictures(object: &Object) -> Vec<String> {
     lines
 }
 
-/// Returns whether the only thing to say of the mesh is that it is closed.
+/// Returns whether a mesh has none of the defects that [`line`] lists.
 pub fn is_whole(topology: &Topology) -> bool {
     findings(topology).is_empty()
 }
 
-/// Returns `closed`, or all that was found.
+/// Returns the mesh's defects with their counts as text, after `closed` where the mesh is closed.
 pub fn line(topology: &Topology) -> String {
     let mut parts: Vec<String> = findings(topology).into_iter().map(|(text, _)| text).collect();
     if topology.is_closed() {
@@ -43,7 +43,7 @@ pub fn line(topology: &Topology) -> String {
     parts.join(", ")
 }
 
-/// Describes which techniques the findings affect and how, one paragraph each.
+/// Returns a paragraph for each defect: which techniques it affects, and how.
 pub fn effects(topology: &Topology) -> String {
     let mut paragraphs: Vec<&str> = findings(topology).into_iter().map(|(_, effect)| effect).collect();
     if topology.is_closed() && topology.is_oriented() {
@@ -56,7 +56,7 @@ pub fn effects(topology: &Topology) -> String {
     paragraphs.join("\n\n")
 }
 
-/// Returns each finding in words with its count, and its effect.
+/// Returns each defect of a mesh as text with its count, and its effect on techniques.
 fn findings(topology: &Topology) -> Vec<(String, &'static str)> {
     let edges = |count: usize, kind: &str| format::counted(count as u64, &format!("{kind} edge"));
     let all = [

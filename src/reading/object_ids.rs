@@ -5,20 +5,20 @@ use crate::capture::{Capture, Image, PixelFormat};
 use crate::reading::projected::Projector;
 use glam::DVec2;
 
-/// Texel values of [`ObjectIds::receivers`]: elsewhere, on a receiver, at its outline.
+/// Texel values of [`ObjectIds::receivers`]: not on a receiver, inside one, at a receiver's outline.
 pub const RECEIVER_INKS: [u8; 3] = [0, 1, 2];
 
-/// The object that is seen at each pixel.
+/// What a picture shows of each object: a mask of receivers, and a pixel to label each object at.
 #[derive(Debug)]
 pub struct ObjectIds {
-    /// Where objects receive shadows: one byte of [`RECEIVER_INKS`] for each pixel.
+    /// Where receivers are seen: a byte for each pixel, one of [`RECEIVER_INKS`].
     pub receivers: Image,
-    /// For each object, a pixel of it near the middle of its visible part; `None` where it is hidden.
+    /// For each object, its pixel nearest to the mean of its visible pixels; `None` where it is hidden.
     pub middles: Vec<Option<[u32; 2]>>,
 }
 
 impl ObjectIds {
-    /// Draws the objects of `anatomy` as they are seen in `capture`.
+    /// Rasterises the objects of `anatomy` on the CPU as the camera of `capture` sees them.
     pub fn new(anatomy: &Anatomy, capture: &Capture) -> ObjectIds {
         let ids = draw(anatomy, capture);
         let [width, height] = capture.size.map(|side| side as usize);
@@ -42,7 +42,7 @@ impl ObjectIds {
     }
 }
 
-/// Returns for each pixel the index of the nearest object plus 1; 0 where there is none.
+/// Returns for each pixel the index of the nearest visible object plus 1; 0 where there is none.
 fn draw(anatomy: &Anatomy, capture: &Capture) -> Vec<u32> {
     let size = capture.size.map(|side| side as usize);
     let projector = Projector::new(capture);
@@ -64,7 +64,8 @@ fn draw(anatomy: &Anatomy, capture: &Capture) -> Vec<u32> {
     ids
 }
 
-/// Calls `add` with each pixel whose middle lies in a triangle, and how near it is there.
+/// Rasterises a triangle: calls `add` with the index of each pixel whose centre it covers, and its interpolated
+/// nearness there. Each corner is a position in pixels and its nearness.
 pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut add: impl FnMut(usize, f64)) {
     let [a, b, c] = corners.map(|(place, _)| place);
     let area = (b - a).perp_dot(c - a);

@@ -3,19 +3,19 @@
 use crate::capture::{Image, StepTests, TestCounts};
 use std::sync::Arc;
 
-/// A step's tests, and the outcomes at every pixel.
+/// The depth and stencil tests of a step's fragments, summed up for each pixel.
 #[derive(Debug, Clone)]
 pub struct TestOutcomes {
     /// The counts of tested fragments.
     pub tests: Arc<StepTests>,
     /// [`TestCounts::outcomes`] of every pixel.
     pub outcomes: Arc<Image>,
-    /// How many pixels have each combination of outcomes.
+    /// How many pixels have each combination of outcomes, by its bits ([`TestCounts`]).
     pub pixels: [u64; 16],
 }
 
 impl TestOutcomes {
-    /// Collects the outcomes of a step's tests.
+    /// Computes the outcomes at every pixel from a step's test counts.
     pub fn new(tests: StepTests) -> TestOutcomes {
         let outcomes = Arc::new(tests.outcomes());
         let histogram = outcomes.histogram();
@@ -24,11 +24,11 @@ impl TestOutcomes {
     }
 }
 
-/// The text where the outcomes of single fragments can't be distinguished.
+/// The explanation of pixels for which counts do not tell which fragments passed.
 pub const SEVERAL: &str = "Several fragments came to these pixels, and the step changes what it tests: their number does \
                            not tell which of them passed. The history of a pixel does: right-click one.";
 
-/// The combinations that can occur, with their names and what they mean.
+/// The combinations of outcomes that can occur: bits, name, and explanation.
 pub const OUTCOMES: [(u8, &str, &str); 6] = [
     (TestCounts::PASSED, "passed", "Every fragment here passed both tests"),
     (TestCounts::DEPTH_FAILED, "depth failed", "Every fragment here failed the depth test: hits of z-fail"),

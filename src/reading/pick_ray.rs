@@ -4,33 +4,32 @@ use crate::capture::Capture;
 use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 
-/// Returns the view ray through the middle of a pixel.
+/// Returns the view ray through the centre of a pixel, relative to the eye.
 pub fn ray(capture: &Capture, at: [u32; 2]) -> Ray {
     ray_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }
 
-/// Returns the view ray through a position in texels.
+/// Returns the view ray through a position in pixels, relative to the eye.
 pub fn ray_at(capture: &Capture, at: [f64; 2]) -> Ray {
     let [width, height] = capture.size.map(f64::from);
     let place = DVec2::new(at[0] / width * 2.0 - 1.0, 1.0 - at[1] / height * 2.0);
     capture.camera.rays(width / height).through(place)
 }
 
-/// Returns the surface at a pixel at the end of the frame, world space; `None` where there is none.
+/// Returns the world position of the surface at a pixel at the end of the frame; `None` where there is none.
 pub fn surface(capture: &Capture, at: [u32; 2]) -> Option<DVec3> {
     let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
     let distance = capture.depth.distance(frame.depth.image.depth_at(at)?)?;
     Some(capture.camera.eye + ray(capture, at).at(distance))
 }
 
-/// Returns a homogeneous world-space point in view space, where the view is along −z.
+/// Converts a homogeneous world-space point to view space, whose camera looks along −z.
 fn in_view(capture: &Capture, world: glam::DVec4) -> DVec3 {
     let camera = &capture.camera;
     camera.world_from_view().transpose() * (world.truncate() - camera.eye * world.w)
 }
 
-/// Returns the direction out of the picture, right and down and of length 1, towards a point that is not before the
-/// eye.
+/// Returns the unit direction in the picture (right, down) towards a point that is outside it or behind the camera.
 pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
     let view = in_view(capture, world);
     // For a point right behind the eye any direction is as good.
@@ -38,7 +37,8 @@ pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
     way.to_array()
 }
 
-/// Returns where a homogeneous world-space point is in the picture, texels; `None` where it is not before the eye.
+/// Returns where a homogeneous world-space point is in the picture, in pixels; `None` where it is not in front of the
+/// eye.
 pub fn texel_of(capture: &Capture, world: glam::DVec4) -> Option<[f64; 2]> {
     let camera = &capture.camera;
     let [width, height] = capture.size.map(f64::from);

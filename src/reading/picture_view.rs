@@ -21,29 +21,29 @@ named_enum! {
         /// What the picture shows, whatever a light's map stores.
         meaning
     ) {
-        /// The visible surfaces.
+        /// The colour of the visible surfaces.
         Color = "Colour" ("The picture so far"),
-        /// Counts and marks.
+        /// The stencil buffer: counts and marks.
         Stencil = "Stencil" ("The stencil count of every pixel"),
-        /// How far the surfaces are from the camera.
+        /// The depth buffer: how far surfaces are from the camera.
         Depth = "Depth" ("How far the surface at every pixel is"),
-        /// A technique's answer for one light.
+        /// The technique's labels for one light: lit, in shadow, facing away.
         Mask = "Mask" ("Where the technique says that a light is blocked"),
-        /// The answer that rays give for one light.
+        /// The ray-traced labels for one light.
         Truth = "Truth" ("Where rays say that a light is blocked"),
-        /// Where the two differ.
+        /// Where the technique's labels differ from the ray-traced ones.
         Error = "Error" ("Where the technique and the truth differ"),
         /// How many fragments of the step reached each pixel.
         Overdraw = "Overdraw" ("How many fragments of the selected step reached every pixel"),
         /// A light's signed counts, where they are not in the stencil.
         Count = "Count" ("How many shadow volumes of a light contain the surface at every pixel"),
-        /// What a light sees: depth, or what casters let through.
+        /// A light's map: depth as the light sees it, or the light that casters let through.
         Map = "Map" ("What a light sees"),
     }
 }
 
 impl PictureKind {
-    /// Returns the text on its button over a capture, and what the picture shows.
+    /// Returns the text on its button, and the button's explanation, for this capture.
     pub fn label(self, capture: &Capture) -> [&'static str; 2] {
         match self {
             PictureKind::Map => {
@@ -54,12 +54,12 @@ impl PictureKind {
         }
     }
 
-    /// Returns whether only some frames have it: those with counts in floats, or with a light's map.
+    /// Returns whether only some frames have this kind: those with float counts, or with a light's map.
     pub fn is_of_some_frames(self) -> bool {
         matches!(self, PictureKind::Count | PictureKind::Map)
     }
 
-    /// Returns the reason why there is none at a step.
+    /// Returns a sentence on why a step has no picture of this kind.
     pub fn why_missing(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Stencil if !has_stencil(capture) => "This frame has no stencil buffer",
@@ -71,33 +71,33 @@ impl PictureKind {
         }
     }
 
-    /// Returns whether it can be shown only once the truth is known.
+    /// Returns whether it can be shown only once the ray-traced truth is known.
     pub fn needs_truth(self) -> bool {
         matches!(self, PictureKind::Truth | PictureKind::Error)
     }
 }
 
-/// The layer of a light's map that is shown.
+/// Which layer of a light's map is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceChoice {
-    /// All layers, small.
+    /// All layers, side by side.
     #[default]
     Grid,
-    /// One layer, by index.
+    /// The layer with this index.
     One(usize),
 }
 
-/// How large a texel is on the screen.
+/// The size of a texel on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TexelZoom {
-    /// The whole picture fills its panel.
+    /// So large that the whole picture fills its panel.
     #[default]
     Fit,
     /// Screen pixels for each texel.
     Pixels(f32),
 }
 
-/// How depth is shown.
+/// The unit in which depth is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DepthMode {
     /// As a distance in metres.
@@ -107,10 +107,10 @@ pub enum DepthMode {
     Raw,
 }
 
-/// Everything about the picture panel that the user can change.
+/// The state of the picture panel: what the user chose to see, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureView {
-    /// The chosen kind; `None`: what each step writes.
+    /// The chosen kind; `None` follows what each step writes.
     pub kind: Option<PictureKind>,
     /// Index of the light whose mask or map is shown.
     pub light: usize,
@@ -118,15 +118,16 @@ pub struct PictureView {
     pub face: FaceChoice,
     /// Size of a texel.
     pub zoom: TexelZoom,
-    /// The texel position in the middle of the panel, unless it fits.
+    /// The position in texels at the panel's middle, where the picture does not fit.
     pub center: [f64; 2],
     /// Whether depth is shown as a distance or as the stored value.
     pub depth_mode: DepthMode,
-    /// The grey ramp's ends as set by the user; `None`: those of the picture.
+    /// The ends of the grey ramp as the user set them, in the unit of the depth mode; `None` uses the picture's own
+    /// range.
     pub depth_range: Option<[f64; 2]>,
-    /// The counts of a step's tested fragments, of which the overdraw is shown.
+    /// The counts of a step's tested fragments, for the overdraw picture.
     pub tests: Option<Arc<StepTests>>,
-    /// The kind that was chosen before the truth: shown until the truth is known.
+    /// The kind that was chosen before the truth; it is shown until the truth is known.
     kind_before_truth: Option<PictureKind>,
     /// The truth of the previous frame, shown until this frame's is known.
     pub older_truth: Option<Arc<FrameTruth>>,
@@ -149,27 +150,27 @@ impl Default for PictureView {
     }
 }
 
-/// A picture of the capture, ready to be drawn.
+/// A picture of the capture that is ready to be drawn, with its title and unit.
 #[derive(Debug, Clone)]
 pub struct ShownPicture {
-    /// Its kind: the chosen one, or the one that exists instead.
+    /// Its kind: the chosen one, or the one that is shown instead.
     pub kind: PictureKind,
     /// One picture, or all layers of a light's map.
     pub images: Vec<Arc<Image>>,
     /// The layer that each image is, for a light's map; else empty.
     pub layers: Vec<MapLayer>,
-    /// How depths are measured; [`DepthMeasure::Raw`] for other kinds.
+    /// How its depths are converted; [`DepthMeasure::Raw`] for other kinds.
     pub measure: DepthMeasure,
-    /// For the status bar: `stencil after step 4`.
+    /// The text for the status bar: `stencil after step 4`.
     pub title: String,
     /// The texture format on the GPU.
     pub format: &'static str,
-    /// It belongs to the previous frame.
+    /// Whether it belongs to the previous frame, as this frame's truth is not known yet.
     pub is_older: bool,
 }
 
 impl PictureView {
-    /// Sets the chosen kind to `kind`.
+    /// Chooses the kind of picture to show.
     pub fn choose(&mut self, kind: PictureKind) {
         if kind.needs_truth() && !self.wants_truth() {
             self.kind_before_truth = self.kind;
@@ -192,12 +193,12 @@ impl PictureView {
         self.kind = kind;
     }
 
-    /// Returns whether the chosen kind can be shown only once the truth is known.
+    /// Returns whether the chosen kind can be shown only once the ray-traced truth is known.
     pub fn wants_truth(&self) -> bool {
         self.kind.is_some_and(PictureKind::needs_truth)
     }
 
-    /// Follows to a step: to its light, and to the layer of the map that it draws.
+    /// Selects the light of a step, and the layer of the map that the step draws.
     pub fn follow(&mut self, capture: &Capture, step: usize) {
         match capture.steps.get(step).map(|step| &step.snapshot) {
             Some(Snapshot::Map { light, face }) => {
@@ -218,14 +219,15 @@ impl PictureView {
         }
     }
 
-    /// Returns the picture to show at a point of the frame: the chosen kind, or the one that stands in for it.
+    /// Returns the picture to show at a point of the frame: of the chosen kind, or of the one that stands in for it.
+    /// `None` where there is no picture.
     pub fn shown(&self, capture: &Capture, at: impl Into<CapturePoint>) -> Option<ShownPicture> {
         let at = at.into();
         self.shown_as(capture, at, self.kind_at(capture, at)?)
     }
 
-    /// Returns the kind of picture to show at a point of the frame: the chosen one; its twin, as a light's counts are
-    /// stored in one of two places; or what the step writes.
+    /// Returns the kind of picture that is shown at a point of the frame: the chosen one; else stencil for count and
+    /// the reverse, as a frame counts in one of them; else what the step writes.
     pub fn kind_at(&self, capture: &Capture, at: CapturePoint) -> Option<PictureKind> {
         let kinds = available(capture, at);
         let lacks_truth = self.wants_truth() && self.truth_to_show(capture).is_none();
@@ -242,7 +244,7 @@ impl PictureView {
         wishes.find(can_show).or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))
     }
 
-    /// Returns the picture of this kind at a point of the frame.
+    /// Returns the picture of this kind at a point of the frame; `None` where it does not exist.
     pub fn shown_as(&self, capture: &Capture, at: CapturePoint, kind: PictureKind) -> Option<ShownPicture> {
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words(capture));
@@ -295,7 +297,7 @@ impl PictureView {
         })
     }
 
-    /// Returns the light whose truth is shown, and that truth: of this frame, or of the previous one.
+    /// Returns the index of the light whose truth is shown, and that truth: of this frame, else of the previous one.
     pub fn truth_to_show<'a>(&'a self, capture: &'a Capture) -> Option<(usize, &'a CapturedTruth)> {
         if has_truth(capture) {
             let light = self.light_with(capture, |light| light.truth.is_some())?;
@@ -310,7 +312,7 @@ impl PictureView {
         linear.filter(|_| self.depth_mode == DepthMode::Linear).unwrap_or(DepthMeasure::Raw)
     }
 
-    /// Returns the chosen light if `has` is true for it, else the first light for which it is.
+    /// Returns the index of the chosen light if `has` is true for it, else of the first light for which it is.
     pub fn light_with(&self, capture: &Capture, has: impl Fn(&CapturedLight) -> bool) -> Option<usize> {
         let chosen = capture.lights.get(self.light).filter(|light| has(light));
         chosen.map_or_else(|| capture.lights.iter().position(&has), |_| Some(self.light))
@@ -318,7 +320,7 @@ impl PictureView {
 }
 
 impl PictureView {
-    /// Returns the chosen layer of a light's map, or all layers.
+    /// Returns the picture of the chosen layer of a light's map, or of all layers.
     fn shown_map(&self, capture: &Capture, at: CapturePoint) -> Option<ShownPicture> {
         let light = self.light_with(capture, |light| light.map.is_some())?;
         let map = capture.lights.get(light)?.map.as_ref()?;
@@ -360,18 +362,18 @@ impl PictureView {
 }
 
 impl ShownPicture {
-    /// Returns whether it shows colours that a light's map lets through.
+    /// Returns whether it shows a texture of the colours that casters let through.
     pub fn is_let_through(&self) -> bool {
         self.kind == PictureKind::Map && self.images.first().is_some_and(|image| image.format() == PixelFormat::Rgba8)
     }
 }
 
-/// Returns whether the truth of this frame is known.
+/// Returns whether the ray-traced truth of this frame is known for any light.
 pub fn has_truth(capture: &Capture) -> bool {
     capture.lights.iter().any(|light| light.truth.is_some())
 }
 
-/// Returns the kind of picture that a step writes: what it changed, colour before stencil before depth.
+/// Returns the kind of picture that a step writes; where it changes several, colour before stencil before depth.
 pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     let frame = match &capture.steps.get(step)?.snapshot {
         Snapshot::Map { .. } => return Some(PictureKind::Map),
@@ -407,7 +409,7 @@ pub fn available(capture: &Capture, at: impl Into<CapturePoint>) -> Vec<PictureK
     PictureKind::ALL.into_iter().filter(exists).collect()
 }
 
-/// Returns whether a step draws triangles that the picture's depth test sees.
+/// Returns whether a step has draws into the picture, and not into a light's map.
 fn draws_into_picture(capture: &Capture, step: usize) -> bool {
     let draws = |step: &crate::capture::Step| !step.draws.is_empty() && matches!(step.snapshot, Snapshot::Frame(_));
     capture.steps.get(step).is_some_and(draws)

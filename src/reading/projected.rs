@@ -7,21 +7,21 @@
 use crate::capture::Capture;
 use glam::{DMat4, DVec2, DVec4};
 
-/// How far outside the picture's edges lines are clipped, where the picture ends at 1.
+/// Lines are clipped where |x| or |y| reaches this times w; the picture ends at 1.
 const GUARD: f64 = 1.2;
-/// How far outside the picture's edges an outlined triangle is clipped: the edges that clipping adds must not be seen.
+/// The same limit for outlined triangles, so far outside that the edges which clipping adds are not seen.
 const OUTLINE_GUARD: f64 = 1.5;
 
-/// The value that says how near a point of clip space is, linear in the picture.
+/// How the nearness of a clip-space point is computed; it is linear in the picture.
 #[derive(Debug, Clone, Copy)]
 enum Nearness {
-    /// 1 over w.
+    /// 1 / w.
     InverseDistance,
-    /// The product with this row, over w: w says nothing in a parallel projection.
+    /// The dot product with this row, over w: for a parallel projection, where w is constant.
     Linear(DVec4),
 }
 
-/// Projects world positions to the texels of a capture's picture.
+/// Projects world positions to pixels of a capture's picture, with clipping.
 #[derive(Debug, Clone)]
 pub struct Projector {
     clip_from_world: DMat4,
@@ -57,7 +57,8 @@ impl Projector {
         }
     }
 
-    /// Returns the visible part of a segment between homogeneous positions, in texels.
+    /// Returns the visible part of the segment between two homogeneous world positions, in pixels; `None` where none is
+    /// visible.
     pub fn segment(&self, ends: [DVec4; 2]) -> Option<[DVec2; 2]> {
         let [mut from, mut to] = ends.map(|end| self.clip_from_world * end);
         for plane in self.planes {
@@ -75,9 +76,9 @@ impl Projector {
         is_before.then(|| [from, to].map(|end| self.place(end)))
     }
 
-    /// Returns the visible part of a triangle: a convex polygon in texels, with how near it is at each corner, in
-    /// proportion to 1 over the distance along the view; in a parallel projection, from 2 at the near plane to 1 where
-    /// depth ends. Empty where nothing is visible.
+    /// Returns the visible part of a triangle of homogeneous world positions as a convex polygon: corners in pixels,
+    /// each with its nearness, 1 / w (in a parallel projection, from 2 at the near plane to 1 where depth ends). Empty
+    /// where nothing is visible.
     pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
         let corners = corners.map(|corner| self.clip_from_world * corner);
         let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
@@ -103,8 +104,8 @@ impl Projector {
     }
 }
 
-/// Returns the corners of the visible part of a triangle, in texels of the capture's picture. `corners` are homogeneous
-/// and relative to the eye. Empty where no part of it is before the eye.
+/// Returns the corners of the visible part of a triangle, in pixels. `corners` are homogeneous and relative to the eye.
+/// Empty where no part is in front of the eye.
 pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     let world = |corner: [f32; 4]| {
         let relative = DVec4::from_array(corner.map(f64::from));
@@ -114,8 +115,8 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     seen.into_iter().map(|(at, _)| at).collect()
 }
 
-/// Returns the near plane in clip space: near is where depth is 1, or 0. Depth that is clamped has no such end, except
-/// in a parallel projection, which nothing else bounds.
+/// Returns the near plane in clip space, positive inside. Where depth is clamped, it is w = 0, except in a parallel
+/// projection.
 pub fn near_plane(capture: &Capture) -> DVec4 {
     match (capture.depth.mapping.clamps() && !capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
         (true, _) => DVec4::W,
@@ -124,7 +125,7 @@ pub fn near_plane(capture: &Capture) -> DVec4 {
     }
 }
 
-/// Returns the part of a polygon on one side of a plane through the origin.
+/// Clips a polygon to the positive side of a plane through the origin.
 pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
     let mut clipped = Vec::with_capacity(polygon.len() + 1);
     for (index, &corner) in polygon.iter().enumerate() {

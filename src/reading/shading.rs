@@ -13,44 +13,45 @@ use glam::{DVec2, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The dark checks' share of the surface's colour.
+/// The factor by which dark checks multiply the surface's colour.
 const DARK_CHECK: f64 = 1.0 / 3.0;
 
-/// How the surface at a pixel is lit.
+/// The terms of the shading equation at a pixel: normal, colour, and what each light adds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceShading {
     /// Name of the draw that shows it.
     pub surface: String,
-    /// Where its light is computed: `flat`, `gouraud`, `phong`.
+    /// The shading model: `flat`, `gouraud`, `phong`.
     pub shading: &'static str,
-    /// The diffuse term: `lambert`, `wrapped`.
+    /// The diffuse model: `lambert`, `wrapped`.
     pub diffuse: &'static str,
-    /// Unit normal that it is shaded with, world space, to the side that the eye sees; Gouraud's corners have their
-    /// own.
+    /// The unit shading normal, world space, towards the side that the eye sees; Gouraud shading uses those of the
+    /// corners.
     pub normal: [f64; 3],
-    /// Linear RGB reflectance, with its checks and its texture.
+    /// Linear RGB reflectance, checks and texture included.
     pub color: [f64; 3],
-    /// What its texture has there.
+    /// What was read from its texture; `None` where it has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub texture: Option<TextureTerm>,
     /// Strength of the specular highlight.
     pub specular: f64,
-    /// Its Blinn-Phong exponent.
+    /// Blinn-Phong exponent of the highlight.
     pub shininess: f64,
     /// Linear RGB without any light source: what it reflects of ambient light, and what it emits.
     pub unlit: [f64; 3],
-    /// What each light adds.
+    /// The terms of each light, in the scene's order.
     pub lights: Vec<LightTerms>,
 }
 
-/// A texture's value at a pixel's middle.
+/// A texture lookup at a pixel's centre.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TextureTerm {
     /// Name of the texture's file.
     pub name: String,
-    /// Texture coordinates: 0, 0 is the lower left, 1, 1 the upper right, and beyond it repeats or is clamped.
+    /// Texture coordinates: (0, 0) is the picture's lower left, (1, 1) its upper right; beyond, it repeats or is
+    /// clamped.
     pub uv: [f64; 2],
-    /// Column and row of the texel there, from the top left.
+    /// Column and row of the nearest texel, from the upper left of the largest mip level.
     pub texel: [u32; 2],
     /// The mip level: on level k a texel is 2^k texels large, and the four nearest texels on the two levels beside are
     /// mixed.
@@ -59,7 +60,7 @@ pub struct TextureTerm {
     pub color: [f64; 3],
 }
 
-/// What a light adds to a surface where it arrives.
+/// The terms of the shading equation for one light.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LightTerms {
     /// The light's linear RGB times its intensity.
@@ -69,16 +70,16 @@ pub struct LightTerms {
     /// N·L at the triangle's corners, where Gouraud shading computes light; else `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corner_cosines: Option<[f64; 3]>,
-    /// Its triangle faces away from the light, so that Lambert's light does not reach it, whatever the cosine.
+    /// Whether its triangle faces away from the light, so that Lambert's light is 0 whatever the cosine.
     pub is_turned_away: bool,
     /// Lambert's max(0, N·L), or wrapped (N·L + 1) / 2; with Gouraud shading interpolated from the corners.
     pub diffuse: f64,
     /// Blinn-Phong's strength × max(0, N·H)^exponent, 0 where N·L is; with Gouraud shading interpolated from the
     /// corners.
     pub highlight: f64,
-    /// The light's share that is left at this distance, 0 to 1.
+    /// The falloff: the share of the light that is left at this distance, 0 to 1.
     pub fading: f64,
-    /// Linear RGB that it adds where it arrives.
+    /// Linear RGB that the light adds where it is not blocked.
     pub adds: [f64; 3],
     /// The technique's label: `lit`, `in shadow`, `faces away`; `None` where it has no mask.
     pub label: Option<PixelLabel>,
@@ -100,8 +101,8 @@ struct ShadingTerms {
 }
 
 impl SurfaceShading {
-    /// Returns the shading of the surface that a pixel's history ends with; `None` where there is none, or another
-    /// program drew it.
+    /// Computes the shading of the surface that a pixel's history ends with; `None` where it shows none, or another
+    /// program drew the frame.
     pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<SurfaceShading> {
         if capture.origin.is_some() {
             return None;
@@ -179,7 +180,7 @@ impl SurfaceShading {
         })
     }
 
-    /// Returns a line for the surface, and one for each light.
+    /// Returns a line for the surface, one for its texture if any, and one for each light.
     pub fn text(&self) -> String {
         let mut text = format!(
             "  {}, {} shading: normal {}, colour {}; without light {}\n",
@@ -241,8 +242,9 @@ impl LightTerms {
     }
 }
 
-/// Returns where view rays meet, relative to the eye point, and the draw and the triangle of its mesh that a pixel
-/// shows: the last one that passed in ambient light, in which all surfaces are drawn first.
+/// Returns the view position that highlights use (homogeneous, relative to the eye point), the draw, and the index of
+/// the triangle in its mesh that a pixel shows: the last one that passed its tests in the ambient pass, where all
+/// surfaces are drawn first.
 pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.outcome.passed())?;
@@ -253,7 +255,8 @@ pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(D
     })
 }
 
-/// Returns the unit normals of a triangle's corners, towards the side that the eye sees.
+/// Returns the unit normals of a triangle's corners, towards the side that the eye sees. `first` is 3 × the triangle's
+/// index; `sides` has its side flags.
 fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]> {
     const SEES_BACK: u32 = 1 << 31;
     let sign = if sides & SEES_BACK == 0 { 1.0 } else { -1.0 };
@@ -289,7 +292,7 @@ fn terms(at: ShadingPoint, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bo
     }
 }
 
-/// Interpolates the light of the corners.
+/// Interpolates the light of the corners (Gouraud shading); keeps `cosine`.
 fn mix(corners: [ShadingTerms; 3], weights: [f64; 3], cosine: f64) -> ShadingTerms {
     let sum = |of: fn(&ShadingTerms) -> f64| {
         corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>()
@@ -301,7 +304,7 @@ fn mix(corners: [ShadingTerms; 3], weights: [f64; 3], cosine: f64) -> ShadingTer
     ShadingTerms { cosine, diffuse, highlight, fading }
 }
 
-/// A triangle, relative to the eye, and the pixel that shows it.
+/// A triangle, relative to the eye, with the pixel that shows it.
 struct SeenTriangle<'a> {
     capture: &'a Capture,
     pixel: [u32; 2],
@@ -311,7 +314,7 @@ struct SeenTriangle<'a> {
 }
 
 impl SeenTriangle<'_> {
-    /// Returns the point of the triangle's plane behind the middle of a pixel.
+    /// Returns where the view ray through a pixel's centre hits the triangle's plane, relative to the eye.
     fn point(&self, [x, y]: [u32; 2]) -> DVec3 {
         let ray = ray_at(self.capture, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
         ray.at(self.normal.dot(self.corners[0] - ray.from) / self.normal.dot(ray.along))
@@ -353,7 +356,7 @@ fn texture(
     })
 }
 
-/// Returns the share of its colour that a checkered surface has at a point.
+/// Returns the factor of a checkered surface's colour at a point: 1, or [`DARK_CHECK`] on dark checks.
 fn checks(draw: &Draw, relative: DVec3) -> f64 {
     let side = f64::from(draw.constants.material.checks);
     if side == 0.0 {
@@ -368,7 +371,7 @@ fn wide(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
 }
 
-/// Returns a number with at most four decimals.
+/// Returns a number with at most four decimals as text.
 pub fn digits(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

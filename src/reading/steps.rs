@@ -5,8 +5,8 @@ use crate::capture::{Capture, FrameTarget, Snapshot};
 use crate::plan::DecidedBy;
 use crate::reading::format;
 
-/// Returns whether a step is not part of the frame. That is true of a mask: it writes the technique's label for a light
-/// at every pixel, to compare techniques, and nothing reads it. Labels that the light pass reads are part of the frame.
+/// Returns whether a step is not part of the frame: a mask pass, which writes labels only for comparing techniques.
+/// Labels that the light pass reads are part of the frame.
 pub fn is_beside(capture: &Capture, index: usize) -> bool {
     capture.steps.get(index).is_some_and(|step| {
         let writes_labels = matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Labels);
@@ -14,7 +14,7 @@ pub fn is_beside(capture: &Capture, index: usize) -> bool {
     })
 }
 
-/// Returns the indices of the steps that have a number, in order.
+/// Returns the indices of the steps that have a number (all but masks), in order.
 pub fn numbered(capture: &Capture) -> impl DoubleEndedIterator<Item = usize> {
     (0..capture.steps.len()).filter(|index| !is_beside(capture, *index))
 }
@@ -24,7 +24,7 @@ pub fn count(capture: &Capture) -> usize {
     numbered(capture).count()
 }
 
-/// Returns the number of a step, from 1; `None` for a mask.
+/// Returns the number of the step with this index, from 1; `None` for a mask.
 pub fn number(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).position(|step| step == index).map(|place| place + 1)
 }
@@ -35,12 +35,12 @@ pub fn of_number(capture: &Capture, number: usize) -> usize {
     numbered(capture).nth(number.saturating_sub(1)).or(last).unwrap_or(0)
 }
 
-/// Returns the next step that has a number.
+/// Returns the index of the next step that has a number; `None` at the end.
 pub fn next(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).find(|step| *step > index)
 }
 
-/// Returns the previous step that has a number.
+/// Returns the index of the previous step that has a number; `None` at the start.
 pub fn previous(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).rfind(|step| *step < index)
 }

@@ -15,10 +15,10 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// At most so many texels are listed in text, one a line; of the others the number is given.
+/// The most texels that text lists, one a line; of the others only the number is given.
 const MOST_LINES: usize = 25;
 
-/// Which texels the pixels of a frame read: computed once, asked for any pixel.
+/// For each light, which texels of its map the pixels read: computed once, then asked for any pixel.
 #[derive(Debug)]
 pub struct TexelReaders {
     lights: Vec<TexelReader>,
@@ -32,22 +32,22 @@ enum TexelReader {
     None,
 }
 
-/// What was read for a light at a pixel.
+/// The texels that a pixel read for one light, and what follows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum TexelsRead {
-    /// Depths of a shadow map.
+    /// Depths of its shadow map.
     ShadowMap(DepthsCompared),
     /// The texture of the receiver that the pixel shows.
     ReceiverTexture(LightLetThrough),
-    /// Silhouettes of casters.
+    /// Silhouettes of casters between the light and the pixel.
     Silhouettes(LightLetThrough),
 }
 
-/// A shadow map's texels against the surface of a pixel.
+/// Shadow map texels compared with the surface at a pixel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthsCompared {
-    /// Why the light arrives or not, a sentence.
+    /// A sentence on why the light arrives or not.
     because: String,
     face: usize,
     texels: Vec<DepthTexel>,
@@ -62,7 +62,7 @@ pub struct DepthsCompared {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct DepthTexel {
     at: [u32; 2],
-    /// The stored depth; `None` where it is not a caster's.
+    /// The stored depth; `None` where no caster was drawn.
     stored: Option<f32>,
     stored_metres: Option<f64>,
     surface: f32,
@@ -78,7 +78,7 @@ struct BiasEntry {
     receiver_plane: bool,
 }
 
-/// What textures let through to a pixel.
+/// Texels of textures or silhouettes, and the light that they let through to a pixel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LightLetThrough {
     because: String,
@@ -103,7 +103,7 @@ struct ShareTexel {
 }
 
 impl TexelReaders {
-    /// Finds the texels for the picture after the frame of `plan`.
+    /// Finds the texels that pixels read at the end of the frame of `plan`.
     pub fn new(capture: &Capture, plan: &Arc<FramePlan>) -> TexelReaders {
         let reader = |light: usize| match capture.decided_by(light) {
             _ if capture.origin.is_some() => None,
@@ -119,7 +119,7 @@ impl TexelReaders {
         }
     }
 
-    /// Returns for each light what the pixel read of its map; `None` where it read nothing.
+    /// Returns for each light the texels that a pixel read; `None` where it read none.
     pub fn at(&self, capture: &Capture, pixel: [u32; 2]) -> Vec<Option<TexelsRead>> {
         let of_light = |(light, reader): (usize, &TexelReader)| match reader {
             TexelReader::Map(readers) => {
@@ -141,7 +141,7 @@ impl TexelReaders {
 }
 
 impl TexelsRead {
-    /// Returns the reason in a line, and what was read in lines below it.
+    /// Returns a line with the reason, and lines with the texels below it; `light` is the light's index.
     pub fn text(&self, light: usize) -> String {
         let because = match self {
             TexelsRead::ShadowMap(read) => &read.because,

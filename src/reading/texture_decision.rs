@@ -9,21 +9,21 @@ use crate::technique::TextureSettings;
 use crate::truth::{LIT, SHADOW};
 use glam::{DVec2, DVec4};
 
-/// A label says that the light is blocked where less than this share of it arrives.
+/// A light counts as blocked where less than this share of it arrives.
 const BLOCKED_BELOW: f64 = 0.5;
 
-/// A texel that is read, with its weight.
+/// A texel that is read, with its bilinear weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexelShare {
     /// Column and row.
     pub at: [u32; 2],
     /// Red, green, blue and alpha as stored, linear: what the texel lets through.
     pub stored: [u8; 4],
-    /// Its weight, 0 to 1: nearer texels weigh more (bilinear).
+    /// Its bilinear weight, 0 to 1.
     pub share: f64,
 }
 
-/// What is read of one texture.
+/// What is read of one texture or silhouette.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerRead {
     /// Index of the texture among the light's textures.

@@ -9,10 +9,10 @@ use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 use std::sync::Arc;
 
-/// The picture that stands for a step or a draw.
+/// The picture that represents what a step or a draw wrote.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WrittenAspects {
-    /// The picture after it.
+    /// Its texels after the step or draw.
     pub image: Arc<Image>,
     /// The meaning of its texels.
     pub content: TexelContent,
@@ -20,18 +20,18 @@ pub struct WrittenAspects {
     pub name: &'static str,
 }
 
-/// The meaning of a picture's texels.
+/// What a picture's texels mean, and so how they are coloured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TexelContent {
     /// sRGB bytes.
     Color,
-    /// Shares of light that come through, linear.
+    /// Shares of light that are let through, linear bytes.
     LetThrough,
     /// Stencil values.
     Stencil,
     /// Signed counts in floats.
     Count,
-    /// Labels of a light.
+    /// A light's labels: lit, in shadow, background, facing away.
     Labels,
     /// Stored depths.
     Depth(DepthMeasure),
@@ -50,8 +50,8 @@ impl WrittenAspects {
         WrittenAspects { image: Arc::clone(image), content, name }
     }
 
-    /// Returns what a step wrote: its map, its finished count, its mask, or the first of colour, stencil and depth that
-    /// it changed.
+    /// Returns what a step wrote: its map layer, its finished count, its mask, or the first of colour, stencil and
+    /// depth that it changed; `None` where it changed none.
     pub fn by_step(capture: &Capture, index: usize) -> Option<WrittenAspects> {
         let step = capture.steps.get(index)?;
         match &step.snapshot {
@@ -70,7 +70,7 @@ impl WrittenAspects {
         }
     }
 
-    /// Returns what a draw wrote; `None` also where the state after it is not known.
+    /// Returns what a draw wrote; `None` where it changed nothing, or the state after it is not known.
     pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<WrittenAspects> {
         let after = capture.steps.get(step)?.draws.get(draw)?.after.as_ref()?;
         let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
@@ -84,7 +84,7 @@ impl WrittenAspects {
         }
     }
 
-    /// Returns a layer of a light's map.
+    /// Returns the picture of a layer of a light's map; the two indices are the light's and the layer's.
     fn layer(capture: &Capture, [light, face]: [usize; 2], image: &Arc<Image>) -> WrittenAspects {
         let content = match image.format() {
             PixelFormat::Rgba8 => TexelContent::LetThrough,
@@ -106,7 +106,7 @@ impl WrittenAspects {
         }
     }
 
-    /// Returns its texels in their colours; depths use their whole range.
+    /// Returns the texels in display colours; depths use the picture's whole range.
     pub fn picture(&self) -> Picture {
         let image = &self.image;
         let in_color = |color: &dyn Fn([u32; 2]) -> Option<Rgb>| {

@@ -1,14 +1,14 @@
 //! Runs stress cases: every technique at every value, against the truth.
 
 use super::truth::TracedScene;
-use super::{Session, SessionError, StressSteps, median_ms, milliseconds};
+use super::{Session, SessionError, median_ms, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
 use crate::stress::{CaseNumber, Entrant, ExpectedTrend, StressCase, StressRow, TruthCounts};
-use crate::technique::{self, Choice, PlanRequest, Technique};
+use crate::technique::{self, Choice, PlanRequest};
 use crate::truth::{LIT, SHADOW};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -57,33 +57,6 @@ pub(super) fn scene_of(case: &StressCase, value: f64) -> Result<Scene, SessionEr
 }
 
 impl Session {
-    /// Runs `cases` with pictures of `size` pixels, except those that have a size of their own; with `only`, no other
-    /// techniques.
-    ///
-    /// # Errors
-    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU; [`SessionError::Cancelled`].
-    pub fn stress(
-        &mut self,
-        cases: &[&'static StressCase],
-        only: &[Technique],
-        size: [u32; 2],
-        progress: &Progress,
-    ) -> Result<Vec<StressRow>, SessionError> {
-        self.stress_rows(StressSteps::new(cases, only, size), progress)
-    }
-
-    /// Computes the rows of `steps` that are not yet computed, and returns them in order.
-    pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
-        progress.start(steps.left());
-        let mut rows = Vec::with_capacity(steps.left());
-        while !progress.is_cancelled() {
-            let Some(row) = self.stress_step(&mut steps)? else { return Ok(rows) };
-            rows.push(row);
-            progress.advance();
-        }
-        Err(SessionError::Cancelled)
-    }
-
     /// Runs values of a case with `fault` in them, judged like any others: shows whether it would be found.
     pub fn stress_faulty(
         &mut self,
@@ -246,6 +219,7 @@ fn flips_between(last: &LabelsBefore, now: &mut LabelsBefore, width: usize) -> u
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::Technique;
 
     /// Three by three pixels that do not change.
     fn nine_pixels() -> LabelsBefore {

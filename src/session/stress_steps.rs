@@ -2,6 +2,7 @@
 
 use super::stress::{InjectedFault, LabelsBefore, StressStep, scene_of};
 use super::{Session, SessionError};
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::shards::{Shard, ShardPart};
 use crate::stress::{Entrant, StressCase, StressRow};
@@ -81,6 +82,33 @@ impl StressSteps {
 }
 
 impl Session {
+    /// Runs `cases` with pictures of `size` pixels, except those that have a size of their own; with `only`, no other
+    /// techniques.
+    ///
+    /// # Errors
+    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU; [`SessionError::Cancelled`].
+    pub fn stress(
+        &mut self,
+        cases: &[&'static StressCase],
+        only: &[Technique],
+        size: [u32; 2],
+        progress: &Progress,
+    ) -> Result<Vec<StressRow>, SessionError> {
+        self.stress_rows(StressSteps::new(cases, only, size), progress)
+    }
+
+    /// Computes the rows of `steps` that are not yet computed, and returns them in order.
+    pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
+        progress.start(steps.left());
+        let mut rows = Vec::with_capacity(steps.left());
+        while !progress.is_cancelled() {
+            let Some(row) = self.stress_step(&mut steps)? else { return Ok(rows) };
+            rows.push(row);
+            progress.advance();
+        }
+        Err(SessionError::Cancelled)
+    }
+
     /// Computes the next row; `None` at the end. Other work of the session between two rows changes none of them.
     pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };

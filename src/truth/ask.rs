@@ -11,10 +11,10 @@ use super::{TracedSurface, Tracer, TriangleSource};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
-/// The surface at a point of the picture.
+/// The surface that the view ray through a point of the picture hits.
 #[derive(Debug, Clone, Copy)]
 pub struct SeenSurface {
-    /// Which triangle.
+    /// The object and the triangle.
     pub place: TriangleSource,
     /// Where the ray hits it, world space.
     pub point: DVec3,
@@ -23,21 +23,22 @@ pub struct SeenSurface {
     surface: TracedSurface,
 }
 
-/// A casting triangle that a light ray hits.
+/// A casting triangle that the line through a light and a point hits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OccluderHit {
-    /// Which triangle.
+    /// The object and the triangle.
     pub place: TriangleSource,
     /// The triangle's corners, world space.
     pub corners: [DVec3; 3],
-    /// How far from the ray's point towards the light, metres; negative on the other side of the point.
+    /// Distance of the hit from the point, metres: positive towards the light, negative away from it.
     pub towards_light: f64,
-    /// The light is on the side from which its corners run counter-clockwise.
+    /// Whether the light is on the triangle's front side, from which its corners run counter-clockwise.
     pub faces_light: bool,
 }
 
 impl Tracer {
-    /// What is seen at a point of the picture; the first pixel's centre is (0.5, 0.5).
+    /// Returns the surface at a point of the picture, in pixels (the first pixel's centre is (0.5, 0.5)); `None` for
+    /// the background.
     pub fn seen_at(&self, point: [f64; 2]) -> Option<SeenSurface> {
         let [surface] = self.surfaces_at([point]);
         surface.map(|surface| SeenSurface {
@@ -53,17 +54,17 @@ impl Tracer {
         self.view.eye + self.view.ray(point).at(self.view.near)
     }
 
-    /// How far a world position is along the view's axis, metres.
+    /// Returns the distance of a world position from the eye along the view's axis, metres.
     pub fn depth_of(&self, position: DVec3) -> f64 {
         (position - self.view.eye).dot(self.view.axis())
     }
 
-    /// The name of a triangle's object.
+    /// Returns the name of a triangle's object.
     pub fn name(&self, place: TriangleSource) -> &str {
         self.world.object_name(place.object)
     }
 
-    /// The name of an object by its index.
+    /// Returns the name of the object with this index.
     ///
     /// # Panics
     /// If there is no such object.
@@ -71,8 +72,8 @@ impl Tracer {
         self.world.object_name(object)
     }
 
-    /// The casting triangles between a light and a seen surface, the nearest to the surface first: there
-    /// are some exactly where the truth is in shadow, but for objects that receive none.
+    /// Returns the casting triangles between a light and a seen surface, the nearest to the surface first. There are
+    /// some exactly where the truth is in shadow, except on objects that receive no shadows.
     ///
     /// # Panics
     /// If there is no such light.
@@ -91,7 +92,7 @@ impl Tracer {
         self.hit(light, seen.point, found)
     }
 
-    /// The casting triangles between a light and any point of space, the nearest to the point first.
+    /// Returns the casting triangles between a light and any world position, the nearest to the position first.
     ///
     /// # Panics
     /// If there is no such light.
@@ -102,8 +103,8 @@ impl Tracer {
         all
     }
 
-    /// Returns the casting triangles that the whole line through a light and a point intersects: before the point,
-    /// behind it, and beyond the light.
+    /// Returns the casting triangles that the whole line through a light and a world position hits: between the two,
+    /// behind the position, and beyond the light; ordered by their distance towards the light.
     ///
     /// # Panics
     /// If there is no such light.
@@ -128,7 +129,7 @@ impl Tracer {
         self.hit(light, point, found)
     }
 
-    /// How far a light is from a point, metres; infinite for a directional one.
+    /// Returns the distance of a light from a world position, metres; infinite for a directional light.
     ///
     /// # Panics
     /// If there is no such light.
@@ -137,7 +138,7 @@ impl Tracer {
         if position.w == 0.0 { f64::INFINITY } else { (position.truncate() - point).length() }
     }
 
-    /// The unit direction from a point to a light.
+    /// Returns the unit direction from a world position to a light.
     ///
     /// # Panics
     /// If there is no such light.
@@ -146,7 +147,7 @@ impl Tracer {
         (position.truncate() - point * position.w).normalize_or_zero()
     }
 
-    /// Homogeneous world position of a light.
+    /// Returns the homogeneous world position of a light; w is 0 for a directional one.
     ///
     /// # Panics
     /// If there is no such light.

@@ -5,35 +5,35 @@ use super::packet::RayPacket;
 use super::tree::ProjectedRect;
 use glam::{DVec3, Vec3A, Vec4};
 
-/// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
-/// each, in units of the product of their absolute sums.
+/// An upper bound for the relative rounding error of an edge's value in single precision: more than twice 13 roundings
+/// of half a unit each, in units of the product of the absolute sums.
 const ROUNDING: f32 = 16.0 * f32::EPSILON;
-/// What rounding is taken as at least: numbers near it lose places.
+/// The least rounding error that is assumed, as numbers near it lose digits.
 const LEAST: f32 = f32::MIN_POSITIVE;
-/// Lines' places are scaled to 1 from this size on.
+/// Positions of this size or more are scaled to 1.
 const SMALLEST: f32 = 1e-30;
 
-/// The edges of four triangles.
+/// The edge planes of four triangles, in single precision for SIMD.
 #[derive(Debug, Clone, Copy)]
 pub struct TriangleEdges4 {
-    /// By edge and axis.
+    /// By edge and axis, for each of the four triangles.
     normals: [[Vec4; 3]; 3],
     offsets: [Vec4; 3],
-    /// What rounding may move an edge's value by, for each unit of the place's span …
+    /// The rounding error of an edge's value, for each unit of the position's span …
     rounding: Vec4,
-    /// … and for none.
+    /// … and the part of it that does not depend on the position.
     least_rounding: Vec4,
 }
 
-/// A packet's places relative to the ray origin.
+/// A packet's ray targets relative to the ray origin, in single precision for SIMD.
 pub struct PacketOrigin {
-    /// By axis; where the origin is the centre they are scaled, which moves no line.
+    /// Positions by axis; where the projection is centred they are scaled, which changes no ray's direction.
     places: [[Vec4; RayPacket::MOST / 4]; 3],
-    /// The largest sum of a place's absolute coordinates.
+    /// The largest sum of a position's absolute coordinates.
     span: f32,
-    /// The largest coordinate of a place before it was scaled.
+    /// The largest coordinate of a position before it was scaled.
     pub largest: f64,
-    /// Where the rays are seen, if that is clearly on one face of the projection.
+    /// The rectangle of the projection that the rays cross; `None` where that is not clearly on one face.
     pub area: Option<ProjectedRect>,
 }
 
@@ -59,7 +59,7 @@ impl PacketOrigin {
         PacketOrigin { places, span: span.max_element(), largest: f64::INFINITY, area: None }
     }
 
-    /// Scales places so that they lie on a cube around the centre.
+    /// Scales positions so that they lie on a cube around the centre.
     fn centered(
         projection: &DirectionProjection,
         mut places: [[Vec4; RayPacket::MOST / 4]; 3],
@@ -88,8 +88,8 @@ impl PacketOrigin {
         PacketOrigin { places, span: span.max_element(), largest, area }
     }
 
-    /// Which lines do not clearly pass two edges of a triangle on different sides, and which clearly pass all on one
-    /// side: a bit each.
+    /// Returns two bit masks of the packet's rays for one triangle: those that may hit it (they do not clearly pass two
+    /// edges on different sides), and those that surely do.
     pub fn near(&self, four: &TriangleEdges4, lane: usize) -> (u32, u32) {
         let rounding = Vec4::splat(four.rounding[lane] * self.span + four.least_rounding[lane]);
         let normals = four.normals.map(|axes| axes.map(|axis| Vec4::splat(axis[lane])));
@@ -111,7 +111,7 @@ impl PacketOrigin {
 }
 
 impl TriangleEdges4 {
-    /// Computes the edges of up to four triangles in single precision, from the differences of their corners on.
+    /// Computes the edge planes of up to four triangles; positions are subtracted in double precision.
     pub fn new(projection: &DirectionProjection, triangles: &[[DVec3; 3]]) -> TriangleEdges4 {
         let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
         for (lane, &[a, b, c]) in triangles.iter().enumerate() {
@@ -135,7 +135,7 @@ impl TriangleEdges4 {
     }
 }
 
-/// Four vectors, by axis.
+/// Four vectors, stored by axis.
 #[derive(Clone, Copy)]
 struct Vec3x4([Vec4; 3]);
 
@@ -158,7 +158,7 @@ impl Vec3x4 {
         ax * bx + ay * by + az * bz
     }
 
-    /// The sums of absolute coordinates.
+    /// Returns the sums of absolute coordinates.
     fn span(self) -> Vec4 {
         let [x, y, z] = self.0.map(Vec4::abs);
         x + y + z

@@ -10,40 +10,42 @@
 use super::tree::ProjectedRect;
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3A, Vec3Swizzles};
 
-/// From farther than this many times its radius, a scene is seen through a window …
+/// A scene farther away than this many times its radius is projected onto one plane (window) instead of a cube.
 const FAR: f64 = 4.0;
-/// … and from so far by lines that are as good as parallel.
+/// From this many times its radius on, rays are projected as if they were parallel.
 const VERY_FAR: f64 = 1e5;
-/// A line that leaves the window's axis by more than the angle with this cosine misses the scene,
-/// which lies within asin(1 / [`FAR`]) of it.
+/// A ray at an angle to the window's axis with a smaller cosine misses the scene, which lies within asin(1 / [`FAR`])
+/// of the axis.
 const WINDOW_COSINE: f64 = 0.5;
-/// Distance between the middles of the faces, each of which spans −1 to 1.
+/// Distance between the middles of neighbouring faces in the projection; each face spans −1 to 1.
 const FACE_SPACING: f64 = 4.0;
-/// More than what rounding moves a projected point by, as long as its triangle is [`NEAREST`] away from the origin.
+/// An upper bound for the rounding error of a projected point, as long as its triangle is [`NEAREST`] away from the
+/// origin.
 const PADDING: f64 = 1e-7;
-/// More than what rounding moves a point by that is projected in single precision.
+/// An upper bound for the rounding error of a point that is projected in single precision.
 const COARSE_PADDING: f64 = 1e-6;
-/// A ray that is farther along an axis crosses that face, or one whose triangles are found on this face too.
+/// A ray whose largest coordinate, scaled to a cube of half side 1, is above this surely crosses that face, or one
+/// whose triangles are on this face too.
 const FACE_SURE: f32 = 1.0 - 4.0 * f32::EPSILON;
-/// A triangle whose plane is nearer to the origin than this part of its size may be projected anywhere.
+/// A triangle whose plane is nearer to the origin than this, relative to its size, may be projected anywhere.
 pub const NEAREST: f64 = 1e-7;
-/// Faces reach this far over their borders: a line on a border is found on either face.
+/// How far faces reach over their borders, so that a ray on a border is found on either face.
 const OVERLAP: f64 = 1e-5;
 
-/// A projected box with its range of depths.
+/// A box in the projection: a rectangle with its range of depths.
 #[derive(Debug, Clone, Copy)]
 struct ProjectedBox {
     low: DVec3,
     high: DVec3,
 }
 
-/// Where a triangle or a packet of rays is seen: a rectangle for each cube face that it is on.
+/// The rectangles of a triangle or a packet of rays in the projection, one for each cube face that it is on.
 pub type FaceRects = [Option<ProjectedRect>; 6];
 
-/// The projection of all directions from a ray origin.
+/// The projection of all directions from a ray origin onto rectangles: a cube, a window or a plane.
 #[derive(Debug, Clone, Copy)]
 pub enum DirectionProjection {
-    /// Around a point. `middle`: the distance that becomes depth ½.
+    /// Onto the six faces of a cube around a point. `middle` is the distance that becomes depth ½.
     Cube { center: DVec3, middle: f64 },
     /// From a distant point: two unit vectors across the axis, and the unit axis towards the scene's middle, which is
     /// `distance` away; the scene reaches as far as `reach` around that.
@@ -54,14 +56,14 @@ pub enum DirectionProjection {
     Plane { center: DVec4, middle: DVec3, across: [DVec3; 2], towards: DVec3, reach: f64, distance: f64 },
 }
 
-/// A line through the centre.
+/// A ray from the ray origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OriginRay {
-    /// To a point, and no farther.
+    /// It ends at this point.
     To(DVec3),
-    /// Through a point, of a centre at infinity: without end.
+    /// It passes through this point from an origin at infinity, and has no end.
     Through(DVec3),
-    /// In a direction, without end.
+    /// It goes in this direction, and has no end.
     Along(DVec3),
 }
 
@@ -84,7 +86,7 @@ impl DirectionProjection {
         DirectionProjection::Cube { center, middle: distance.max(reach) }
     }
 
-    /// Returns the projection for the rays of a light.
+    /// Returns the projection for the rays of a light (homogeneous) onto what lies within `reach` of `middle`.
     pub fn of_light(center: DVec4, middle: DVec3, reach: f64) -> DirectionProjection {
         let place = center.truncate();
         let distance = if center.w == 0.0 { f64::INFINITY } else { (place - middle).length() };
@@ -97,7 +99,8 @@ impl DirectionProjection {
         DirectionProjection::Plane { center, middle, across: [u, towards.cross(u)], towards, reach, distance }
     }
 
-    /// Calls `add` with each area where a triangle is seen; `is_near`: its plane all but contains the centre.
+    /// Calls `add` with each rectangle that a triangle covers in the projection. With `is_near`, the triangle's plane
+    /// all but contains the centre, and it may be anywhere.
     pub fn for_each_area(&self, corners: [DVec3; 3], is_near: bool, mut add: impl FnMut(ProjectedRect)) {
         let DirectionProjection::Cube { center, .. } = self else {
             add(self.on_sheet(corners.into_iter().map(OriginRay::To)).of_triangle());
@@ -114,7 +117,7 @@ impl DirectionProjection {
         }
     }
 
-    /// Returns where a packet of rays is seen.
+    /// Returns the rectangles that a packet of rays covers in the projection.
     pub fn packet(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> FaceRects {
         let is_endless = lines.clone().any(|line| !matches!(line, OriginRay::To(_)));
         let open = |span: ProjectedBox| span.of_lines(is_endless);
@@ -145,9 +148,9 @@ impl DirectionProjection {
         boxes
     }
 
-    /// Returns where rays are seen that all cross one face of the cube, from single precision. `low` and `high` are the
-    /// box of the points where they cross the cube of half side 1 around the origin, `end` the largest coordinate of
-    /// their ends. `None` where they don't cross one face, or not clearly.
+    /// Returns the rectangle of rays that all cross one face of the cube. `low` and `high` are the box of the points
+    /// where they cross the cube of half side 1 around the origin, `end` the largest coordinate of their ends. `None`
+    /// where they don't clearly cross one face only.
     pub fn on_one_face(&self, low: Vec3A, high: Vec3A, end: f32) -> Option<ProjectedRect> {
         let DirectionProjection::Cube { middle, .. } = self else { return None };
         let is_sure = |axis: &usize| low[*axis] > FACE_SURE || high[*axis] < -FACE_SURE;
@@ -159,8 +162,7 @@ impl DirectionProjection {
         Some(padded(flat(low).extend(0.0), flat(high).extend(depth(end)), face, COARSE_PADDING).of_lines(false))
     }
 
-    /// Returns the depth of points whose largest coordinates, relative to the origin, are up to `end`; it may be
-    /// larger.
+    /// Returns an upper bound for the depth of points whose coordinates relative to the origin are at most `end`.
     pub fn depth(&self, end: f64) -> f32 {
         match self {
             DirectionProjection::Cube { middle, .. } => above(end / (end + middle) + COARSE_PADDING),
@@ -168,7 +170,7 @@ impl DirectionProjection {
         }
     }
 
-    /// What the lines' places are best computed relative to: the centre, or near the scene.
+    /// Returns the position that points are subtracted from before rounding: the ray origin, or the scene's middle.
     pub fn origin(&self) -> DVec3 {
         match self {
             DirectionProjection::Cube { center, .. } | DirectionProjection::Window { center, .. } => *center,
@@ -185,7 +187,7 @@ impl DirectionProjection {
         }
     }
 
-    /// Is [`DirectionProjection::origin`] the lines' centre?
+    /// Returns whether [`DirectionProjection::origin`] is the ray origin.
     pub fn is_centered(&self) -> bool {
         !matches!(self, DirectionProjection::Plane { .. })
     }
@@ -215,12 +217,12 @@ impl DirectionProjection {
         }
     }
 
-    /// Projects a point on a face, with its depth.
+    /// Projects a point onto a face, with its depth.
     fn on_face(&self, face: usize, point: DVec3) -> DVec3 {
         self.projected(along_face(face, point))
     }
 
-    /// Where a triangle is seen that is on one face alone.
+    /// Returns the projected box of a triangle that is on this face alone.
     fn on_face_alone(&self, face: usize, corners: [DVec3; 3]) -> ProjectedBox {
         let corners = corners.map(|corner| along_face(face, corner));
         let [a, b, c] = corners.map(|corner| corner.truncate() * corner.z.recip());
@@ -229,14 +231,15 @@ impl DirectionProjection {
         padded(a.min(b).min(c).extend(nearest), a.max(b).max(c).extend(nearest), face, PADDING)
     }
 
-    /// Projects a point from a face's own coordinates, the third along its axis.
+    /// Projects a point that is given in a face's own coordinates, the third along its axis.
     fn projected(&self, point: DVec3) -> DVec3 {
         let DirectionProjection::Cube { middle, .. } = self else { return point };
         let place: DVec2 = point.truncate() / point.z;
         place.extend(point.z / (point.z + middle))
     }
 
-    /// Returns the part of a triangle within the frustum of a face (Sutherland and Hodgman 1974).
+    /// Returns the projected box of the part of a triangle within the frustum of a face (Sutherland and Hodgman 1974);
+    /// `None` where there is none.
     fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<ProjectedBox> {
         let mut polygon: Vec<DVec3> = corners.iter().map(|corner| along_face(face, *corner)).collect();
         for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
@@ -259,7 +262,7 @@ impl DirectionProjection {
     }
 }
 
-/// Returns the box around projected points, at the place of their face.
+/// Returns the padded box around projected points, shifted to the face's place.
 fn bounds(on_faces: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> ProjectedBox {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = on_faces.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
@@ -291,7 +294,7 @@ impl ProjectedBox {
 }
 
 impl OriginRay {
-    /// A point of the line, or its direction, as seen from another point.
+    /// Returns the ray's target relative to `center`, or its direction.
     pub fn from(self, center: DVec3) -> DVec3 {
         match self {
             OriginRay::To(point) | OriginRay::Through(point) => point - center,
@@ -300,13 +303,13 @@ impl OriginRay {
     }
 }
 
-/// Does a corner point to a face, and not to the border with another?
+/// Returns whether the direction to a corner lies within a face, and not on its border.
 fn is_within(face: usize, corner: DVec3) -> bool {
     let along = along_face(face, corner);
     along.x.abs().max(along.y.abs()) < along.z * (1.0 - OVERLAP)
 }
 
-/// The face that a direction points to: twice its largest axis, one more where it is negative.
+/// Returns the index of the face that a direction points to: twice its largest axis, plus 1 where that is negative.
 fn face_of(direction: DVec3) -> usize {
     let size = direction.abs();
     let axis = if size.x >= size.y && size.x >= size.z {
@@ -319,7 +322,7 @@ fn face_of(direction: DVec3) -> usize {
     axis * 2 + usize::from(direction[axis] < 0.0)
 }
 
-/// A point in a face's own coordinates: two across the face, the third along its axis.
+/// Returns a point in a face's own coordinates: two across the face, the third along its axis.
 fn along_face(face: usize, point: DVec3) -> DVec3 {
     let rotated = match face / 2 {
         0 => point.yzx(),
@@ -334,13 +337,13 @@ fn whole_face(face: usize) -> ProjectedBox {
     ProjectedBox { low: center - DVec3::new(1.5, 1.5, 0.0), high: center + DVec3::new(1.5, 1.5, 1.0) }
 }
 
-/// An `f32` not above a number, and next to it.
+/// Returns an `f32` that is just below a number or equal to it.
 fn below(value: f64) -> f32 {
     let rounded = value as f32;
     rounded - (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
-/// An `f32` not below a number, and next to it.
+/// Returns an `f32` that is just above a number or equal to it.
 fn above(value: f64) -> f32 {
     let rounded = value as f32;
     rounded + (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)

@@ -15,16 +15,15 @@ use crate::math::{Sign, side_of_triangle, sign_of_sum};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
-/// Some more than the roundings of a cross and a dot product of rounded differences, in units
-/// of the sum of their products' absolute values.
+/// An upper bound for the relative rounding error of a cross and a dot product of rounded differences.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A triangle that rays may hit.
+/// A triangle in a hierarchy that rays may hit.
 #[derive(Debug, Clone, Copy)]
 pub struct Hit {
-    /// Which of all.
+    /// Index of the triangle among all triangles.
     pub index: u32,
-    /// The side of it that the ray origin is on; exact.
+    /// The side of the triangle that the ray origin is on; exact.
     pub center_side: Sign,
 }
 
@@ -36,10 +35,10 @@ pub struct ScaledPlane {
     pub offset: f64,
 }
 
-/// What need not be looked for any more.
+/// What a search for hits may leave out from now on.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchLimit {
-    /// Rays, a bit each, for which nothing more has to be found.
+    /// Bits of the rays for which nothing more has to be found.
     pub lines: u32,
     /// For view rays, the distance beyond which nothing has to be found, in multiples of their directions.
     pub distance: f64,
@@ -49,7 +48,7 @@ impl SearchLimit {
     pub const NOTHING: SearchLimit = SearchLimit { lines: 0, distance: f64::INFINITY };
 }
 
-/// Planes through the centre and a triangle's edges.
+/// The planes through the ray origin and each edge of a triangle, in double precision.
 #[derive(Debug, Clone, Copy)]
 struct EdgePlanes {
     /// Normals of the planes of the edges opposite to each corner …
@@ -62,7 +61,7 @@ struct EdgePlanes {
     size: f64,
 }
 
-/// How many triangles are projected in one task.
+/// Number of triangles that are projected in one task.
 const PART: usize = 4096;
 
 /// The kind of rays: view rays have no end, light rays end at a surface.
@@ -72,14 +71,15 @@ pub enum RayKind {
     Light,
 }
 
-/// All lines through a centre.
+/// A bounding hierarchy of triangles for rays that all begin at one origin, the eye or a light: triangles are sorted by
+/// where they are in a projection around it.
 pub struct RayOriginHierarchy {
     center: DVec4,
-    /// What points and corners are relative to: the centre, or near the scene.
+    /// The position that points and corners are relative to: the ray origin, or near the scene.
     pub origin: DVec3,
     projection: DirectionProjection,
     tree: RectTree,
-    /// Triangles' edges, in the order of the tree.
+    /// Edge planes of the triangles, in the tree's order.
     fours: Vec<TriangleEdges4>,
     hit: Vec<Hit>,
     corners: Vec<[DVec3; 3]>,
@@ -134,9 +134,9 @@ impl RayOriginHierarchy {
         RayOriginHierarchy { center, origin: projection.origin(), projection, tree, fours, hit, corners }
     }
 
-    /// Calls `meets` with each triangle that rays of the packet hit and with these rays, a bit each, in no particular
-    /// order, some perhaps more than once; some lie on a ray's other side of the origin or beyond its end. `meets`
-    /// returns what does not have to be found any more.
+    /// Calls `meets` with each triangle that rays of the packet hit, and a bit mask of these rays. Triangles come in no
+    /// particular order, some perhaps twice, some beyond the ray's end or behind its origin. `meets` returns what does
+    /// not have to be found any more.
     pub fn for_each_hit(&self, packet: &RayPacket, mut meets: impl FnMut(&Hit, &[DVec3; 3], u32) -> SearchLimit) {
         let core = PacketOrigin::new(&self.projection, packet);
         let mut left = (1_u32 << packet.len()) - 1;
@@ -168,8 +168,8 @@ impl RayOriginHierarchy {
         }
     }
 
-    /// Returns which of some rays, a bit each, hit a triangle: in double precision, or exactly where that leaves it
-    /// open.
+    /// Returns a bit mask of those of `lines` that hit a triangle, in double precision, or exactly where that can't
+    /// decide.
     #[cold]
     fn hits_of(&self, corners: &[DVec3; 3], packet: &RayPacket, lines: u32) -> u32 {
         let edges = EdgePlanes::new(&self.projection, corners);
@@ -180,15 +180,15 @@ impl RayOriginHierarchy {
         set_bits(lines).filter(is_hit).fold(0, |hit, line| hit | 1 << line)
     }
 
-    /// Does a line pass all three edges on the same side? Exact.
+    /// Returns whether a ray passes all edges on the same side; `None` where rounding can't decide.
     fn is_hit(&self, corners: &[DVec3; 3], line: OriginRay) -> bool {
         let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
         first != Sign::Zero && side(1, 2) == first && side(2, 0) == first
     }
 
-    /// The exact side on which a line passes the edge from `a` to `b`; zero only where the edge
-    /// itself points at the centre.
+    /// Returns the exact side on which a ray's line passes the edge from `a` to `b`; zero only where the edge itself
+    /// points at the ray origin.
     fn exact_side(&self, a: DVec3, b: DVec3, line: OriginRay) -> Sign {
         let center = self.center.truncate();
         let along = |axis: DVec3| side_of_triangle([center, a, b], axis.extend(0.0));
@@ -203,8 +203,8 @@ impl RayOriginHierarchy {
     }
 }
 
-/// The exact sign of the first component of `(a − b) × d` that is not zero: how
-/// `d · ((a − p) × (b − p))` changes as `p` moves along x, y or z.
+/// Returns the exact sign of the first component of `(a − b) × d` that is not zero: how `d · ((a − p) × (b − p))`
+/// changes as `p` moves along x, y or z.
 fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
     let component = |i: usize, j: usize| sign_of_sum(&[(a[i], d[j]), (-b[i], d[j]), (-a[j], d[i]), (b[j], d[i])]);
     component(1, 2).or_else(|| component(2, 0)).or_else(|| component(0, 1))
@@ -246,16 +246,16 @@ impl ScaledPlane {
         ScaledPlane { normal, offset: normal.dot(a - origin) }
     }
 
-    /// How far above the plane a place is, times twice the triangle's area.
+    /// Returns the height of a point over the plane, times twice the triangle's area.
     pub fn height(&self, place: DVec3) -> f64 {
         self.normal.dot(place) - self.offset
     }
 }
 
-/// What rounding does to a triangle's plane.
+/// Bounds for the rounding errors of a triangle's plane.
 #[derive(Debug, Clone, Copy)]
 pub struct PlaneRounding {
-    /// What it may move a height by, for each unit of its spread.
+    /// The error of a height for each unit of span.
     height: f64,
     /// The largest sum of a corner's absolute coordinates, relative to the hierarchy's origin.
     size: f64,
@@ -268,14 +268,14 @@ impl PlaneRounding {
         PlaneRounding { height: ROUNDING * edge * edge, size: largest_span([a - origin, b - origin, c - origin]) }
     }
 
-    /// Returns more than what rounding may have moved a place's height over the plane by.
+    /// Returns an upper bound for the rounding error of a point's scaled height over the plane.
     pub fn of_height(&self, place: DVec3) -> f64 {
         self.height * (self.size + place.abs().element_sum())
     }
 }
 
-/// Returns more than what rounding may have moved a point of a triangle's plane off it, where the plane was computed
-/// relative to `origin`.
+/// Returns an upper bound for how far rounding may move a point on a triangle's plane off it, where the plane was
+/// computed relative to `origin`.
 pub fn point_rounding(origin: DVec3, corners: &[DVec3; 3]) -> f64 {
     ROUNDING * largest_span(corners.map(|corner| corner - origin))
 }
@@ -285,8 +285,8 @@ fn largest_span(of: [DVec3; 3]) -> f64 {
     a.max(b).max(c)
 }
 
-/// The exact side of a triangle that a centre is on, and whether it is so near to the triangle's plane that the triangle may be seen
-/// anywhere around it. `None` where it is in the plane.
+/// Returns the exact side of a triangle that a ray origin is on, and whether it is so near to the plane that the
+/// triangle's projection may be anywhere. `None` where it is in the plane.
 pub(super) fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool)> {
     // Edges of the corners as they are: what they are relative to a far centre is rounded by more than an edge's own units.
     let [u, v] = [corners[1] - corners[0], corners[2] - corners[0]];
@@ -302,7 +302,7 @@ pub(super) fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool
     (side != Sign::Zero).then_some((side, true))
 }
 
-/// The box around the triangles that take part.
+/// Returns the box around the triangles that take part.
 fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool + Sync) -> (DVec3, DVec3) {
     let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let part = |(part, corners): (usize, &[[DVec3; 3]])| {

@@ -3,7 +3,7 @@
 use super::direction_projection::OriginRay;
 use glam::DVec3;
 
-/// Up to [`RayPacket::MOST`] rays of one kind that are near each other.
+/// Up to [`RayPacket::MOST`] rays of one kind that are near each other and are traced together.
 #[derive(Debug)]
 pub struct RayPacket {
     kind: fn(DVec3) -> OriginRay,
@@ -12,10 +12,10 @@ pub struct RayPacket {
 }
 
 impl RayPacket {
-    /// Larger packets hit more triangles that most of their rays miss.
+    /// The most rays in a packet: larger ones hit more triangles that most of their rays miss.
     pub const MOST: usize = 16;
 
-    /// Makes an empty packet of rays that `kind` makes of points.
+    /// Makes an empty packet; `kind` makes a ray of each point that is added.
     pub fn new(kind: fn(DVec3) -> OriginRay) -> RayPacket {
         RayPacket { kind, points: [DVec3::ZERO; RayPacket::MOST], len: 0 }
     }
@@ -33,7 +33,7 @@ impl RayPacket {
         &self.points[..self.len]
     }
 
-    /// The line of a number below [`RayPacket::len`].
+    /// Returns the ray with this index.
     pub fn line(&self, index: usize) -> OriginRay {
         (self.kind)(self.points[index])
     }
@@ -42,12 +42,12 @@ impl RayPacket {
         self.points().iter().map(|point| (self.kind)(*point))
     }
 
-    /// Returns the place that the packet's points are relative to, where the hierarchy's are relative to `origin`.
+    /// Returns the position that the packet's points are relative to: `origin`, or zero for directions.
     pub fn base(&self, origin: DVec3) -> DVec3 {
         if matches!((self.kind)(DVec3::ZERO), OriginRay::Along(_)) { DVec3::ZERO } else { origin }
     }
 
-    /// Do its lines go on without end?
+    /// Returns whether its rays have no end.
     pub fn is_endless(&self) -> bool {
         !matches!((self.kind)(DVec3::ZERO), OriginRay::To(_))
     }

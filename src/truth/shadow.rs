@@ -8,23 +8,23 @@ use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, TracedSurface, 
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
-/// The rays of one light.
+/// A light with the hierarchy for tracing its rays.
 #[derive(Debug)]
 pub struct LightRays {
     pub position: DVec4,
-    /// Range of a light that fades: nothing at this distance, metres, is lit.
+    /// Distance in metres from which on a light that fades lights nothing; `None` without falloff.
     pub range: Option<f64>,
     pub hierarchy: RayOriginHierarchy,
 }
 
 impl LightRays {
-    /// The light has faded to nothing there.
+    /// Returns whether a world position is at the light's range or beyond.
     fn is_out_of_range(&self, point: DVec3) -> bool {
         self.range.is_some_and(|range| self.position.truncate().distance_squared(point) >= range * range)
     }
 }
 
-/// A triangle that may lie between a light and surfaces.
+/// A triangle that may lie between a light and surfaces, with its plane and rounding bounds.
 #[derive(Debug)]
 pub struct OccludingTriangle {
     triangle: usize,
@@ -33,12 +33,12 @@ pub struct OccludingTriangle {
     rounding: PlaneRounding,
     /// The sum of the normal's absolute coordinates.
     normal_span: f64,
-    /// The last surface's triangle whose plane was compared with it, and whether they share one.
+    /// The surface triangle that it was compared with last, and whether the two share a plane.
     compared: (usize, bool),
 }
 
 impl OccludingTriangle {
-    /// Prepares a triangle relative to the hierarchy's origin.
+    /// Computes a triangle's plane relative to the hierarchy's origin.
     pub fn new(origin: DVec3, hit: &Hit, corners: &[DVec3; 3]) -> OccludingTriangle {
         let plane = ScaledPlane::new(origin, corners);
         OccludingTriangle {
@@ -53,7 +53,7 @@ impl OccludingTriangle {
 }
 
 impl Tracer {
-    /// Labels surfaces near each other.
+    /// Writes the labels (lit, in shadow, background, facing away) of surfaces near each other, by one packet of rays.
     pub(super) fn label_surfaces(&self, light: &LightRays, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
         let mut packet = RayPacket::new(OriginRay::To);
         let mut lines = [0; RayPacket::MOST];
@@ -99,8 +99,8 @@ impl Tracer {
         });
     }
 
-    /// Returns whether the light and a surface point are on different sides of a triangle that their ray hits. A plane
-    /// through the point itself, as far as its rounding shows, has it on neither; nor has the surface's own plane.
+    /// Returns whether a triangle that the ray hits separates the light from a surface point. It does not where the
+    /// point is in its plane as far as rounding shows, nor where the two triangles share a plane.
     pub(super) fn lies_between(
         &self,
         light: &LightRays,
@@ -127,8 +127,8 @@ impl Tracer {
         !occluder.compared.1
     }
 
-    /// Returns how far above a triangle's plane a point is that is so near that rounding matters, times twice the
-    /// triangle's area; 0 where rounding can't distinguish it from the plane.
+    /// Returns the scaled height over a triangle's plane of a point so near that rounding matters; 0 where rounding
+    /// can't distinguish it from the plane.
     fn height_near(&self, triangle: usize, surface: &TracedSurface) -> f64 {
         let [a, b, c] = self.world.triangles[triangle];
         let (ab, ac, offset) = (b - a, c - a, surface.point - a);
@@ -139,12 +139,12 @@ impl Tracer {
         if height.abs() > rounding { height } else { 0.0 }
     }
 
-    /// Returns more than [`Tracer::rounding`], in less time.
+    /// Returns an upper bound for [`Tracer::rounding`] that takes less time.
     fn most_rounding(&self, surface: &TracedSurface) -> f64 {
         self.most_rounding + 3.0 * POINT_ROUNDING * (surface.from + surface.offset.abs().element_sum())
     }
 
-    /// How far a surface's point may be off along any axis.
+    /// Returns how far rounding may move a surface's point along any axis.
     fn rounding(&self, surface: &TracedSurface) -> f64 {
         // The sum is rounded at the size of its larger part.
         let parts = surface.from + surface.offset.abs().max_element();

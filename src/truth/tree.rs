@@ -8,50 +8,51 @@
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Areas of one tree differ in size by up to this power of two.
+/// Rectangles in one tree differ in size by up to this power of two.
 const CLASS_BITS: u32 = 8;
-/// The last tree is of all smaller ones.
+/// The most trees; the last one has all smaller rectangles.
 const MOST_CLASSES: u32 = 8;
-/// Bits of the curve along each axis.
+/// Bits of the space-filling curve (Morton code) along each axis.
 const CURVE_BITS: u32 = 20;
-/// More levels of four than 32-bit indices reach.
+/// More levels of four than 32-bit indices can reach.
 const MOST_LEVELS: usize = 17;
 
-/// A rectangle of a projection, with a depth.
+/// A rectangle in a projection, with a depth.
 #[derive(Debug, Clone, Copy)]
 pub struct ProjectedRect {
     pub low: Vec2,
     pub high: Vec2,
-    /// For triangles, how near they come; for rays, how far they go.
+    /// For triangles the least depth, for rays the largest.
     pub depth: f32,
 }
 
-/// Four areas.
+/// A node of the tree: four rectangles.
 #[derive(Debug, Clone, Copy)]
 struct RectNode {
     low: [Vec4; 2],
     high: [Vec4; 2],
     depth: Vec4,
-    /// The first of the four nodes below.
+    /// Index of the first of the four nodes below.
     first: u32,
 }
 
-/// Many areas.
+/// Trees of rectangles for overlap queries, one for each class of sizes.
 #[derive(Debug, Default)]
 pub struct RectTree {
-    /// Those without nodes below come first.
+    /// All nodes, leaves first.
     nodes: Vec<RectNode>,
-    /// How many these are.
+    /// Number of leaves.
     leaves: usize,
-    /// The topmost node of each size.
+    /// The root of each tree.
     tops: Vec<u32>,
 }
 
 impl RectTree {
-    /// How many areas make a node.
+    /// Number of rectangles in a node.
     pub const WIDTH: usize = 4;
 
-    /// Sorts areas into a tree; also says in which order they are in it. `None` fills a node up.
+    /// Builds the trees; also returns the order of rectangles in their leaves, as indices into `areas`. `None` fills a
+    /// leaf up.
     pub fn new(areas: &[ProjectedRect]) -> (RectTree, Vec<Option<u32>>) {
         let keys = keys(areas);
         let classes = keys.chunk_by(|(one, _), (other, _)| class(*one) == class(*other));
@@ -75,7 +76,7 @@ impl RectTree {
         (tree, order)
     }
 
-    /// Nodes above some in a row, up to a single one.
+    /// Adds the nodes above `count` nodes from `first` on, up to a root.
     fn stack_up(&mut self, mut first: usize, mut count: usize) {
         while count > 1 {
             let next = self.nodes.len();
@@ -89,9 +90,8 @@ impl RectTree {
         self.tops.push(first as u32);
     }
 
-    /// Calls `meets` with the number of each four rectangles of the order of which `area` overlaps one, and which, a
-    /// bit each; and with the depth of `area`, which it may lessen. Ends where it returns false. Near ones come first,
-    /// more or less.
+    /// Calls `meets` with the index of each leaf that has rectangles overlapping `area`, a bit mask of these, and the
+    /// depth of `area`, which it may reduce. Ends where it returns false. Near leaves come roughly first.
     pub fn for_each_hit(&self, mut area: ProjectedRect, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
         let mut stack = [0; MOST_LEVELS * (RectTree::WIDTH - 1) + 1];
         for top in &self.tops {
@@ -134,14 +134,14 @@ impl RectNode {
         node
     }
 
-    /// A box around all four.
+    /// Returns the box around all four rectangles.
     fn area(&self) -> ProjectedRect {
         let least = |axis: [Vec4; 2]| Vec2::new(axis[0].min_element(), axis[1].min_element());
         let most = |axis: [Vec4; 2]| Vec2::new(axis[0].max_element(), axis[1].max_element());
         ProjectedRect { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
     }
 
-    /// Returns which of the four rectangles overlap that of rays, a bit each.
+    /// Returns a bit mask of the rectangles that overlap `area` and are not beyond its depth.
     fn hit(&self, area: &ProjectedRect) -> u32 {
         let along_x = self.low[0].cmple(Vec4::splat(area.high.x)) & self.high[0].cmpge(Vec4::splat(area.low.x));
         let along_y = self.low[1].cmple(Vec4::splat(area.high.y)) & self.high[1].cmpge(Vec4::splat(area.low.y));
@@ -149,7 +149,7 @@ impl RectNode {
     }
 }
 
-/// What areas are sorted by: class and place along the curve; and their indices, sorted.
+/// Returns the rectangles' sort keys (class and position along the curve) with their indices, sorted.
 fn keys(areas: &[ProjectedRect]) -> Vec<(u64, u32)> {
     let place = |area: &ProjectedRect| ((area.low + area.high) / 2.0).extend(area.depth);
     let (low, high) = areas
@@ -175,7 +175,7 @@ fn class(key: u64) -> u64 {
     key >> (3 * CURVE_BITS)
 }
 
-/// Puts two zeros before each bit.
+/// Inserts two zeros before each bit, for interleaving.
 fn spread(bits: u64) -> u64 {
     let mut bits = bits & 0x1f_ffff;
     for (shift, mask) in [
@@ -190,7 +190,7 @@ fn spread(bits: u64) -> u64 {
     bits
 }
 
-/// Which bits are set.
+/// Returns the indices of the bits that are set, ascending.
 pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = bits.trailing_zeros();

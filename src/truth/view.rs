@@ -3,13 +3,13 @@
 use crate::scene::{Camera, CameraRays, Ray};
 use glam::{DVec2, DVec3};
 
-/// The rays through a picture's points.
+/// The view rays of a camera through points of its picture.
 #[derive(Debug, Clone, Copy)]
 pub struct PictureRays {
     pub near: f64,
-    /// Where rays end: infinite, but where a far plane is part of what is asked.
+    /// Distance at which rays end: infinite, unless a far plane is part of the question.
     pub far: f64,
-    /// What rays are relative to, world space.
+    /// The world position that rays are relative to.
     pub eye: DVec3,
     pub is_parallel: bool,
     rays: CameraRays,
@@ -29,7 +29,7 @@ impl PictureRays {
         }
     }
 
-    /// The ray through a point of the picture. The first pixel has its centre at (0.5, 0.5).
+    /// Returns the view ray through a point of the picture in pixels; the first pixel has its centre at (0.5, 0.5).
     pub fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         self.ray_through([self.across(x), self.down(y)])
     }
@@ -46,12 +46,13 @@ impl PictureRays {
         1.0 - y / self.size[1] * 2.0
     }
 
-    /// The ray through a point by [`PictureRays::across`] and [`PictureRays::down`].
+    /// Returns the view ray through a point in normalized device coordinates ([`PictureRays::across`],
+    /// [`PictureRays::down`]).
     pub fn ray_through(&self, [x, y]: [f64; 2]) -> Ray {
         self.rays.through(DVec2::new(x, y))
     }
 
-    /// World direction of the view's axis.
+    /// Returns the world direction of the view's axis.
     pub fn axis(&self) -> DVec3 {
         self.rays.axis()
     }

@@ -5,10 +5,10 @@ use crate::math::{Sign, side_of_triangle};
 use crate::scene::{Object, Scene};
 use glam::DVec3;
 
-/// Beyond it, products of coordinates overflow.
+/// The largest coordinate relative to the eye: beyond it, products of coordinates overflow.
 const FARTHEST: f64 = 1e30;
 
-/// Where a triangle comes from.
+/// Which object a triangle belongs to, and which of its triangles it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TriangleSource {
     /// Index of its object in the scene.
@@ -17,14 +17,14 @@ pub struct TriangleSource {
     pub triangle: usize,
 }
 
-/// A scene's triangles.
+/// All triangles of a scene in one list, with their objects.
 #[derive(Debug)]
 pub struct TracedTriangles {
-    /// World space.
+    /// The corners of each triangle, world space.
     pub triangles: Vec<[DVec3; 3]>,
-    /// The object of each triangle.
+    /// Index of the object of each triangle.
     owners: Vec<u32>,
-    /// Each object's first triangle.
+    /// Index of each object's first triangle in the list.
     firsts: Vec<usize>,
     objects: Vec<Object>,
     /// Smallest and largest coordinates of all corners.
@@ -71,7 +71,7 @@ impl TracedTriangles {
         &self.objects[object].name
     }
 
-    /// No corner is farther than this from a point along any axis.
+    /// Returns an upper bound for the distance of any corner from a point along any axis.
     pub fn reach(&self, point: DVec3) -> f64 {
         let [low, high] = self.bounds;
         (point - low).abs().max((high - point).abs()).max_element().max(f64::MIN_POSITIVE)
@@ -81,8 +81,8 @@ impl TracedTriangles {
         &self.objects[self.owners[index] as usize]
     }
 
-    /// Do two triangles lie in one plane of one object? Decided exactly, before the object was
-    /// placed: placing it rounds.
+    /// Returns whether two triangles lie in one plane of one object: exactly, by their positions in object space, as
+    /// placing the object rounds.
     pub fn share_plane(&self, one: usize, other: usize) -> bool {
         let (one, other) = (self.place(one), self.place(other));
         if one.object != other.object {

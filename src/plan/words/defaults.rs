@@ -2,8 +2,8 @@
 
 use super::RasterApi;
 
-/// A pipeline's descriptor without these members. It has no default for depthCompare and depthWriteEnabled: where there
-/// is a depth format, both are required.
+/// Lines for the defaults of a WebGPU pipeline descriptor. It has no default for depthCompare and depthWriteEnabled:
+/// where there is a depth format, both are required.
 const WEB_GPU: &[&str] = &[
     "depthBias: 0,",
     "depthBiasSlopeScale: 0,",
@@ -18,7 +18,7 @@ const WEB_GPU: &[&str] = &[
     "blend: undefined,",
 ];
 
-/// The state of a new context.
+/// Lines for the state of a new OpenGL context.
 const OPEN_GL: &[&str] = &[
     "glDepthFunc(GL_LESS);",
     "glDepthMask(GL_TRUE);",
@@ -38,7 +38,7 @@ const OPEN_GL: &[&str] = &[
     "glDisable(GL_BLEND);",
 ];
 
-/// The values of `D3D12_DEFAULT` in `d3dx12.h`, and of a command list that was just reset.
+/// Lines for the values of `D3D12_DEFAULT` in `d3dx12.h`, and of a command list that was just reset.
 const DIRECT_3D: &[&str] = &[
     "DepthFunc = D3D12_COMPARISON_FUNC_LESS;",
     "DepthWriteMask = D3D12_DEPTH_WRITE_MASK_ALL;",
@@ -62,7 +62,7 @@ const DIRECT_3D: &[&str] = &[
     "BlendEnable = FALSE;",
 ];
 
-/// Returns the lines that say no more than the API's default.
+/// Returns the lines that state the API's defaults, which [`lines`](super::lines) marks as saying nothing new.
 pub fn defaults(api: RasterApi) -> &'static [&'static str] {
     match api {
         RasterApi::WebGpu => WEB_GPU,
