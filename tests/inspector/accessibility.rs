@@ -233,11 +233,11 @@ fn space_plays_and_t_animates_while_the_picture_has_the_focus_and_space_presses_
     press(&mut harness, Key::Space);
     assert!(harness.state().inspector.model.selection.playing.is_some());
     press(&mut harness, Key::Space);
-    assert!(!harness.state().inspector.model.selection.playing.is_some());
+    assert!(harness.state().inspector.model.selection.playing.is_none());
     focus_on(&mut harness, Role::Button, "Depth");
     press(&mut harness, Key::Space);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
-    assert!(!harness.state().inspector.model.selection.playing.is_some());
+    assert!(harness.state().inspector.model.selection.playing.is_none());
 }
 
 #[test]

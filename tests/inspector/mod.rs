@@ -369,7 +369,7 @@ fn space_plays_to_the_end_and_stops() {
     // A frame of the harness is a quarter of a second.
     harness.run_steps(14);
     assert_eq!(harness.state().inspector.model.selection.step, 3);
-    assert!(!harness.state().inspector.model.selection.playing.is_some());
+    assert!(harness.state().inspector.model.selection.playing.is_none());
 }
 
 #[test]
