@@ -257,8 +257,8 @@ mod tests {
                 for place in &anatomy.objects[caster].positions {
                     let ray = *place * position.w - position.truncate();
                     let from = if is_sun { *place } else { position.truncate() };
-                    let met = from + ray * (normal.dot(corner - from) / normal.dot(ray)) - corner;
-                    let shares = [met.dot(u) / u.length_squared(), met.dot(v) / v.length_squared()];
+                    let hit = from + ray * (normal.dot(corner - from) / normal.dot(ray)) - corner;
+                    let shares = [hit.dot(u) / u.length_squared(), hit.dot(v) / v.length_squared()];
                     assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{name}: {place} at {shares:?}");
                 }
                 for (near, far) in pair[1].near.into_iter().zip(pair[1].far) {

@@ -13,10 +13,11 @@ use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Fewer positions are no way round, and more make files too large to be opened.
+/// The least number of the light's positions in an animation: fewer make no way round.
 const FEWEST_PLACES: u32 = 2;
 const MOST_PLACES: u32 = 3600;
-/// The shortest time for a picture: viewers show faster animations at a speed of their own.
+/// The shortest time for which a picture is shown, milliseconds: viewers show faster animations at a speed of their
+/// own.
 const LEAST_MILLISECONDS: u16 = 20;
 const MOST_MILLISECONDS: u16 = 60_000;
 
@@ -70,7 +71,7 @@ fn milliseconds(text: &str) -> Result<u16, String> {
         .ok_or_else(|| format!("give a whole number of milliseconds from {LEAST_MILLISECONDS} to {MOST_MILLISECONDS}"))
 }
 
-/// Writes the animation and says what it is.
+/// Runs the command `animate`: writes the animated picture and prints what it shows.
 pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     check_target(&arguments.output, arguments.overwrite)?;
     let refused = "an animation shows whole passes";
@@ -107,7 +108,7 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     output::print(&format!("{output}: {name}, {width}x{height}, {pictures} pictures of {delay} ms, {bytes}\n"))
 }
 
-/// Checks, before long work, that the file may be made.
+/// Fails, before long work, where the file must not or can't be written.
 fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     let name = file.escape_debug();
     let ending = Path::new(file).extension().unwrap_or_default().to_ascii_lowercase();
@@ -121,7 +122,7 @@ fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-/// A session that is opened on first use: a folder's frame needs no GPU.
+/// A session that opens the GPU on first use: a frame from a folder needs none.
 struct LazySession<'a> {
     adapter: Option<&'a str>,
     session: Option<Session>,
@@ -143,7 +144,7 @@ fn steps(subject: Subject, gpu: &mut LazySession) -> Result<Arc<crate::capture::
     }
 }
 
-/// Returns the scene from which the frame is rendered, and the request.
+/// Returns the scene from which the subject's frame is rendered, and the capture request for it.
 fn made<'a>(name: &str, subject: &'a Subject) -> Result<(&'a Scene, &'a CaptureRequest), CliError> {
     match subject {
         Subject::Scene(scene) => Ok((&scene.scene, &scene.request)),

@@ -15,11 +15,12 @@ use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// The benchmarks that exist.
+/// Names of the benchmarks that exist.
 const BENCHMARKS: [&str; 6] = ["capture", "volumes", "truth", "history", "auto", "panels"];
 /// How many frames of each kind are timed.
 const RUNS: usize = 15;
-/// Timed once, the fastest of several techniques takes at most so many times as long as the one that seemed fastest.
+/// Techniques enter the comparison with `auto` where a single timed frame takes at most this factor of the fastest
+/// one's time.
 const MAY_WIN: f64 = 2.0;
 /// How many pixels' histories are timed.
 const PIXELS: usize = 200;
@@ -45,7 +46,7 @@ pub struct BenchArguments {
     frame: FrameOptions,
 }
 
-/// Runs the named benchmarks.
+/// Runs the command `bench`: the benchmarks that are named.
 pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     arguments.names.iter().try_for_each(|name| check_name(name))?;
     arguments.frame.refuse_draws("a benchmark times whole passes")?;
@@ -63,7 +64,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Times frames with snapshots against plain ones.
+/// Runs the benchmark `capture`: times frames with snapshots and without.
 fn capture(arguments: &BenchArguments) -> Result<(), CliError> {
     let scenes = scenes(arguments, || Ok(vec![arguments.scene_options.open("tori")?, bumpy_model(62, 31)?]))?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
@@ -85,7 +86,7 @@ fn check_name(name: &str) -> Result<(), CliError> {
     Err(CliError::Usage(format!("no benchmark is called `{}`: {instead}", name.escape_debug())))
 }
 
-/// Times the ground truth: rays a second, with building the hierarchies apart from tracing.
+/// Runs the benchmark `truth`: measures traced rays a second, and building the hierarchies apart from tracing.
 fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     let size = arguments.frame.picture_size();
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
@@ -109,7 +110,7 @@ fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Times the history of single pixels, against the frame to which they belong.
+/// Runs the benchmark `history`: times the histories of single pixels, and the frame to which they belong.
 fn history(arguments: &BenchArguments) -> Result<(), CliError> {
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
         let request = arguments.frame.request(&scene)?;
@@ -197,7 +198,7 @@ fn frame_ms(of: &MeasuredTechnique) -> f64 {
     median_ms(&of.frames).unwrap_or(f64::NAN)
 }
 
-/// Returns `auto`, z-fail, and those that are right and may be as fast as the fastest of these.
+/// Returns `auto`, z-fail, and the techniques that are right and may be as fast as the fastest of these.
 fn contenders(tried: &[MeasuredTechnique]) -> Vec<Choice> {
     let right = || tried.iter().filter(|one| one.error.wrong() == 0);
     let fastest = right().map(frame_ms).fold(f64::INFINITY, f64::min);
@@ -212,7 +213,7 @@ fn named(rivals: &BTreeMap<&str, usize>) -> String {
     if each.is_empty() { String::new() } else { format!("; that was {}", each.join(", ")) }
 }
 
-/// Returns the median and the ends of some ratios, as text.
+/// Returns the median, least and greatest of some ratios, as text.
 fn spread(mut ratios: Vec<f64>) -> String {
     ratios.sort_by(f64::total_cmp);
     match (ratios.first(), ratios.get(ratios.len() / 2), ratios.last()) {
@@ -229,7 +230,7 @@ fn scenes(
     if arguments.scene.is_empty() { own() } else { arguments.scene.iter().map(open).collect() }
 }
 
-/// Times the geometry of shadow volumes: what a mesh costs once, and what each new light costs.
+/// Runs the benchmark `volumes`: times the geometry of shadow volumes, once for a mesh and again for each new light.
 fn volumes(arguments: &BenchArguments) -> Result<(), CliError> {
     if arguments.scene.is_empty() {
         let small = bumpy_mesh(264, 133)?;
@@ -317,7 +318,7 @@ fn capture_lines(title: &str, cost: &CaptureCost) -> String {
     )
 }
 
-/// Returns the times of copying `count` bytes from one place in memory to another.
+/// Returns the times of several copies of `count` bytes from one place in memory to another.
 fn memory_copies(count: u64) -> Vec<Duration> {
     let count = usize::try_from(count).unwrap_or(usize::MAX);
     let source = vec![1u8; count];

@@ -41,7 +41,7 @@ pub struct CaptureArguments {
     page: Option<String>,
 }
 
-/// Captures a scene.
+/// Runs the command `capture`: renders a scene and stores its capture in a folder.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
     let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, timing, page } = arguments;
     if let Some(page) = page {
@@ -56,7 +56,7 @@ pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
 /// How many frames are timed where that is asked for, each with and without snapshots, after one of each that is not.
 const TIMING_RUNS: usize = 5;
 
-/// A capture whose input was checked.
+/// A capture that is ready to run: its input was checked.
 pub struct CaptureJob<'a> {
     started: Instant,
     scene: Scene,
@@ -65,20 +65,20 @@ pub struct CaptureJob<'a> {
     writing: CaptureOutput<'a>,
 }
 
-/// Where a capture is written, and what is written with it.
+/// The folder that a capture is written to, and what is written in addition.
 pub struct CaptureOutput<'a> {
-    /// The folder to make.
+    /// The folder that is made.
     pub folder: &'a Path,
-    /// It may replace a capture.
+    /// True where the folder may replace a capture.
     pub overwrite: bool,
-    /// The ground truth is traced too.
+    /// True where the ground truth is traced, too.
     pub truth: bool,
-    /// Path of the page that is written too.
+    /// Path of the page that is written, too; `None` for no page.
     pub page: Option<&'a str>,
 }
 
 impl<'a> CaptureJob<'a> {
-    /// Checks everything that can be wrong without a GPU, before one is opened.
+    /// Returns the job after checking, before the GPU is opened, everything that can be wrong without one.
     pub fn new(
         name: &str,
         scene_options: &SceneOptions,
@@ -92,7 +92,7 @@ impl<'a> CaptureJob<'a> {
         Ok(CaptureJob { started, scene, request, adapter: frame.adapter.as_deref(), writing })
     }
 
-    /// Captures into the folder and says so.
+    /// Writes the capture's folder and prints what it contains.
     pub fn run(self) -> Result<(), CliError> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;

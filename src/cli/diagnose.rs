@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The file by which a diagnosis' folder is recognised.
+/// Name of the file by which a folder is recognised as a diagnosis.
 const DOCUMENT: &str = "diagnosis.json";
 
 #[derive(Debug, Args)]
@@ -43,7 +43,7 @@ pub struct DiagnoseArguments {
     no_techniques: bool,
 }
 
-/// Diagnoses a frame.
+/// Runs the command `diagnose`: finds and prints the causes of wrong pixels of a frame.
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let DiagnoseArguments { scene_options, frame, output: folder, .. } = arguments;
     frame.refuse_draws("a diagnosis looks at draws by itself")?;
@@ -89,7 +89,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     verdict(&diagnosis)
 }
 
-/// Diagnoses another program's frame.
+/// Diagnoses a frame of another program and prints the result.
 fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliError> {
     if arguments.output.is_some() || arguments.fix.is_some() {
         let why = "another program drew this frame, and there is no scene to write: leave `-o` and `--fix` out";
@@ -132,7 +132,7 @@ fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
     Err(CliError::Wrong { pixels: all, because })
 }
 
-/// Checks that the folder does not exist, or is a diagnosis that may be replaced.
+/// Fails where the folder exists, unless it is a diagnosis that may be replaced.
 fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
     let name = folder.display();
     let is_empty = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
@@ -149,7 +149,7 @@ fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
 
 type DiagnosisFiles = Vec<(&'static str, Vec<u8>)>;
 
-/// Returns the files: pictures before and after, text and document.
+/// Returns the files of the diagnosis' folder: pictures before and after, text and JSON document.
 fn files(
     session: &mut Session,
     scene: &Scene,

@@ -164,7 +164,7 @@ fn heading(arguments: &DiffArguments, captures: [&Capture; 2]) -> String {
     ["A", "B"].into_iter().zip(folders.into_iter().zip(captures)).map(line).collect()
 }
 
-/// Writes the picture and says so.
+/// Writes a picture of the difference to `file` and prints its name.
 fn picture(difference: &Difference, [a, b]: [&Capture; 2], file: &str) -> Result<String, CliError> {
     let Some(shown) = difference.shown(a, b) else {
         return Ok("no picture: no pixel that both have differs\n".to_owned());

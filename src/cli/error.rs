@@ -5,7 +5,7 @@ use crate::scene::SceneError;
 use crate::session::SessionError;
 use crate::technique::ChoiceError;
 
-/// Why a command did not do what was asked.
+/// Why a command failed; decides the message and the program's exit code.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// A word of the command line is wrong: which, and how to fix it.
@@ -109,7 +109,7 @@ impl CliError {
         }
     }
 
-    /// Returns the line for standard error; `None` where there is nothing to say.
+    /// Returns the message for standard error; `None` where nothing is to be printed.
     pub fn line(&self) -> Option<String> {
         match self {
             CliError::ClosedOutput => None,

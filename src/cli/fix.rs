@@ -10,7 +10,7 @@ use crate::session::{CaptureRequest, Session};
 use crate::technique::Choice;
 use std::path::Path;
 
-/// Where a fixed scene is written.
+/// The scene file that a fixed scene is written to.
 pub struct FixOutput<'a> {
     file: &'a str,
     /// The name by which the scene was opened.
@@ -18,7 +18,7 @@ pub struct FixOutput<'a> {
 }
 
 impl<'a> FixOutput<'a> {
-    /// Checks, before long work, that the file may be written.
+    /// Returns the target after checking, before long work, that the scene file may be written and is not the source.
     pub fn new(file: &'a str, source: &'a str, overwrite: bool) -> Result<FixOutput<'a>, CliError> {
         let usage = |what: &str| Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())));
         let path = Path::new(file);

@@ -11,7 +11,7 @@ use crate::scene::nearest;
 use crate::technique::{Lesson, SettingSpec, Technique};
 use clap::{Args, CommandFactory};
 
-/// Pages by key, with what they explain.
+/// The pages that can be asked for: key, what the page explains, and its text.
 const PAGES: [(&str, &str, &str); 4] = [
     ("scene-file", "every key of a scene file (.toml)", include_str!("../../assets/help/scene-file.md")),
     (
@@ -40,7 +40,7 @@ pub struct HelpArguments {
     key: Option<String>,
 }
 
-/// Prints the explanation of a key; without one, the list of keys.
+/// Runs the command `help`: prints the explanation of a key, or without one the list of keys.
 pub fn run(arguments: &HelpArguments) -> Result<(), CliError> {
     match arguments.key.as_deref() {
         None => output::print(&overview()),

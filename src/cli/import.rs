@@ -70,12 +70,12 @@ impl ReaderOptions {
 }
 
 impl ImportTarget {
-    /// Checks, before any work, that the folder can be written.
+    /// Fails, before any work, where the folder can't be written.
     pub fn check(&self) -> Result<(), CliError> {
         Ok(self.output.as_deref().map_or(Ok(()), |folder| disk::check_target(folder, self.overwrite))?)
     }
 
-    /// Prints and writes what was asked for.
+    /// Prints the list of the frame's events where asked for, and writes the frame's folder where one was named.
     pub fn deliver(&self, frame: RawFrame, name: &str) -> Result<(), CliError> {
         if self.list {
             output::print(&import::list(&frame))?;
@@ -96,7 +96,7 @@ impl ImportTarget {
     }
 }
 
-/// Returns what was written, and where the frame is not to be trusted.
+/// Returns text about what was written to the folder, and where the frame is not to be trusted.
 fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
     let [width, height] = capture.size;
     let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();
@@ -134,12 +134,12 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
     text
 }
 
-/// Does `work` while a bar shows how far RenderDoc has come.
+/// Runs `work` while a progress bar shows how far RenderDoc is, and returns its result.
 pub fn with_bar(work: impl FnOnce(&Progress) -> Result<RawFrame, ImportError>) -> Result<RawFrame, CliError> {
     Ok(progress::with_bar("replay", &Progress::default(), work)?)
 }
 
-/// Reads a capture and delivers its frame.
+/// Runs the command `import`: reads a RenderDoc capture and prints or stores its frame.
 pub fn run(arguments: &ImportArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     let options = arguments.reader.options(&arguments.target);

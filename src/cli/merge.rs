@@ -20,7 +20,7 @@ Parts of a run side by side, here four; a part that was killed is run again alon
   then           stencilscope report merge part-*.json -o stress.md
 ";
 
-/// A larger file is not one of results.
+/// The largest size of a file of results, bytes; larger files are refused.
 const LARGEST_FILE: u64 = 256 << 20;
 
 #[derive(Debug, Args)]
@@ -51,7 +51,7 @@ pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
     }
 }
 
-/// Prints and writes results of stress cases in their formats.
+/// Prints results of stress cases, and writes them in the formats asked for.
 fn deliver_stress(merged: &StressResults, command: &str, results: &ReportResults) -> Result<(), CliError> {
     let [json, csv, markdown, page] = results.targets();
     if csv.is_some() {
@@ -67,7 +67,7 @@ fn read(file: &str) -> Result<String, CliError> {
     String::from_utf8(bytes).map_err(|_| unread("it is no text: give the JSON of a part".to_owned()))
 }
 
-/// Does any of the texts have what only results of stress cases have?
+/// Returns whether any of the files' texts is of stress results and not of a report.
 fn is_stress(texts: &[(String, String)]) -> bool {
     let is =
         |text: &str| serde_json::from_str(text).is_ok_and(|value: serde_json::Value| value.get("summary").is_some());

@@ -39,7 +39,7 @@ use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::Path;
 
-/// The commands that exist.
+/// Names of the commands that exist.
 const COMMANDS: [&str; 15] = [
     "view", "capture", "animate", "page", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import",
     "record", "bench", "pictures", "help",
@@ -156,14 +156,14 @@ fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Is a first word no command, no scene and no file? An extension says that a file is meant.
+/// Returns whether the first word is no command, no scene and no file; a word with an extension counts as a file.
 fn is_nothing(word: &str) -> bool {
     let is_scene = Builtin::named(word).is_some() || ShippedFrame::named(word).is_some();
     let is_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
     !(word.is_empty() || word.starts_with('-') || COMMANDS.contains(&word) || is_scene || is_file)
 }
 
-/// Returns the message about such a word: the nearest name, and what there is.
+/// Returns the error message about a first word that is nothing: the nearest name, and which names there are.
 fn unknown(word: &str) -> String {
     let scenes = builtin::ALL.iter().map(|builtin| builtin.name).chain(SHIPPED.iter().map(|shipped| shipped.name));
     let known: Vec<&str> = COMMANDS.into_iter().chain(scenes).collect();

@@ -13,9 +13,9 @@ use std::path::Path;
 
 /// The largest width or height of a picture, pixels.
 const LARGEST: u32 = 16_384;
-/// Used where neither the command line nor the scene names a technique.
+/// The technique where neither the command line nor the scene names one.
 const DEFAULT_TECHNIQUE: &str = "auto";
-/// Used where the command line names no size.
+/// Width and height of the picture in pixels where the command line names no size.
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 
 /// How a scene is completed, seen and lit.
@@ -59,7 +59,7 @@ pub struct SceneOptions {
     time: SceneTime,
 }
 
-/// The time or times at which a scene is rendered.
+/// The time or times in seconds at which a scene is rendered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum SceneTime {
     /// One time, seconds.
@@ -68,10 +68,10 @@ enum SceneTime {
     Moving { from: f64, to: f64, frames: Option<usize> },
 }
 
-/// The largest number of frames.
+/// The largest number of frames that a range of times may have.
 const MOST_FRAMES: usize = 10_000;
 
-/// Parses `SECONDS`, `A..B` or `A..B:N`.
+/// Parses `--time`: `SECONDS`, `A..B` or `A..B:N`.
 fn when(text: &str) -> Result<SceneTime, String> {
     let Some((from, rest)) = text.split_once("..") else { return finite(text).map(SceneTime::At) };
     let (to, frames) = rest.split_once(':').map_or((rest, None), |(to, frames)| (to, Some(frames)));
@@ -113,7 +113,7 @@ impl SceneOptions {
         OpenSpec { name: name.to_owned(), floor: !self.no_floor, up }
     }
 
-    /// Is the scene to be used unchanged?
+    /// Returns whether no option changes the scene.
     fn is_untouched(&self) -> bool {
         let SceneOptions { no_floor, z_up, eye, target, up, fov, near, far, light, sun, off, time } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
@@ -211,7 +211,7 @@ impl SceneOptions {
     }
 }
 
-/// The frame that a command works on.
+/// The frame that a command works on: of a scene to be rendered, or stored in a folder.
 pub enum Subject {
     /// A scene that is to be rendered.
     Scene(Box<SceneSubject>),
@@ -219,7 +219,7 @@ pub enum Subject {
     Folder(RunFrame),
 }
 
-/// A scene, and how it is rendered.
+/// A scene, with the options by which it is rendered.
 pub struct SceneSubject {
     /// The scene at time 0, with all motions.
     pub loaded: Scene,
@@ -339,13 +339,13 @@ impl FrameOptions {
     }
 }
 
-/// Returns a technique by name.
+/// Returns the technique of this name, or an error that lists the names.
 pub fn technique_named(name: &str) -> Result<Technique, CliError> {
     let request = TechniqueRequest { name: name.to_owned(), settings: BTreeMap::new() };
     Ok(Choice::parse(&request)?.technique())
 }
 
-/// Parses `X,Y,Z`, which must be finite.
+/// Parses a point or vector `X,Y,Z` of finite numbers.
 pub fn point(text: &str) -> Result<DVec3, String> {
     let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>()?;
     let [x, y, z] = numbers[..] else {
@@ -360,7 +360,7 @@ pub fn finite(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "give finite numbers".to_owned())
 }
 
-/// Parses `WxH`, each from 1 to 16 384.
+/// Parses a picture size `WxH` in pixels, each from 1 to 16 384.
 pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
     match sides {
@@ -371,7 +371,7 @@ pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Parses `X,Y` of a pixel.
+/// Parses the column and row of a pixel, `X,Y`.
 pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(',').map(|(x, y)| [x.trim().parse(), y.trim().parse()]);
     match sides {
@@ -380,7 +380,7 @@ pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Parses `KEY=VALUE`.
+/// Parses `KEY=VALUE` into the key and the value of a setting.
 pub fn setting(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),

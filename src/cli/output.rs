@@ -13,7 +13,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
     })
 }
 
-/// Checks, before long work, that a file can be made at this path.
+/// Fails, before long work, where a file can't be made at this path.
 pub fn check_target(path: &str) -> Result<(), CliError> {
     let path_of = std::path::Path::new(path);
     let folder = path_of.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -39,7 +39,7 @@ pub fn write(path: &str, bytes: &[u8]) -> Result<(), CliError> {
     crate::files::write_whole(std::path::Path::new(path), bytes).map_err(failed)
 }
 
-/// Writes to standard error something that is not a result.
+/// Writes `text` to standard error: a remark that is not part of the result.
 pub fn note(text: &str) {
     // Standard error may be closed; then nothing reads the note.
     let _ = writeln!(std::io::stderr(), "stencilscope: {text}");

@@ -11,7 +11,7 @@ use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Text below its options.
+/// Examples that are printed below the options in the command's help.
 pub const EXAMPLES: &str = "\
 A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html
 A frame that is there:  stencilscope page DIR -o frame.html
@@ -39,7 +39,7 @@ pub struct PageArguments {
     truth: bool,
 }
 
-/// Writes the page and says what it is.
+/// Runs the command `page`: writes the frame as a web page and prints its file's name.
 pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
     check_target(output, *overwrite)?;
@@ -56,7 +56,7 @@ pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     output::print(&format!("{output}: {scene}, {technique}, {width}x{height}, {passes} passes, {bytes}\n"))
 }
 
-/// Checks, before long work, that the file may be made.
+/// Fails, before long work, where the file must not or can't be written.
 pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     let name = file.escape_debug();
     let ending = Path::new(file).extension().unwrap_or_default().to_ascii_lowercase();
@@ -70,7 +70,7 @@ pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Returns the frame; one from a folder needs no GPU unless its truth is asked for.
+/// Returns the rendered or stored frame; one from a folder needs no GPU unless its truth is asked for.
 fn made(subject: Subject, options: &FrameOptions, truth: bool) -> Result<RunFrame, CliError> {
     let mut session = match &subject {
         Subject::Folder(frame) if !truth || frame.capture.error().is_some() => None,

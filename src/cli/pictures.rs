@@ -77,7 +77,7 @@ mod shots {
     /// Stress cases, in each of which some technique breaks; the first is the one whose rows are shown.
     const STRESSED: [&str; 3] = ["near-far", "world-offset", "nested"];
 
-    /// The content of a picture.
+    /// One of the pictures that the command draws: its name, and what the window shows in it.
     struct PictureSubject {
         name: &'static str,
         scene: &'static str,
@@ -185,7 +185,7 @@ mod shots {
         Ok(())
     }
 
-    /// Returns the message where no picture's name has the word: which names there are.
+    /// Returns the error message where no picture's name contains the word `only`: which names there are.
     fn nothing_named(only: &str) -> String {
         let names: Vec<&str> = shots().iter().map(|shot| shot.name).chain([TOUR]).collect();
         format!("no picture's name has `{only}`: give `--only` a part of one of {}", names.join(", "))

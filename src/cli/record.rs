@@ -30,7 +30,7 @@ pub struct RecordArguments {
     command: Vec<String>,
 }
 
-/// Runs a program until it has shown the frame, and writes that.
+/// Runs the command `record`: runs a program under RenderDoc until it has shown the frame, and prints or stores that.
 pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     arguments.keep.as_ref().map_or(Ok(()), |file| output::check_target(&file.to_string_lossy()))?;

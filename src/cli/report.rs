@@ -61,7 +61,8 @@ enum MergedFiles {
     Merge(MergeArguments),
 }
 
-/// Measures and prints; `command` is the command line, for the page.
+/// Runs the command `report`: measures techniques and prints or writes the results; `command` is the command line, for
+/// the page.
 pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     if let Some(MergedFiles::Merge(arguments)) = &arguments.merge {
         return merge::run(arguments, command);

@@ -32,7 +32,7 @@ impl ReportResults {
         [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
     }
 
-    /// Checks, before long work, that all can be written.
+    /// Fails, before long work, where one of the files can't be written.
     pub fn check(&self) -> Result<(), CliError> {
         results::check(&self.targets().each_ref(), &self.plot)
     }
@@ -56,12 +56,12 @@ impl ReportResults {
     }
 }
 
-/// Does a file's extension ask for pixels?
+/// Returns whether a file's extension is that of a PNG picture.
 pub fn is_png(file: &str) -> bool {
     Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
 }
 
-/// Parses the path of a plot, whose extension says what to write.
+/// Parses the path of a plot's file, whose extension must be that of a format that plots can have.
 pub fn plot_file(text: &str) -> Result<String, String> {
     let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
     if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }

@@ -24,7 +24,7 @@ pub fn files<'a>(forms: &[&'a ResultTarget], plot: &'a Option<String>) -> Vec<&'
     of_forms.chain(plot.as_deref()).collect()
 }
 
-/// Checks, before long work, that all results can be written.
+/// Fails, before long work, where one of the results' files can't be written.
 pub fn check(forms: &[&ResultTarget], plot: &Option<String>) -> Result<(), CliError> {
     let files = files(forms, plot);
     files.iter().try_for_each(|file| output::check_target(file))?;

@@ -5,7 +5,7 @@ use super::{CliError, capture, output};
 use clap::Args;
 use std::path::Path;
 
-/// The folder for a capture that is made in place of a window.
+/// Name of the folder for a capture that is made where no window can open.
 const FALLBACK_FOLDER: &str = "stencilscope-out";
 
 #[derive(Debug, Args)]
@@ -79,7 +79,7 @@ pub mod window {
         }
     }
 
-    /// Everything that can be wrong with the arguments is found before a window is made.
+    /// Returns the request for the window, after checking everything that can be wrong with the arguments.
     fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
         let why =
             "a window draws many frames, of which the debugger's own key records one; `capture` brackets its frame";

@@ -3,9 +3,9 @@
 use std::fmt;
 
 named_enum! {
-    /// Why pixels are wrong, in our own frames and in those of other programs. In the order of families: volumes, meshes,
-    /// counts, planes, maps, silhouettes, numbers, flags, states. Rules of other programs' frames are the table in
-    /// [`recorded`](super::frame_causes).
+    /// Why pixels are wrong, in our own frames and in those of other programs, ordered by families: volumes, meshes,
+    /// counts, planes, maps, silhouettes, numbers, flags, states. The rules for other programs' frames are the table in
+    /// [`frame_causes`](super::frame_causes).
     pub enum Cause {
         /// Z-pass starts to count inside a volume.
         EyeInVolume = "eye-in-volume",
@@ -101,7 +101,7 @@ named_enum! {
 }
 
 impl Cause {
-    /// Returns what the cause is and what to do about it, for a reader who does not know it.
+    /// Returns sentences that explain the cause and what to do about it, for a reader who does not know it.
     pub fn meaning(self) -> &'static str {
         match self {
             Cause::EyeInVolume => {

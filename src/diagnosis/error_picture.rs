@@ -11,16 +11,17 @@ use crate::picture::colors::{self, Rgb};
 const INK: Rgb = [0xd9, 0xdc, 0xe3];
 /// Colour behind numbers.
 const PAPER: Rgb = colors::BACKGROUND;
-/// Brightness of the captured picture under the marks.
+/// Factor by which the captured picture is darkened under the marks.
 const GROUND: f32 = 0.45;
-/// Pixels from a region to its frame, and the frame's width.
+/// Distance in pixels from a region to its frame; `WIDTH` is the frame's width.
 const GAP: u32 = 2;
 const WIDTH: u32 = 1;
-/// Pixels along the side of a dot of a number.
+/// Side in pixels of a dot of the numbers' dot font.
 const DOT: u32 = 2;
 
 impl Diagnosis {
-    /// Draws the regions over a capture that was compared with the truth, numbered as in the text.
+    /// Draws the wrong pixels of a capture in colour over a grey picture, and frames and numbers the regions as in the
+    /// text.
     pub fn shown(&self, capture: &Capture) -> Picture {
         let mut picture = wrong_pixels(capture);
         for (index, region) in self.regions.iter().enumerate() {
@@ -30,7 +31,7 @@ impl Diagnosis {
     }
 }
 
-/// Returns the last picture of a capture in grey, with its wrong pixels in colour.
+/// Draws the final picture of a capture in grey, with its wrong pixels in colour.
 pub fn wrong_pixels(capture: &Capture) -> Picture {
     let mut picture = Picture::filled(capture.size, colors::NOTHING);
     let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));

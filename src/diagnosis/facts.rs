@@ -15,40 +15,40 @@ use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
 use crate::truth::{OccluderHit, SeenSurface, Tracer};
 use std::collections::BTreeSet;
 
-/// One frame. It does not contain whether, or how, an error was injected.
+/// Everything that rules may look at in one frame. It does not say whether, or how, an error was injected.
 pub(crate) struct FrameFacts<'a> {
-    /// The scene as the technique was given it.
+    /// The scene as it was given to the technique.
     pub scene: &'a Scene,
     /// The technique and settings that were used.
     pub choice: &'a Choice,
     /// The plan that was run.
     pub plan: &'a FramePlan,
     pub capture: &'a Capture,
-    /// Follows rays through the scene as it should be.
+    /// Traces rays through the scene as it should be.
     pub tracer: &'a Tracer,
     /// Facts of the objects' meshes, parallel to the scene's objects.
     pub meshes: &'a [MeshFacts],
-    /// Which triangles of each object cast: by light, parallel to the scene's objects.
+    /// For each light and each of the scene's objects, which triangles cast.
     pub casting: &'a [Vec<Casters>],
 }
 
-/// A region with a few of its pixels examined closely.
+/// A region of wrong pixels, with a few of them examined closely.
 pub(crate) struct RegionSamples<'a> {
     pub region: &'a ConnectedRegion,
     pub samples: Vec<PixelSample>,
 }
 
-/// One pixel of a region, examined closely.
+/// One wrong pixel, examined closely.
 pub(crate) struct PixelSample {
     pub pixel: [u32; 2],
     pub seen: Option<SeenSurface>,
     /// The occluders that rays find between light and surface, the nearest to the surface first.
     pub between: Vec<OccluderHit>,
-    /// The pixel's fragments; `None` where the technique leaves none that explain its shadow.
+    /// The pixel's history; `None` where the technique leaves no events that explain its shadow.
     pub history: Option<PixelHistory>,
 }
 
-/// A cause that the evidence suggests.
+/// A cause for which a rule has found evidence.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SuspectedCause {
     pub cause: Cause,
@@ -57,7 +57,7 @@ pub(crate) struct SuspectedCause {
     pub fixes: Vec<Fix>,
     /// The number of samples that show it.
     pub shown_by: usize,
-    /// How specific the evidence is to this very frame: larger is named before smaller.
+    /// How specific the evidence is to this frame: between equal results, the larger is named first.
     pub weight: usize,
 }
 
@@ -67,21 +67,21 @@ impl SuspectedCause {
     }
 }
 
-/// Looks for the evidence of one cause.
+/// A rule that looks for evidence of one cause in a region; `None` where there is none.
 pub(crate) type CauseRule = fn(&FrameFacts, &RegionSamples) -> Option<SuspectedCause>;
 
 impl<'a> FrameFacts<'a> {
-    /// The settings of a technique that counts volumes; `None` for another.
+    /// Returns the settings of shadow volumes; `None` for a technique that counts none.
     pub fn volumes(&self) -> Option<VolumeSettings> {
         self.choice.volumes()
     }
 
-    /// The settings of shadow maps; their defaults for another technique.
+    /// Returns the settings of shadow maps; the defaults for another technique.
     pub fn map(&self) -> MapSettings {
         MapSettings::read(self.choice.settings())
     }
 
-    /// Texels along each side of maps, textures or silhouettes; 0 where the technique has none.
+    /// Returns the texels along each side of maps, textures or silhouettes; 0 where the technique has none.
     pub fn texels(&self) -> f64 {
         f64::from(self.choice.texels().unwrap_or(0))
     }
@@ -90,12 +90,12 @@ impl<'a> FrameFacts<'a> {
         self.choice.technique()
     }
 
-    /// Returns the object of that name as the technique was given it, with its index.
+    /// Returns the index of the object of that name, and the object; `None` where there is none.
     pub fn object(&self, name: &str) -> Option<(usize, &'a Object)> {
         self.scene.objects.iter().enumerate().find(|(_, object)| object.name == name)
     }
 
-    /// The passes of a light that are part of the frame.
+    /// Returns the passes of a light that are part of the frame, without its mask.
     pub fn passes(&self, light: usize) -> impl Iterator<Item = &'a Pass> {
         self.plan.passes.iter().filter(move |pass| pass.timed && pass.light.is_some_and(|of| of.0 == light))
     }
@@ -124,35 +124,35 @@ impl<'a> FrameFacts<'a> {
         })
     }
 
-    /// The depth test that only nearer fragments pass.
+    /// Returns the depth test that only nearer fragments pass.
     fn nearer(&self) -> wgpu::CompareFunction {
         let is_reversed = self.plan.depth.mapping.is_reversed();
         if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
     }
 
     /// Returns whether a triangle of a caster casts for a light, as settings and meshes decide.
-    pub fn casts(&self, light: usize, met: &OccluderHit) -> bool {
-        match self.casting[light][met.place.object] {
-            Casters::LightFacing => met.faces_light,
-            Casters::LightBackFacing => !met.faces_light,
+    pub fn casts(&self, light: usize, hit: &OccluderHit) -> bool {
+        match self.casting[light][hit.place.object] {
+            Casters::LightFacing => hit.faces_light,
+            Casters::LightBackFacing => !hit.faces_light,
             Casters::All => true,
         }
     }
 
-    /// Returns the width of a pixel in metres at a distance along the view's axis.
+    /// Returns the width of a pixel in metres at a distance (metres) along the view's axis.
     pub fn pixel_width(&self, depth: f64) -> f64 {
         2.0 * self.scene.camera.half_height_at(depth) / f64::from(self.plan.size[1])
     }
 
-    /// The least angle that a pixel's height takes in the view, radians.
+    /// Returns the angle in radians that a pixel's height takes in the view.
     pub fn pixel_angle(&self) -> f64 {
         let [near, away] = [0.0, 1.0].map(|depth| self.pixel_width(depth));
         (away - near).max(1e-9)
     }
 
     /// Returns the names of the objects that rays hit.
-    pub fn names(&self, met: &[OccluderHit]) -> BTreeSet<String> {
-        met.iter().map(|met| self.tracer.name(met.place).to_owned()).collect()
+    pub fn names(&self, hits: &[OccluderHit]) -> BTreeSet<String> {
+        hits.iter().map(|hit| self.tracer.name(hit.place).to_owned()).collect()
     }
 }
 
@@ -173,7 +173,8 @@ impl RegionSamples<'_> {
         self.region.key.kind == RegionKind::TooDark
     }
 
-    /// Returns how many samples show something, with what `look` returned for the first of them.
+    /// Returns what `look` returned for the first sample for which it is not `None`, and for how many samples that is
+    /// so.
     pub fn shown<T>(&self, look: impl FnMut(&PixelSample) -> Option<T>) -> Option<(T, usize)> {
         let mut found: Vec<T> = self.samples.iter().filter_map(look).collect();
         let count = found.len();
@@ -182,12 +183,12 @@ impl RegionSamples<'_> {
 }
 
 impl PixelSample {
-    /// The pixel's centre.
+    /// Returns the pixel's centre in pixels.
     pub fn center(&self) -> [f64; 2] {
         self.pixel.map(|n| f64::from(n) + 0.5)
     }
 
-    /// Returns what a caster's volume added to the count of a light here, as if no count had limits.
+    /// Returns what a caster's volume added to a light's count at this pixel, as if the count had no limits.
     pub fn counted(&self, light: usize, caster: &str) -> i32 {
         self.volume_events(light)
             .filter(|(_, one)| one.caster.as_deref() == Some(caster))
@@ -195,7 +196,7 @@ impl PixelSample {
             .sum()
     }
 
-    /// Returns the fragments of a light's volumes here.
+    /// Returns the events of a light's volume faces at this pixel.
     pub fn volume_events(
         &self,
         light: usize,
@@ -204,15 +205,15 @@ impl PixelSample {
         all.filter(move |(event, _)| event.light == Some(light) && event.is_of_volume())
     }
 
-    /// Returns the casters whose volume was counted otherwise than their triangles between light and surface require:
-    /// name, as counted, and as it should be.
+    /// Returns the casters whose volume added another number to the count than it has casting triangles between light
+    /// and surface: name, counted number, expected number.
     pub fn miscounted(&self, facts: &FrameFacts, light: usize) -> Vec<(String, i32, i32)> {
         if self.history.is_none() || self.seen.is_none() {
             return Vec::new();
         }
         let mut found = Vec::new();
         for object in facts.scene.objects.iter().filter(|object| object.casts) {
-            let is_of = |met: &&OccluderHit| facts.tracer.name(met.place) == object.name && facts.casts(light, met);
+            let is_of = |hit: &&OccluderHit| facts.tracer.name(hit.place) == object.name && facts.casts(light, hit);
             let expected = self.between.iter().filter(is_of).count() as i32;
             let counted = self.counted(light, &object.name);
             if counted != expected {
@@ -223,12 +224,12 @@ impl PixelSample {
     }
 }
 
-/// Writes a number with a noun: `3 volumes`.
+/// Returns a number with a noun: `3 volumes`.
 pub(crate) fn amount(count: u64, noun: &str) -> String {
     format!("{} {noun}{}", crate::numbers::count(count), if count == 1 { "" } else { "s" })
 }
 
-/// Writes a list: `box, ring and floor`.
+/// Returns names as a list: `box, ring and floor`; `nothing` without any.
 pub(crate) fn listed<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
     let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
     match names.split_last() {

@@ -7,19 +7,19 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// Changes of settings, scene and plan; empty where nothing helps.
+/// A change of technique, settings, scene, plan or picture size that may remove a fault; empty where nothing helps.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Fix {
-    /// Another technique. Settings that it shares with the one before stay as they are.
+    /// The technique to use instead; settings that both have stay as they are. `None` for no change.
     pub technique: Option<Technique>,
-    /// Settings, as in `--set`.
+    /// Settings to change: values by keys.
     pub settings: BTreeMap<String, String>,
     /// Changes of the scene.
     pub scene: Vec<SceneEdit>,
     /// Changes of the plan, for errors that no setting of ours could cause.
     pub plan: Vec<PlanEdit>,
-    /// Draws a picture this many times as large along each side. An odd number, so that each pixel's centre stays the
-    /// centre of one.
+    /// Draw a picture this many times as large along each side: an odd number, so that each pixel's centre stays the
+    /// centre of one. `None` for no change.
     pub larger: Option<u32>,
 }
 
@@ -54,14 +54,14 @@ pub struct SceneEdit {
     pub object: usize,
     /// Its name.
     pub name: String,
-    /// What is changed.
+    /// The change.
     pub change: ObjectChange,
 }
 
 named_enum! {
-    /// What is changed in an object.
+    /// A change of an object.
     pub enum ObjectChange {
-        /// Vertices at bit-equal positions are merged.
+        /// Merges vertices at bit-equal positions.
         Weld = "weld",
         /// Sets `receives = true`.
         Receives = "receives",
@@ -73,7 +73,7 @@ named_enum! {
 }
 
 named_enum! {
-    /// A change of a plan.
+    /// A change of a plan, for errors that no setting could cause.
     pub enum PlanEdit {
         /// Draws the light caps that are missing.
         DrawLightCaps = "draw-light-caps",
@@ -87,7 +87,7 @@ named_enum! {
 }
 
 impl PlanEdit {
-    /// Returns the part of a volume that it draws; `None` for the others.
+    /// Returns the part of volumes that the change draws; `None` for [`PlanEdit::Refit`].
     pub fn part(self) -> Option<DrawPart> {
         match self {
             PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(DrawPart::LightCap),
@@ -128,7 +128,7 @@ impl Fix {
         *self == Fix::default()
     }
 
-    /// Returns both fixes as one; where they differ on a setting, `other` decides.
+    /// Returns both fixes as one; where both change technique, size or a setting, `other` decides.
     pub fn and(&self, other: &Fix) -> Fix {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
@@ -143,7 +143,7 @@ impl Fix {
         both
     }
 
-    /// Applies its changes of scene and settings. Settings that another technique shares stay as they are.
+    /// Applies the changes of scene, technique and settings.
     pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), FixError> {
         for SceneEdit { object, name, change } in &self.scene {
             let missing = || FixError::NoObject { object: *object, name: name.clone() };
@@ -162,7 +162,8 @@ impl Fix {
         self.choose(choice)
     }
 
-    /// Applies its changes of technique and settings alone.
+    /// Applies the changes of technique and settings alone. A new technique keeps the settings that both have, except
+    /// `size`.
     pub fn choose(&self, choice: &mut Choice) -> Result<(), FixError> {
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
@@ -180,12 +181,12 @@ impl Fix {
         Ok(())
     }
 
-    /// Returns the size of the picture that it draws in place of `size`.
+    /// Returns the size of the picture to draw in place of `size`.
     pub fn size(&self, size: [u32; 2]) -> [u32; 2] {
         size.map(|side| side.saturating_mul(self.larger.unwrap_or(1)))
     }
 
-    /// Applies its changes to a plan; `fresh` is the technique's own plan of the same scene and settings.
+    /// Applies the changes of the plan; `fresh` is the technique's own plan of the same scene and settings.
     pub fn edit(&self, plan: &mut FramePlan, fresh: &FramePlan) {
         for edit in &self.plan {
             match edit {
@@ -201,12 +202,13 @@ impl Fix {
         }
     }
 
-    /// Returns whether it changes nothing but technique and settings, which the window can change.
+    /// Returns whether it changes technique and settings only, which the window can do.
     pub fn is_a_choice(&self) -> bool {
         self.scene.is_empty() && self.plan.is_empty() && self.larger.is_none() && !self.is_empty()
     }
 
-    /// Returns how much it changes: a setting less than an object, an object less than a technique.
+    /// Returns how much it changes, for choosing the smallest fix: a setting weighs less than a scene edit, that less
+    /// than a technique.
     pub fn weight(&self) -> usize {
         let [technique, larger] = [self.technique.is_some(), self.larger.is_some()].map(usize::from);
         self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * technique + 20 * larger
@@ -237,7 +239,7 @@ impl Fix {
     }
 }
 
-/// Adds the draws of a part that the plan lacks.
+/// Adds the draws of a part that `plan` lacks and `fresh` has.
 fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<DrawPart>) {
     for (pass, fresh) in plan.passes.iter_mut().zip(&fresh.passes) {
         let missing = fresh.draws.iter().filter(|draw| Some(draw.part) == part);
@@ -249,7 +251,7 @@ fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<DrawPart>)
     }
 }
 
-/// Draws caps as the technique does: the triangles of the surface in its own vertex order.
+/// Replaces cap draws by those of the technique's own plan, whose vertices are in the surface's order.
 fn draw_caps_in_order(plan: &mut FramePlan, fresh: &FramePlan) {
     for (pass, fresh_pass) in plan.passes.iter_mut().zip(&fresh.passes) {
         for draw in pass.draws.iter_mut().filter(|draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap)) {

@@ -16,18 +16,18 @@ use glam::DVec4;
 use serde_json::json;
 use wgpu::StencilOperation as Operation;
 
-/// How a cause is looked for in another program's frame.
+/// A rule that looks for one cause in another program's frame.
 struct FrameRule {
     cause: Cause,
-    /// What it is and what to do in the program's own terms, where [`Cause::meaning`] does not apply.
+    /// What the cause is and what to do, in the other program's terms; `None` where [`Cause::meaning`] applies.
     meaning: Option<&'static str>,
-    /// Looks for evidence: returns it in numbers, with the plan with that one thing changed, for volumes of a light at
-    /// this position.
+    /// Looks for evidence in the volumes of a light at this position: returns it in numbers, with the plan in which
+    /// only this is changed.
     look: fn(&CountingDraws, DVec4) -> Option<(String, FramePlan)>,
 }
 
-/// The rules of every cause that states and volumes can show. No rule knows a program's scene or settings, so other
-/// causes can't be found.
+/// The rules for the causes that can be seen in raster states and volumes. Other causes can't be found, as scene and
+/// settings of the program are not known.
 const RULES: [FrameRule; 10] = [
     FrameRule {
         cause: Cause::FarClip,
@@ -77,18 +77,18 @@ fn meaning(cause: Cause) -> &'static str {
     RULES.iter().find(|rule| rule.cause == cause).and_then(|rule| rule.meaning).unwrap_or(cause.meaning())
 }
 
-/// A cause that a foreign frame's data suggests.
+/// A cause that the data of another program's frame suggest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSuspicion {
     /// The suspected cause.
     pub cause: Cause,
     /// The evidence, in numbers.
     pub evidence: String,
-    /// The frame's plan without the cause.
+    /// The frame's plan with the cause removed.
     pub fixed: FramePlan,
 }
 
-/// A suspected cause whose changed plan was run.
+/// A suspected cause, with the result of running the frame without it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameCauseFound {
     /// The cause.
@@ -97,48 +97,48 @@ pub struct FrameCauseFound {
     pub light: LightId,
     /// The evidence, in numbers.
     pub evidence: String,
-    /// What the run has shown.
+    /// What the run without the cause has shown.
     pub proof: Proof,
-    /// Pixels of the light that are wrong without the cause.
+    /// Number of the light's pixels that are still wrong without the cause.
     pub pixels_left: u64,
     /// Causes that were removed together with it; empty where it was tried alone.
     pub together_with: Vec<Cause>,
 }
 
 impl FrameCauseFound {
-    /// Returns its names, its light and what its run has shown: `far-clip (light 1), part: 10 pixels left`.
+    /// Returns cause, light and proof in a line: `far-clip (light 1), part: 10 pixels left`.
     pub fn title(&self) -> String {
         let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
         let (name, light, proof) = (self.cause.name(), self.light.name(), self.proof.name());
         format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
     }
 
-    /// Returns what it is and what to do; of all causes where it was tried with others.
+    /// Returns sentences that explain the cause and what to do, also for causes that were removed together with it.
     pub fn meaning(&self) -> String {
         let all = std::iter::once(&self.cause).chain(&self.together_with);
         all.map(|cause| meaning(*cause)).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// What is wrong in another program's frame.
+/// The diagnosis of another program's frame: wrong pixels and their causes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameDiagnosis {
     /// Name of the frame.
     pub scene: String,
-    /// For each light: the numbers of its pixels by finding, and the largest wrong region.
+    /// For each light, its error counts and its largest wrong region.
     pub lights: Vec<(ErrorCounts, Option<WrongRegion>)>,
     /// Causes, the proven ones first.
     pub causes: Vec<FrameCauseFound>,
-    /// Wrong pixels where the frame is run again unchanged: it should be as many.
+    /// Number of wrong pixels when the frame is run again unchanged; it should equal [`FrameDiagnosis::wrong`].
     pub wrong_again: u64,
-    /// Names of surfaces at which no volume begins: they are taken to cast no shadow, which the frame can't confirm.
+    /// Names of surfaces at which no volume begins, and which are assumed to cast no shadow.
     pub silent: Vec<String>,
     /// Names of casters that the picture does not show.
     pub unseen: Vec<String>,
 }
 
 impl FrameDiagnosis {
-    /// The number of wrong pixels of all lights.
+    /// Returns the number of wrong pixels of all lights.
     pub fn wrong(&self) -> u64 {
         self.lights.iter().map(|(error, _)| error.wrong()).sum()
     }
@@ -236,7 +236,8 @@ impl FrameDiagnosis {
     }
 }
 
-/// Returns what may be wrong with the shadows of a light at `position`, from states and volumes alone.
+/// Returns the causes for which states and volumes give evidence, for the shadows of a light at this homogeneous
+/// `position`.
 pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<FrameSuspicion> {
     RULES.iter().filter_map(|rule| suspicion(rule.cause, plan, light, position)).collect()
 }
@@ -248,7 +249,7 @@ pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4
     Some(FrameSuspicion { cause, evidence, fixed })
 }
 
-/// The draws that count a light's volumes.
+/// The draws of a plan that count one light's volumes.
 struct CountingDraws<'a> {
     plan: &'a FramePlan,
     light: LightId,
@@ -259,7 +260,7 @@ fn counts(operation: Operation) -> bool {
     matches!(operation, IncrementClamp | IncrementWrap | DecrementClamp | DecrementWrap)
 }
 
-/// Returns whether a state counts behind the surface, and in front of it.
+/// Returns whether a raster state counts behind the surface, and whether it counts in front of it.
 fn sides(raster: &RasterState) -> [bool; 2] {
     let faces = [&raster.stencil.front, &raster.stencil.back];
     [faces.iter().any(|face| counts(face.depth_fail_op)), faces.iter().any(|face| counts(face.pass_op))]
@@ -277,7 +278,7 @@ impl CountingDraws<'_> {
             .filter(|(_, draw)| draw.part.is_of_volume())
     }
 
-    /// Returns the plan with the states of the counting draws changed.
+    /// Returns the plan with the raster states of the counting draws changed.
     fn with_states(&self, change: impl Fn(&mut RasterState)) -> FramePlan {
         let mut plan = self.plan.clone();
         for pass in plan.passes.iter_mut().filter(|pass| pass.light == Some(self.light)) {
@@ -440,7 +441,8 @@ impl CountingDraws<'_> {
         Some((evidence, plan))
     }
 
-    /// Lets only nearer fragments pass where volumes are counted behind the surface.
+    /// Looks for draws counted behind the surface whose depth test passes at equal depth; the fix lets only nearer
+    /// fragments pass.
     fn cap_fighting(&self) -> Option<(String, FramePlan)> {
         use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
         let is_meant =
@@ -460,7 +462,7 @@ impl CountingDraws<'_> {
         ))
     }
 
-    /// Closes the open edges of all volumes together that are counted behind the surface.
+    /// Looks for open edges in the volumes that are counted behind the surface; the fix closes them with caps.
     fn open(&self) -> Option<(String, FramePlan)> {
         let draws = || self.draws().filter(|(_, draw)| sides(&draw.raster)[0]);
         let open = OpenEdges::of(self.plan, draws().map(|(_, draw)| draw));

@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 const SCHEMA: u32 = 1;
 
 impl Diagnosis {
-    /// Returns the diagnosis as JSON. `suited` is how well techniques do on this scene; empty where that was not
-    /// measured.
+    /// Returns the diagnosis as JSON. `suited` has the measured result of each candidate technique; empty where none
+    /// was measured.
     pub fn to_json(&self, suited: &[TechniqueFit]) -> Result<String, serde_json::Error> {
         let suited = suited.iter().map(|one| {
             json!({
@@ -74,7 +74,7 @@ fn cause(found: &CauseFound) -> Value {
     })
 }
 
-/// Returns what a fix changes, and the same in words.
+/// Returns a fix as JSON: its changes, and the same in words.
 fn fix(fix: &Fix) -> Value {
     let mut table = Map::new();
     if let Some(technique) = fix.technique.map(Technique::name) {

@@ -11,22 +11,22 @@ use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-/// Vertices nearer than this part of the mesh's size look like one.
+/// Vertices nearer to each other than this, relative to the mesh's size, look like one vertex.
 const NEAR: f64 = 1e-6;
-/// Triangles so many times longer than high are slivers.
+/// Triangles that are this many times longer than high count as slivers.
 const SLIVER: f64 = 1000.0;
 /// The most places that a finding lists.
 const MOST_PLACES: usize = 16;
 
-/// Facts of one object's mesh; places are in world space.
+/// Defects of one object's mesh that matter for shadows; places are in world space.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshFacts {
     pub name: String,
-    /// Middles of edges of one triangle that no other edge lies along.
+    /// Middles of open edges beside which no other edge lies.
     pub open: Vec<DVec3>,
-    /// Middles of edges of one triangle that another lies along, bit for bit.
+    /// Middles of open edges along which another open edge lies, bit for bit: the vertices are split.
     pub split: Vec<DVec3>,
-    /// Middles of edges of one triangle that another lies within a millionth of the mesh's size of.
+    /// Middles of open edges along which another open edge lies within a millionth of the mesh's size.
     pub near: Vec<DVec3>,
     pub non_manifold: (usize, Vec<DVec3>),
     pub inconsistent: (usize, Vec<DVec3>),
@@ -34,7 +34,7 @@ pub(crate) struct MeshFacts {
     pub dropped: usize,
     pub duplicates: Vec<DVec3>,
     pub slivers: Vec<DVec3>,
-    /// Closed and consistently wound, but with its inside out.
+    /// Whether it is closed and consistently wound, but with its inside out.
     pub is_inside_out: bool,
     world: Arc<[DVec3]>,
     triangles: Arc<[[u32; 3]]>,
@@ -75,8 +75,7 @@ impl MeshFacts {
         }
     }
 
-    /// Returns how often the mesh winds around a point light that it encloses; `None` where it has holes, or does not
-    /// enclose it.
+    /// Returns the winding number of the mesh around a point light; `None` where that is 0, or the mesh has holes.
     pub fn winding_around(&self, light: DVec4) -> Option<i32> {
         let is_closed = self.open.is_empty() && self.non_manifold.0 == 0;
         let asks = light.w != 0.0 && is_closed && !self.triangles.is_empty();
@@ -85,7 +84,7 @@ impl MeshFacts {
             .filter(|winding| *winding != 0)
     }
 
-    /// Returns what can be said about the mesh before any pixel is examined.
+    /// Returns the mesh's defects, with their effects on techniques. `lights` are homogeneous world positions.
     pub fn findings(&self, lights: &[DVec4]) -> Vec<MeshFinding> {
         let mut found = Vec::new();
         let mut report = |kind: MeshDefect, count: usize, at: &[DVec3], effect: &str| {
@@ -163,7 +162,7 @@ impl MeshFacts {
     }
 }
 
-/// Returns the middles of edges of one triangle in world space: open, split, near.
+/// Returns the world-space middles of edges of one triangle, sorted into open, split and near.
 fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3>; 3] {
     let positions = mesh.positions();
     let lone: Vec<[u32; 2]> = (0..edges.edges().len())
@@ -201,7 +200,7 @@ fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3
     sorted
 }
 
-/// Returns the triangles whose corners another before them has.
+/// Returns the indices of triangles that have the same corners as an earlier one.
 fn duplicates(mesh: &Mesh) -> Vec<usize> {
     let mut seen = BTreeMap::new();
     let mut found = Vec::new();

@@ -33,7 +33,7 @@ use crate::technique::Technique;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// What is wrong in one frame, and why.
+/// The diagnosis of one frame: regions of wrong pixels, their causes, and advice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// Name of the scene.
@@ -44,26 +44,26 @@ pub struct Diagnosis {
     pub settings: BTreeMap<String, String>,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Wrong pixels, summed over the lights.
+    /// Numbers of wrong pixels, summed over the lights.
     pub error: ErrorCounts,
     /// Defects of the meshes, whether they show in this frame or not.
     pub mesh_findings: Vec<MeshFinding>,
-    /// Shadows and surfaces that the scene's own flags take away. The truth honours the flags, so none of these are
-    /// wrong pixels.
+    /// Shadows and surfaces that the scene's own flags remove. The truth honours the flags, so these are not wrong
+    /// pixels.
     pub flags: Vec<FlagFound>,
     /// Wrong regions, the largest first; at most [`Diagnosis::MOST_REGIONS`].
     pub regions: Vec<RegionFound>,
-    /// The regions that are smaller than those.
+    /// The smaller regions that are not listed.
     pub rest: RemainingRegions,
-    /// What to change; `None` where nothing is wrong or nothing helps.
+    /// The best fix found; `None` where nothing is wrong or nothing helps.
     pub advice: Option<Advice>,
 }
 
 impl Diagnosis {
-    /// The largest number of regions that are listed one by one.
+    /// The most regions that are listed one by one.
     pub const MOST_REGIONS: usize = 12;
 
-    /// Says why no cause was found for a region, in a few words.
+    /// Returns a few words on why no cause was found for a region.
     pub fn without_cause(&self, region: &RegionFound) -> &'static str {
         let is_missing = region.kind == RegionKind::Wrong(Finding::MissingShadow);
         match self.technique {
@@ -78,7 +78,7 @@ impl Diagnosis {
     }
 }
 
-/// Regions that are not listed one by one.
+/// Numbers of regions that are not listed one by one, and of their pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RemainingRegions {
     /// The number of regions.
@@ -87,18 +87,18 @@ pub struct RemainingRegions {
     pub pixels: u64,
 }
 
-/// Connected wrong pixels of one light, one kind, one caster and one receiver.
+/// A connected region of wrong pixels of one light, with one kind of fault, caster and receiver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionFound {
     /// The number of pixels.
     pub pixels: u64,
-    /// In what way they are wrong.
+    /// The way in which they are wrong.
     pub kind: RegionKind,
     /// Index of the light.
     pub light: usize,
     /// First and last column and row: left, top, right, bottom.
     pub bounds: [u32; 4],
-    /// One of its pixels, well inside where there is an inside.
+    /// One of its pixels (column, row), as far inside as possible.
     pub at: [u32; 2],
     /// Names of the objects whose shadow is missing, or which cast it falsely, as far as is known.
     pub casters: Vec<String>,
@@ -108,12 +108,12 @@ pub struct RegionFound {
     pub causes: Vec<CauseFound>,
 }
 
-/// In what way a region's pixels are wrong.
+/// The way in which a region's pixels are wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RegionKind {
     /// Their labels differ from the truth's.
     Wrong(Finding),
-    /// In shadow as in truth, but darkened more than once.
+    /// They are in shadow, and rightly so, but darkened more than once.
     TooDark,
 }
 
@@ -127,19 +127,19 @@ impl RegionKind {
     }
 }
 
-/// A cause that fits a region.
+/// A cause that fits a region, with its fix and the proof.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseFound {
     /// The cause.
     pub cause: Cause,
     /// What was measured, in a sentence without its stop.
     pub evidence: String,
-    /// What to change; `None` where nothing helps.
+    /// The fix; `None` where nothing helps.
     pub fix: Option<Fix>,
     /// What running the frame with the fix has shown.
     pub proof: Proof,
-    /// Wrong pixels of the region that the fix leaves, with those that it makes newly wrong in the region's bounding
-    /// box; `None` where it was not run.
+    /// Number of pixels wrong with the fix: those left in the region, and new ones in its bounding box. `None` where it
+    /// was not run.
     pub pixels_left: Option<u64>,
     /// Where the fix is another technique: what fixes most of it without changing the technique.
     pub staying: Option<FixWithinTechnique>,
@@ -147,7 +147,7 @@ pub struct CauseFound {
     pub together_with: Vec<Cause>,
 }
 
-/// What to change without changing the technique.
+/// A fix that keeps the technique, with its result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FixWithinTechnique {
     /// Changes of settings and scene.
@@ -157,13 +157,13 @@ pub struct FixWithinTechnique {
 }
 
 named_enum! {
-    /// What running the frame with a fix has shown about a cause.
+    /// What running the frame with a fix has shown about a suspected cause.
     pub enum Proof {
         /// No pixel of the region is wrong any more.
         Proven = "proven",
-        /// Some are right now.
+        /// Some of the region's pixels are right now.
         Part = "part",
-        /// None is right now.
+        /// None of the region's pixels is right now.
         NotIt = "not it",
         /// No fix could be run.
         NotRun = "not run",
@@ -213,7 +213,7 @@ impl MeshDefect {
     }
 }
 
-/// A flag of the scene that takes a shadow or a surface away.
+/// A flag of an object in the scene that removes a shadow or a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlagFound {
     /// Name of the object.
@@ -228,7 +228,7 @@ pub struct FlagFound {
     pub fix: Fix,
 }
 
-/// What to do about the whole frame.
+/// The advice for the whole frame: the fix, its result, and a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// All changes, to be applied at once.
@@ -242,7 +242,7 @@ pub struct Advice {
 }
 
 impl Advice {
-    /// Advises the changes of `fix`, which leave `wrong_left` pixels wrong of `wrong_now`.
+    /// Makes the advice to apply `fix`, which leaves `wrong_left` pixels wrong of `wrong_now`.
     pub(crate) fn new(fix: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
         let outcome = outcome(wrong_left);
         let sentence = format!("To mend it, {fix}: {outcome}, of {} now.", numbers::count(wrong_now));
@@ -260,7 +260,7 @@ impl Advice {
     }
 }
 
-/// Says how many pixels are wrong then.
+/// Returns words for how many pixels a fix leaves wrong.
 fn outcome(wrong_left: u64) -> String {
     match wrong_left {
         0 => "then no pixel is wrong".to_owned(),

@@ -5,7 +5,7 @@ use super::fix::Fix;
 use super::regions::ConnectedRegion;
 use super::{Cause, CauseFound, FixWithinTechnique, Proof};
 
-/// Which pixels are wrong in one run; pixels that are too dark count as wrong.
+/// The wrong pixels of one run; pixels that are too dark count as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct WrongPixels {
     /// For each light, whether each pixel is wrong.
@@ -13,13 +13,14 @@ pub(crate) struct WrongPixels {
 }
 
 impl WrongPixels {
-    /// The number of wrong pixels over all lights.
+    /// Returns the number of wrong pixels, summed over the lights.
     pub fn count(&self) -> u64 {
         self.lights.iter().flatten().filter(|wrong| **wrong).count() as u64
     }
 }
 
-/// Returns what a run proves about a region, with the number of pixels that are still wrong.
+/// Compares a run with a fix to the run before: returns what it proves about a region, and how many pixels are still
+/// wrong or newly wrong in its box.
 pub(crate) fn judge(
     region: &ConnectedRegion,
     before: &WrongPixels,
@@ -49,7 +50,7 @@ pub(crate) struct TriedCause {
 }
 
 impl TriedCause {
-    /// Sort key: smaller is named sooner.
+    /// Returns the sort key: causes with a smaller key are named first.
     fn rank(&self) -> (u8, u64, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>, usize, Cause) {
         let is_limit = self.suspicion.cause == Cause::F32Limit;
         let proof = match self.proof {
@@ -71,7 +72,7 @@ impl TriedCause {
     }
 }
 
-/// Sorts causes, the most likely first.
+/// Sorts causes by likelihood, the most likely first.
 pub(crate) fn ranked(mut tried: Vec<TriedCause>) -> Vec<CauseFound> {
     tried.sort_by_key(TriedCause::rank);
     let found = |tried: TriedCause| CauseFound {

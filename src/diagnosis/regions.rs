@@ -4,10 +4,10 @@ use super::RegionKind;
 use super::cause::Cause;
 use crate::accuracy::{place, take_connected};
 
-/// Pixels at most this many columns and rows apart are connected: speckle is one region.
+/// Pixels are connected if they are at most this many columns and rows apart, so that speckle is one region.
 const REACH: u32 = 3;
 
-/// What the pixels of a region have in common.
+/// The properties that all pixels of a region share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct RegionKey {
     pub kind: RegionKind,
@@ -15,22 +15,22 @@ pub(crate) struct RegionKey {
     pub caster: Option<usize>,
     /// Index of the object that is visible.
     pub receiver: Option<usize>,
-    /// The cause that a single pixel suggests by itself.
+    /// The cause that each single pixel suggests by itself; `None` where it suggests none.
     pub hint: Option<Cause>,
 }
 
-/// A region with its pixels.
+/// A connected region of wrong pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ConnectedRegion {
     pub key: RegionKey,
     pub light: usize,
-    /// Numbers of its pixels (row · width + column), ascending.
+    /// Indices of its pixels (row · width + column), ascending.
     pub pixels: Vec<usize>,
-    /// First and last column and row.
+    /// Its first and last column and row: left, top, right, bottom.
     pub bounds: [u32; 4],
 }
 
-/// Finds the regions of a light. `keys` has one key a pixel, and `None` where it is right.
+/// Finds the connected regions of a light. `keys` has for each pixel its key, `None` for a right one.
 pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2]) -> Vec<ConnectedRegion> {
     let mut regions = Vec::new();
     for start in 0..keys.len() {
@@ -50,7 +50,7 @@ pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2
 }
 
 impl ConnectedRegion {
-    /// Returns some of its pixels: the one farthest from its border first, then others spread over it.
+    /// Returns up to `most` of its pixels: the innermost first, then others spread over it.
     pub fn samples(&self, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {
         let count = self.pixels.len();
         let inmost = self.inmost(size);
@@ -64,7 +64,7 @@ impl ConnectedRegion {
         samples.into_iter().map(|index| place(index, size)).collect()
     }
 
-    /// Returns the number of the pixel at the centre of the largest square of the region's own pixels.
+    /// Returns the index of the pixel that is left last when the region is eroded.
     fn inmost(&self, size: [u32; 2]) -> usize {
         let [left, top, right, bottom] = self.bounds;
         let [width, height] = [right - left + 3, bottom - top + 3].map(|n| n as usize);
@@ -91,7 +91,7 @@ impl ConnectedRegion {
         }
     }
 
-    /// The numbers of all pixels of its bounding box.
+    /// Returns the indices of all pixels of its bounding box.
     pub fn boxed(&self, [width, _]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {
         let [left, top, right, bottom] = self.bounds;
         (top..=bottom).flat_map(move |y| (left..=right).map(move |x| y as usize * width as usize + x as usize))

@@ -3,26 +3,26 @@
 use super::{Diagnosis, Fix};
 use crate::technique::{Choice, Technique};
 
-/// How well a technique did on a scene.
+/// The measured result of one technique on a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TechniqueFit {
     /// Technique and settings.
     pub choice: Choice,
-    /// Wrong pixels, summed over the lights.
+    /// Number of wrong pixels, summed over the lights.
     pub wrong: u64,
     /// Median time of a frame, milliseconds.
     pub frame_ms: f64,
 }
 
 impl TechniqueFit {
-    /// Returns what is worth trying on any scene: every technique that makes shadows on the GPU with its defaults, and
-    /// volumes that count in floats.
+    /// Returns the choices that are worth trying on any scene: every GPU technique with its defaults, and z-fail
+    /// counting in floats.
     pub fn candidates() -> Vec<Choice> {
         let plain = Technique::rivals().into_iter().map(Choice::new);
         plain.chain(Choice::new(Technique::ZFail).counting_in_floats()).collect()
     }
 
-    /// Returns the technique with the settings that differ from its defaults: `z-fail counter=float`.
+    /// Returns the technique's name with the settings that differ from the defaults: `z-fail counter=float`.
     pub fn name(&self) -> String {
         let technique = self.choice.technique();
         let changed = technique.settings().iter().filter_map(|spec| {
@@ -32,7 +32,7 @@ impl TechniqueFit {
         changed.fold(technique.name().to_owned(), |name, setting| name + &setting)
     }
 
-    /// Returns the fastest that has no wrong pixel; one with default settings if there is any.
+    /// Returns the fastest result without a wrong pixel, preferring default settings; `None` where all have some.
     pub fn best(suited: &[TechniqueFit]) -> Option<&TechniqueFit> {
         let is_plain = |one: &TechniqueFit| one.choice == Choice::new(one.choice.technique());
         let right = suited.iter().filter(|one| one.wrong == 0);
@@ -41,8 +41,8 @@ impl TechniqueFit {
 }
 
 impl Diagnosis {
-    /// Returns what fixes the scene for good, where anything is better than what was asked for: the advice, or the
-    /// fastest technique without a wrong pixel.
+    /// Returns the fix that `diagnose` writes into a scene file: the advice if it leaves no pixel wrong, else the
+    /// fastest technique without a wrong pixel, else the advice. `None` where there is neither.
     pub fn fix_to_write(&self, suited: &[TechniqueFit]) -> Option<Fix> {
         let best = || {
             let choice = &TechniqueFit::best(suited)?.choice;
@@ -54,7 +54,7 @@ impl Diagnosis {
         if self.is_fixed() { advised } else { best().or(advised) }
     }
 
-    /// Returns whether its advice leaves no pixel wrong.
+    /// Returns whether the advice leaves no pixel wrong.
     pub fn is_fixed(&self) -> bool {
         self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
     }

@@ -8,12 +8,12 @@ use crate::numbers;
 use crate::technique::Technique;
 use std::collections::BTreeSet;
 
-/// The most places of a mesh finding that are listed.
+/// The most places of a mesh finding that the text lists.
 const MOST_PLACES: usize = 8;
 
 impl Diagnosis {
-    /// Returns the whole diagnosis, for a reader who does not know its terms. `suited` is how well techniques do on
-    /// this scene; empty where that was not measured.
+    /// Returns the whole diagnosis as text, for a reader who does not know its terms. `suited` has the measured result
+    /// of each candidate technique; empty where none was measured.
     pub fn to_text(&self, suited: &[TechniqueFit]) -> String {
         let mut out = self.heading();
         let mut explained = BTreeSet::new();
@@ -118,7 +118,7 @@ impl Diagnosis {
 }
 
 impl RegionFound {
-    /// Says what is wrong, where, and with which objects, in one line.
+    /// Returns a line that says what is wrong, where, and with which objects.
     pub fn place(&self) -> String {
         let [left, top, right, bottom] = self.bounds;
         let [x, y] = self.at;
@@ -145,7 +145,7 @@ impl RegionFound {
 }
 
 impl Fix {
-    /// Returns the part of it that can be written on a command line: `-t z-fail`, `--set bias-slope=2`.
+    /// Returns the changes that can be written on a command line as options: `-t z-fail`, `--set bias-slope=2`.
     pub fn options(&self) -> Vec<String> {
         let technique = self.technique.map(|technique| format!("-t {}", technique.name()));
         let settings = self.settings.iter().map(|(key, value)| format!("--set {key}={value}"));
@@ -161,14 +161,14 @@ fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
     !one.causes.is_empty() && said(one) == said(other)
 }
 
-/// Says that region number `like`, counted from 0, has the same causes as this one.
+/// Returns a line that says that this region has the same causes as region `like` (counted from 0).
 fn as_before(region: &RegionFound, like: usize) -> String {
     let first = region.causes.first();
     let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
     format!("   as {}{evidence}\n", like + 1)
 }
 
-/// Says what the fix is, and what running it has shown.
+/// Returns words for a cause's fix and what running it has shown.
 fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
     let Some(fix) = fix else { return "no mend to run".to_owned() };
     let options = fix.options();

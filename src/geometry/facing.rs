@@ -78,7 +78,7 @@ pub struct Facings {
 }
 
 impl Facings {
-    /// Returns facings with these signs, such as those of [`facing`](super::silhouette::facing).
+    /// Returns facings with these signs, such as those of [`facing`](super::facing).
     pub fn from_signs(signs: impl IntoIterator<Item = Sign>) -> Facings {
         let mut facings = Facings::default();
         facings.signs.extend(signs.into_iter().map(|sign| sign.value() as i8));

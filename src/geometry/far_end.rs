@@ -64,11 +64,12 @@ impl CapFan {
         let far = light + apex * (high - low).length();
         let casting = || triangles.iter().zip(facings.signs()).filter(|(_, sign)| **sign != 0);
         let spheres_along = |probe: &DVec3| -> Option<i32> {
-            let held = |corners: &[u32; 3]| held(light, corners.map(|vertex| world[vertex as usize]), *probe);
-            let caps = casting().map(|(corners, _)| held(corners).map(i32::abs)).sum::<Option<i32>>()?;
+            let containment =
+                |corners: &[u32; 3]| containment(light, corners.map(|vertex| world[vertex as usize]), *probe);
+            let caps = casting().map(|(corners, _)| containment(corners).map(i32::abs)).sum::<Option<i32>>()?;
             let of_fan = |edge: &SilhouetteEdge| {
                 let [from, to] = ends(edge);
-                Some(self::held(light, [from, to, far], *probe)? * edge.multiplicity.abs())
+                Some(self::containment(light, [from, to, far], *probe)? * edge.multiplicity.abs())
             };
             Some(caps - silhouette.iter().map(of_fan).sum::<Option<i32>>()?)
         };
@@ -110,7 +111,7 @@ fn into_box(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
 
 /// Returns 1 where the cone of a triangle from the light contains a direction, −1 where it is flipped, otherwise 0;
 /// `None` where the direction is on its border.
-fn held(light: DVec3, [a, b, c]: [DVec3; 3], direction: DVec3) -> Option<i32> {
+fn containment(light: DVec3, [a, b, c]: [DVec3; 3], direction: DVec3) -> Option<i32> {
     let turn = side_of_triangle([light, a, b], c.extend(1.0));
     let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| side_of_triangle([light, p, q], direction.extend(0.0)));
     if turn == Sign::Zero || sides.iter().any(|side| *side != turn && *side != Sign::Zero) {
@@ -152,12 +153,15 @@ mod tests {
     #[test]
     fn a_cone_holds_what_is_in_it_and_not_what_is_opposite() {
         let triangle = [DVec3::new(1.0, 0.0, -1.0), DVec3::new(-1.0, 1.0, -1.0), DVec3::new(-1.0, -1.0, -1.0)];
-        let held = |direction: DVec3| held(DVec3::ZERO, triangle, direction);
-        assert_eq!(held(DVec3::NEG_Z).map(i32::abs), Some(1));
-        assert_eq!(held(DVec3::Z), Some(0));
-        assert_eq!(held(DVec3::X), Some(0));
-        assert_eq!(held(DVec3::new(-1.0, 0.3, -1.0)), None, "on its border");
+        let containment = |direction: DVec3| containment(DVec3::ZERO, triangle, direction);
+        assert_eq!(containment(DVec3::NEG_Z).map(i32::abs), Some(1));
+        assert_eq!(containment(DVec3::Z), Some(0));
+        assert_eq!(containment(DVec3::X), Some(0));
+        assert_eq!(containment(DVec3::new(-1.0, 0.3, -1.0)), None, "on its border");
         let [a, b, c] = triangle;
-        assert_eq!(super::held(DVec3::ZERO, [a, c, b], DVec3::NEG_Z), held(DVec3::NEG_Z).map(|held| -held));
+        assert_eq!(
+            super::containment(DVec3::ZERO, [a, c, b], DVec3::NEG_Z),
+            containment(DVec3::NEG_Z).map(|containment| -containment)
+        );
     }
 }

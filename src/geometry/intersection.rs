@@ -117,13 +117,13 @@ impl IntersectionSearch<'_> {
     /// run.
     fn first(&self) -> Option<[usize; 2]> {
         let with = |one: usize| {
-            let mut met = None;
+            let mut found = None;
             self.hierarchy.aabb_traverse(self.boxes[one], |hierarchy: &Bvh2, node| {
                 let leaf = self.leaf(&hierarchy.nodes[node as usize]).iter().map(|index| *index as usize);
-                met = leaf.filter(|other| *other > one).map(|other| [one, other]).find(|pair| self.meet(*pair));
-                met.is_none()
+                found = leaf.filter(|other| *other > one).map(|other| [one, other]).find(|pair| self.meet(*pair));
+                found.is_none()
             });
-            met
+            found
         };
         (0..self.triangles.len()).into_par_iter().with_min_len(256).find_map_first(with)
     }

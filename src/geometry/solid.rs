@@ -120,15 +120,15 @@ fn windings_beside(world: &[DVec3], triangles: &[[u32; 3]], triangle: usize) -> 
         let step = size * 1e-3f64.powi(attempt + 1);
         points[0][axis] -= step;
         points[1][axis] += step;
-        let met = crossings(world, triangles, middle, axis);
+        let hits = crossings(world, triangles, middle, axis);
         let side = |of: usize, point: DVec3| side_of_triangle(corners(of), point.extend(1.0));
-        let between = met.iter().filter(|met| side(met.triangle, points[0]) != side(met.triangle, points[1]));
-        let is_alone = between.map(|met| met.triangle).eq([triangle]);
-        let is_clear = met.iter().all(|met| points.iter().all(|point| side(met.triangle, *point) != Sign::Zero));
+        let between = hits.iter().filter(|hit| side(hit.triangle, points[0]) != side(hit.triangle, points[1]));
+        let is_alone = between.map(|hit| hit.triangle).eq([triangle]);
+        let is_clear = hits.iter().all(|hit| points.iter().all(|point| side(hit.triangle, *point) != Sign::Zero));
         (is_alone && is_clear).then(|| {
             points.map(|point| {
-                let ahead = met.iter().filter(|met| side(met.triangle, point).value() == -met.direction);
-                ahead.map(|met| met.direction).sum()
+                let ahead = hits.iter().filter(|hit| side(hit.triangle, point).value() == -hit.direction);
+                ahead.map(|hit| hit.direction).sum()
             })
         })
     })

@@ -8,16 +8,16 @@ use crate::capture::{Image, PixelFormat};
 use crate::plan::{AttachmentRole, FramePlan, LightId, Pass};
 use std::sync::Arc;
 
-/// What a frame says of its lights, and what it shows.
+/// The label masks and the finished picture of a frame, as [`Executor::answer`](super::Executor::answer) returns them.
 #[derive(Debug)]
 pub struct LabelsAndPicture {
-    /// One a light: its labels.
+    /// The label mask of each light, by its index; `None` for a light whose labels no pass writes.
     pub labels: Vec<Option<Arc<Image>>>,
     /// The picture after the last pass that changes it.
     pub picture: Arc<Image>,
 }
 
-/// Returns the light whose labels a pass writes.
+/// Returns the light whose label mask a pass writes; `None` where it writes none.
 pub(super) fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
     match plan.attachment(pass.color.as_ref()?.attachment).role {
         AttachmentRole::Labels(light) => Some(light),
@@ -25,7 +25,7 @@ pub(super) fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
     }
 }
 
-/// The last pass that changes the picture.
+/// Returns the index of the last pass that changes the picture; `None` where no pass does.
 pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
     let is_picture = |pass: &Pass| {
         let color = pass.color.as_ref();
@@ -34,7 +34,7 @@ pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
     plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != TargetChange::Unchanged)
 }
 
-/// The labels of each light.
+/// Returns the label mask of each light, read back from the GPU; `None` for a light without one.
 pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
     let plan = prepared.plan;
     let mut storage = SnapshotStorage { memory: SnapshotMemory::Mapped, budget: prepared.budget };
@@ -49,7 +49,7 @@ pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, Gpu
     Ok(labels)
 }
 
-/// The finished picture.
+/// Returns the finished picture, read back from the GPU.
 pub(super) fn picture(prepared: &Prepared) -> Result<Arc<Image>, GpuError> {
     let (plan, format) = (prepared.plan, PixelFormat::Rgba8Srgb);
     let left = match last_of_picture(plan) {

@@ -8,21 +8,21 @@ use crate::plan::{AttachmentId, FramePlan, Pass};
 use std::sync::Arc;
 use wgpu::{Device, Texture, TextureFormat};
 
-/// What a texture is made as.
+/// Everything that a texture is created from; textures with equal descriptors can replace each other.
 type AttachmentKey = wgpu_types::TextureDescriptor<Option<String>, Vec<TextureFormat>>;
 
-/// Larger ones go with their plan.
+/// The most bytes of a texture that the pool keeps; larger textures are freed with their plan.
 const MOST_BYTES_POOLED: u64 = 1 << 26;
 
-/// The textures of the newest plan's attachments.
+/// The attachment textures of the newest plan, pooled so that the next plan can use them again.
 #[derive(Debug, Default)]
 pub(super) struct AttachmentPool {
     pooled: Vec<(AttachmentKey, Arc<Texture>)>,
 }
 
 impl AttachmentPool {
-    /// A texture for each attachment of a plan, none of which another plan uses; where `given` has one, that one. What the
-    /// last plan leaves and this one does not need goes first.
+    /// Returns a texture for each attachment of a plan, none of which another plan uses; where `given` has one, that
+    /// one. Textures of the last plan that this one can't use are freed first.
     pub fn hand_out<'a>(
         &mut self,
         device: &Device,
@@ -53,8 +53,8 @@ impl AttachmentPool {
     }
 }
 
-/// Returns whether a texture is small, and nothing of the plan reads what it contained before. That is not known of a
-/// frame that another program drew.
+/// Returns whether the next plan may use this attachment's texture: it is small, and nothing of the plan reads what it
+/// contained before. That is not known of a frame that another program drew.
 fn may_hand_on(plan: &FramePlan, id: AttachmentId) -> bool {
     let clears = |pass: &Pass| {
         let has_stencil = plan.attachment(id).format.has_stencil_aspect();

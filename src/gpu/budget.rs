@@ -2,7 +2,7 @@
 
 use super::GpuError;
 
-/// The bytes that a frame takes, of those that it may take.
+/// Counts the bytes of GPU memory that a frame takes, against the most that it may take.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MemoryBudget {
     most: u64,

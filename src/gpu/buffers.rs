@@ -8,7 +8,7 @@ use crate::plan::Blob;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{Buffer, BufferUsages, Device};
 
-/// Hash and length in bytes.
+/// The hash of a buffer's content, and its length in bytes.
 type Key = (u64, usize);
 
 #[derive(Debug, Default)]
@@ -17,7 +17,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Forgets what has not been asked for since the last call.
+    /// Drops the buffers that [`get`](Self::get) has not returned since the last call.
     pub fn next_plan(&mut self) {
         self.cached.next_plan();
     }
@@ -36,7 +36,7 @@ impl Buffers {
     }
 }
 
-/// Refuses what a shader can't read as storage.
+/// Fails where a buffer is too large for the device to bind as a storage buffer.
 pub(super) fn check_bound(device: &Device, storage: &Buffer) -> Result<(), GpuError> {
     check(storage.size(), device.limits().max_storage_buffer_binding_size)
 }

@@ -8,24 +8,25 @@ use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, Pix
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass};
 use std::sync::Arc;
 
-/// What a captured frame left behind.
+/// The snapshots and times that a captured frame left, pass by pass and light by light.
 #[derive(Debug)]
 pub struct ExecutorOutput {
-    /// One a pass.
+    /// One step for each pass, in the order of execution.
     pub steps: Vec<Step>,
-    /// One a pass: what it left in its own target, where that is not the picture.
+    /// For each pass, what it left in its own colour target; `None` where it draws into the picture or has none.
     pub targets: Vec<Option<Arc<Image>>>,
-    /// One a light: its labels.
+    /// The label mask of each light; `None` where no pass writes one.
     pub labels: Vec<Option<Arc<Image>>>,
-    /// One a light: its volumes' count.
+    /// For each light, the count that its shadow volumes left; `None` where it has none.
     pub counts: Vec<Option<Arc<Image>>>,
-    /// One a light: the faces of its map, left-out ones at their clear value.
+    /// For each light, the depths of each face of its shadow map, left-out faces at their clear value; `None` where it
+    /// has no map.
     pub maps: Vec<Option<Vec<Arc<Image>>>>,
-    /// One a pass: it did not run, since what it draws was there from the frame before.
+    /// For each pass, whether it did not run because its shadow map was cached from an earlier frame.
     pub from_cache: Vec<bool>,
 }
 
-/// What the passes so far have left.
+/// Turns the mapped copies of each pass into the steps and images of an [`ExecutorOutput`], pass after pass.
 pub(super) struct Collector {
     color: Arc<Image>,
     depth: Arc<Image>,
@@ -34,23 +35,24 @@ pub(super) struct Collector {
     storage: SnapshotStorage,
 }
 
-/// Where snapshots are stored, and the budget for them.
+/// How snapshots are stored, and the memory budget for them.
 pub(super) struct SnapshotStorage {
     pub memory: SnapshotMemory,
     pub budget: MemoryBudget,
 }
 
-/// Where captured pictures lie.
+/// The memory that captured images are stored in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SnapshotMemory {
-    /// Pictures stay in the mapped copies: nothing is copied once more.
+    /// Images stay in the mapped GPU buffers that they were copied to, without another copy.
     Mapped,
-    /// Rows that are as in the picture before, there: many pictures that differ little take little.
+    /// Images are copied to the heap, and rows equal to those of the image before are shared with it: saves memory
+    /// where many images differ little.
     Shared,
 }
 
 impl Collector {
-    /// Before the first pass. `from_cache` are the passes that will not run.
+    /// Makes a collector that has collected no pass. `from_cache` says for each pass whether it will not run.
     pub fn new(plan: &FramePlan, from_cache: Vec<bool>, storage: SnapshotStorage) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
@@ -66,7 +68,7 @@ impl Collector {
         }
     }
 
-    /// Collects one more pass, whose copies are mapped.
+    /// Collects the snapshots of the pass `index`, whose copies are mapped.
     pub fn take_in(&mut self, prepared: &Prepared, index: usize) -> Result<(), GpuError> {
         let plan = prepared.plan;
         let pass = &plan.passes[index];
@@ -128,7 +130,8 @@ impl Collector {
         Ok(())
     }
 
-    /// After the last pass. `times` is one a pass, milliseconds.
+    /// Returns the output after the last pass. `times` has the GPU time of each pass in milliseconds, `None` where it
+    /// was not measured.
     pub fn finish(self, plan: &FramePlan, times: Vec<Option<f64>>) -> ExecutorOutput {
         let mut output = self.output;
         for ((step, pass), ms) in output.steps.iter_mut().zip(&plan.passes).zip(times) {
@@ -151,7 +154,7 @@ fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
     plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()
 }
 
-/// The picture that a change leaves; `None` where nothing changes.
+/// Returns the image that a pass's change leaves in an aspect; `None` where the pass does not change it.
 pub(super) fn after(
     change: &TargetChange,
     staged: &Option<StagingCopy>,
@@ -166,7 +169,7 @@ pub(super) fn after(
 }
 
 impl SnapshotStorage {
-    /// A pass that changes nothing leaves what was there.
+    /// Replaces the `known` image by the image after a pass; where that is `None`, the image before stays.
     pub fn keep(&mut self, known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) -> Result<(), GpuError> {
         match (known, after) {
             (_, None) => {}
@@ -179,7 +182,8 @@ impl SnapshotStorage {
         Ok(())
     }
 
-    /// Moves an aspect on by one step. A clear to what was there already changes nothing.
+    /// Replaces an aspect's `current` image by the `next` one, and returns the aspect of this step. A clear to the
+    /// value already there counts as no change.
     fn step_aspect(&mut self, current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Result<Aspect, GpuError> {
         let changed = match next {
             Some(next) => self.move_on(current, next)?,
@@ -188,7 +192,7 @@ impl SnapshotStorage {
         Ok(Aspect { image: current.clone(), unchanged: !changed })
     }
 
-    /// Goes on to the next picture, and says whether it is another: one that is equal is let go.
+    /// Replaces the `current` image by the next one, and returns whether they differ; an equal image is dropped.
     fn move_on(&mut self, current: &mut Arc<Image>, next: Arc<Image>) -> Result<bool, GpuError> {
         let is_another = next != *current;
         if is_another {
@@ -201,7 +205,7 @@ impl SnapshotStorage {
     }
 }
 
-/// Its time is not known yet.
+/// Returns the step of a pass with its snapshot; the GPU time is filled in when the frame is finished.
 fn step(pass: &Pass, snapshot: Snapshot) -> Step {
     let summary = |draw: &Draw| DrawSummary {
         name: draw.name.clone(),

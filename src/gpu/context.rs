@@ -6,9 +6,9 @@ use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 
 /// Backends on which depth and stencil aspects can be copied to buffers.
 const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
-/// The stencil buffer's format, with a depth that can be copied.
+/// Features that every device must have: the depth-stencil format, with a depth aspect that can be copied.
 const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
-/// What captures and reports measure, where the adapter can.
+/// Features for measuring, used where the adapter has them.
 const MEASURED: Features = Features::TIMESTAMP_QUERY;
 
 /// Memory is allocated in pieces of 4 to 8 MiB: pictures come and go, and one small allocation would keep a large piece
@@ -16,7 +16,7 @@ const MEASURED: Features = Features::TIMESTAMP_QUERY;
 pub const MEMORY_HINTS: wgpu::MemoryHints =
     wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: 4 << 20..8 << 20 };
 
-/// An adapter with a device on it.
+/// An open GPU: an adapter, a device on it and the device's queue.
 #[derive(Debug)]
 pub struct GpuContext {
     /// The adapter that runs the plans.
@@ -24,7 +24,7 @@ pub struct GpuContext {
     adapter: Adapter,
     pub(super) device: Device,
     pub(super) queue: Queue,
-    /// Nanoseconds a timestamp tick; `None` where passes can't be timed.
+    /// Nanoseconds for each tick of a timestamp query; `None` where passes can't be timed.
     pub(super) timestamp_period: Option<f32>,
 }
 
@@ -41,7 +41,7 @@ impl GpuContext {
         GpuContext::open(adapter, features)
     }
 
-    /// Another device on the same adapter, that can do what this one can and `needed` too.
+    /// Opens another device on the same adapter, with all features of this one and those `needed`.
     pub(super) fn with(&self, needed: Features) -> Result<GpuContext, GpuError> {
         features::check(needed, self.adapter.features())?;
         GpuContext::open(self.adapter.clone(), self.device.features() | needed)
@@ -70,7 +70,7 @@ impl GpuContext {
         Ok(GpuContext { info, adapter, device, queue, timestamp_period })
     }
 
-    /// Runs `work` and turns whatever the driver complained about into an error.
+    /// Runs `work` and returns as an error whatever errors the driver reported meanwhile.
     pub(super) fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let filters = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
@@ -90,7 +90,7 @@ impl GpuContext {
         Ok(())
     }
 
-    /// Brackets `work` for an attached graphics debugger, such as RenderDoc.
+    /// Runs `work` between a start and an end of capture for an attached graphics debugger, such as RenderDoc.
     pub(super) fn bracketed<T>(&self, work: impl FnOnce() -> T) -> T {
         self.start_debugger_capture();
         let result = work();

@@ -1,20 +1,20 @@
 //! What can go wrong on a GPU.
 
-/// Why a plan did not run.
+/// Why the GPU could not be opened, or a plan could not be run on it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
-    /// No adapter, or none of that name, or none that can.
+    /// No GPU adapter was found, none has the name asked for, or none has the required features.
     #[error("no usable GPU adapter{found}: install a driver (Debian's software one: apt install mesa-vulkan-drivers)")]
     NoAdapter {
-        /// What is there and why it does not do; empty where there is none.
+        /// The adapters that were found and why each can't be used; empty where none was found.
         found: String,
     },
-    /// The adapter would not give a device.
+    /// The adapter failed to open a device.
     #[error("{adapter} gave no device: {reason}")]
     NoDevice {
         /// Name of the adapter.
         adapter: String,
-        /// The driver's words.
+        /// The driver's error message.
         reason: String,
     },
     /// The picture or a map is larger than the adapter allows.
@@ -22,14 +22,14 @@ pub enum GpuError {
         "{what} is too large: {needed} asked for, {most} fit; choose a smaller size (--size, or the setting `size` of the technique)"
     )]
     TooLarge {
-        /// The attachment or buffer.
+        /// The attachment or buffer that is too large.
         what: String,
-        /// The amount with its unit.
+        /// The amount that the plan needs, with its unit.
         needed: String,
-        /// The amount with its unit.
+        /// The largest amount that the adapter allows, with its unit.
         most: String,
     },
-    /// The plan needs what the adapter does not have.
+    /// The plan needs a feature that the adapter does not have.
     #[error("this adapter has no {name}: {instead}")]
     MissingFeature {
         /// The feature in plain words.
@@ -37,10 +37,10 @@ pub enum GpuError {
         /// What to do without it.
         instead: &'static str,
     },
-    /// The plan breaks a rule: a bug of the technique.
+    /// The plan breaks a rule of [`lint`](crate::plan::lint): a bug in the technique that built it.
     #[error("the plan can't run, which is a bug of stencilscope: {0}")]
     Plan(#[from] crate::plan::lint::LintError),
-    /// The driver refused or failed.
+    /// The driver reported an error, in its own words.
     #[error("the GPU failed: {0}")]
     Driver(String),
 }

@@ -17,13 +17,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
 
-/// Bytes of copies after which a captured frame is looked at before it goes on: enough for the passes of most.
+/// Bytes of copies after which a captured frame is submitted and read back before it goes on; most frames stay below
+/// it.
 const PART_BYTES: u64 = 1 << 26;
 
 /// The most memory, bytes, that attachments, pictures and snapshots may take together.
 const MOST_BYTES: u64 = 8 << 30;
 
-/// Runs plans, and caches pipelines and buffers between them.
+/// Runs frame plans on a GPU, and caches pipelines, buffers and shadow maps between them.
 #[derive(Debug)]
 pub struct Executor {
     pub(super) context: Arc<GpuContext>,
@@ -36,20 +37,20 @@ pub struct Executor {
 /// Which passes run, and what is stored of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RunMode {
-    /// Timed passes run, and nothing is stored.
+    /// Only timed passes run, and nothing is copied back.
     Frame,
-    /// Timed passes, a snapshot after each.
+    /// Only timed passes run, and a snapshot is copied after each.
     Snapshots,
-    /// All passes run, and only the labels of lights are stored.
+    /// All passes run, and only the lights' label masks are copied.
     Labels,
-    /// All passes run, and only the labels of lights and the finished picture are stored.
+    /// All passes run, and only the lights' label masks and the finished picture are copied.
     Answer,
-    /// All passes, a snapshot after each.
+    /// All passes run, and a snapshot is copied after each.
     Everything,
 }
 
 impl Executor {
-    /// Makes an executor on a context of its own.
+    /// Makes an executor that runs plans on this GPU, with empty caches.
     pub fn new(context: GpuContext) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
@@ -65,24 +66,24 @@ impl Executor {
         self.most_bytes = bytes;
     }
 
-    /// Where it runs.
+    /// Returns the GPU that plans run on.
     pub fn context(&self) -> &GpuContext {
         &self.context
     }
 
-    /// What few plans need, and one so far has asked for, in plain words.
+    /// Returns the names, in plain words, of the optional GPU features that a plan so far has needed.
     pub fn features(&self) -> Vec<&'static str> {
         features::names(self.context.device.features())
     }
 
-    /// Forgets pipelines and buffers, so that the next plan is set up from nothing.
+    /// Drops all cached pipelines, buffers and textures, so that the next plan is set up from nothing.
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
         self.resources = PlanResources::default();
         self.log = LogCache::default();
     }
 
-    /// Uploads what a plan needs and makes its pipelines.
+    /// Checks a plan, uploads its buffers and makes its pipelines, so that it can be run, also several times.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let budget = MemoryBudget::of(self.most_bytes);
@@ -95,8 +96,8 @@ impl Executor {
         prepared
     }
 
-    /// Prepares a plan that is run once and gives way to others: its maps are dropped with it, and those of the plan
-    /// before stay cached.
+    /// Prepares a plan that is run once and then replaced by others: its shadow maps are dropped with it, and cached
+    /// maps of the plan before stay cached.
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan)?;
@@ -115,7 +116,7 @@ impl Executor {
         context.guarded(|| Prepared::new(context, pipelines, &mut PlanResources::default(), plan, budget))
     }
 
-    /// Finds what can't be run, and a device for what can.
+    /// Fails where the plan breaks a rule or the GPU can't run it, and opens a device with the features that it needs.
     fn check(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         match lint::check(plan).into_iter().next() {
             Some(error) => Err(GpuError::Plan(error)),
@@ -123,8 +124,8 @@ impl Executor {
         }
     }
 
-    /// Opens another device where this one can't do what the plan needs. What has been prepared stays on its own
-    /// device.
+    /// Opens another device where this one lacks a feature that the plan needs. Plans already prepared stay on their
+    /// own device.
     pub(super) fn provide(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         let needed = features::needed(plan);
         if !self.context.device.features().contains(needed) {
@@ -134,9 +135,9 @@ impl Executor {
         Ok(())
     }
 
-    /// Runs the timed passes and waits for the GPU: recording, submitting, executing and, with
-    /// `snapshots`, having every snapshot in memory: all at once, unlike [`Executor::capture`], which looks at a part
-    /// of many before it makes the next.
+    /// Returns the wall time of recording, submitting and executing the timed passes; with `snapshots`, of copying a
+    /// snapshot after each pass to mapped memory, too. All passes are submitted at once, unlike those of
+    /// [`Executor::capture`].
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { RunMode::Snapshots } else { RunMode::Frame };
         if snapshots {
@@ -152,7 +153,7 @@ impl Executor {
         Ok(took)
     }
 
-    /// Runs the timed passes and adds up how long the GPU took for them, in milliseconds; `None` on adapters without
+    /// Runs the timed passes and returns the sum of their GPU times in milliseconds; `None` on adapters without
     /// timestamps.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
@@ -165,8 +166,9 @@ impl Executor {
         Ok(passes.map(|(_, ms)| ms).sum())
     }
 
-    /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests; `None` for
-    /// draws that have an effect where they fail them, for those of cached maps, and where there are too many queries.
+    /// Runs the timed passes and returns, for each draw of each pass, the number of samples that passed its tests;
+    /// `None` for draws that have an effect where they fail them, for those of cached maps, and where there are too
+    /// many queries.
     pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
         // A cached map is drawn once: a pass that does not run counts no samples.
@@ -180,8 +182,8 @@ impl Executor {
         }
     }
 
-    /// Runs all passes and stores every attachment after each, in `memory`. With `bracket`, an attached graphics
-    /// debugger records the frame.
+    /// Runs all passes and stores every attachment's content after each, in `memory`. With `bracket`, an attached
+    /// graphics debugger records the frame.
     pub fn capture(
         &self,
         mut prepared: Prepared,
@@ -199,14 +201,14 @@ impl Executor {
         Ok(collector.finish(plan, times))
     }
 
-    /// Runs all passes and returns the labels of each light: what is lit, and what is in shadow. Nothing else is
-    /// copied, so that the largest maps cost no memory twice.
+    /// Runs all passes and returns the label mask of each light, `None` where none is written. Nothing else is copied,
+    /// so that the largest maps cost no memory twice.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, RunMode::Labels, &FrameQueries::default())?;
         answer::labels(&prepared)
     }
 
-    /// Runs all passes and returns the labels of each light, and the finished picture.
+    /// Runs all passes and returns the label mask of each light and the finished picture.
     pub fn answer(&self, prepared: Prepared) -> Result<LabelsAndPicture, GpuError> {
         run(&prepared, RunMode::Answer, &FrameQueries::default())?;
         Ok(LabelsAndPicture { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
@@ -214,7 +216,7 @@ impl Executor {
 }
 
 impl FrameQueries {
-    /// When the passes of a mode begin and end.
+    /// Makes the timestamp queries of the passes that a mode runs.
     fn of_times(prepared: &Prepared, mode: RunMode) -> FrameQueries {
         let runs = |pass: &Pass| mode.runs(pass) && !prepared.is_cached(pass);
         FrameQueries {
@@ -240,7 +242,7 @@ impl RunMode {
     }
 }
 
-/// The copies that a mode makes of some passes.
+/// Returns the copies that a mode makes after each of these passes.
 fn staged<'a>(
     prepared: &'a Prepared,
     mode: RunMode,
@@ -251,7 +253,7 @@ fn staged<'a>(
     Ok(copied.map(|index| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
 }
 
-/// Makes the pictures that come from the CPU and hands them to the GPU, before the passes that they are of.
+/// Uploads the images that passes draw from the CPU, for these passes before they run.
 fn upload_images(prepared: &Prepared, mode: RunMode, passes: Range<usize>) {
     for (pass, targets) in prepared.plan.passes[passes.clone()].iter().zip(&prepared.passes[passes]) {
         if let (Some(image), Some(texture), true) = (&pass.image, &targets.image_target, mode.runs(pass)) {
@@ -268,15 +270,15 @@ fn all_passes(prepared: &Prepared) -> Range<usize> {
     0..prepared.plan.passes.len()
 }
 
-/// Submits the frame and waits for it. Maps are cached only of frames in which nothing went wrong.
+/// Submits all passes of a mode and waits for them. Shadow maps count as cached only after a frame without errors.
 fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
     prepared.context.guarded(|| submit(prepared, mode, notes, all_passes(prepared)))?;
     prepared.set_drawn();
     Ok(())
 }
 
-/// Runs all passes of a capture in parts: in a frame whose copies are many, those that show what was there before are
-/// dropped before the next are made.
+/// Runs all passes of a capture in parts of [`PART_BYTES`] copied bytes: each part's copies that show no change are
+/// dropped before the next part's are made.
 fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotMemory) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
@@ -299,7 +301,7 @@ fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotM
     Ok(collector)
 }
 
-/// The first pass that is not run with the one at `start`.
+/// Returns the index of the first pass after the part that begins with the pass `start`.
 fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
     let passes = all_passes(prepared).end;
     let mut bytes = 0;
@@ -312,7 +314,7 @@ fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
     Ok(passes)
 }
 
-/// One command buffer of some passes; what the frame notes is there after the last.
+/// Records some passes in one command buffer and submits it; the queries are resolved after the last pass of the plan.
 fn submit(prepared: &Prepared, mode: RunMode, notes: &FrameQueries, passes: Range<usize>) -> Result<(), GpuError> {
     upload_images(prepared, mode, passes.clone());
     let is_last = passes.end == prepared.plan.passes.len();

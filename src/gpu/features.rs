@@ -5,7 +5,7 @@ use super::GpuError;
 use crate::plan::FramePlan;
 use wgpu::Features;
 
-/// A feature that few plans need.
+/// A GPU feature that only few plans need.
 struct OptionalFeature {
     feature: Features,
     is_needed: fn(&FramePlan) -> bool,
@@ -30,7 +30,7 @@ const ON_DEMAND: [OptionalFeature; 2] = [
     },
 ];
 
-/// What this plan needs.
+/// Returns the optional GPU features that this plan needs.
 pub(super) fn needed(plan: &FramePlan) -> Features {
     let needed = ON_DEMAND.iter().filter(|one| (one.is_needed)(plan));
     needed.fold(Features::empty(), |all, one| all | one.feature)
@@ -41,7 +41,7 @@ pub(super) fn names(open: Features) -> Vec<&'static str> {
     ON_DEMAND.iter().filter(|one| open.contains(one.feature)).map(|one| one.name).collect()
 }
 
-/// Are all of `needed` among what an adapter offers?
+/// Fails where an adapter does not offer all of the `needed` features.
 pub(super) fn check(needed: Features, offered: Features) -> Result<(), GpuError> {
     match ON_DEMAND.iter().find(|one| needed.contains(one.feature) && !offered.contains(one.feature)) {
         Some(OptionalFeature { name, instead, .. }) => Err(GpuError::MissingFeature { name, instead }),

@@ -19,7 +19,7 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, LoadOp, Operations, StoreOp, TextureFormat};
 
-/// `Fragment` of `fragment_log.wgsl`.
+/// One fragment as the shader writes it: the struct `Fragment` of `fragment_log.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct LogRecord {
@@ -28,12 +28,12 @@ struct LogRecord {
     depth: f32,
 }
 
-/// Before the records: their count.
+/// Bytes before the records: the number of records.
 const HEAD_BYTES: u64 = 4;
 
 impl Executor {
-    /// Draws the triangles of `covering` again, behind a scissor of `pixel`, and writes down their
-    /// fragments there. There is `capacity` for so many at first, and more where they are more.
+    /// Draws the triangles of `covering` again with a scissor rectangle of one `pixel`, and returns their fragments
+    /// there. The buffer holds `capacity` fragments at first, and is made larger where there are more.
     pub fn log_fragments(
         &mut self,
         plan: &FramePlan,
@@ -121,7 +121,7 @@ impl Executor {
     }
 }
 
-/// Neighbouring triangles that one draw can show.
+/// A range of neighbouring triangles of a mesh that one draw call can draw.
 struct TriangleRun {
     key: LogKey,
     view: usize,
@@ -156,8 +156,8 @@ fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> LogKey {
     }
 }
 
-/// Nothing is read from the target or written to it, so nothing is cleared: that would take as long as
-/// the picture is large.
+/// Returns the descriptor of the render pass that logs fragments. Nothing is read from the target or written to it, so
+/// nothing is cleared: that would take as long as the picture is large.
 fn log_pass(target: &wgpu::TextureView, format: TextureFormat) -> wgpu::RenderPassDescriptor<'_> {
     let store = StoreOp::Store;
     wgpu::RenderPassDescriptor {
@@ -187,5 +187,6 @@ fn read(buffer: &Buffer) -> Result<FragmentLog, GpuError> {
     Ok(FragmentLog { fragments, counted })
 }
 
-/// A larger target is made anew for each log; one of a picture of 8K is cached.
+/// The most texels of a target that is cached between logs; a larger one is made anew for each log, one of a picture of
+/// 8K is cached.
 const MOST_CACHED_TEXELS: u64 = 1 << 25;

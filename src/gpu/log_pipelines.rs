@@ -5,34 +5,35 @@ use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use wgpu::{BindGroupLayout, Device, RenderPipeline, ShaderStages, Texture, TextureFormat};
 
-/// Most pipelines that are cached at once.
+/// The largest number of pipelines that are cached at once.
 const MOST_PIPELINES: usize = 64;
 
 const CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x4, 1 => Uint32];
 
-/// What a pipeline of the log is made from.
+/// The state that a pipeline of the fragment log is made from; pipelines are cached by it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct LogKey {
     pub unclipped_depth: bool,
     pub bias: wgpu::DepthBiasState,
     pub cull: Option<wgpu::Face>,
     pub front_face: wgpu::FrontFace,
-    /// Corners are in clip space.
+    /// True where the corners are in clip space, as those of another program's frame are.
     pub is_recorded: bool,
     pub depth_format: TextureFormat,
 }
 
-/// What is cached between logs.
+/// Pipelines, buffers and targets that are cached between fragment logs.
 #[derive(Debug, Default)]
 pub struct LogCache {
     module: Option<wgpu::ShaderModule>,
     layout: Option<BindGroupLayout>,
     pipelines: HashMap<LogKey, RenderPipeline>,
-    /// A depth buffer whose content is not used: depth bias only has an effect where there is one.
+    /// A depth buffer whose content is not used: depth bias only has an effect where there is one. `None` until the
+    /// first log.
     pub target: Option<Texture>,
 }
 
-/// A corner of a triangle, as `LogCorner` of `fragment_log.wgsl`.
+/// A corner of a triangle: the struct `LogCorner` of `fragment_log.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct LogCorner {

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::Texture;
 
-/// Maps by [`FramePlan::cache_key`]; they are cached as long as the newest plan that caches maps uses them.
+/// Shadow maps by [`FramePlan::cache_key`], cached as long as the newest plan that caches maps uses them.
 #[derive(Debug, Default)]
 pub(super) struct MapCache {
     cached: LastUsed<u64, Arc<CachedMap>>,
 }
 
-/// A texture, and whether its passes have run.
+/// The texture of a cached shadow map, and whether the passes that draw it have run.
 #[derive(Debug)]
 pub(super) struct CachedMap {
     pub texture: Arc<Texture>,
@@ -20,19 +20,19 @@ pub(super) struct CachedMap {
 }
 
 impl CachedMap {
-    /// Returns whether its passes have run, and need not run again.
+    /// Returns whether the passes that draw the map have run, and need not run again.
     pub fn is_drawn(&self) -> bool {
         self.is_drawn.load(Ordering::Relaxed)
     }
 
-    /// They have run.
+    /// Notes that the passes that draw the map have run.
     pub fn set_drawn(&self) {
         self.is_drawn.store(true, Ordering::Relaxed);
     }
 }
 
 impl MapCache {
-    /// Forgets what has not been asked for since the last call.
+    /// Drops the maps that [`get`](Self::get) has not returned since the last call.
     pub fn next_plan(&mut self) {
         self.cached.next_plan();
     }

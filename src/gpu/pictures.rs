@@ -8,7 +8,7 @@ use crate::last_used::LastUsed;
 use crate::scene::TextureImage;
 use wgpu::{Extent3d, TextureUsages, TextureView, TextureViewDescriptor};
 
-/// Hash and size.
+/// The hash of a picture's content, and its width and height in texels.
 type Key = (u64, [u32; 2]);
 
 #[derive(Debug, Default)]
@@ -17,12 +17,12 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
-    /// Forgets what has not been asked for since the last call.
+    /// Drops the textures that [`get`](Self::get) has not returned since the last call.
     pub fn next_plan(&mut self) {
         self.cached.next_plan();
     }
 
-    /// The texture of a picture, all levels of it.
+    /// Returns the texture of a picture with all its mip levels, uploaded on first use.
     pub fn get(&mut self, context: &GpuContext, picture: &TextureImage) -> TextureView {
         self.cached.get_or_make((picture.hash(), picture.size()), || upload(context, picture))
     }

@@ -14,20 +14,20 @@ use wgpu::{
     VertexBufferLayout, VertexState,
 };
 
-/// What a pipeline is made from.
+/// The shader, state and formats that a render pipeline is made from; pipelines are cached by it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
     pub shader: ShaderKey,
     pub specialization: Specialization,
-    /// The state; its stencil reference is set by the pass, and 0 here.
+    /// The raster state; its stencil reference is 0 here, as the pass sets that.
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
     pub depth_format: Option<TextureFormat>,
-    /// The largest depth as an integer, where another program's target stores depths as integers.
+    /// The integer that depth 1 is stored as, where another program's target stores depths as integers; else `None`.
     pub depth_steps: Option<u32>,
 }
 
-/// Layouts of the bind groups.
+/// The layouts of all bind groups that shaders use.
 #[derive(Debug)]
 pub(super) struct BindGroupLayouts {
     pub view: BindGroupLayout,
@@ -42,11 +42,11 @@ pub(super) struct BindGroupLayouts {
     pub light_with_textures: BindGroupLayout,
 }
 
-/// Every pipeline made so far.
+/// The cache of render pipelines, with the bind group layouts and samplers that they share.
 #[derive(Debug)]
 pub(super) struct Pipelines {
     pub layouts: BindGroupLayouts,
-    /// Linear, clamped to the edge.
+    /// A sampler with linear filtering, clamped to the edge.
     pub smooth_sampler: wgpu::Sampler,
     /// Samplers of surfaces' textures, which mix texels and mip levels: one repeats, one clamps to the edge.
     pub picture_samplers: [wgpu::Sampler; 2],
@@ -55,12 +55,12 @@ pub(super) struct Pipelines {
     starts: HashMap<TextureFormat, RenderPipeline>,
 }
 
-/// Most pipelines that are cached at once: a driver may store a hundred kilobytes of code for each. A plan of more
-/// makes some anew.
+/// The largest number of pipelines that are cached at once: a driver may store a hundred kilobytes of code for each. A
+/// plan of more makes some anew.
 const MOST_CACHED: usize = 512;
 
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
-/// `ExtrudedCorner` of the plan.
+/// The vertex attributes of `ExtrudedCorner` of the plan.
 const EXTRUDED_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
 
 impl Pipelines {
@@ -92,12 +92,12 @@ impl Pipelines {
         }
     }
 
-    /// What puts depths into a target of a format.
+    /// Returns the pipeline that writes the depths a target of this format starts with, made on first use.
     pub fn start(&mut self, device: &Device, format: TextureFormat) -> RenderPipeline {
         self.starts.entry(format).or_insert_with(|| super::start::pipeline(device, format)).clone()
     }
 
-    /// The pipeline of a description, made on first use.
+    /// Returns the pipeline of a key, made on first use.
     pub fn get(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
         if let Some(pipeline) = self.pipelines.get(key) {
             return pipeline.clone();

@@ -23,7 +23,7 @@ use wgpu::{
     TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
-/// What serves the next plan too, as long as the newest one uses it.
+/// Buffers, textures and cached shadow maps that the next plan can use again, as long as the newest plan uses them.
 #[derive(Debug, Default)]
 pub(super) struct PlanResources {
     buffers: Buffers,
@@ -33,7 +33,7 @@ pub(super) struct PlanResources {
 }
 
 impl PlanResources {
-    /// The next plan's attachments are new.
+    /// Drops the attachment textures, so that the next plan's are new.
     pub fn forget_attachments(&mut self) {
         self.attachments = AttachmentPool::default();
     }
@@ -45,24 +45,25 @@ impl PlanResources {
     }
 }
 
-/// A plan, ready to run.
+/// A plan with everything that the GPU needs to run it: pipelines, buffers, textures and bind groups.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     pub(super) plan: &'a FramePlan,
-    /// Its device stays open as long as it is used, though a later plan may have asked for another.
+    /// The GPU that it was prepared on: its device stays open as long as it is used, even where a later plan has opened
+    /// another.
     pub(super) context: Arc<GpuContext>,
     pub(super) passes: Vec<PreparedPass>,
     textures: Vec<Arc<Texture>>,
-    /// For each pass, the buffers that its snapshot is copied to.
+    /// For each pass, the buffers that its snapshot is copied to, made when first needed.
     staged: Vec<OnceCell<StagedPass>>,
     pub(super) views: UniformArray,
     pub(super) view_group: BindGroup,
     pub(super) draws: UniformArray,
     pub(super) draw_group: BindGroup,
     pub(super) lights: UniformArray,
-    /// For each attachment, the map that is cached from frame to frame, if it is one.
-    pub(super) kept: Vec<Option<Arc<CachedMap>>>,
-    /// What attachments and pictures leave for copies.
+    /// For each attachment, the shadow map that is cached from frame to frame; `None` where it is not cached.
+    pub(super) cached_maps: Vec<Option<Arc<CachedMap>>>,
+    /// The memory left for copies after attachments and images.
     pub(super) budget: MemoryBudget,
 }
 
@@ -72,9 +73,9 @@ pub(super) struct PreparedPass {
     pub depth_stencil: Option<TextureView>,
     pub has_stencil: bool,
     pub draws: Vec<PreparedDraw>,
-    /// What puts depths into its target before it begins.
+    /// The pipeline that writes the depths a pass starts with; `None` where it starts with none.
     pub start: Option<RenderPipeline>,
-    /// Where its image from the CPU goes.
+    /// The texture that its image from the CPU is uploaded to; `None` where it has no image.
     pub image_target: Option<Arc<Texture>>,
 }
 
@@ -83,11 +84,12 @@ pub(super) struct PreparedDraw {
     pub shader: ShaderKey,
     /// Pipelines with the stencil reference of each: one, or two where front and back faces have masks of their own.
     pub pipelines: Vec<(RenderPipeline, u8)>,
-    /// Index among all draws of the plan.
+    /// Its index among all draws of the plan.
     pub index: usize,
     pub vertices: Buffer,
     pub indices: Buffer,
-    /// Groups 2 and 3, for programs that pull their vertices or retain some fragments, and for those that light.
+    /// Bind groups 2 and 3: the first for programs that pull their vertices or read retained fragments, the second for
+    /// those that light.
     pub shading: Option<(BindGroup, Option<BindGroup>)>,
 }
 
@@ -95,18 +97,18 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(
         context: &Arc<GpuContext>,
         pipelines: &mut Pipelines,
-        kept: &mut PlanResources,
+        resources: &mut PlanResources,
         plan: &'a FramePlan,
         mut budget: MemoryBudget,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
         check_size(device, plan, &mut budget)?;
-        kept.next_plan();
-        let PlanResources { buffers, pictures, maps, attachments } = kept;
+        resources.next_plan();
+        let PlanResources { buffers, pictures, maps, attachments } = resources;
         let describe = |id| described(plan, id);
         let map = |id| maps.get(plan, id, || Arc::new(device.create_texture(&describe(id))));
-        let kept: Vec<Option<Arc<CachedMap>>> = (0..plan.attachments.len()).map(AttachmentId).map(map).collect();
-        let given: Vec<_> = kept.iter().map(|map| map.as_ref().map(|map| map.texture.clone())).collect();
+        let cached_maps: Vec<Option<Arc<CachedMap>>> = (0..plan.attachments.len()).map(AttachmentId).map(map).collect();
+        let given: Vec<_> = cached_maps.iter().map(|map| map.as_ref().map(|map| map.texture.clone())).collect();
         let textures = attachments.hand_out(device, plan, &given, describe);
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
@@ -134,28 +136,28 @@ impl<'a> Prepared<'a> {
             draws,
             draw_group,
             lights,
-            kept,
+            cached_maps,
             budget,
         })
     }
 
-    /// What this pass draws stays for the next frame.
+    /// Returns whether what this pass draws is cached for the next frame.
     pub(super) fn may_cache(&self, pass: &Pass) -> bool {
-        pass.targets().any(|id| self.kept[id.0].is_some())
+        pass.targets().any(|id| self.cached_maps[id.0].is_some())
     }
 
-    /// What this pass would draw is still there.
+    /// Returns whether what this pass would draw is cached from an earlier frame, so that it need not run.
     pub(super) fn is_cached(&self, pass: &Pass) -> bool {
-        let is_drawn = |id: AttachmentId| self.kept[id.0].as_ref().is_some_and(|map| map.is_drawn());
+        let is_drawn = |id: AttachmentId| self.cached_maps[id.0].as_ref().is_some_and(|map| map.is_drawn());
         pass.targets().any(is_drawn)
     }
 
-    /// All passes have run.
+    /// Marks all cached maps as drawn, once all passes have run.
     pub(super) fn set_drawn(&self) {
-        self.kept.iter().flatten().for_each(|map| map.set_drawn());
+        self.cached_maps.iter().flatten().for_each(|map| map.set_drawn());
     }
 
-    /// Where a pass's depth and stencil lie; `None` where it has none.
+    /// Returns the depth-stencil layer that a pass draws into; `None` where it has none.
     pub(super) fn start_target(&self, index: usize) -> Option<start::StartTarget<'_>> {
         let target = self.plan.passes[index].depth_stencil.as_ref()?;
         Some(start::StartTarget {
@@ -167,7 +169,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Where the copies of a pass go: made when they are first wanted.
+    /// Returns the buffers that a pass's snapshot is copied to; they are made by the first call.
     pub(super) fn staged(&self, index: usize) -> Result<&StagedPass, GpuError> {
         let cell = &self.staged[index];
         if let Some(staged) = cell.get() {
@@ -177,12 +179,12 @@ impl<'a> Prepared<'a> {
         Ok(cell.get_or_init(|| staged))
     }
 
-    /// Drops the copies of a pass; pictures made of them keep theirs alive.
+    /// Drops the snapshot buffers of a pass; images made from them keep the memory alive.
     pub(super) fn forget_staged(&mut self, index: usize) {
         self.staged[index].take();
     }
 
-    /// Bytes that snapshots of the timed passes copy.
+    /// Returns how many bytes the snapshots of all timed passes copy.
     pub fn snapshot_bytes(&self) -> u64 {
         let bytes = |[color, depth, stencil]: [Option<AspectCopy>; 3]| {
             let copied = color.into_iter().chain(depth).chain(stencil);
@@ -198,7 +200,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// What passes are prepared from.
+/// The device, caches and textures that passes are prepared with.
 struct PassPreparer<'a> {
     context: &'a GpuContext,
     plan: &'a FramePlan,
@@ -211,7 +213,7 @@ struct PassPreparer<'a> {
 }
 
 impl PassPreparer<'_> {
-    /// Prepares a pass whose first draw has this number among all of the plan.
+    /// Makes what the GPU needs to run a pass whose first draw has the index `first_draw` among all draws of the plan.
     fn pass(&mut self, pass: &Pass, first_draw: usize) -> Result<PreparedPass, GpuError> {
         let plan = self.plan;
         let target = pass.depth_stencil.as_ref();
@@ -257,14 +259,15 @@ impl PassPreparer<'_> {
                 Some((group, light.map(|light| self.light_group(draw, light))))
             }
             (_, Some(retained)) if shader.form == ShaderInputs::Retained => {
-                Some((kept_group(device, self.pipelines, &self.buffers.get(device, retained)?)?, None))
+                Some((retained_group(device, self.pipelines, &self.buffers.get(device, retained)?)?, None))
             }
             _ => None,
         };
         Ok(PreparedDraw { shader, pipelines, index, vertices, indices, shading })
     }
 
-    /// What a program that pulls its vertices reads of a surface: with its picture, where the draw shows one.
+    /// Makes the bind group of the surface that a vertex-pulling program reads, with the surface's picture where the
+    /// draw shows one.
     fn surface_group(
         &mut self,
         draw: &Draw,
@@ -296,7 +299,7 @@ impl PassPreparer<'_> {
         Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries }))
     }
 
-    /// What a program that lights or labels reads of a light.
+    /// Makes the bind group of the light that a lighting or labelling program reads.
     fn light_group(&self, draw: &Draw, light: LightId) -> BindGroup {
         let (device, layouts) = (&self.context.device, &self.pipelines.layouts);
         let light = &self.plan.lights[light.0];
@@ -324,7 +327,8 @@ impl PassPreparer<'_> {
     }
 }
 
-/// Takes the bytes of attachments and pictures from the budget.
+/// Fails where an attachment is too large for the device, and takes the bytes of attachments and images from the
+/// budget.
 fn check_size(device: &Device, plan: &FramePlan, budget: &mut MemoryBudget) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;
@@ -353,7 +357,7 @@ fn check_size(device: &Device, plan: &FramePlan, budget: &mut MemoryBudget) -> R
     budget.take(bytes)
 }
 
-/// An attachment's texture.
+/// Returns the descriptor that an attachment's texture is created from.
 fn described(plan: &FramePlan, id: AttachmentId) -> wgpu::TextureDescriptor<'_> {
     let attachment = plan.attachment(id);
     let other = match attachment.role {
@@ -382,7 +386,8 @@ fn described(plan: &FramePlan, id: AttachmentId) -> wgpu::TextureDescriptor<'_> 
     }
 }
 
-/// Where a layer that is drawn lies in its texture. A plan that draws another has not passed the lint.
+/// Returns the texture layer in which a face of an attachment that is drawn is stored. A plan that draws another has
+/// not passed the lint.
 fn stored_layer(plan: &FramePlan, id: AttachmentId, layer: u32) -> u32 {
     plan.stored_layer(id, layer).unwrap_or_default()
 }
@@ -408,14 +413,14 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: ShaderKey, raster: &RasterState
     }
 }
 
-fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> Result<BindGroup, GpuError> {
-    check_bound(device, kept)?;
-    let entries = [BindGroupEntry { binding: 0, resource: kept.as_entire_binding() }];
+fn retained_group(device: &Device, pipelines: &Pipelines, retained: &Buffer) -> Result<BindGroup, GpuError> {
+    check_bound(device, retained)?;
+    let entries = [BindGroupEntry { binding: 0, resource: retained.as_entire_binding() }];
     let layout = &pipelines.layouts.retained;
     Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("kept fragments"), layout, entries: &entries }))
 }
 
-/// One aspect of a layer of an attachment, which is copied after a pass.
+/// One aspect of one layer of an attachment, which is copied after a pass.
 #[derive(Debug, Clone, Copy)]
 struct AspectCopy {
     attachment: AttachmentId,
@@ -433,7 +438,7 @@ impl AspectCopy {
     }
 }
 
-/// What is copied after a pass: colour, depth, stencil.
+/// Returns what is copied after a pass, for colour, depth and stencil; `None` for an aspect that it does not draw to.
 fn copied(plan: &FramePlan, pass: &Pass) -> [Option<AspectCopy>; 3] {
     let copied = |target: Option<(AttachmentId, u32)>, change: TargetChange, aspect| {
         let (attachment, layer) = target.filter(|_| change == TargetChange::Drawn)?;

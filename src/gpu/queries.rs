@@ -5,7 +5,7 @@ use super::{GpuContext, GpuError};
 use crate::plan::{FramePlan, Pass};
 use wgpu::{BufferUsages, CommandEncoder, Device, QuerySet, QueryType};
 
-/// Queries of one kind, with the way back to the CPU.
+/// A set of queries of one kind, with the buffers that bring the results to the CPU.
 struct QueryReadback {
     set: QuerySet,
     count: u32,
@@ -14,7 +14,7 @@ struct QueryReadback {
 }
 
 impl QueryReadback {
-    /// Makes a set of queries; `None` for no queries, and for more than a query set has (4096).
+    /// Makes a set of `count` queries; `None` for none, and for more than a query set holds (4096).
     fn new(device: &Device, ty: QueryType, count: u32) -> Option<QueryReadback> {
         if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
             return None;
@@ -45,7 +45,7 @@ impl QueryReadback {
     }
 }
 
-/// What a frame notes.
+/// The queries that a frame writes: timestamps and sample counts.
 #[derive(Default)]
 pub(super) struct FrameQueries {
     pub timestamps: Option<PassTimestamps>,
@@ -58,26 +58,27 @@ impl FrameQueries {
         timestamps.into_iter().chain(self.samples.as_ref().map(|samples| &samples.queries))
     }
 
-    /// After the last pass.
+    /// Records the copy of all results to buffers, after the last pass.
     pub fn resolve(&self, encoder: &mut CommandEncoder) {
         self.queries().for_each(|queries| queries.resolve(encoder));
     }
 
-    /// After the frame was submitted.
+    /// Asks for the result buffers to be mapped, after the frame was submitted.
     pub fn request_map(&self) {
         self.queries().for_each(QueryReadback::request_map);
     }
 }
 
-/// The times at which each pass began and ended, on adapters with timestamps.
+/// Timestamp queries at the begin and end of each pass, on adapters that have them.
 pub(super) struct PassTimestamps {
-    /// Which pair of queries is a pass's.
+    /// For each pass, the index of its pair of queries; `None` where it is not timed.
     slots: Vec<Option<u32>>,
     queries: QueryReadback,
 }
 
 impl PassTimestamps {
-    /// Makes the queries of the passes that run. A frame with too many is not timed.
+    /// Makes the timestamp queries of the passes that run; `None` where the adapter has none, or there are too many
+    /// passes.
     pub fn new(context: &GpuContext, plan: &FramePlan, runs: impl Fn(&Pass) -> bool) -> Option<PassTimestamps> {
         context.timestamp_period?;
         let mut next_slot = 0..;
@@ -96,16 +97,17 @@ impl PassTimestamps {
         })
     }
 
-    /// Returns the milliseconds of each pass.
+    /// Returns the GPU time of each pass in milliseconds; `None` for passes that were not timed.
     pub fn read(&self, context: &GpuContext) -> Result<Vec<Option<f64>>, GpuError> {
         let times = readback::milliseconds(context, &self.queries.read()?);
         Ok(self.slots.iter().map(|slot| slot.and_then(|slot| times.get(slot as usize).copied()).flatten()).collect())
     }
 }
 
-/// How many samples of each draw passed its tests, where nothing else of it can matter.
+/// Occlusion queries that count the samples that pass each draw's tests, for draws that have no effect where they fail
+/// them.
 pub(super) struct DrawSamples {
-    /// The query of each draw of each pass.
+    /// For each draw of each pass, the index of its query; `None` where it has none.
     slots: Vec<Vec<Option<u32>>>,
     queries: QueryReadback,
 }
@@ -128,12 +130,12 @@ impl DrawSamples {
         Some(DrawSamples { slots, queries })
     }
 
-    /// What a pass hands its samples to.
+    /// Returns the query set that a pass writes its sample counts to.
     pub fn set(&self) -> &QuerySet {
         &self.queries.set
     }
 
-    /// The query of a draw.
+    /// Returns the index of a draw's query; `None` where it has none.
     pub fn slot(&self, pass: usize, draw: usize) -> Option<u32> {
         self.slots[pass][draw]
     }

@@ -14,7 +14,7 @@ use wgpu::{Buffer, BufferUsages, BufferView, CommandEncoder, Device, MapMode, Te
 
 const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
 
-/// What a pass leaves in an aspect of its targets.
+/// How a pass changes one aspect of its targets: not at all, to one value everywhere, or by drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum TargetChange {
     Unchanged,
@@ -23,7 +23,7 @@ pub(super) enum TargetChange {
     Drawn,
 }
 
-/// What a pass leaves in its colour target.
+/// Returns how a pass changes its colour target.
 pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> TargetChange {
     let Some(target) = &pass.color else { return TargetChange::Unchanged };
     let is_drawn = pass.image.is_some() || pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
@@ -36,7 +36,7 @@ pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> TargetChange {
     change(is_drawn, target.clear.map(texel))
 }
 
-/// What a pass leaves in the depth aspect of its target.
+/// Returns how a pass changes the depth aspect of its target.
 pub(super) fn depth_change(pass: &Pass) -> TargetChange {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_depth);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.depth_write);
@@ -44,7 +44,7 @@ pub(super) fn depth_change(pass: &Pass) -> TargetChange {
     change(is_drawn, clear.map(|depth| depth.to_le_bytes().to_vec()))
 }
 
-/// What a pass leaves in the stencil aspect of its target.
+/// Returns how a pass changes the stencil aspect of its target.
 pub(super) fn stencil_change(pass: &Pass) -> TargetChange {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.writes_stencil());
@@ -64,13 +64,13 @@ fn change(is_drawn: bool, clear: Option<Vec<u8>>) -> TargetChange {
     }
 }
 
-/// Linear to sRGB (IEC 61966-2-1), as the GPU does when it clears.
+/// Encodes a linear value from 0 to 1 as an sRGB byte (IEC 61966-2-1), as the GPU does when it clears.
 fn srgb_byte(linear: f64) -> u8 {
     let encoded = if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
-/// One aspect of one layer of a texture, and the buffer that it is copied to.
+/// One aspect of one layer of a texture, and the buffer that it is copied to for reading on the CPU.
 #[derive(Debug)]
 pub(super) struct StagingCopy {
     texture: Texture,
@@ -96,17 +96,17 @@ impl StagingCopy {
         Ok(StagingCopy { texture: texture.clone(), layer, aspect, format, row_stride, buffer })
     }
 
-    /// Bytes of such a copy, padding included.
+    /// Returns the bytes of a copy of one layer of a texture's aspect, row padding included.
     pub fn bytes_of(texture: &Texture, aspect: TextureAspect) -> u64 {
         (row_stride(texture, format_of(texture, aspect)) * texture.height() as usize) as u64
     }
 
-    /// Bytes of the copy, padding included.
+    /// Returns the bytes of the copy, row padding included.
     pub fn byte_len(&self) -> u64 {
         self.buffer.size()
     }
 
-    /// Records the copy.
+    /// Records the copy from the texture to the buffer.
     pub fn record(&self, encoder: &mut CommandEncoder) {
         let source = wgpu::TexelCopyTextureInfo {
             texture: &self.texture,
@@ -125,18 +125,18 @@ impl StagingCopy {
         encoder.copy_texture_to_buffer(source, target, size);
     }
 
-    /// Asks for the copy to be mapped once the GPU is done; [`GpuContext::wait`] makes it so.
+    /// Asks for the buffer to be mapped once the GPU is done; [`GpuContext::wait`] makes it so.
     pub fn request_map(&self) {
         // A failure shows when the mapped range is asked for.
         self.buffer.map_async(MapMode::Read, .., |_| {});
     }
 
-    /// Gives a mapped buffer back to the GPU.
+    /// Unmaps the buffer, so that the GPU can write it again.
     pub fn unmap(&self) {
         self.buffer.unmap();
     }
 
-    /// The picture, in the mapped buffer's own memory.
+    /// Returns the copied image, which stays in the mapped buffer's own memory.
     pub fn image(&self) -> Result<Arc<Image>, GpuError> {
         let size = [self.texture.width(), self.texture.height()];
         Ok(Arc::new(Image::from_rows(self.format, size, self.row_stride, mapped_bytes(&self.buffer)?)))
@@ -159,7 +159,7 @@ fn row_stride(texture: &Texture, format: PixelFormat) -> usize {
     (texture.width() as usize * format.texel_bytes()).next_multiple_of(ROW_ALIGNMENT)
 }
 
-/// The memory of a mapped buffer, which stays mapped as long as the bytes live.
+/// Returns the memory of a mapped buffer, which stays mapped as long as the returned bytes live.
 pub(super) fn mapped_bytes(buffer: &Buffer) -> Result<Bytes, GpuError> {
     let view = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
     Ok(Bytes::from_owner(MappedBytes(view)))
@@ -173,7 +173,7 @@ impl AsRef<[u8]> for MappedBytes {
     }
 }
 
-/// Copies of a frame in the order of its passes.
+/// The copies made after one pass, by aspect.
 #[derive(Debug, Default)]
 pub(super) struct StagedPass {
     pub color: Option<StagingCopy>,
@@ -187,7 +187,7 @@ impl StagedPass {
     }
 }
 
-/// Milliseconds between pairs of timestamps.
+/// Returns the milliseconds between the two timestamps of each pair in `ticks`; `None` where they can't be used.
 pub(super) fn milliseconds(context: &GpuContext, ticks: &[u64]) -> Vec<Option<f64>> {
     let per_tick = context.timestamp_period.map(|nanoseconds| f64::from(nanoseconds) * 1e-6);
     ticks.chunks_exact(2).map(|pair| per_tick.map(|ms| pair[1].saturating_sub(pair[0]) as f64 * ms)).collect()

@@ -4,22 +4,23 @@
 
 use crate::plan::{Draw, DrawMesh, Program, Visibility};
 
-/// What a shader module is of.
+/// Identifies a shader module: a program and the inputs that its draws have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct ShaderKey {
     pub program: Program,
     pub form: ShaderInputs,
 }
 
-/// What a program reads beside what all of its draws have.
+/// What a program reads in addition to the inputs that all of its draws have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum ShaderInputs {
     Plain,
-    /// The picture of the surface.
+    /// The texture of the surface.
     Textured,
-    /// The planes of vertices that are [`Extruded`](crate::plan::Extruded).
+    /// The planes and lines from which the shader computes vertices, of meshes that are
+    /// [`Extruded`](crate::plan::Extruded).
     Extruded,
-    /// The fragments that another program's shader did not discard.
+    /// The fragments that another program's shader did not discard, of a captured frame.
     Retained,
 }
 
@@ -35,12 +36,12 @@ impl ShaderKey {
         ShaderKey { program: draw.program, form }
     }
 
-    /// Reads vertices from storage by index, instead of a vertex buffer.
+    /// Returns whether its vertices are read from storage buffers by index, instead of from a vertex buffer.
     pub fn pulls_vertices(self) -> bool {
         self.program.visibility().is_some() || self.form == ShaderInputs::Textured
     }
 
-    /// How many bind groups it uses, from group 0 on.
+    /// Returns how many bind groups it uses, from group 0 on.
     pub fn group_count(self) -> usize {
         match self.program {
             Program::Ambient { .. } if self.form == ShaderInputs::Textured => 3,
@@ -53,12 +54,12 @@ impl ShaderKey {
     }
 }
 
-/// A shader module of a program.
+/// The WGSL source of a program's shader module, and its entry points.
 #[derive(Debug, Clone)]
 pub(super) struct ProgramSource {
     pub source: String,
     pub vertex: &'static str,
-    /// `None` where no colour is written.
+    /// Name of the fragment entry point; `None` where no colour is written.
     pub fragment: Option<&'static str>,
 }
 
@@ -140,10 +141,10 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
     vec![file!("draw.wgsl"), file!("pulled.wgsl"), file!("surface.wgsl"), light, arriving, own]
 }
 
-/// What puts depths into a target.
+/// The WGSL source that writes the depths a target starts with.
 pub(super) const START: &str = file!("start.wgsl");
 
-/// The log of a pixel's fragments.
+/// Returns the WGSL source that logs the fragments of one pixel.
 pub(super) fn fragment_log() -> String {
     [file!("shared.wgsl"), file!("fragment_log.wgsl")].join("\n")
 }

@@ -8,20 +8,20 @@
 use crate::plan::{Draw, PlanLight, Program};
 use crate::scene::Shading;
 
-/// What the draws of a pipeline have.
+/// The pipeline constants of a shader: which optional effects the draws of a pipeline have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(super) struct Specialization {
-    /// A pattern of checks.
+    /// Whether the material has a pattern of checks.
     has_checks: bool,
-    /// A highlight.
+    /// Whether the material has a specular highlight.
     has_gloss: bool,
-    /// Lit at its vertices.
+    /// Whether light is computed at the vertices (Gouraud shading) and not at each pixel.
     is_gouraud: bool,
-    /// The light fades to nothing somewhere.
+    /// Whether the light has a range at which it fades to nothing.
     fades: bool,
-    /// Diffuse light reaches round the edge.
+    /// Whether diffuse light wraps round past the terminator.
     wraps: bool,
-    /// Depth is clamped: fragments beyond the far plane come, too.
+    /// Whether depth is clamped, so that fragments beyond the far plane are drawn, too.
     is_depth_clamped: bool,
 }
 
@@ -52,7 +52,7 @@ impl Specialization {
         }
     }
 
-    /// The constants of a program's shader, by their names in WGSL.
+    /// Returns the pipeline-overridable constants of a program's shader, each with its name in WGSL.
     pub fn constants(self, program: Program) -> Vec<(&'static str, f64)> {
         let Specialization { has_checks, has_gloss, is_gouraud, fades, wraps, is_depth_clamped } = self;
         let of_surface = [

@@ -8,17 +8,17 @@ use wgpu::{BufferUsages, CommandEncoder, Device, LoadOp, Operations, RenderPipel
 
 const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
 
-/// Where content goes: a layer of a depth-stencil texture.
+/// A layer of a depth-stencil texture that a pass starts with given content in.
 pub(super) struct StartTarget<'a> {
     pub device: &'a Device,
     pub texture: &'a wgpu::Texture,
     pub layer: u32,
     pub view: &'a wgpu::TextureView,
-    /// The pipeline of [`pipeline`], where there is depth to be written.
+    /// The pipeline made by [`pipeline`]; `None` where no depths are written.
     pub pipeline: Option<&'a RenderPipeline>,
 }
 
-/// Records what brings content there.
+/// Records the commands that write the content to the target.
 pub(super) fn record(encoder: &mut CommandEncoder, target: &StartTarget, content: &StartContent) {
     let StartTarget { device, texture, layer, view, pipeline } = *target;
     if let Some(stencil) = content.stencil.as_ref().filter(|_| texture.format().has_stencil_aspect()) {
@@ -48,7 +48,7 @@ fn copy_stencil(encoder: &mut CommandEncoder, device: &Device, stencil: &Blob<u8
     encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, target, size);
 }
 
-/// What puts depths into a target of a format.
+/// Makes the pipeline that writes depths from a texture to a target of this format.
 pub(super) fn pipeline(device: &Device, format: TextureFormat) -> RenderPipeline {
     let source = wgpu::ShaderSource::Wgsl(shaders::START.into());
     let module = &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("start"), source });

@@ -16,7 +16,7 @@ use wgpu::{
 const NOT_REVERSED: u32 = u32::MAX;
 const NO_LAYER: u32 = u32::MAX;
 
-/// `View` of `shared.wgsl`.
+/// The uniform block `View` of `shared.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct ViewUniform {
@@ -25,7 +25,7 @@ struct ViewUniform {
     ambient: [f32; 4],
 }
 
-/// `DrawConstants` of `draw.wgsl`.
+/// The uniform block `DrawConstants` of `draw.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct DrawUniform {
@@ -47,7 +47,7 @@ struct DrawUniform {
     padding: [f32; 3],
 }
 
-/// `Light` of `surface.wgsl`.
+/// The uniform block `Light` of `surface.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct LightUniform {
@@ -67,7 +67,7 @@ struct LightUniform {
     clip_from_relative: [[f32; 16]; PlanMap::MOST_FACES],
 }
 
-/// One struct an element, each at an offset that a dynamic binding may have.
+/// A uniform buffer of equal structs, each at an offset that a dynamic binding may have.
 #[derive(Debug)]
 pub(super) struct UniformArray {
     pub buffer: Buffer,
@@ -91,19 +91,19 @@ impl UniformArray {
         UniformArray { buffer, stride: stride as u32, size: size as u64 }
     }
 
-    /// What the dynamic binding refers to.
+    /// Returns the resource to bind: one struct of the buffer, chosen by a dynamic offset.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         let size = std::num::NonZeroU64::new(self.size);
         wgpu::BindingResource::Buffer(BufferBinding { buffer: &self.buffer, offset: 0, size })
     }
 
-    /// A bind group of this array alone.
+    /// Makes a bind group that contains this buffer alone.
     pub fn bind_group(&self, device: &Device, layout: &BindGroupLayout) -> BindGroup {
         let entries = &[BindGroupEntry { binding: 0, resource: self.binding() }];
         device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries })
     }
 
-    /// The dynamic offset of an element.
+    /// Returns the dynamic offset in bytes of the element `index`.
     pub fn offset(&self, index: usize) -> u32 {
         index as u32 * self.stride
     }
@@ -119,7 +119,7 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
     UniformArray::new(device, "views", &plan.views.iter().map(view).collect::<Vec<_>>(), BufferUsages::UNIFORM)
 }
 
-/// All draws of all passes, in order.
+/// Uploads the constants of all draws of all passes, in order.
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
     let of_pass = |pass: &Pass| {
         let map = pass.light.and_then(|light| plan.lights[light.0].map.as_ref());

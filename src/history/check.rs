@@ -6,7 +6,7 @@ use crate::numbers;
 use crate::stencil_machine::DepthStencil;
 use std::fmt;
 
-/// Where a history is wrong: a bug of this program, or of the driver.
+/// A way in which a pixel's history contradicts the GPU: a bug of this program or of the driver.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Disagreement {
     /// The GPU made a fragment where geometry says there can be none, or none where there must be one.
@@ -17,42 +17,42 @@ pub enum Disagreement {
         draw: String,
         /// Which of its triangles.
         primitive: u32,
-        /// There must be one, and is none.
+        /// True where a fragment must exist and does not; false where one exists and can't.
         is_missing: bool,
     },
-    /// There are not as many fragments as the GPU counted.
+    /// The number of listed fragments differs from the number that the GPU counted.
     Counted {
         /// Fragments that the GPU counted.
         counted: u32,
         /// Number of those in the list.
         listed: u32,
     },
-    /// There are not as many events without a fragment as plan and geometry ask for.
+    /// The number of listed events without a fragment differs from what plan and geometry require.
     WithoutFragment {
-        /// Clears, culled and clipped triangles that there must be.
+        /// Number of clears and of culled and clipped triangles that there must be.
         expected: u32,
         /// Number of those in the list.
         listed: u32,
     },
-    /// An event is not after the one before it in the order of the API.
+    /// An event is out of the API's order: it is not after the one before it.
     Order {
         /// Index of the event.
         event: usize,
     },
-    /// An event does not begin with what the one before it left.
+    /// An event's values before it are not those that the previous event left.
     Chain {
         /// Index of the event.
         event: usize,
     },
-    /// The capture contains nothing to compare with.
+    /// The capture has no depth to compare with.
     NotCaptured,
-    /// After a pass the GPU stored something else than the events make.
+    /// The values that the GPU stored after a pass differ from those that the events lead to.
     Stored {
         /// Index of the pass.
         pass: usize,
-        /// What the events make.
+        /// The values that the events lead to.
         computed: PixelValues,
-        /// What the GPU stored.
+        /// The values that the GPU stored.
         captured: CapturedAfter,
     },
 }
@@ -100,7 +100,7 @@ impl fmt::Display for Disagreement {
 }
 
 impl PixelHistory {
-    /// Everything that is wrong with it; empty where it agrees with the GPU.
+    /// Returns every contradiction between this history and the GPU; empty where they agree.
     pub fn disagreements(&self) -> Vec<Disagreement> {
         let mut found = self.contradictions.clone();
         let is_fragment = |outcome: FragmentOutcome| {
@@ -143,7 +143,7 @@ impl PixelHistory {
     }
 }
 
-/// Pass, what comes first in it, draw, triangle.
+/// Returns an event's position in the API's order: pass, stage of the pass, draw, triangle.
 fn place(event: &PixelEvent) -> (usize, u8, usize, u32) {
     match &event.kind {
         PixelEventKind::Put => (event.pass, 0, 0, 0),

@@ -4,7 +4,7 @@ use super::{FragmentOutcome, PixelEvent, PixelEventKind, PixelHistory, TestResul
 use crate::plan::ClipPlane;
 use serde::Serialize;
 
-/// A pixel's history as JSON.
+/// A pixel's history, to be serialised as JSON for `pixel --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PixelDocument {
     pixel: [u32; 2],
@@ -55,7 +55,7 @@ struct PixelEventEntry {
 }
 
 impl PixelDocument {
-    /// Returns the document of a history that took this many milliseconds to compute.
+    /// Makes the document of a history that took this many milliseconds to compute.
     pub fn new(history: &PixelHistory, milliseconds: f64) -> PixelDocument {
         let stored = |depth, stencil| StoredEntry { stencil: history.has_stencil.then_some(stencil), depth };
         let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();
@@ -117,7 +117,7 @@ fn word(test: TestResult) -> Option<&'static str> {
 }
 
 impl FragmentOutcome {
-    /// Why a triangle left no fragment, in words; `None` where it did.
+    /// Returns a sentence on why a triangle left no fragment; `None` where it left one.
     pub fn note(self) -> Option<&'static str> {
         match self {
             FragmentOutcome::Tested { .. } => None,

@@ -7,51 +7,51 @@ use crate::math::depth::DepthCurve;
 use crate::plan::{CountBits, CountedSide};
 use std::collections::BTreeMap;
 
-/// The faces of one light's volumes along the ray of a pixel.
+/// The faces of one light's shadow volumes along a pixel's view ray, with the running count.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ladder {
     /// Distance of the visible surface along the view axis in metres; `None` for the background.
     pub surface: Option<f64>,
-    /// Where faces count: behind the surface from infinity inwards, else from the eye outwards.
+    /// Where faces count: behind the surface, from infinity inwards; or in front of it, from the eye outwards.
     pub side: CountedSide,
-    /// What the count began with: what it was cleared to, and the volumes that contain the near plane, where that was
+    /// The number that the count began with: its clear value, plus the volumes around the near plane where those were
     /// counted.
     pub start: i32,
-    /// The part of `start` that it was cleared to.
+    /// The part of `start` that is the clear value.
     pub cleared_to: i32,
     /// The bits of the stencil that the count is stored in.
     pub bits: CountBits,
-    /// What it ended with.
+    /// The count in the end, as if it had no limits.
     pub count: i32,
-    /// The count as the light pass tests it: in a stencil, its eight bits.
+    /// The count as the light pass tests it: in a stencil, wrapped or clamped to its bits.
     pub tested: VolumeCount,
-    /// Nearest first.
+    /// The faces, the nearest first.
     pub rungs: Vec<Rung>,
 }
 
-/// One face.
+/// One volume face that the view ray crosses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rung {
-    /// Index into the history's events.
+    /// Index of its event in [`PixelHistory::events`].
     pub event: usize,
-    /// Along the view axis in metres; infinite where it is at infinity.
+    /// Distance along the view axis in metres; infinite for a face at infinity.
     pub distance: f64,
-    /// What it added: 1, −1, or 0 where it did not count.
+    /// What it added to the count: 1, −1, or 0 where it did not count.
     pub added: i32,
-    /// The count once it was added, as it runs along the ray.
+    /// The count after this face, in the order in which the ladder counts.
     pub running: i32,
 }
 
 impl Ladder {
-    /// Does the count run from infinity inwards, and not from the eye outwards?
+    /// Returns whether the count runs from infinity inwards (z-fail) and not from the eye outwards.
     pub fn is_from_infinity(&self) -> bool {
         self.side == CountedSide::Behind
     }
 }
 
 impl PixelHistory {
-    /// The ladder of a light; `None` where none of its volumes' faces is on the ray, and the near
-    /// plane was not asked about here. `curve` is the capture's.
+    /// Returns the faces of a light's volumes along the pixel's view ray; `None` where there are none and the near
+    /// plane was not counted at either. `curve` is the capture's depth curve.
     pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
         let of_light = |event: &&PixelEvent| event.light == Some(light) && event.is_of_volume();
         let near = || self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);

@@ -36,41 +36,41 @@ use crate::plan::{ClipPlane, CountBits, CountedSide, DrawPart, FramePlan, Visibi
 use crate::stencil_machine::DepthStencil;
 use wgpu::StencilOperation;
 
-/// One pixel's history.
+/// Everything that happened to one pixel in a frame: clears, and each triangle that covers it, with its tests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PixelHistory {
     /// Column and row, from the top left.
     pub pixel: [u32; 2],
-    /// Does the technique use a stencil buffer?
+    /// Whether the frame has a stencil buffer.
     pub has_stencil: bool,
-    /// Is greater depth nearer?
+    /// Whether greater depth is nearer.
     pub is_reversed: bool,
-    /// How far the depths that the events make may be from those that were stored: 0 in our own frames.
+    /// How far computed depths may be from stored ones without counting as a contradiction: 0 in our own frames.
     pub depth_rounding: f32,
-    /// Before the first event: zeros, or what another program's frame began with.
+    /// The values before the first event: zeros, or what another program's frame began with.
     pub start: PixelValues,
-    /// In the order in which they happened.
+    /// The events in the order in which they happened.
     pub events: Vec<PixelEvent>,
-    /// What the events leave.
+    /// The values after the last event.
     pub computed: PixelValues,
-    /// What the GPU stored by the end of the frame; `None` where the capture has no picture.
+    /// The values that the GPU stored by the end of the frame; `None` where the capture has no picture.
     pub captured: Option<DepthStencil>,
-    /// What the GPU stored after each pass of the picture.
+    /// The values that the GPU stored after each pass of the picture.
     pub captured_after: Vec<CapturedAfter>,
-    /// What the technique says of each light here, as in its mask; `None` where it has none.
+    /// For each light, the label byte that the technique's mask stores at this pixel; `None` where it has no mask.
     pub labels: Vec<Option<u8>>,
-    /// Fragments that the GPU counted here.
+    /// Number of fragments that the GPU counted at this pixel.
     pub counted: u32,
-    /// Events without a fragment that there must be: clears that the plan asks for, and triangles
-    /// that geometry says were culled or clipped.
+    /// Number of events without a fragment that there must be: clears that the plan contains, and triangles that
+    /// geometry says were culled or clipped.
     pub without_fragment: u32,
-    /// For each light whose shadow volumes the technique counts: in which bits of the stencil.
+    /// For each light, the stencil bits in which its shadow volumes are counted; `None` where none are drawn.
     pub counts_in: Vec<Option<CountBits>>,
-    /// Where the log and geometry contradict each other.
+    /// Contradictions between the GPU's log of fragments and geometry.
     pub contradictions: Vec<Disagreement>,
 }
 
-/// The values that a pixel's buffers store.
+/// The values that a pixel's depth, stencil and count buffers store.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelValues {
     /// The value in the depth buffer.
@@ -81,7 +81,7 @@ pub struct PixelValues {
     pub count: f32,
 }
 
-/// What the GPU stored at the pixel by the end of a pass.
+/// The values that the GPU stored at the pixel by the end of a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapturedAfter {
     /// Index of the pass.
@@ -93,26 +93,26 @@ pub struct CapturedAfter {
 }
 
 impl PixelValues {
-    /// Depth and stencil.
+    /// Returns depth and stencil, without the float count.
     pub fn stored(self) -> DepthStencil {
         DepthStencil { depth: self.depth, stencil: self.stencil }
     }
 }
 
-/// One thing that happened.
+/// One event of a pixel's history: a clear, or a triangle that covers it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PixelEvent {
     /// Index of the pass, as in the capture.
     pub pass: usize,
     /// Name of that pass.
     pub pass_name: String,
-    /// The light it belongs to.
+    /// Index of the light that the pass belongs to; `None` for the scene's own passes.
     pub light: Option<usize>,
-    /// The pass is seen from the camera: depths are the picture's.
+    /// Whether the pass is seen from the camera, so that depths are the picture's.
     pub is_from_camera: bool,
     /// What the pass draws into.
     pub target: FrameTarget,
-    /// What happened.
+    /// The clear or the triangle.
     pub kind: PixelEventKind,
     /// The pixel's values before the event.
     pub before: PixelValues,
@@ -120,11 +120,11 @@ pub struct PixelEvent {
     pub after: PixelValues,
 }
 
-/// What can happen to a pixel.
+/// The kinds of events in a pixel's history.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PixelEventKind {
-    /// Something other than a draw or a clear of everything has set depth and stencil before the pass, in another
-    /// program's frame: a copy, a clear of a part, a draw that is not followed.
+    /// In another program's frame, something other than a draw or a full clear has set depth and stencil before the
+    /// pass: a copy, a clear of a part, or a draw that is not replayed.
     Put,
     /// The pass begins by clearing depth.
     ClearDepth,
@@ -136,7 +136,7 @@ pub enum PixelEventKind {
     Triangle(Box<TriangleEvent>),
 }
 
-/// A triangle that covers the pixel, and what became of it.
+/// A triangle that covers the pixel, with the outcome of its tests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleEvent {
     /// Index of the draw in its pass.
@@ -153,19 +153,19 @@ pub struct TriangleEvent {
     pub triangle: u32,
     /// Corners, homogeneous and relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
-    /// The triangle's front is visible.
+    /// Whether the triangle's front is seen.
     pub is_front: bool,
-    /// It faces into the volume that it bounds.
+    /// Whether its front faces into the volume that it bounds.
     pub faces_inwards: bool,
-    /// Whom its shader asks how much of the light arrives, where it adds the light; of another program's surfaces nobody.
+    /// For a draw that adds light, what its shader reads to find how much arrives; `None` for other draws.
     pub lights: Option<Visibility>,
     /// The depth that the depth test sees; outside 0 to 1 where the triangle was clipped.
     pub depth: f32,
-    /// What became of it.
+    /// Whether it left a fragment, and the results of its tests.
     pub outcome: FragmentOutcome,
 }
 
-/// What became of a triangle at a pixel.
+/// Whether a triangle left a fragment at the pixel, and how the tests went.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FragmentOutcome {
     /// The triangle left a fragment, which went through the tests.
@@ -177,30 +177,29 @@ pub enum FragmentOutcome {
         /// The operation that ran on the stencil; `None` where the draw tests no stencil.
         operation: Option<StencilOperation>,
     },
-    /// The shader discarded its fragment: on that side of the depths that are drawn, or of another program for reasons of
-    /// its own.
+    /// The shader discarded its fragment: beyond this plane, or with `None` for reasons of another program's shader.
     Discarded(Option<ClipPlane>),
-    /// The draw shows only the other side of triangles.
+    /// The draw culls the side of the triangle that is seen.
     Culled,
-    /// It lies before the near or behind the far plane.
+    /// It was clipped at this plane.
     Clipped(ClipPlane),
 }
 
-/// How a test went.
+/// The result of a depth or stencil test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TestResult {
     /// It passed.
     Passed,
     /// It failed.
     Failed,
-    /// It passed whatever the values, as its function is `Always` or it is off.
+    /// It passed whatever the values, as the test is off or its function is `Always`.
     Always,
-    /// The test before it failed.
+    /// It was not done, as the test before it failed.
     NotReached,
 }
 
 impl TestResult {
-    /// Did it let the fragment through? `None` where it was not asked.
+    /// Returns whether it let the fragment through; `None` where it was not done.
     pub fn passed(self) -> Option<bool> {
         match self {
             TestResult::Passed | TestResult::Always => Some(true),
@@ -211,22 +210,22 @@ impl TestResult {
 }
 
 impl TriangleEvent {
-    /// Is the outside of what it belongs to seen? What faces into its volume shows it from behind, and
-    /// counts the other way round.
+    /// Returns whether the outside of the volume or surface that the triangle belongs to is seen. A triangle that faces
+    /// into its volume shows the outside by its back, and counts the other way round.
     pub fn shows_outside(&self) -> bool {
         self.is_front != self.faces_inwards
     }
 }
 
 impl FragmentOutcome {
-    /// Did the fragment pass all tests, and reach the colour target?
+    /// Returns whether the fragment passed all tests and reached the colour target.
     pub fn passed(self) -> bool {
         matches!(self, FragmentOutcome::Tested { depth, .. } if depth.passed() == Some(true))
     }
 }
 
 impl PixelEvent {
-    /// The triangle, where it was one.
+    /// Returns the event's triangle; `None` for a clear.
     pub fn triangle(&self) -> Option<&TriangleEvent> {
         match &self.kind {
             PixelEventKind::Triangle(triangle) => Some(triangle),
@@ -246,7 +245,7 @@ impl PixelEvent {
         in_stencil + in_float
     }
 
-    /// What was done to the stencil, where a fragment was tested against one.
+    /// Returns the stencil operation that ran; `None` where no fragment was tested against a stencil.
     fn operation(&self) -> Option<StencilOperation> {
         match self.triangle()?.outcome {
             FragmentOutcome::Tested { operation, .. } => operation,
@@ -260,7 +259,7 @@ impl PixelEvent {
         self.before != self.after || (has_passed && !self.is_of_volume())
     }
 
-    /// What it was to add to the count: also where the count stopped at 0 or 255 and did not change.
+    /// Returns what the event was to add to the count, also where the count stopped at 0 or 255 and did not change.
     pub fn step(&self) -> i32 {
         match self.operation() {
             None => self.counted(),
@@ -268,14 +267,14 @@ impl PixelEvent {
         }
     }
 
-    /// It is a face of a shadow volume.
+    /// Returns whether it is a face of a shadow volume.
     pub fn is_of_volume(&self) -> bool {
         self.triangle().is_some_and(|one| one.part.is_of_volume())
     }
 }
 
-/// Returns what an operation adds to a count; one that inverts bits adds as well, and parity is what is stored of the
-/// sum.
+/// Returns what a stencil operation adds to a count: 1 also for inverting, whose parity is stored. `None` for other
+/// operations.
 fn step_of(operation: StencilOperation) -> Option<i32> {
     use StencilOperation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap, Invert};
     match operation {
@@ -286,7 +285,7 @@ fn step_of(operation: StencilOperation) -> Option<i32> {
 }
 
 impl PixelHistory {
-    /// What a light's count was cleared to, where it was.
+    /// Returns the value that a light's count was cleared to last; 0 where it was not cleared.
     pub(crate) fn cleared_to(&self, light: usize) -> i32 {
         let clears = self.events.iter().rev().filter(|event| event.light == Some(light));
         let mut cleared = clears.filter_map(|event| match event.kind {
@@ -303,7 +302,7 @@ impl PixelHistory {
         self.disagreements().is_empty()
     }
 
-    /// The triangles with their events, in order.
+    /// Returns the events that are triangles, in order, each with its triangle.
     pub fn triangles(&self) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
         self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
     }
@@ -344,13 +343,13 @@ impl PixelHistory {
         }
     }
 
-    /// Returns whether an event of a pass changes a value of the pixel, or reaches its colour.
+    /// Returns whether any event of the pass changes a value of the pixel, or reaches its colour.
     pub fn is_touched_by(&self, pass: usize) -> bool {
         self.events.iter().filter(|event| event.pass == pass).any(PixelEvent::does_something)
     }
 }
 
-/// What the GPU stored at a pixel after each pass of the picture.
+/// Returns the values that the GPU stored at a pixel after each pass of the picture.
 fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<CapturedAfter> {
     let frame = |index: usize| match &capture.steps.get(index)?.snapshot {
         Snapshot::Frame(frame) => Some((index, frame)),
@@ -369,7 +368,7 @@ fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<C
     after
 }
 
-/// Returns the light to whose float count a pass adds.
+/// Returns the index of the light to whose float count a pass adds; `None` for other passes.
 fn frame_counts(plan: &FramePlan, capture: &Capture, pass: usize) -> Option<usize> {
     match &capture.steps.get(pass)?.snapshot {
         Snapshot::Frame(frame) if frame.target == FrameTarget::Count => plan.passes[pass].light.map(|light| light.0),

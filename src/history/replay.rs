@@ -12,12 +12,12 @@ use crate::plan::{
 use crate::stencil_machine::{self, IncomingFragment};
 use wgpu::CompareFunction;
 
-/// wgpu clears new textures to zero.
+/// The values of a new texture, which wgpu clears to zero.
 const NEW: PixelValues = PixelValues { depth: 0.0, stencil: 0, count: 0.0 };
 
 impl PixelHistory {
-    /// The history of `pixel` in the frame of `plan`, which left `capture`: `covering` are the
-    /// triangles over it, and `log` the fragments that the GPU made of them.
+    /// Replays the events of `pixel` on the CPU from the plan of a frame and its `capture`. `covering` has the
+    /// triangles over the pixel, and `log` the fragments that the GPU made of them.
     pub fn new(
         plan: &FramePlan,
         capture: &Capture,
@@ -88,7 +88,7 @@ impl HistoryReplay<'_> {
         self.values = after;
     }
 
-    /// What a pass begins with: content, and what it clears.
+    /// Adds the events that a pass begins with: content set from outside, and clears.
     fn clear(&mut self, index: usize, pass: &Pass) {
         // The frame's own start is no event.
         if let Some(start) = start_content(pass).filter(|_| first_with_depth(self.plan) != Some(index)) {
@@ -143,7 +143,8 @@ impl HistoryReplay<'_> {
         self.push(one.pass, triangle(draw, one, VisibleFace { is_front, depth }, outcome), after);
     }
 
-    /// What geometry says of the triangle, against whether the GPU made a fragment of it.
+    /// Checks what geometry says of a triangle against whether the GPU made a fragment of it; adds the event of a
+    /// culled or clipped one.
     fn compare(&mut self, pass: &Pass, one: &Covering, has_fragment: bool) {
         let draw = &pass.draws[one.draw];
         let (face, outcome) = match (one.coverage, has_fragment) {
@@ -161,7 +162,7 @@ impl HistoryReplay<'_> {
     }
 }
 
-/// How far depths may be from what was stored in another program's frame.
+/// Returns how far computed depths may be from those stored in another program's frame; 0 for our own.
 fn rounding(plan: &FramePlan) -> f32 {
     let first = first_with_depth(plan).map(|index| &plan.passes[index]).filter(|pass| pass.recorded.is_some());
     let target = first.and_then(|pass| Some(plan.attachment(pass.depth_stencil.as_ref()?.attachment)));
@@ -174,7 +175,7 @@ fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> PixelValues {
     first.map_or(NEW, |start| values_of(start, plan, pixel, NEW))
 }
 
-/// The first pass that has the picture's depth.
+/// Returns the index of the first pass that uses the picture's depth.
 fn first_with_depth(plan: &FramePlan) -> Option<usize> {
     plan.passes.iter().position(|pass| plan.is_of_picture(pass) && pass.depth_stencil.is_some())
 }
@@ -183,7 +184,7 @@ fn start_content(pass: &Pass) -> Option<&StartContent> {
     pass.recorded.as_ref()?.start.as_ref()
 }
 
-/// Returns a pixel's values in some content, and those of `values` where the content says nothing.
+/// Returns a pixel's values in some content, and those of `values` where it has no depth or stencil.
 fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: PixelValues) -> PixelValues {
     let index = y as usize * plan.size[0] as usize + x as usize;
     let depth = start.depth.as_ref().and_then(|depth| depth.data().get(index).copied());
@@ -191,7 +192,7 @@ fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: P
     PixelValues { depth: depth.unwrap_or(values.depth), stencil: stencil.unwrap_or(values.stencil), ..values }
 }
 
-/// What a pass of the picture draws into.
+/// Returns whether a pass draws into the picture, a light's labels or a light's count.
 pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     match pass.color.as_ref().map(|target| plan.attachment(target.attachment).role) {
         Some(AttachmentRole::Labels(_)) => FrameTarget::Labels,
@@ -200,7 +201,8 @@ pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     }
 }
 
-/// For each light, the bits that parts of its shadow volumes write, if any pass draws some, over this pixel or elsewhere.
+/// Returns for each light the stencil bits that its volumes' draws write, whether or not they cover this pixel; `None`
+/// for a light without such draws.
 pub(crate) fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     let counts = |light: usize| {
         let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
@@ -210,7 +212,7 @@ pub(crate) fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     (0..plan.lights.len()).map(counts).collect()
 }
 
-/// Clears of depth, stencil and float counts that a plan asks for in passes of the picture.
+/// Returns how many clears of depth, stencil and float counts a plan contains in passes of the picture.
 fn clears(plan: &FramePlan) -> u32 {
     let of_pass = |pass: &Pass| {
         let target = pass.depth_stencil.as_ref();
@@ -244,7 +246,7 @@ fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOut
     }))
 }
 
-/// Whom a draw asks how much of the light arrives, where it adds the light.
+/// Returns what the shader of a draw that adds light reads to find how much arrives; `None` for other draws.
 pub(crate) fn asks(draw: &Draw) -> Option<Visibility> {
     match draw.program {
         Program::Light(visibility) => Some(visibility),
@@ -263,7 +265,7 @@ fn test_of(passed: Option<bool>, function: CompareFunction) -> TestResult {
     }
 }
 
-/// What a draw into a float count adds.
+/// Returns what a fragment of a draw into a float count adds; a back face subtracts.
 pub(crate) fn count_of(draw: &Draw, is_front: bool) -> f32 {
     match (draw.raster.color, draw.program) {
         (ColorWrite::None, _) => 0.0,

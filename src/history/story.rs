@@ -7,7 +7,7 @@ use crate::plan::DrawPart;
 use std::fmt::Write;
 use wgpu::StencilOperation;
 
-/// The name of a stencil operation in JSON and text.
+/// Returns the name of a stencil operation in JSON and text, such as `increment-wrap`.
 pub fn operation_name(operation: StencilOperation) -> &'static str {
     match operation {
         StencilOperation::Keep => "keep",
@@ -22,13 +22,13 @@ pub fn operation_name(operation: StencilOperation) -> &'static str {
 }
 
 impl PixelHistory {
-    /// The whole history in lines; passes, lights and triangles count from 1. `curve` is the
-    /// capture's, and turns depths into metres.
+    /// Returns the whole history as lines of text; passes, lights and triangles count from 1. `curve` is the capture's
+    /// depth curve, which turns depths into metres.
     pub fn story(&self, curve: &DepthCurve) -> String {
         self.story_with(curve, "")
     }
 
-    /// Returns the history in lines, with more `reasons`, each ended by a newline, after those that events give.
+    /// Returns the history as lines of text, with `reasons` (each ended by a newline) after those that events give.
     pub fn story_with(&self, curve: &DepthCurve, reasons: &str) -> String {
         let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
@@ -56,7 +56,7 @@ impl PixelHistory {
         text
     }
 
-    /// What the pixel ends with, and whether the GPU stored the same.
+    /// Describes the values that the pixel ends with, and whether the GPU stored the same.
     fn result(&self, curve: &DepthCurve) -> String {
         let PixelValues { depth, stencil, .. } = self.computed;
         let surface = match curve.distance(depth) {
@@ -76,8 +76,8 @@ impl PixelHistory {
         format!("{surface}{stencil}, {agrees}")
     }
 
-    /// One event in a few words, the same on every machine: for lists that tests compare, such as
-    /// `volumes: side of box, back, fails depth, stencil 0 to 1`.
+    /// Returns an event in a few words that are the same on every machine, for lists that tests compare: `volumes: side
+    /// of box, back, fails depth, stencil 0 to 1`.
     pub fn brief(&self, event: &PixelEvent) -> String {
         let change = match event {
             PixelEvent { before, after, .. } if before.count != after.count => {
@@ -105,12 +105,12 @@ impl PixelHistory {
                     FragmentOutcome::Culled => "culled",
                     FragmentOutcome::Clipped(_) => "clipped",
                 };
-                format!("{pass}: {}, {side}, {outcome}{change}", who(one))
+                format!("{pass}: {}, {side}, {outcome}{change}", triangle_name(one))
             }
         }
     }
 
-    /// One event in a line.
+    /// Returns an event as a line of text.
     pub fn line(&self, event: &PixelEvent, curve: &DepthCurve) -> String {
         match &event.kind {
             PixelEventKind::Put => format!(
@@ -122,7 +122,7 @@ impl PixelHistory {
             PixelEventKind::ClearStencil => format!("clear stencil to {}", event.after.stencil),
             PixelEventKind::ClearCount => format!("clear count to {}", numbers::count_in_float(event.after.count)),
             PixelEventKind::Triangle(one) => {
-                let who = who(one);
+                let name = triangle_name(one);
                 let side = if one.shows_outside() { "front" } else { "back" };
                 let distance = match curve.distance(one.depth).filter(|_| event.is_from_camera) {
                     Some(distance) if distance >= 0.0 => {
@@ -135,12 +135,12 @@ impl PixelHistory {
                     None => String::new(),
                 };
                 let triangle = one.triangle + 1;
-                format!("{who}, triangle {triangle}, {side}{distance}: {}", self.what_became(event, one))
+                format!("{name}, triangle {triangle}, {side}{distance}: {}", self.what_became(event, one))
             }
         }
     }
 
-    /// Where a volume's face lies, seen from the eye.
+    /// Returns words for where a volume's face lies: in front of, on, or behind the visible surface.
     fn place(&self, event: &PixelEvent, one: &TriangleEvent) -> &'static str {
         let [face, surface] =
             [one.depth, event.before.depth].map(|depth| if self.is_reversed { -depth } else { depth });
@@ -189,8 +189,8 @@ impl PixelHistory {
     }
 }
 
-/// `side of torus 2`.
-fn who(one: &TriangleEvent) -> String {
+/// Returns the part and the object of a triangle: `side of torus 2`.
+fn triangle_name(one: &TriangleEvent) -> String {
     match one.part {
         DrawPart::Surface => one.draw_name.clone(),
         DrawPart::Receiver => format!("receiver {}", one.draw_name),

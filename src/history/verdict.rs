@@ -12,61 +12,62 @@ use crate::plan::{CountBits, CountedSide, DecidedBy};
 use crate::technique::{CountOperations, VolumeSettings};
 use crate::truth::PixelLabel::{self, Background, FacesAway, Lit, Shadow};
 
-/// What became of a light at a pixel, and why.
+/// Whether a light reaches the surface at a pixel, and the evidence for why.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// Index of the light.
     pub light: usize,
-    /// What became of it, as the light's mask says; `None` where the capture has no mask.
+    /// The technique's label in the light's mask; `None` where the capture has no mask.
     pub label: Option<PixelLabel>,
-    /// The count of shadow volumes that the light pass tested; `None` where none was, or it was not captured.
+    /// The count of shadow volumes that the light pass tested; `None` where there was none, or it was not captured.
     pub count: Option<VolumeCount>,
-    /// What the label rests on.
+    /// The evidence for the label.
     pub evidence: VerdictEvidence,
 }
 
-/// What a label rests on, as far as it is known.
+/// The evidence for a label, as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum VerdictEvidence {
-    /// The label says it all.
+    /// Nothing beyond the label itself.
     Label,
     /// Shading alone leaves the surface dark; where it is wrapped, some light reaches round to it.
     Shading {
-        /// The light wraps round surfaces.
+        /// Whether diffuse light is wrapped, so that some reaches surfaces that face away.
         wraps: bool,
     },
-    /// The kind of what decides about the light, and no more.
+    /// Only the kind of data that the light pass reads.
     Decision(DecidedBy),
-    /// A count decides that was not captured.
+    /// A count decided that was not captured.
     NoCount,
     /// The count that the light pass tested.
     Count(TestedCount),
-    /// What the pixel's history shows; of a count that needs words of its own, with that.
+    /// The events of the pixel's history, with the tested count where that needs words of its own.
     History(LightDecision, Option<TestedCount>),
-    /// What the texels of a shadow map store, in a sentence.
+    /// A sentence on what the texels of a shadow map store.
     Texels(String),
 }
 
-/// The count that a light pass tested, and what it is the sum of.
+/// The count that a light pass tested, with how it was made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TestedCount {
     /// The count.
     pub count: VolumeCount,
-    /// The side of the surface on which faces count.
+    /// The side of the surface on which faces were counted.
     pub side: CountedSide,
     /// The bits of the stencil that are counted in.
     pub bits: CountBits,
-    /// Each face inverts one bit of the stencil.
+    /// Whether each face inverts one bit of the stencil (parity).
     pub inverts: bool,
-    /// The count may begin at another number than 0: parallel view rays end in volumes at infinity, and z-pass may
-    /// begin with the volumes around the eye.
+    /// Whether the count may begin at another number than 0: parallel view rays end in volumes at infinity, and z-pass
+    /// may begin with the volumes around the eye.
     pub begins_elsewhere: bool,
-    /// Volumes that contain the surface, counted in a float beside a stencil that reads them as 0.
+    /// The number of volumes around the surface from a float count, where the light pass tested the stencil; `None`
+    /// where there is no such count.
     pub in_float: Option<f32>,
 }
 
 impl Verdict {
-    /// What the capture alone says of pixel `at`: column and row, from the top left.
+    /// Returns the verdict for a light at pixel `at` (column, row) from the capture alone.
     pub fn of(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
         let captured = capture.lights.get(light);
         let label = captured.and_then(|light| light.shadow.as_ref()?.byte_at(at));
@@ -95,7 +96,7 @@ impl Verdict {
         Verdict { light, label, count, evidence }
     }
 
-    /// Returns the verdict with what the pixel's history shows, where that says more.
+    /// Returns the verdict with the evidence of the pixel's history, where that says more.
     pub fn with_history(mut self, history: &PixelHistory) -> Verdict {
         let Some(why) = history.why(self.light) else { return self };
         let is_dark = self.label == Some(Shadow);
@@ -115,8 +116,8 @@ impl Verdict {
         self
     }
 
-    /// Returns the verdict with what the shadow map of a light stores, in a sentence; another light's map is no
-    /// evidence.
+    /// Returns the verdict with a sentence on what a shadow map stores, if `light` is the verdict's light and a shadow
+    /// map decides it.
     pub fn with_texels(mut self, light: usize, sentence: impl FnOnce() -> String) -> Verdict {
         if self.light == light && self.evidence == VerdictEvidence::Decision(DecidedBy::Map) {
             self.evidence = VerdictEvidence::Texels(sentence());
@@ -124,7 +125,7 @@ impl Verdict {
         self
     }
 
-    /// The label in a sentence, with the count that decided it.
+    /// Returns the label in a sentence, with the count that decided it.
     pub fn title(&self) -> String {
         let name = numbers::light(self.light);
         let title = match self.label {
@@ -141,7 +142,7 @@ impl Verdict {
         }
     }
 
-    /// The evidence in one sentence, or in a few.
+    /// Returns the evidence in one or a few sentences.
     pub fn reason(&self) -> String {
         let is_dark = self.label == Some(Shadow);
         match &self.evidence {
@@ -193,12 +194,12 @@ impl TestedCount {
         }
     }
 
-    /// The mask says something else than the count.
+    /// Returns whether the label (dark or lit) is not what this count leads to.
     pub fn contradicts(&self, is_dark: bool) -> bool {
         is_dark == self.count.is_zero()
     }
 
-    /// Returns whether the view ray left more volumes than it entered.
+    /// Returns whether the view ray left more volumes than it entered, so that the count is below 0.
     pub fn is_negative(&self) -> bool {
         match self.count {
             VolumeCount::Stencil(count) => !self.inverts && self.bits == CountBits::EIGHT && count > 127,
@@ -206,7 +207,8 @@ impl TestedCount {
         }
     }
 
-    /// The number of volumes, other than 0, that eight bits or fewer read or would read as 0.
+    /// Returns the number of volumes, other than 0, that the stencil's bits read as 0, or eight bits would; `None`
+    /// where the count reads right.
     pub fn reads_as_zero(&self) -> Option<f32> {
         match self.count {
             VolumeCount::Stencil(_) => self.in_float.filter(|count| *count != 0.0 && self.count.is_zero()),
@@ -214,12 +216,12 @@ impl TestedCount {
         }
     }
 
-    /// The faces that a history lists do not say all of it.
+    /// Returns whether a history's list of faces does not explain this count by itself.
     fn needs_words(&self, is_dark: bool) -> bool {
         (is_dark && self.is_negative()) || self.reads_as_zero().is_some()
     }
 
-    /// Why a light pass that tests this count adds the light or not.
+    /// Returns a sentence on why a light pass that tests this count adds the light or not.
     fn reason(&self, is_dark: bool) -> String {
         let TestedCount { count, bits, .. } = self;
         let side = self.side.preposition();
@@ -263,8 +265,7 @@ impl TestedCount {
     }
 }
 
-/// Returns why a light is dark or lit, as far as the kind of what decides about it says; for counts no more than that
-/// they decided.
+/// Returns a general sentence on why a pixel is dark or lit, by the kind of data that decides.
 pub fn reason(decided_by: DecidedBy, is_dark: bool) -> &'static str {
     match (decided_by, is_dark) {
         (DecidedBy::StencilCount { .. } | DecidedBy::FloatCount { .. }, true) => {
@@ -305,7 +306,7 @@ pub fn reason(decided_by: DecidedBy, is_dark: bool) -> &'static str {
     }
 }
 
-/// The stencil value at `at` when the labels of `light` were decided.
+/// Returns the stencil value at pixel `at` when the labels of `light` were drawn; `None` where that was not captured.
 fn tested_stencil(capture: &Capture, light: usize, at: [u32; 2]) -> Option<u8> {
     let is_mask = |step: &&Step| {
         step.light == Some(light)

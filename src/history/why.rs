@@ -8,38 +8,38 @@ use crate::truth::{BACKGROUND, FACES_AWAY};
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// What decided about a light at a pixel.
+/// What the events of a pixel's history say about a light: why it is added there or not.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LightDecision {
-    /// No surface is there.
+    /// There is no surface at the pixel.
     Background,
     /// Faces of shadow volumes were counted.
     Counted(CountedFaces, LightPassResult),
-    /// Casters were flattened onto receivers.
+    /// Casters were flattened onto receivers (planar shadows).
     Flattened(FlattenedShadow, LightPassResult),
 }
 
-/// The faces of a light's volumes at a pixel.
+/// The shadow volume faces of a light that were counted at a pixel, with the resulting count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CountedFaces {
-    /// Where they count: in front of the surface, as their depth test passes; on it or behind it, as it fails.
+    /// Where faces count: in front of the surface, as they pass the depth test; or on it and behind it, as they fail.
     pub side: CountedSide,
     /// The faces that counted.
     pub faces: FaceCounts,
-    /// What the count was cleared to: the number of volumes around the eye, where z-pass begins with them.
+    /// The value that the count was cleared to: 0, or the number of volumes around the eye.
     pub cleared_to: i32,
-    /// Volumes that contain the near plane, where that was asked.
+    /// Number of volumes that contain the near plane at this pixel; `None` where that was not counted.
     pub near: Option<i32>,
-    /// What all that counted add up to, with what the count was cleared to and the near plane's.
+    /// The sum of the clear value, the near plane's volumes and all faces, as if the count had no limits.
     pub sum: i32,
     /// The bits of the stencil that the sum is stored in.
     pub bits: CountBits,
-    /// What was left, as the light pass reads it.
+    /// The count as it is stored and the light pass reads it.
     pub count: VolumeCount,
 }
 
 impl CountedFaces {
-    /// Returns whether no volume contains the surface, as the light pass reads the count.
+    /// Returns whether the light pass reads the count as 0: no volume contains the surface.
     fn is_zero(&self) -> bool {
         match self.count {
             VolumeCount::Stencil(count) => i32::from(count) % self.bits.modulus() == 0,
@@ -48,12 +48,12 @@ impl CountedFaces {
     }
 }
 
-/// How many faces of each side, of the outside of their volume.
+/// Numbers of volume faces that counted, by the side that is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FaceCounts {
-    /// Seen from the front.
+    /// Faces whose volume is seen from outside.
     pub front: u32,
-    /// Seen from the back.
+    /// Faces whose volume is seen from inside.
     pub back: u32,
     /// Number of faces, of both sides, that lie on the surface itself.
     pub on_surface: u32,
@@ -61,45 +61,46 @@ pub struct FaceCounts {
     pub stopped: u32,
 }
 
-/// A count as it was stored.
+/// A count of shadow volumes as it is stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VolumeCount {
-    /// The count in the stencil.
+    /// In the stencil: a byte.
     Stencil(u8),
-    /// The count in a float.
+    /// In a float target, signed.
     Float(f32),
 }
 
-/// The flattened triangles of a light that cover a pixel.
+/// The flattened triangles of a light that cover a pixel, by outcome.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlattenedShadow {
     /// Names of the casters whose flattened triangles passed all tests here.
     pub casters: Vec<String>,
-    /// Triangles that failed the stencil test.
+    /// Number of triangles that failed the stencil test.
     pub failed_stencil: u32,
-    /// Triangles that failed the depth test.
+    /// Number of triangles that failed the depth test.
     pub failed_depth: u32,
-    /// Triangles that left no fragment.
+    /// Number of triangles that left no fragment.
     pub hidden: u32,
-    /// The pixel is marked as one of a receiver.
+    /// Whether the pixel has the stencil mark of a receiver.
     pub is_marked: bool,
 }
 
-/// What the light pass did.
+/// What a light pass did at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LightPassResult {
     /// It added the light.
     Adds,
-    /// Its test let no light through.
+    /// Its test failed, so that it added nothing.
     Skips,
     /// Nothing blocked the light, but it adds none: the surface faces away from it or is beyond its range.
     FacesAway,
-    /// The object receives no shadows: nothing was asked.
+    /// It added the light without a test, as the object receives no shadows.
     AsksNothing,
 }
 
 impl PixelHistory {
-    /// Returns what decided about a light; `None` where the technique leaves no events that show it.
+    /// Returns what decided whether a light is added at this pixel; `None` where the technique leaves no events that
+    /// show it.
     pub fn why(&self, light: usize) -> Option<LightDecision> {
         let of_light = |event: &&PixelEvent| event.light == Some(light) && event.target != FrameTarget::Labels;
         let events = || self.events.iter().filter(of_light);
@@ -152,7 +153,7 @@ impl PixelHistory {
         }
     }
 
-    /// The count of a light as its light pass tests it.
+    /// Returns a light's count as its light pass tests it.
     pub(super) fn counted_at(&self, light: usize) -> VolumeCount {
         let in_float = self.events.iter().any(|event| event.kind == PixelEventKind::ClearCount);
         let values = self.tested_count(light);
@@ -278,7 +279,7 @@ impl fmt::Display for CountedFaces {
 }
 
 impl VolumeCount {
-    /// Does the light pass take it for lit?
+    /// Returns whether the light pass takes it for lit.
     pub fn is_zero(self) -> bool {
         matches!(self, VolumeCount::Stencil(0)) || self == VolumeCount::Float(0.0)
     }

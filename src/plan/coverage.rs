@@ -58,9 +58,9 @@ pub enum Coverage {
 /// The side of a triangle that is seen at a pixel, and its depth there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VisibleFace {
-    /// The front: corners run counterclockwise on the screen.
+    /// Whether the front is seen, as the draw's front-face order defines it.
     pub is_front: bool,
-    /// Depth as it would be stored; outside 0 to 1 where clipped.
+    /// The depth at the pixel's centre as it would be stored; outside 0 to 1 where it is clipped.
     pub depth: f32,
 }
 
@@ -69,7 +69,7 @@ pub struct VisibleFace {
 pub struct LoggedFragment {
     /// Index of its triangle in the list of [`Covering`]s that was asked about.
     pub covering: usize,
-    /// True for a fragment of the triangle's front.
+    /// Whether the triangle's front is seen.
     pub is_front: bool,
     /// Depth as the depth test sees it, bias included; not clamped.
     pub depth: f32,

@@ -34,7 +34,7 @@ pub struct PlanLight {
 pub struct PlanMap {
     /// The attachment that stores its texels.
     pub attachment: AttachmentId,
-    /// The view of each face; `None` where a face sees no caster: it takes no memory, and shows as clear.
+    /// The view of each face; `None` for a face that contains no caster: it takes no memory and reads as clear.
     pub faces: Vec<Option<ViewId>>,
     /// Light space from world space.
     pub light_from_world: DMat4,

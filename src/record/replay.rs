@@ -214,11 +214,11 @@ impl FrameReplay {
     fn read(&mut self, gpu: ProbeGpu<'_>, targets: &[RawTarget]) -> Vec<RawContents> {
         let part =
             |RawTarget { mip, layer, .. }: RawTarget, texture| readback::TextureSubresource { texture, mip, layer };
-        let met: Vec<_> =
+        let known: Vec<_> =
             targets.iter().filter_map(|target| Some((*target, self.of_target.get(target)?.clone()))).collect();
-        let parts: Vec<_> = met.iter().map(|(target, texture)| part(*target, texture)).collect();
+        let parts: Vec<_> = known.iter().map(|(target, texture)| part(*target, texture)).collect();
         let mut all = readback::contents(gpu.device, gpu.queue, &parts);
-        for ((target, texture), contents) in met.iter().zip(&mut all) {
+        for ((target, texture), contents) in known.iter().zip(&mut all) {
             let format = texture.format();
             if format.has_depth_aspect() && contents.depth.is_none() {
                 self.limit(&format!("what {format:?} holds can't be copied, so that its depths are not known"));

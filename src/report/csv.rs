@@ -6,7 +6,7 @@ const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,fals
 wrong_surface,edge_band,wrong_fraction,wrong_color,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
 triangles,bytes,pareto,adapter,sweep,sweep_value";
 
-/// Returns a heading line, then one line a row; each ends as the standard requires, with CR LF.
+/// Returns a report as CSV: a heading line, then one line for each row, each ended by CR LF as RFC 4180 requires.
 pub fn csv(report: &Report) -> String {
     let lines = report.rows.iter().map(|row| line(row, &report.adapter.name));
     std::iter::once(COLUMNS.to_owned()).chain(lines).map(|line| line + "\r\n").collect()
@@ -44,7 +44,7 @@ fn line(row: &ReportRow, adapter: &str) -> String {
     fields.join(",")
 }
 
-/// Text in quotes where it needs them, quotes in it doubled.
+/// Returns a CSV field: `text`, in quotes where it needs them, with quotes in it doubled.
 fn field(text: &str) -> String {
     if text.contains([',', '"', '\r', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

@@ -30,19 +30,19 @@ use std::collections::BTreeMap;
 /// Version of the JSON format.
 const SCHEMA: u32 = 1;
 
-/// Error against run time: every technique with every setting that was measured, on one machine.
+/// The measured error and run time of techniques with their settings in scenes, one row each, on one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ReportDocument", into = "ReportDocument")]
 pub struct Report {
     /// The adapter that it was measured on.
     pub adapter: AdapterInfo,
-    /// One row a scene, technique and settings, in the order in which they are listed.
+    /// One row for each scene, technique and choice of settings, in the order in which they are listed.
     pub rows: Vec<ReportRow>,
     /// Which part of a run it is; `None` for a whole run.
     pub part: Option<ShardPart>,
 }
 
-/// A report of which some rows may have exceeded the memory budget.
+/// A report, and the names of the rows that were left out because they exceed the memory budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredReport {
     /// The report with the rows that were measured.
@@ -51,21 +51,21 @@ pub struct MeasuredReport {
     pub left_out: Vec<String>,
 }
 
-/// One scene, rendered by one technique with one choice of settings.
+/// The error and times of one scene rendered by one technique with one choice of settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReportRow {
     /// Name of the scene.
     pub scene: String,
     /// Name of the technique.
     pub technique: String,
-    /// Every setting of the technique.
+    /// Value of every setting of the technique, by the setting's name.
     pub settings: BTreeMap<String, String>,
     /// What distinguishes this row from others of its technique: `1024`, `1024, slope 0`; may be empty.
     #[serde(default)]
     pub label: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The value of a sweep; `None` without one.
+    /// The sweep's value at which it was measured; `None` in a report without a sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<SweepValue>,
     /// Numbers of pixels by finding, compared with the truth and summed over lights.
@@ -77,9 +77,9 @@ pub struct ReportRow {
     /// each counts once, however many lights there are. `None` in reports from before it was measured.
     #[serde(default)]
     pub wrong_color: Option<u64>,
-    /// Wall time of a frame.
+    /// Wall times of a frame without set-up, milliseconds.
     pub frame_ms: FrameTimes,
-    /// Frame times including set-up, where the scene moves; `None` where it does not and set-up is done once.
+    /// Frame times including set-up, where the scene moves and every frame is set up again; `None` where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moving: Option<MotionCost>,
     /// GPU time of a frame in milliseconds; `None` where the hardware can't measure it.
@@ -96,51 +96,51 @@ pub struct ReportRow {
     pub pareto: bool,
 }
 
-/// Times of a frame of a moving scene.
+/// Times of a frame of a moving scene, which is set up again for every frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MotionCost {
     /// Median time of setting it up (silhouettes, proofs, uploads), milliseconds.
     pub setup_ms: f64,
-    /// Median time of setting it up and drawing it, milliseconds.
+    /// Median time of setting up and drawing a frame, milliseconds.
     pub total_ms: f64,
-    /// Set-up's share of all frames' time, 0 to 1.
+    /// The share of set-up in the time of all frames together, 0 to 1.
     pub setup_share: f64,
 }
 
-/// A value of a sweep.
+/// One value of the number that a sweep changes, such as the number of lights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepValue {
     /// Name of what changes: `size`, `lights`, `casters`, `triangles` or `map-size`.
     pub name: String,
-    /// The value; for sizes the number of pixels.
+    /// The value as a number; for picture sizes the number of pixels.
     pub value: f64,
     /// The value as it is shown: `1280×720`.
     pub text: String,
 }
 
-/// Wall times of equal frames, milliseconds.
+/// Median and range of the wall times of repeated frames of one row, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
-    /// The median.
+    /// The median time, milliseconds.
     pub median: f64,
-    /// The shortest time.
+    /// The shortest time, milliseconds.
     pub min: f64,
-    /// The longest time.
+    /// The longest time, milliseconds.
     pub max: f64,
     /// The number of frames that were timed.
     pub runs: u32,
 }
 
-/// Why a report can't be read or written in a format.
+/// Why a report can't be read from JSON, or its plot can't be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// It is not JSON, or not a report's.
+    /// The text is not JSON, or not a report's.
     #[error("the report can't be read or written as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// It was written by another version.
+    /// The JSON was written by a version with another format.
     #[error("a report of schema {found} can't be read: make it again, this version knows schema {SCHEMA}")]
     Schema {
-        /// The schema that the file names.
+        /// The format version that the file names.
         found: u32,
     },
     /// The plot's SVG can't be rendered, or is too large.
@@ -152,7 +152,7 @@ pub enum ReportError {
     Png(#[from] png::EncodingError),
 }
 
-/// A report as it is in a JSON file.
+/// The JSON file of a report: its format version beside its content.
 #[derive(Serialize, Deserialize)]
 struct ReportDocument {
     schema: u32,
@@ -217,12 +217,12 @@ impl Report {
         }
     }
 
-    /// Returns whether it is a sweep.
+    /// Returns whether its rows are those of a sweep.
     pub fn is_swept(&self) -> bool {
         self.rows.iter().any(|row| row.sweep.is_some())
     }
 
-    /// Returns the indices of a scene's rows: of a sweep technique by technique, each from value to value.
+    /// Returns the indices of a scene's rows; of a sweep, they are sorted by technique and then by value.
     pub fn rows_of(&self, scene: &str) -> Vec<usize> {
         let mut rows: Vec<usize> = (0..self.rows.len()).filter(|index| self.rows[*index].scene == scene).collect();
         let names: Vec<String> = rows.iter().map(|index| self.rows[*index].name()).collect();
@@ -233,7 +233,7 @@ impl Report {
         rows
     }
 
-    /// The names of the scenes, in the order in which they first appear.
+    /// Returns the names of the scenes, in the order in which they first appear.
     pub fn scenes(&self) -> Vec<&str> {
         let mut scenes: Vec<&str> = Vec::new();
         for row in &self.rows {
@@ -254,17 +254,17 @@ impl Report {
         Ok(serde_json::from_str(text)?)
     }
 
-    /// Returns one line a row, with a heading line (RFC 4180).
+    /// Returns the report as CSV (RFC 4180): a heading line, then one line for each row.
     pub fn to_csv(&self) -> String {
         csv::csv(self)
     }
 
-    /// Returns a table for the terminal, below 140 columns.
+    /// Returns the report as a text table for the terminal, less than 140 columns wide.
     pub fn to_table(&self) -> String {
         table::text(self)
     }
 
-    /// Returns a table in Markdown.
+    /// Returns the report as a Markdown table.
     pub fn to_markdown(&self) -> String {
         table::markdown(self)
     }
@@ -296,7 +296,7 @@ impl plot::Plot {
     }
 }
 
-/// Returns whether `one` is at least as fast and right as `other`, and one of the two more.
+/// Returns whether `one` is at least as fast and as right as `other`, and better in one of the two.
 fn beats(one: &ReportRow, other: &ReportRow) -> bool {
     let (time, error) = (one.cost_ms(), one.wrong_fraction);
     let (other_time, other_error) = (other.cost_ms(), other.wrong_fraction);
@@ -304,12 +304,12 @@ fn beats(one: &ReportRow, other: &ReportRow) -> bool {
 }
 
 impl ReportRow {
-    /// Returns whether it is of the same scene, at the same value of a sweep.
+    /// Returns whether both rows are of the same scene and the same value of a sweep, so that they can be compared.
     pub fn is_beside(&self, other: &ReportRow) -> bool {
         self.scene == other.scene && self.sweep == other.sweep
     }
 
-    /// Returns the median frame time in milliseconds, with set-up where the scene moves.
+    /// Returns the median frame time in milliseconds, including set-up where the scene moves.
     pub fn cost_ms(&self) -> f64 {
         self.moving.map_or(self.frame_ms.median, |moving| moving.total_ms)
     }
@@ -319,17 +319,17 @@ impl ReportRow {
         1000.0 / self.cost_ms()
     }
 
-    /// The number of wrong pixels of all kinds.
+    /// Returns the number of wrong pixels of all kinds.
     pub fn wrong(&self) -> u64 {
         self.error.wrong()
     }
 
-    /// Returns whether it has both a usable time and compared pixels.
+    /// Returns whether the row has both a usable time and compared pixels.
     pub fn is_measured(&self) -> bool {
         self.problem().is_none()
     }
 
-    /// Says why the row can't be ranked or drawn, in a few words; `None` where it can.
+    /// Returns why the row can't be ranked or drawn, in a few words; `None` where it can.
     pub fn problem(&self) -> Option<&'static str> {
         if self.error.compared == 0 {
             return Some("no pixel was compared");
@@ -341,7 +341,7 @@ impl ReportRow {
         (!is_usable(self.frame_ms.median)).then_some("its time is no number")
     }
 
-    /// Returns technique and label: `shadow-map 1024`.
+    /// Returns the technique's name and the row's label: `shadow-map 1024`.
     pub fn name(&self) -> String {
         if self.label.is_empty() { self.technique.clone() } else { format!("{} {}", self.technique, self.label) }
     }

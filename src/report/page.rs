@@ -3,12 +3,12 @@
 
 use super::{Report, table};
 
-/// What a page contains beside the rows.
+/// The command that wrote a Markdown page, and the plot that the page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PageOrigin<'a> {
     /// The command line that writes the page again.
     pub command: &'a str,
-    /// Path of the plot as the page names it, if there is one.
+    /// Path of the plot's file as the page links to it; `None` without a plot.
     pub plot: Option<&'a str>,
 }
 
@@ -31,7 +31,7 @@ geometry, pipelines and uploads. *MiB* is the memory of buffers and attachments.
 least as fast and at least as right (Pareto front).";
 
 impl Report {
-    /// Returns the page.
+    /// Returns the report as a Markdown page: command, plot, tables, and how to read them.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let adapter = &self.adapter;
         let of_plot = match self.is_swept() {

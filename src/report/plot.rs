@@ -55,12 +55,12 @@ const GAP: f64 = 20.0;
 /// Height of a line of text, points.
 const LINE: f64 = 18.0;
 
-/// The size that a plot is laid out for.
+/// The page that a plot is laid out for: its size, and how many charts are side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlotPage {
     /// Width in points.
     pub width: f64,
-    /// Height in points that the charts fill where they are not too low then; `None` gives them their preferred height.
+    /// Height in points that the charts fill, unless they would be too low; `None` gives charts their preferred height.
     pub height: Option<f64>,
     /// The largest number of charts side by side.
     pub most_columns: usize,
@@ -69,11 +69,11 @@ pub struct PlotPage {
 }
 
 impl PlotPage {
-    /// A sheet of paper, or a picture in a web page.
+    /// The page for files: a sheet of paper, or a picture in a web page.
     pub const PAPER: PlotPage = PlotPage { width: 760.0, height: None, most_columns: 2, compact: false };
 }
 
-/// A rectangle in points.
+/// An axis-aligned rectangle in points, y downwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlotRect {
     /// Upper left corner.
@@ -93,12 +93,12 @@ impl PlotRect {
         (0..2).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
-    /// Width in points.
+    /// Returns the width in points.
     pub fn width(&self) -> f64 {
         self.max[0] - self.min[0]
     }
 
-    /// Height in points.
+    /// Returns the height in points.
     pub fn height(&self) -> f64 {
         self.max[1] - self.min[1]
     }
@@ -130,7 +130,7 @@ pub enum TextAnchor {
     End,
 }
 
-/// A text.
+/// A line of text at a position of the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotText {
     /// Position in points: across as `anchor` states; down the middle of the line.
@@ -147,10 +147,10 @@ pub struct PlotText {
     pub strong: bool,
 }
 
-/// A line through points.
+/// A polyline of the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotLine {
-    /// Two or more points.
+    /// The polyline's vertices in points, two or more.
     pub points: Vec<[f64; 2]>,
     /// Thickness in points.
     pub width: f64,
@@ -160,56 +160,56 @@ pub struct PlotLine {
     pub faint: bool,
 }
 
-/// A row's mark.
+/// The mark of a report's row in a chart, with its whisker and texts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotPoint {
-    /// Index of the row in the report.
+    /// Index of the row in [`Report::rows`].
     pub row: usize,
-    /// Its centre.
+    /// The mark's centre in points.
     pub at: [f64; 2],
-    /// Horizontal ends of its whisker, from the fastest to the slowest frame.
+    /// The x coordinates in points of the whisker's ends: the fastest and the slowest frame.
     pub whisker: [f64; 2],
-    /// Shape and colour.
+    /// Shape and colour of the technique's mark.
     pub style: &'static TechniqueStyle,
-    /// True on the Pareto front; others are hollow.
+    /// True for a row on the Pareto front, whose mark is filled; others are hollow.
     pub filled: bool,
     /// Text for screen readers: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
     pub name: String,
-    /// Text of its tooltip, in lines.
+    /// Text of the tooltip, several lines.
     pub details: String,
 }
 
-/// The chart of one scene.
+/// The chart of one scene: wrong pixels upwards, frame time across.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneChart {
     /// The scene's name.
     pub title: String,
-    /// Area of points with wrong pixels.
+    /// The rectangle of the marks of rows with wrong pixels.
     pub area: PlotRect,
-    /// Area of points without a wrong pixel.
+    /// The rectangle below it, for the marks of rows without a wrong pixel.
     pub band: PlotRect,
     /// Grid, joined settings, front: to be drawn in this order, below marks.
     pub lines: Vec<PlotLine>,
-    /// Marks, those on the front last.
+    /// The rows' marks, those on the Pareto front last.
     pub spots: Vec<PlotPoint>,
     /// Texts of title and axes.
     pub texts: Vec<PlotText>,
-    /// Texts beside marks; no two overlap, and none covers a mark.
+    /// The texts beside marks; no two overlap, and none covers a mark.
     pub labels: Vec<PlotText>,
 }
 
-/// A mark of the legend, without a row.
+/// A mark in the legend, which stands for a technique and no row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendKey {
-    /// Its centre.
+    /// The mark's centre in points.
     pub at: [f64; 2],
-    /// Shape and colour.
+    /// Shape and colour of the technique's mark.
     pub style: &'static TechniqueStyle,
-    /// True where it is drawn like a row on the front.
+    /// True where it is filled, as the marks of rows on the Pareto front are.
     pub filled: bool,
 }
 
-/// A whole plot.
+/// A plot laid out in points, ready to be drawn: charts, legend and texts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
     /// Width and height in points.
@@ -218,7 +218,7 @@ pub struct Plot {
     pub title: String,
     /// A sentence that describes it, for screen readers.
     pub summary: String,
-    /// One chart a scene.
+    /// One chart for each scene.
     pub charts: Vec<SceneChart>,
     /// Texts of heading, legend and notes.
     pub texts: Vec<PlotText>,
@@ -283,7 +283,7 @@ impl PlotLine {
     }
 }
 
-/// Lays out the plot of `report`.
+/// Returns the plot of `report`, laid out for `page`.
 pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     let width = page.width.max(LEAST_CHART_WIDTH);
     let scenes: Vec<(&str, Vec<usize>)> = report
@@ -330,7 +330,8 @@ pub fn layout(report: &Report, page: &PlotPage) -> Plot {
     plot
 }
 
-/// Returns how many charts fit side by side; no more than make the rows even.
+/// Returns how many charts are placed side by side: those that fit, but no more than make the lines of charts equally
+/// long.
 fn columns(width: f64, most: usize, charts: usize) -> usize {
     let fit = ((width + GAP) / (LEAST_CHART_WIDTH + GAP)).floor() as usize;
     fit.min(most).min(charts).max(1)
@@ -361,7 +362,7 @@ impl Plot {
         y
     }
 
-    /// Adds a part of the page below `top`.
+    /// Adds everything of another plot, moved down by `top` points.
     fn add(&mut self, part: Plot, top: f64) {
         let down = |[x, y]: [f64; 2]| [x, y + top];
         self.texts.extend(part.texts.into_iter().map(|text| PlotText { at: down(text.at), ..text }));

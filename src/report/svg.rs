@@ -7,7 +7,7 @@ use super::plot::{
 use crate::picture::svg::escaped;
 use std::fmt::Write;
 
-/// Faces that are installed on common systems; the first is the one that PNGs are drawn with.
+/// The CSS font list: faces that are installed on common systems; the first is the one that PNGs are drawn with.
 const FONTS: &str = "Ubuntu, 'Segoe UI', 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif";
 const PAPER: [u8; 3] = [0xff, 0xff, 0xff];
 const TEXT: [u8; 3] = [0x1b, 0x1e, 0x25];
@@ -17,7 +17,7 @@ const BAND: [u8; 3] = [0xf1, 0xf3, 0xf6];
 /// Width of the halo behind texts that cross a line, points.
 const HALO: f64 = 3.0;
 
-/// Returns the whole file. Colours are those of `plot::STYLES` on white.
+/// Returns the plot as an SVG file, in the paper colours of `plot::STYLES` on white.
 pub fn svg(plot: &Plot) -> String {
     let [width, height] = plot.size.map(number);
     let mut out = format!(
@@ -95,7 +95,7 @@ fn mark([x, y]: [f64; 2], style: &TechniqueStyle, filled: bool) -> String {
     format!("{shape} fill=\"{fill}\" stroke=\"{color}\" stroke-width=\"1.3\" stroke-linejoin=\"round\"/>\n")
 }
 
-/// Returns a text; `halo` separates it from lines that it covers.
+/// Returns a text as an SVG element; `halo` adds a white outline behind it that separates it from lines.
 fn text(words: &PlotText, halo: bool) -> String {
     let anchor = match words.anchor {
         TextAnchor::Start => "start",
@@ -139,7 +139,7 @@ fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Writes two digits after the point, none where they are zeros.
+/// Returns a number with at most two digits after the point, without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

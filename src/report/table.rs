@@ -3,14 +3,15 @@
 use super::{MotionCost, Report, ReportRow};
 use crate::numbers::{count, mebibytes, per_hundred};
 
-/// Text between columns.
+/// The spaces between two columns.
 const GAP: &str = "  ";
 /// Columns of the terminal that a table stays below.
 const MOST_COLUMNS: usize = 140;
-/// Techniques and labels are cut to the first of these that keeps the table narrow enough.
+/// Lengths in characters to which names of techniques and labels are cut: the first that keeps the table narrow enough
+/// is used.
 const LONGEST_NAMES: [usize; 4] = [24, 18, 13, 8];
 
-/// One column: its heading, and its text for a row.
+/// One column of a table: its heading, and the function that writes its text for a row.
 struct ReportColumn {
     heading: String,
     is_number: bool,
@@ -41,7 +42,7 @@ fn width(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Returns a table for the terminal: a block a scene, numbers right-aligned, units in the heading.
+/// Returns a report as a table for the terminal: a block for each scene, numbers right-aligned, units in the heading.
 pub fn text(report: &Report) -> String {
     if report.rows.is_empty() {
         return "Nothing was measured.\n".to_owned();
@@ -67,7 +68,7 @@ pub fn text(report: &Report) -> String {
             colour: pixels unlike those of the ray-traced picture, background included; frame: median, then fastest to slowest\n"
 }
 
-/// Lists the picture sizes that occur: `1280×720`.
+/// Returns the picture sizes that occur, as text: `1280×720`.
 pub(super) fn sizes(sizes: impl Iterator<Item = [u32; 2]>) -> String {
     let mut names: Vec<String> = Vec::new();
     for [width, height] in sizes {
@@ -126,12 +127,12 @@ fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
     columns
 }
 
-/// Returns the name of what a sweep changes; `None` without one.
+/// Returns the name of the number that a sweep changes; `None` without a sweep.
 fn swept_name(rows: &[ReportRow]) -> Option<&str> {
     rows.iter().find_map(|row| Some(&*row.sweep.as_ref()?.name))
 }
 
-/// Returns the heading of the column of a sweep's values, which no other column has.
+/// Returns the heading of the column of a sweep's values, different from those of the other columns.
 fn heading(swept: &str) -> &str {
     if swept == "triangles" { "of casters" } else { swept }
 }
@@ -140,7 +141,7 @@ fn swept_text(row: &ReportRow) -> String {
     row.sweep.as_ref().map_or_else(String::new, |swept| swept.text.clone())
 }
 
-/// Writes frames per second, in three digits.
+/// Returns the frames per second as text, in three digits.
 fn fps(row: &ReportRow) -> String {
     match row.fps() {
         fps if !fps.is_finite() => "-".to_owned(),
@@ -157,12 +158,12 @@ fn shortened(text: &str, longest: usize) -> String {
     text.chars().take(longest - 1).chain(['…']).collect()
 }
 
-/// Writes wrong pixels; a dash where nothing was compared, so that 0 always means "none".
+/// Returns the number of wrong pixels as text; a dash where nothing was compared, so that 0 always means "none".
 fn wrong(row: &ReportRow) -> String {
     if row.error.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
 }
 
-/// Writes pixels of a wrong colour; a dash where that was not measured.
+/// Returns the number of pixels of a wrong colour as text; a dash where that was not measured.
 fn wrong_color(row: &ReportRow) -> String {
     row.wrong_color.map_or_else(|| "-".to_owned(), count)
 }
@@ -183,7 +184,7 @@ fn milliseconds(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
 }
 
-/// Returns a Markdown table; with several scenes, each under its name.
+/// Returns a report as Markdown tables: one, or with several scenes one for each, below its name.
 pub fn markdown(report: &Report) -> String {
     let scenes = report.scenes();
     let note = "\nBold: nothing else is both at least as fast and at least as right (Pareto front).\n";
@@ -228,7 +229,7 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
     text
 }
 
-/// Escapes a text so that it can't end its cell.
+/// Returns the text with the characters escaped that would end a Markdown table cell.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }

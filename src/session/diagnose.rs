@@ -245,7 +245,7 @@ fn key_of(facts: &FrameFacts, light: usize, kind: RegionKind, pixel: [u32; 2]) -
     match kind {
         RegionKind::Wrong(Finding::MissingShadow) => {
             let between = facts.tracer.between(light, &seen);
-            RegionKey { caster: between.first().map(|met| met.place.object), ..plain }
+            RegionKey { caster: between.first().map(|hit| hit.place.object), ..plain }
         }
         RegionKind::Wrong(Finding::FalseShadow) => RegionKey { hint: planar::hint(facts, light, &seen), ..plain },
         _ => plain,

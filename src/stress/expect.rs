@@ -7,62 +7,62 @@ use super::Entrant;
 use crate::technique::{ComparisonRole, Technique};
 use std::fmt;
 
-/// A failure that is known.
+/// A failure that a technique is known to have in a stress case: at which values, how it shows, and why.
 #[derive(Debug, Clone, Copy)]
 pub struct KnownFailure {
     /// The technique that fails.
     pub of: Entrant,
-    /// The reason, in words.
+    /// The reason of the failure, in words.
     pub because: &'static str,
-    /// Returns whether it shows at a value.
+    /// Returns whether the failure shows at a value.
     pub at: fn(f64) -> bool,
-    /// How it shows.
+    /// How the failure shows.
     pub symptom: FailureSymptom,
-    /// True where it must show at these values; false where it may.
+    /// True where the failure must show at these values; false where it may.
     pub must_show: bool,
 }
 
-/// How a failure shows.
+/// How a failure shows: its name, and the kind and share of its wrong pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailureSymptom {
-    /// Its name, such as `near-plane`.
+    /// Name of the failure, such as `near-plane`.
     pub name: &'static str,
     /// The kind of its wrong pixels.
     pub kind: WrongPixelKind,
-    /// The largest share of the compared pixels that it makes wrong, 0 to 1.
+    /// The largest share of the compared pixels that the failure makes wrong, 0 to 1.
     pub most: f64,
 }
 
-/// Kinds of wrong pixels.
+/// The kinds of wrong pixels that a failure causes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WrongPixelKind {
-    /// Dark, and lit in truth.
+    /// False shadow: pixels that are dark, and lit in truth.
     False,
-    /// Lit, and dark in truth.
+    /// Missing shadow: pixels that are lit, and in shadow in truth.
     Missing,
-    /// One of both.
+    /// False shadow or missing shadow, or both.
     Either,
-    /// Some of each.
+    /// Both false shadow and missing shadow, some of each.
     Mixed,
-    /// One of both, or another surface than in truth.
+    /// False shadow, missing shadow, or pixels that show another surface than in truth.
     Any,
 }
 
-/// What is expected of a technique at one value.
+/// What a stress case expects of a technique at one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ExpectedResult {
-    /// No wrong pixel.
+    /// The technique has no wrong pixel.
     Right,
-    /// This failure shows.
+    /// The technique must fail with this symptom.
     Fails(FailureSymptom),
-    /// Not promised to be right: this may show.
+    /// The technique may fail with this symptom: it is not promised to be right.
     MayFail(FailureSymptom),
 }
 
 named_enum! {
-    /// The verdict on a row or a summary.
+    /// The verdict on a row, or on all rows of a technique in a case.
     pub enum StressVerdict {
-        /// Nothing is wrong.
+        /// There is no wrong pixel beyond what is excused along edges.
         Holds = "holds",
         /// The wrong pixels are those of a known failure.
         FailsAsKnown = "fails as known",
@@ -86,7 +86,7 @@ named_enum! {
         TooMany = "more wrong than known",
         /// So many pixels differ along edges that excusing them hides an error.
         TooManyExcused = "too many pixels excused along edges",
-        /// Pixels flicker.
+        /// Pixels flip from one time of the motion to the next and back, which they do not in truth.
         Flickers = "pixels flicker",
     }
 }
@@ -98,48 +98,48 @@ impl KnownFailure {
         KnownFailure { of, because, at: |_| true, symptom, must_show: true }
     }
 
-    /// Returns the same failure of another technique.
+    /// Returns the same failure for another technique.
     #[must_use]
     pub const fn of(self, of: Entrant) -> KnownFailure {
         KnownFailure { of, ..self }
     }
 
-    /// Limits it to values for which `at` is true.
+    /// Returns the failure limited to values for which `at` is true.
     pub const fn at(self, at: fn(f64) -> bool) -> KnownFailure {
         KnownFailure { at, ..self }
     }
 
-    /// States that its wrong pixels are false shadow.
+    /// Returns the failure with wrong pixels that are false shadow.
     #[must_use]
     pub const fn is_false(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::False, ..self.symptom }, ..self }
     }
 
-    /// States that its wrong pixels are missing shadow.
+    /// Returns the failure with wrong pixels that are missing shadow.
     #[must_use]
     pub const fn is_missing(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Missing, ..self.symptom }, ..self }
     }
 
-    /// States that its wrong pixels are false shadow and missing shadow, some of each.
+    /// Returns the failure with wrong pixels that are false shadow and missing shadow, some of each.
     #[must_use]
     pub const fn is_mixed(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Mixed, ..self.symptom }, ..self }
     }
 
-    /// States that its wrong pixels may be those of another surface.
+    /// Returns the failure with wrong pixels of any kind, those that show another surface included.
     #[must_use]
     pub const fn is_any(self) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { kind: WrongPixelKind::Any, ..self.symptom }, ..self }
     }
 
-    /// States the largest share of the compared pixels that it makes wrong, 0 to 1.
+    /// Returns the failure with this largest share of the compared pixels that it makes wrong, 0 to 1.
     #[must_use]
     pub const fn at_most(self, most: f64) -> KnownFailure {
         KnownFailure { symptom: FailureSymptom { most, ..self.symptom }, ..self }
     }
 
-    /// States that it need not show.
+    /// Returns the failure as one that may show and need not.
     #[must_use]
     pub const fn perhaps(self) -> KnownFailure {
         KnownFailure { must_show: false, ..self }
@@ -158,7 +158,7 @@ pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
 }
 
 impl ExpectedResult {
-    /// Its name in JSON and tables.
+    /// Returns the result's name in JSON and tables: `right`, or that of the failure.
     pub fn name(self) -> &'static str {
         self.symptom().map_or("right", |symptom| symptom.name)
     }

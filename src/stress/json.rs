@@ -32,16 +32,16 @@ const SCHEMA: u32 = 1;
 /// Why JSON can't be read as results of stress cases.
 #[derive(Debug, thiserror::Error)]
 pub enum StressReadError {
-    /// Not JSON, or fields are missing.
+    /// The text is not JSON, or fields are missing.
     #[error("the rows can't be read: {0}")]
     Json(#[from] serde_json::Error),
-    /// It was written by another version.
+    /// The JSON was written by a version with another format.
     #[error("rows of schema {found} can't be read: make them again, this version knows schema {SCHEMA}")]
     Schema {
-        /// The schema that the file names.
+        /// The format version that the file names.
         found: u32,
     },
-    /// It has a case or an entrant that this version does not know.
+    /// The JSON has a case or a technique with settings that this version does not know.
     #[error("this version has no stress case `{case}` with `{entrant}`: make the rows again")]
     Unknown {
         /// Name of the case.
@@ -77,7 +77,8 @@ impl StressResults {
     }
 }
 
-/// The document. What follows from its rows is computed again when it is read.
+/// The JSON file of stress results: its format version beside its rows. What follows from the rows is computed again
+/// when it is read.
 #[derive(Serialize, Deserialize)]
 struct Document {
     schema: u32,

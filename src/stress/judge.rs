@@ -7,20 +7,21 @@ use super::{Entrant, StressCase};
 use crate::capture::AdapterInfo;
 use crate::shards::{self, MergeError, ResultsFile, ShardPart};
 
-/// The summary of a technique in a case.
+/// The results of one technique at all values of one stress case, summed up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressSummary {
     /// Name of the case.
     pub case: &'static str,
     /// The technique.
     pub entrant: Entrant,
-    /// The first value with a wrong pixel; `None` where there is none.
+    /// The first value with a wrong pixel; `None` where no value has one.
     pub breaks_at: Option<f64>,
-    /// The first value with too many pixels excused along edges; `None` where there is none.
+    /// The first value at which so many pixels are excused along edges that this hides an error; `None` where there is
+    /// none.
     pub blurred_at: Option<f64>,
-    /// The most wrong pixels at one value, and how many were compared there.
+    /// The most wrong pixels at one value, and how many pixels were compared there.
     pub worst: (u64, u64),
-    /// Number of flips over the whole motion; `None` where the case is no motion.
+    /// Number of flips of pixels over the whole motion; `None` where the case is no motion.
     pub flips: Option<u64>,
     /// The failure that must show at some value, else the one that may, else that the technique is right.
     pub expected: ExpectedResult,
@@ -28,7 +29,7 @@ pub struct StressSummary {
     pub shown: Vec<(f64, &'static str)>,
     /// The first value with an unexpected result, and why it is unexpected.
     pub surprise: Option<(f64, UnexpectedResult)>,
-    /// How the rows change from value to value, where the case states that.
+    /// How the rows change from value to value; `None` where the case expects no trend, or they are too few.
     pub course: Option<TechniqueCourse>,
     /// The verdict on all values together.
     pub verdict: StressVerdict,
@@ -86,7 +87,7 @@ pub fn summary(rows: &[StressRow]) -> Vec<StressSummary> {
 }
 
 impl StressSummary {
-    /// Summarises one technique's rows in one case: at least one.
+    /// Returns the summary of one technique's rows in one case; there must be at least one row.
     fn new(rows: &[&StressRow]) -> StressSummary {
         let wrong = |row: &&&StressRow| row.error.wrong() > 0;
         let mut worst = rows[0];
@@ -126,10 +127,10 @@ impl StressSummary {
     }
 }
 
-/// Rows of stress cases with their summaries, as they are shown.
+/// Rows of stress cases with their summaries, as the window shows them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StressRows {
-    /// Rows, case by case.
+    /// The rows, case by case.
     pub rows: Vec<StressRow>,
     /// One entry for each case and technique.
     pub summaries: Vec<StressSummary>,
@@ -141,7 +142,7 @@ impl StressRows {
         StressRows { summaries: summary(&rows), rows }
     }
 
-    /// Adds `newer` rows: earlier rows of a case that was run again are dropped.
+    /// Returns these rows followed by the `newer` ones; earlier rows of a case that was run again are dropped.
     pub fn followed_by(&self, newer: &StressRows) -> StressRows {
         let is_again = |row: &&StressRow| newer.rows.iter().any(|new| new.case == row.case);
         StressRows::new(self.rows.iter().filter(|row| !is_again(row)).chain(&newer.rows).cloned().collect())

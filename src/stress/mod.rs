@@ -37,68 +37,70 @@ pub const MEASURED_AT: [u32; 2] = [320, 240];
 /// Timed frames of each row in cases about times.
 const TIMED_FRAMES: usize = 3;
 
-/// A scene that one number makes harder and harder.
+/// A test scene that one number makes harder and harder, with the failures that techniques are known to have in it.
 #[derive(Debug, Clone, Copy)]
 pub struct StressCase {
-    /// Its name on the command line.
+    /// Name of the case on the command line.
     pub name: &'static str,
-    /// What it shows, in one line.
+    /// What the case shows, in one line.
     pub lesson: &'static str,
-    /// The number that changes, with its unit.
+    /// Name of the number that changes, with its unit.
     pub parameter: &'static str,
-    /// Values from easy to extreme; a single extreme has one.
+    /// Values of the number from easy to extreme; a single extreme has one.
     pub values: &'static [f64],
-    /// What the number changes.
+    /// What the number changes: the scene, a setting or the time of a motion.
     pub drives: CaseNumber,
-    /// Width and height of the picture, where the case is about these.
+    /// Width and height of the picture in pixels, where the case needs a size of its own; `None` for the size asked
+    /// for.
     pub size: Option<[u32; 2]>,
-    /// The case is about times: every row is set up from nothing, and several frames are timed.
+    /// True for a case about times: every row is set up from nothing, and several frames are timed.
     pub timed: bool,
-    /// Variants of techniques that run beside the usual ones.
+    /// Techniques with other settings that run in addition to the usual ones.
     pub also: &'static [Entrant],
-    /// Usual techniques that are left out, with the reason.
+    /// Usual techniques that are left out, each with the reason.
     pub without: &'static [(Technique, &'static str)],
-    /// Variants that run only up to a value, with the reason.
+    /// Techniques that run only up to a value, which is given with the reason.
     pub up_to: &'static [(Entrant, f64, &'static str)],
-    /// Above this value a row takes many seconds and gigabytes: where other work waits for it and shares the memory, as
-    /// in the window, it is left out.
+    /// The value above which a row takes many seconds and gigabytes, so that it is left out where other work waits for
+    /// it and shares the memory, as in the window; `None` where no row does.
     pub heavy_above: Option<f64>,
-    /// Which techniques fail, where, how, and why; of several at one value the first counts. All others are expected to
-    /// be right.
+    /// The known failures: which technique fails, at which values, how, and why; of several at one value the first
+    /// counts. All other techniques are expected to be right.
     pub failures: &'static [KnownFailure],
-    /// The least shares of lit and dark pixels at a value.
+    /// Returns the least shares of lit and dark pixels that the truth must have at a value.
     pub least: fn(f64) -> LeastShares,
-    /// How the rows must change from value to value.
+    /// How results must change from value to value; `None` where nothing is expected.
     pub trend: Option<ExpectedTrend>,
 }
 
-/// What a case's number changes.
+/// What the number of a stress case changes.
 #[derive(Debug, Clone, Copy)]
 pub enum CaseNumber {
-    /// The scene.
+    /// The scene: the function builds the scene of a value.
     Scene(fn(f64) -> Result<Scene, MeshError>),
-    /// A setting, of the techniques that have it, in one scene.
+    /// The setting of this name, of the techniques that have it; the function builds the one scene.
     Setting(&'static str, fn() -> Result<Scene, MeshError>),
-    /// The times of a motion: pixels that flip from one to the next, though they do not in truth, are counted too.
+    /// The time of a motion: the function builds the scene at a time. Pixels that flip from one time to the next,
+    /// though they do not in truth, are counted, too.
     Motion(fn(f64) -> Result<Scene, MeshError>),
 }
 
-/// A technique with some settings: a variant.
+/// A technique with the settings with which a stress case runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Entrant {
     /// The technique.
     pub technique: Technique,
-    /// Settings that differ from its defaults.
+    /// Names and values of the settings that differ from the technique's defaults.
     pub settings: &'static [(&'static str, &'static str)],
 }
 
 impl Entrant {
-    /// Returns a technique with its defaults.
+    /// Returns a technique with its default settings.
     pub const fn of(technique: Technique) -> Entrant {
         Entrant { technique, settings: &[] }
     }
 
-    /// Returns a technique with other settings.
+    /// Returns a technique with these settings, by name and value.
     pub const fn with(technique: Technique, settings: &'static [(&'static str, &'static str)]) -> Entrant {
         Entrant { technique, settings }
     }
@@ -127,7 +129,7 @@ pub fn right_because(technique: Technique) -> &'static str {
 }
 
 impl StressCase {
-    /// Returns the case of that name.
+    /// Returns the stress case of that name; `None` where there is none.
     pub fn named(name: &str) -> Option<&'static StressCase> {
         cases::all().find(|case| case.name == name)
     }
@@ -137,12 +139,12 @@ impl StressCase {
         self.heavy_above.is_none_or(|most| value <= most)
     }
 
-    /// The values at which rows are quick and small.
+    /// Returns the values for which [`is_light`](Self::is_light) is true: rows there are quick and small.
     pub fn light_values(&self) -> Vec<f64> {
         self.values.iter().copied().filter(|value| self.is_light(*value)).collect()
     }
 
-    /// Returns the entrants, in the order of the table.
+    /// Returns the techniques that the case runs, in the order of the table.
     pub fn entrants(&self) -> Vec<Entrant> {
         let is_left_out = |technique: &Technique| self.without.iter().any(|(without, _)| without == technique);
         let usual = Technique::rivals().into_iter().filter(|technique| !is_left_out(technique)).map(Entrant::of);
@@ -168,17 +170,17 @@ impl StressCase {
         Ok(choice)
     }
 
-    /// The number of frames of a row that are timed, after a warm-up.
+    /// Returns how many frames of each row are timed, after a warm-up.
     pub fn timed_frames(&self) -> usize {
         if self.timed { TIMED_FRAMES } else { 1 }
     }
 
-    /// Returns whether a technique runs at a value.
+    /// Returns whether the case runs a technique at a value.
     pub fn runs(&self, entrant: &Entrant, value: f64) -> bool {
         self.up_to.iter().all(|(other, last, _)| other != entrant || value <= *last)
     }
 
-    /// Says why a technique is expected to do what is expected, in one line.
+    /// Returns the reason in one line why a technique is expected to fail, or to be right.
     pub fn because(&self, entrant: &Entrant) -> &'static str {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant);
         let texels = || expect::texels(entrant.technique).map(|(_, because)| because);

@@ -12,7 +12,7 @@ value each technique first has a wrong pixel, and what that failure is called. A
 reason that the case tells. *Other forms* are techniques with other settings.";
 
 impl StressResults {
-    /// Returns the page.
+    /// Returns the results as a Markdown page: command, plot, tables, and how to read them.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let opening = origin.opening("Driven to the extreme", "Share of wrong pixels against the number of each sweep");
         let [width, height] = self.size;

@@ -28,9 +28,10 @@ const LANE: f64 = 9.0;
 const LEAST_VALUES: usize = 6;
 /// The least ratio of the ends of a logarithmic scale.
 const LEAST_DECADES: f64 = 20.0;
-/// A sweep of more values is drawn with marks only where it breaks.
+/// The largest number of values for which a sweep's chart has a mark at each; with more, only where a technique breaks.
 const MOST_MARKS: usize = 16;
-/// More values that are no motion are a collection of scenes, not a sweep.
+/// The largest number of values of a sweep that is no motion; a case with more is a collection of scenes and has no
+/// chart.
 const MOST_VALUES: usize = 100;
 
 impl StressResults {
@@ -59,7 +60,7 @@ impl StressResults {
         plot
     }
 
-    /// Adds each technique's mark, in a line.
+    /// Adds each technique's mark and name in a line at the y coordinate `y`, in points.
     fn legend(&self, plot: &mut Plot, y: f64) {
         let mut names: Vec<&str> = Vec::new();
         for row in &self.rows {
@@ -146,16 +147,16 @@ fn spot(row: &StressRow, at: [f64; 2], filled: bool) -> PlotPoint {
     PlotPoint { row: 0, at, whisker: [at[0]; 2], style, filled, name, details }
 }
 
-/// Scale from a case's number to points across.
+/// The horizontal scale of a chart: from a case's number to points.
 enum Across {
-    /// The number spans decades.
+    /// A logarithmic scale, where the values span decades.
     Log {
         /// Scale of the values.
         scale: LogScale,
         /// The lowest value above zero, where zero occurs: zero is placed a decade below it.
         above_zero: Option<f64>,
     },
-    /// The number does not span decades.
+    /// A linear scale, where the values do not span decades.
     Even {
         /// First and last value.
         values: [f64; 2],

@@ -8,42 +8,43 @@ use std::collections::BTreeMap;
 /// The largest share of compared pixels that the edge band may excuse; more of them hide an error.
 const MOST_EXCUSED: f64 = 0.02;
 
-/// One technique at one value of one case.
+/// The result of one technique at one value of one stress case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressRow {
     /// Name of the case.
     pub case: &'static str,
-    /// Name and value of its number.
+    /// Name and value of the case's number.
     pub parameter: (&'static str, f64),
     /// The technique.
     pub entrant: Entrant,
-    /// All settings of the technique.
+    /// Values of all settings of the technique, by name.
     pub settings: BTreeMap<String, String>,
     /// Numbers of pixels by finding, compared with the truth and summed over lights.
     pub error: ErrorCounts,
     /// Numbers of pixels by their label in truth.
     pub seen: TruthCounts,
-    /// Number of pixels that have changed there and back at this value although the truth did not; `None` where the
-    /// case is no motion, and at its first value.
+    /// Number of pixels that have changed since the value before and back again although the truth did not; `None`
+    /// where the case is no motion, and at its first value.
     pub flips: Option<u64>,
-    /// Number of wrong pixels compared with the truth of the scene to which the case converges, where it does.
+    /// Number of wrong pixels compared with the truth of the scene to which the case converges; `None` where it
+    /// converges to none.
     pub off_limit: Option<u64>,
     /// What is expected of the technique at this value.
     pub expected: ExpectedResult,
-    /// Wall time of a frame, ms.
+    /// Wall time of a frame without set-up, milliseconds.
     pub frame_ms: f64,
-    /// Time of planning, geometry, pipelines and uploads, ms.
+    /// Time of planning, geometry, pipelines and uploads, milliseconds.
     pub setup_ms: f64,
 }
 
 /// Numbers of pixels by their label in truth, summed over lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct TruthCounts {
-    /// All pixels.
+    /// Number of all pixels.
     pub pixels: u64,
-    /// Lit pixels.
+    /// Number of lit pixels.
     pub lit: u64,
-    /// Pixels in shadow.
+    /// Number of pixels in shadow.
     pub shadow: u64,
 }
 
@@ -54,12 +55,12 @@ pub struct LeastShares {
     pub lit: f64,
     /// Share of pixels in shadow.
     pub shadow: f64,
-    /// Why they are lower than usual.
+    /// Why the shares are lower than usual; empty where they are not.
     pub because: &'static str,
 }
 
 impl LeastShares {
-    /// Enough for an edge between light and shadow of some length.
+    /// The shares that most cases need: enough for an edge of some length between light and shadow.
     pub const USUAL: LeastShares = LeastShares { lit: 0.01, shadow: 0.002, because: "" };
 
     /// Returns shares where no pixel need be lit.

@@ -62,7 +62,8 @@ impl StressResults {
         text
     }
 
-    /// Says that the pictures have another size than expectations were measured at, where they do.
+    /// Returns a note where the pictures have another size than that at which expectations were measured; `None` where
+    /// they have not.
     fn size_note(&self) -> Option<String> {
         let [width, height] = MEASURED_AT;
         (self.size != MEASURED_AT).then(|| {
@@ -73,7 +74,7 @@ impl StressResults {
     }
 }
 
-/// Says what the parameter of a case is, and its ends.
+/// Returns the name of a case's parameter with its first and last value, as text.
 fn range(case: &str) -> String {
     let Some(case) = StressCase::named(case) else { return String::new() };
     match case.values {
@@ -83,7 +84,7 @@ fn range(case: &str) -> String {
 }
 
 impl StressSummary {
-    /// Says where it breaks.
+    /// Returns in words at which value the technique breaks, if it does.
     pub fn found_text(&self) -> String {
         let breaks = self.breaks_at.map(|at| format!("breaks at {}", value_text(at)));
         let blurred = self.blurred_at.filter(|at| self.breaks_at != Some(*at));
@@ -96,7 +97,7 @@ impl StressSummary {
         }
     }
 
-    /// Says why the result is unexpected, or by which known failures it fails.
+    /// Returns in words why the result is unexpected, or by which known failures the technique fails.
     pub fn verdict_text(&self) -> String {
         let shown: Vec<&str> = self.shown.iter().map(|(_, name)| *name).collect();
         match (self.surprise, &shown[..]) {

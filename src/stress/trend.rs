@@ -4,29 +4,31 @@ use super::{ExpectedResult, StressRow, value_text};
 use crate::numbers;
 use crate::scene::{MeshError, Scene};
 
-/// How the rows of a case must change.
+/// How the results of a stress case must change from value to value.
 #[derive(Debug, Clone, Copy)]
 pub enum ExpectedTrend {
-    /// They converge to those of another scene.
+    /// The pictures converge to the truth of another scene, which the function builds.
     ConvergesTo(fn() -> Result<Scene, MeshError>),
-    /// The error falls as the number grows.
+    /// The number of pixels that differ from the truth, those excused along edges included, falls as the case's number
+    /// grows.
     Falls,
-    /// Times grow, and for ten times the number by at most this factor.
+    /// Times grow, at most by this factor where the case's number grows tenfold.
     Grows(f64),
 }
 
-/// How one technique's rows changed.
+/// How the results of one technique change from value to value, and whether that is as expected.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct TechniqueCourse {
     /// The change in words and numbers.
     pub text: String,
-    /// True where it is as it must be.
+    /// True where the change is as expected.
     pub holds: bool,
 }
 
-/// A step up by fewer pixels may come from texels that happen to lie well at the size before.
+/// Rises of the error by fewer pixels than this are ignored: they may come from texels that happen to lie well at the
+/// size before.
 const NOISE: u64 = 3;
-/// Below this value times are those of a frame, not of its triangles.
+/// The least value whose times are compared: below it, times are those of a frame and not of its triangles.
 const LEAST_TIMED: f64 = 1e4;
 
 impl ExpectedTrend {

@@ -292,7 +292,7 @@ fn volumes_of(
     for (index, VolumeDecision { form, left_out }) in casters.into_iter().zip(decisions) {
         all.left_out.extend(left_out);
         let Some(form) = form else { continue };
-        let (casters, because) = who_casts(frame, light, index, settings, by_vertex_shader);
+        let (casters, because) = casters_of(frame, light, index, settings, by_vertex_shader);
         let (hidden, because_hidden) = decides.in_umbra_of_parts(frame, index);
         all.left_out.extend(because.into_iter().chain(because_hidden));
         let of = CasterVolume { light, index, casters, hidden: &hidden, form };
@@ -470,8 +470,8 @@ fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMod
 /// Returns which triangles of a caster cast its shadow volume with this choice; all of them for a technique without
 /// volumes.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
-    let who = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
-    match who {
+    let rule = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
+    match rule {
         CasterRule::Always(casters) => casters,
         CasterRule::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
         CasterRule::ByTopology => Casters::All,
@@ -480,7 +480,7 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
 
 /// Returns which triangles of the object `index` cast, and for `casters = by-topology` the record for the plan of what
 /// was proven or not.
-fn who_casts(
+fn casters_of(
     frame: &mut FrameBuilder,
     light: LightId,
     index: usize,

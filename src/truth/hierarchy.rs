@@ -92,8 +92,8 @@ impl std::fmt::Debug for RayOriginHierarchy {
 }
 
 impl RayOriginHierarchy {
-    /// Builds the hierarchy of those of `triangles` for which `takes_part` returns true, around a homogeneous ray
-    /// origin. A triangle that is edge-on to the origin is hit by no ray.
+    /// Builds the hierarchy of the triangles whose index `takes_part` accepts, around a homogeneous ray origin
+    /// `center`. Triangles that are edge-on to the origin are left out, as no ray hits them.
     pub fn new(
         ray_kind: RayKind,
         center: DVec4,
@@ -240,7 +240,7 @@ impl EdgePlanes {
 }
 
 impl ScaledPlane {
-    /// Computes the plane of a triangle relative to the hierarchy's origin.
+    /// Computes a triangle's plane relative to the hierarchy's origin.
     pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> ScaledPlane {
         let normal = (b - a).cross(c - a);
         ScaledPlane { normal, offset: normal.dot(a - origin) }
@@ -262,7 +262,7 @@ pub struct PlaneRounding {
 }
 
 impl PlaneRounding {
-    /// Bounds the rounding of a triangle's plane relative to the hierarchy's origin.
+    /// Computes the rounding bounds of a triangle's plane relative to the hierarchy's origin.
     pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> PlaneRounding {
         let edge = largest_span([b - a, c - b, a - c]);
         PlaneRounding { height: ROUNDING * edge * edge, size: largest_span([a - origin, b - origin, c - origin]) }

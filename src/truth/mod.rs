@@ -43,7 +43,8 @@ use view::PictureRays;
 use world::TracedTriangles;
 
 named_enum! {
-    /// What becomes of a light at a pixel; masks store its number as a byte.
+    /// What a light does at a pixel in truth: lights it, leaves it in shadow, or has nothing to light. Label masks
+    /// store it as a byte.
     pub enum PixelLabel {
         /// The light reaches the surface.
         Lit = "lit",
@@ -58,25 +59,25 @@ named_enum! {
 }
 
 impl PixelLabel {
-    /// The label that masks store as this byte.
+    /// Returns the label that label masks store as this byte; `None` for a byte that is no label.
     pub fn from_byte(byte: u8) -> Option<PixelLabel> {
         PixelLabel::ALL.get(usize::from(byte)).copied()
     }
 }
 
-/// [`PixelLabel::Lit`] as masks store it.
+/// The byte that label masks store for [`PixelLabel::Lit`].
 pub const LIT: u8 = PixelLabel::Lit as u8;
-/// [`PixelLabel::Shadow`] as masks store it.
+/// The byte that label masks store for [`PixelLabel::Shadow`].
 pub const SHADOW: u8 = PixelLabel::Shadow as u8;
-/// [`PixelLabel::Background`] as masks store it.
+/// The byte that label masks store for [`PixelLabel::Background`].
 pub const BACKGROUND: u8 = PixelLabel::Background as u8;
-/// [`PixelLabel::FacesAway`] as masks store it.
+/// The byte that label masks store for [`PixelLabel::FacesAway`].
 pub const FACES_AWAY: u8 = PixelLabel::FacesAway as u8;
 
 /// Pixels along each side of the tiles whose rays are followed together.
 const TILE: usize = 4;
-/// Rows of pixels that one task traces: tiles below each other hit much the same as those beside each other, and what
-/// was just hit is in the processor's cache.
+/// Rows of pixels that one task traces: tiles below each other hit mostly the same triangles as those beside each
+/// other, and these are then still in the processor's cache.
 const BAND: usize = 4 * TILE;
 /// Units in the last place by which a surface point may be off: the eye, the direction and their
 /// sum are rounded.
@@ -90,24 +91,24 @@ pub struct TruthError {
     problem: String,
 }
 
-/// What is true of each light at each pixel of a picture: [`LIT`], [`SHADOW`], [`BACKGROUND`] or [`FACES_AWAY`], one
-/// byte a pixel, row by row.
+/// The ray-traced label of each light at each pixel of a picture: [`LIT`], [`SHADOW`], [`BACKGROUND`] or
+/// [`FACES_AWAY`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Truth {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Parallel to the scene's lights.
+    /// For each of the scene's lights in order, one label byte for each pixel, row by row from the upper left corner.
     pub labels: Vec<Vec<u8>>,
 }
 
 impl Truth {
-    /// The label of a light at a pixel.
+    /// Returns the label of the light with index `light` at the pixel (x, y).
     pub fn label(&self, light: usize, [x, y]: [u32; 2]) -> u8 {
         self.labels[light][y as usize * self.size[0] as usize + x as usize]
     }
 }
 
-/// A scene made ready for rays.
+/// A scene prepared for ray tracing from the eye and to each light, at one picture size; it computes the [`Truth`].
 #[derive(Debug)]
 pub struct Tracer {
     world: TracedTriangles,
@@ -119,13 +120,13 @@ pub struct Tracer {
     most_rounding: f64,
 }
 
-/// What a view ray hits first.
+/// The surface that a view ray hits first.
 #[derive(Debug, Clone, Copy)]
 struct TracedSurface {
     triangle: usize,
-    /// The side of it that the eye is on.
+    /// The side of the surface's plane that the eye is on.
     eye_side: Sign,
-    /// World space, rounded.
+    /// The point that is hit, in world space, rounded.
     point: DVec3,
     /// The vector from the eye, of which `point` is the rounded sum.
     offset: DVec3,
@@ -133,10 +134,10 @@ struct TracedSurface {
     from: f64,
 }
 
-/// What a view ray has hit so far.
+/// The nearest surface that a view ray has hit so far.
 #[derive(Debug, Clone, Copy)]
 struct NearestHit {
-    /// Along the view's axis.
+    /// Distance from the eye along the view's axis, in world units.
     distance: f64,
     triangle: u32,
     eye_side: Sign,
@@ -147,10 +148,11 @@ impl NearestHit {
 }
 
 impl Tracer {
-    /// How many rays are followed together.
+    /// The largest number of rays that are traced together.
     pub const MOST_POINTS: usize = RayPacket::MOST;
 
-    /// Places a scene's triangles and sorts them as the eye and each light see them.
+    /// Places a scene's triangles and builds their hierarchies for the eye and for each light, for a picture of `size`
+    /// pixels.
     pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Tracer, TruthError> {
         let problem = |problem: &str| TruthError { problem: problem.to_owned() };
         scene.camera.check().map_err(problem)?;
@@ -183,7 +185,7 @@ impl Tracer {
         self
     }
 
-    /// Width and height of the picture.
+    /// Returns the width and height of the picture in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -196,13 +198,13 @@ impl Tracer {
         u64::from(truth.size[0]) * u64::from(truth.size[1]) + of_light.sum::<u64>()
     }
 
-    /// Labels of every pixel for every light; `None` if it was cancelled.
+    /// Computes the label of every pixel for every light; `None` where it was cancelled.
     pub fn trace(&self, progress: &Progress) -> Option<Truth> {
         let lights: Vec<usize> = (0..self.lights.len()).collect();
         self.trace_lights(&lights, progress)
     }
 
-    /// Traces some of the lights, in the order given; `None` where it is cancelled.
+    /// Computes the labels of the lights with these indices, in the order given; `None` where it was cancelled.
     pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
         let [width, height] = self.size.map(|n| n as usize);
         let bands: Vec<usize> = (0..height).step_by(BAND).collect();
@@ -222,8 +224,8 @@ impl Tracer {
         Some(Truth { size: self.size, labels })
     }
 
-    /// The labels of a light at up to [`Tracer::MOST_POINTS`] points of the picture that are near
-    /// each other; the first pixel's centre is (0.5, 0.5).
+    /// Returns the labels of one light at up to [`Tracer::MOST_POINTS`] points near each other, in pixels from the
+    /// picture's upper left corner: the first pixel's centre is (0.5, 0.5).
     ///
     /// # Panics
     /// If there are more points, or no such light.
@@ -233,7 +235,8 @@ impl Tracer {
         labels
     }
 
-    /// The triangles that are visible at such points.
+    /// Returns the triangle that is visible at each of up to [`Tracer::MOST_POINTS`] points in pixels, near each other;
+    /// `None` where there is none.
     ///
     /// # Panics
     /// If there are more points.
@@ -247,7 +250,7 @@ impl Tracer {
         surfaces
     }
 
-    /// Labels of a band of rows, one list a light.
+    /// Returns the labels of the band of rows that begins at the row `top`, one list for each of `lights`.
     fn trace_band(&self, top: usize, lights: &[usize]) -> Vec<Vec<u8>> {
         let [width, height] = self.size.map(|n| n as usize);
         let bottom = height.min(top + BAND);
@@ -279,7 +282,8 @@ impl Tracer {
         labels
     }
 
-    /// Finds what view rays hit first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
+    /// Finds what view rays hit first. Of surfaces at one distance it is the one that is first in the scene, as a
+    /// rasteriser would draw it.
     fn hit_surfaces(&self, rays: &[Ray], surfaces: &mut [Option<TracedSurface>]) {
         let mut packet = RayPacket::new(if self.view.is_parallel { OriginRay::Through } else { OriginRay::Along });
         for ray in rays {
@@ -325,15 +329,15 @@ impl Tracer {
         }
     }
 
-    /// Along the view's axis, how far a triangle is at least and at most.
+    /// Returns the least and the greatest distance of a triangle from the eye, along the view's axis.
     fn depths(&self, corners: &[DVec3; 3]) -> [f64; 2] {
         let axis = self.view.axis();
         let [a, b, c] = corners.map(|corner| (corner - self.view.eye).dot(axis));
         [a.min(b).min(c), a.max(b).max(c)]
     }
 
-    /// Along the view's axis, within the triangle's own distances: a sliver's plane may be so
-    /// steep that rounding puts the meeting anywhere.
+    /// Returns the distance along the view's axis at which a ray meets a triangle's plane, clamped to the triangle's
+    /// own distances: a sliver's plane may be so steep that rounding puts the meeting anywhere.
     fn distance(&self, plane: &ScaledPlane, [least, most]: [f64; 2], ray: &Ray) -> f64 {
         let from = match self.view.is_parallel {
             // Relative to the same place as the hierarchy's points.

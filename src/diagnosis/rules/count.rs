@@ -9,8 +9,8 @@ use crate::technique::CountOperations;
 
 pub(crate) const RULES: &[CauseRule] = &[clamped, wrap_256, few_bits, parity, operation_order];
 
-/// Finds the first step of a light's count that was lost at a limit: returns the count before it, and how many steps
-/// were lost.
+/// Returns the count before the first step that was lost at a limit, and how many steps were lost; `None` where none
+/// was.
 fn first_lost(sample: &PixelSample, light: usize) -> Option<(u8, u64)> {
     let is_lost = |(event, _): &(&crate::history::PixelEvent, _)| event.step() != 0 && event.counted() == 0;
     let mut lost = sample.volume_events(light).filter(is_lost);
@@ -18,7 +18,7 @@ fn first_lost(sample: &PixelSample, light: usize) -> Option<(u8, u64)> {
     Some((first, 1 + lost.count() as u64))
 }
 
-/// Returns the value that the count was cleared to plus all steps, as if counts had no limits.
+/// Returns a light's count at a sample as if counts had no limits: the clear value plus all steps.
 fn true_count(sample: &PixelSample, light: usize) -> i32 {
     let start = sample.history.as_ref().map_or(0, |history| history.cleared_to(light));
     start + sample.volume_events(light).map(|(event, _)| event.step()).sum::<i32>()
@@ -83,7 +83,7 @@ fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::Wrap256, evidence, vec![Fix::setting("counter", "float")], shown_by)
 }
 
-/// Finds counts of fewer bits than a stencil has, by the masks of their draws.
+/// Looks for counts in fewer bits than the stencil has, which read a multiple of their modulus as 0.
 fn few_bits(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let settings = facts.volumes().filter(|settings| settings.operations != CountOperations::Inverting)?;
     let bits = CountBits::of_mask(settings.mask().into());
@@ -109,7 +109,7 @@ fn parity(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     facts.volumes().filter(|settings| settings.operations == CountOperations::Inverting)?;
     let light = case.light();
     let (count, shown_by) = case.shown(|sample| {
-        let count = sample.between.iter().filter(|met| facts.casts(light, met)).count();
+        let count = sample.between.iter().filter(|hit| facts.casts(light, hit)).count();
         (count != 0 && count % 2 == 0 && stored(sample, light)? == 0).then_some(count)
     })?;
     let evidence =

@@ -18,26 +18,26 @@ use glam::{DMat4, DVec2, DVec3};
 
 pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, aliasing, outside_map];
 
-/// What a shadow map does at a surface point.
+/// How a shadow map compares at a wrong surface point: the texel, the bias, and the cause that follows.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MapComparison {
     pub cause: Cause,
     /// Index of the object that the texel shows, or would show.
     pub caster: Option<usize>,
-    /// Width of a texel there, metres.
+    /// Width of a texel at the surface, metres.
     texel: f64,
-    /// How much farther from the light the receiver gets over one texel, metres.
+    /// How much farther from the light the receiver gets within one texel, metres.
     slope: f64,
-    /// How far the receiver lies behind the first hit of the texel's ray, metres: the receiver's plane, or for a shadow
-    /// that begins too late the depth that is looked up.
+    /// How far the receiver's plane lies behind the first surface that the texel's ray hits, metres; for peter-panning,
+    /// how far the surface lies behind the caster.
     gap: f64,
     /// How far the bias moves the map's depth from the true one, metres.
     bias: f64,
-    /// Distance from the map's middle, in halves of its width.
+    /// Distance from the middle of the map's face, 1 at its border.
     place: f64,
 }
 
-/// Says why the map's answer is wrong at a surface point; `None` where there is no map of depths.
+/// Compares a shadow map with the truth at a wrong surface point and returns the cause; `None` for other techniques.
 pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapComparison> {
     if facts.technique() != Technique::ShadowMap {
         return None;
@@ -46,7 +46,7 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     map.lookup?;
     let relative = seen.point - facts.scene.camera.eye;
     let Some((face, device)) = find_face(map, relative) else {
-        let caster = facts.tracer.between(light, seen).last().map(|met| met.place.object);
+        let caster = facts.tracer.between(light, seen).last().map(|hit| hit.place.object);
         return Some(MapComparison {
             cause: Cause::OutsideMap,
             caster,
@@ -60,7 +60,7 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     texel_look(facts, light, kind, seen, map, face, device)
 }
 
-/// Returns the face that a point is on, and where on it.
+/// Returns the face that a point is on, and its normalized device coordinates there; `None` where no face contains it.
 fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
     map.clip_from_relative.iter().enumerate().find_map(|(face, matrix)| {
         let clip = matrix.as_dmat4() * relative.extend(1.0);
@@ -69,7 +69,7 @@ fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
     })
 }
 
-/// How far outside the nearest face a point is, in halves of its width.
+/// Returns how far a point is from the middle of the nearest face, 1 at its border; infinite behind all of them.
 fn farthest(map: &PlanMap, relative: DVec3) -> f64 {
     let off = map.clip_from_relative.iter().map(|matrix| {
         let clip = matrix.as_dmat4() * relative.extend(1.0);
@@ -102,9 +102,9 @@ fn texel_look(
     let origin_side = facts.tracer.light_distance(light, target);
     let drawn = |name: &str| facts.draws(light, DrawPart::Map).any(|draw| draw.caster.as_deref() == Some(name));
     // Hits in order, from the light on.
-    let mut met = facts.tracer.along(light, target);
-    met.retain(|met| met.towards_light < origin_side && drawn(facts.tracer.name(met.place)));
-    let first = met.last();
+    let mut hits = facts.tracer.along(light, target);
+    hits.retain(|hit| hit.towards_light < origin_side && drawn(facts.tracer.name(hit.place)));
+    let first = hits.last();
     let towards = facts.tracer.towards(light, target);
     let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
     let cosine = normal.dot(towards).abs().max(1e-9);
@@ -148,7 +148,7 @@ fn texel_look(
     })
 }
 
-/// Returns the comparison of the first sample that shows a cause, and how many samples do.
+/// Returns the comparison at the first sample that shows a cause, and how many samples do.
 fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapComparison, usize)> {
     case.shown(|sample| {
         let look = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
@@ -156,7 +156,7 @@ fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapC
     })
 }
 
-/// Returns a fix that sets the biases.
+/// Returns a fix that sets constant and slope-scaled bias.
 fn bias(constant: i32, slope: f64) -> Fix {
     let mut fix = Fix::setting("bias-slope", &format!("{slope}"));
     fix.settings.insert("bias-constant".to_owned(), constant.to_string());

@@ -11,7 +11,7 @@ use crate::technique::CasterRule;
 pub(crate) const RULES: &[CauseRule] =
     &[light_inside, split_vertices, near_vertices, inconsistent_winding, non_manifold, open_mesh];
 
-/// A caster whose shadow is wrong at a sample.
+/// A caster whose mesh may be at fault at some samples.
 struct Suspect<'f> {
     index: usize,
     mesh: &'f MeshFacts,
@@ -20,7 +20,8 @@ struct Suspect<'f> {
     shown_by: usize,
 }
 
-/// Returns the casters whose casting triangles alone do not give their shadow here.
+/// Returns the casters whose casting triangles (light-facing or away-facing only) do not give their shadow at the
+/// samples.
 fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>> {
     let light = case.light();
     let way = match facts.volumes().map(|settings| settings.casters) {
@@ -33,8 +34,8 @@ fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>>
         let mut at_fault: Vec<(String, String)> = Vec::new();
         if case.is_missing() {
             for name in facts.names(&sample.between) {
-                let of_it: Vec<_> = sample.between.iter().filter(|met| facts.tracer.name(met.place) == name).collect();
-                if !of_it.iter().any(|met| facts.casts(light, met)) {
+                let of_it: Vec<_> = sample.between.iter().filter(|hit| facts.tracer.name(hit.place) == name).collect();
+                if !of_it.iter().any(|hit| facts.casts(light, hit)) {
                     let what = format!(
                         "{} between light and surface, and none of them looks {way} the light",
                         if of_it.len() == 1 {
@@ -64,7 +65,8 @@ fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>>
     found
 }
 
-/// Applies the rule of a cause: `measure` returns what is wrong with a mesh and how often.
+/// Looks for a mesh defect as the cause: `measure` returns words for it and how often it occurs; `None` where a mesh
+/// does not have it.
 fn rule(
     facts: &FrameFacts,
     case: &RegionSamples,

@@ -13,11 +13,11 @@ pub(crate) mod volume;
 
 use super::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
 
-/// All rules.
+/// The rules of all families.
 pub(crate) const ALL: &[&[CauseRule]] =
     &[volume::RULES, count::RULES, mesh::RULES, planar::RULES, map::RULES, projective::RULES, number::RULES];
 
-/// Returns what may be the cause of a region.
+/// Returns every cause for which a rule finds evidence in a region.
 pub(crate) fn suspicions(facts: &FrameFacts, case: &RegionSamples) -> Vec<SuspectedCause> {
     ALL.iter().flat_map(|rules| rules.iter()).filter_map(|rule| rule(facts, case)).collect()
 }

@@ -13,20 +13,20 @@ use std::collections::HashMap;
 
 pub(crate) const RULES: &[CauseRule] = &[f32_limit, subpixel_edges];
 
-/// Half a unit in the last place of 24 bits, as a part of the number.
+/// The relative rounding error of single precision (24 bits): half a unit in the last place.
 const ROUNDING: f64 = 6e-8;
-/// Shadow edges that rounding moves by this many pixels are wrong without an excuse.
+/// Rounding is the cause where it moves a shadow's edge by this many pixels or more.
 const PIXELS: f64 = 0.5;
 
-/// Edges at least this many pixels long rarely have sides so narrow in the picture that snapping tilts them far.
+/// Edges of at least this many pixels rarely have sides so narrow that snapping tilts them far.
 const SHORT_EDGE: f64 = 2.0;
-/// Factors by which pictures are enlarged to show whether corners of sides were snapped away. Odd, so that the centre
-/// of each pixel stays the centre of one.
+/// Factors by which the picture is enlarged to show whether corners of sides were snapped away; odd, so that each
+/// pixel's centre stays the centre of one.
 const LARGER: [u32; 3] = [3, 5, 15];
-/// Pixels along a side of the largest picture that every GPU draws.
+/// The largest side, in pixels, of a picture that every GPU can draw.
 const MOST_SIDE: u32 = 8192;
 
-/// Finds errors of rounding to 24 bits. Nothing that could be run proves them, so the numbers must.
+/// Looks for errors of rounding to single precision. No fix can be run to prove them, so the numbers must.
 fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     // Only techniques that count volumes have sides that pass near a pixel, or faces that it can miss.
     let looks: &[CauseRule] =
@@ -34,8 +34,8 @@ fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause>
     looks.iter().find_map(|look| look(facts, case))
 }
 
-/// Positions are rounded when they go to the GPU; where light grazes, that moves a shadow's edge by the rounding over
-/// the tangent of the light's height, for a lamp farther the nearer the caster is to it.
+/// Looks for light that grazes a surface: rounding positions then moves a shadow's edge by the rounding over the sine
+/// of the light's height, and farther the nearer the caster is to a point light.
 fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let is_geometric = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
@@ -50,7 +50,7 @@ fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
         let depth = (seen.point - facts.scene.camera.eye).length();
         let rounding = ROUNDING * depth;
         let distance = facts.tracer.light_distance(light, seen.point);
-        let nearest = sample.between.last().map_or(distance, |met| distance - met.towards_light);
+        let nearest = sample.between.last().map_or(distance, |hit| distance - hit.towards_light);
         let lever = if distance.is_finite() { distance / nearest.max(f64::MIN_POSITIVE) } else { 1.0 };
         let moved = rounding * lever / sine.max(f64::MIN_POSITIVE);
         let pixels = moved / facts.pixel_width(facts.tracer.depth_of(seen.point));
@@ -67,13 +67,12 @@ fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
 }
 
-/// Roundings between a corner and the depths that are compared: of its position, its place in the picture, the side's
-/// depth there and the surface's.
+/// How many roundings there are between a corner and the depths that are compared: position, place in the picture, the
+/// side's depth and the surface's.
 const ROUNDINGS: f64 = 4.0;
 
-/// A side that intersects the surface at the very centre of a pixel, as near as positions are rounded, is counted or
-/// not by chance. Where a shadow ends there, the truth's edge excuses that; where another shadow begins, a hole is left
-/// in both.
+/// Looks for a volume's side that crosses the surface at the very centre of a pixel, within rounding, so that it is
+/// counted or not by chance.
 fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, at, pixels, rounding), shown_by) = case.shown(|sample| {
@@ -98,8 +97,8 @@ fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspe
     (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
 }
 
-/// The GPU cuts triangles that reach beyond the picture where it ends, and rounds positions by the length of what it
-/// cuts: pixels along the border miss faces that cover them.
+/// Looks for long triangles that the GPU clips at the picture's border: positions are rounded by the length of what is
+/// clipped, so that pixels along the border miss faces.
 fn cut_at_border(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, length, away, at, moved), shown_by) = case.shown(|sample| {
@@ -134,16 +133,17 @@ fn longest_edge(object: &Object) -> f64 {
     object.mesh.triangles().iter().map(longest).fold(0.0, f64::max)
 }
 
-/// How near a side of a volume passes to a point.
+/// The distance of a volume's side from a point.
 #[derive(Clone, Copy)]
 struct NearSide {
     /// Distance at right angles to the light's direction, metres.
     metres: f64,
-    /// How far one rounding of its corners moves it there, metres.
+    /// How far rounding a corner once moves the side there, metres.
     rounding: f64,
 }
 
-/// Returns the side of an object's volume that passes the point `seen` within the distance that roundings move it.
+/// Returns the nearest side of an object's volume that passes the point `seen` within its rounding error; `None` where
+/// none does.
 fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) -> Option<NearSide> {
     let to_light = light.truncate() - seen * light.w;
     let towards = to_light.normalize_or_zero();
@@ -198,8 +198,8 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
     sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
-/// Corners snap to 1/256 of a pixel. Where a caster's edges are two pixels long or less, its volume's sides are narrow
-/// strips that reach far: as their corners snap, their depth tilts, and they intersect a surface beside their place.
+/// Looks for casters whose edges are two pixels long or less: as corners snap to 1/256 of a pixel, the narrow sides
+/// tilt and cross surfaces beside their place.
 fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     if !facts.counts_volumes(light) {
@@ -220,7 +220,7 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     SuspectedCause::new(Cause::SubpixelEdges, evidence, fixes, shown_by)
 }
 
-/// Returns the median length of an object's edges, in pixels at the distance of its nearest corner.
+/// Returns the median length of an object's edges in pixels, at the distance of its nearest corner.
 fn usual_edge(facts: &FrameFacts, object: &Object) -> Option<f64> {
     let world = object.world_positions();
     let nearest = world.iter().map(|point| facts.tracer.depth_of(*point)).fold(f64::INFINITY, f64::min);

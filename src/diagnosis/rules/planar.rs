@@ -17,14 +17,14 @@ use std::collections::BTreeSet;
 pub(crate) const RULES: &[CauseRule] =
     &[double_blend, z_fighting, off_receiver, anti_shadow, false_shadow, not_planar, texture_aliasing];
 
-/// The largest number of flat pieces that get a shadow of their own.
+/// The most flat pieces that get shadows.
 const MOST_PIECES: usize = 64;
-/// How far a surface may lie off its own plane, as a part of its distance from the eye.
+/// How far a surface may be off its own plane, relative to its distance from the eye.
 const OFF_PLANE: f64 = 1e-3;
-/// Planes whose normals have a larger cosine are one, as far as single precision can distinguish them.
+/// Planes count as parallel if the cosine between their normals is larger.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
-/// Returns whether a pass darkens the picture itself.
+/// Returns whether any pass blends planar shadows over the picture.
 pub(crate) fn darkens_in_the_picture(plan: &FramePlan) -> bool {
     plan.passes.iter().any(is_blend)
 }
@@ -33,7 +33,7 @@ fn is_blend(pass: &Pass) -> bool {
     pass.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
 }
 
-/// Returns the numbers of the pixels that a pass of a light has darkened more than one flattened triangle would.
+/// Returns the indices of the pixels that a light's blended shadows darkened more than one flattened triangle would.
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
     let mut found = BTreeSet::new();
     for (index, pass) in plan.passes.iter().enumerate() {
@@ -53,7 +53,8 @@ pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec
     found.into_iter().collect()
 }
 
-/// Returns the numbers of the pixels of which less than `part` is left, where they are bright enough to decide that.
+/// Returns the indices of pixels with less than the share `part` of their light left, where they were bright enough to
+/// tell.
 fn darkened_below(before: &Aspect, after: &Aspect, part: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let width = before.image.size()[0] as usize;
@@ -70,7 +71,7 @@ fn darkened_below(before: &Aspect, after: &Aspect, part: f64) -> Vec<usize> {
     found
 }
 
-/// Returns the linear light of an sRGB byte.
+/// Converts an sRGB byte to linear light, 0 to 1.
 fn linear(byte: u8) -> f64 {
     let value = f64::from(byte) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
@@ -92,7 +93,7 @@ fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::DoubleBlend, evidence, fixes, shown_by)
 }
 
-/// Returns the flattened triangles of a light over a sample.
+/// Returns the flattened triangles of a light over a sample, with their events.
 fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
     let all = sample.history.iter().flat_map(|history| history.triangles());
     // The pass that writes labels draws the same triangles again.
@@ -103,13 +104,13 @@ fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&Pixel
     })
 }
 
-/// Returns the plane of a flattened triangle, world space; `None` where its corners define none. Corners may be at
-/// infinity, or beyond it.
+/// Returns the world-space plane of a flattened triangle; `None` where its corners define none. Corners may be at
+/// infinity.
 fn plane_of(facts: &FrameFacts, one: &TriangleEvent) -> Option<Plane> {
     through(one.corners, facts.scene.camera.eye)
 }
 
-/// Returns the plane through homogeneous corners relative to the eye.
+/// Returns the world-space plane through homogeneous corners that are relative to the eye.
 fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
     let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
@@ -122,7 +123,7 @@ fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     })
 }
 
-/// Returns how far a visible surface lies off a flattened triangle's plane; `None` where it lies in it.
+/// Returns how many metres a visible surface lies off a flattened triangle's plane; `None` where it lies in it.
 fn off_plane(facts: &FrameFacts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
     let off = plane_of(facts, one)?.at(seen.point.extend(1.0)).abs();
     (off > OFF_PLANE * (seen.point - facts.scene.camera.eye).length()).then_some(off)
@@ -170,7 +171,8 @@ fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
     SuspectedCause::new(Cause::ZFighting, evidence, fixes, shown_by)
 }
 
-/// Returns the cause that a single pixel of planar shadows suggests: a caster on the light's line, but not between.
+/// Returns the cause that a single pixel of unclipped planar shadows suggests: anti-shadow or false shadow, where a
+/// caster is on the light's line but not between light and surface.
 pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<Cause> {
     if !is_unclipped(facts) {
         return None;
@@ -183,10 +185,11 @@ pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
     }
 }
 
-/// Names of casters, each with its distance in metres.
+/// Names of casters, each with a distance in metres.
 type CasterDistances = Vec<(String, f64)>;
 
-/// Returns the casters on the line from a light to a surface that lie beyond the light, and those below the surface.
+/// Returns the casters on the line from a light through a surface point: those beyond the light, and those below the
+/// surface, each with its distance.
 fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterDistances, CasterDistances) {
     let distance = facts.tracer.light_distance(light, seen.point);
     let plane =
@@ -194,21 +197,21 @@ fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterD
     let off = |point: DVec3| plane.at(point.extend(1.0)).abs();
     let towards = facts.tracer.towards(light, seen.point);
     let (mut beyond, mut below) = (Vec::new(), Vec::new());
-    for met in facts.tracer.along(light, seen.point) {
-        let name = facts.tracer.name(met.place).to_owned();
-        let is_flat = off(seen.point + towards * met.towards_light) <= OFF_PLANE * 1e-3;
-        if met.towards_light > distance {
-            beyond.push((name, met.towards_light - distance));
-        } else if met.towards_light < 0.0 && !is_flat {
-            below.push((name, -met.towards_light));
+    for hit in facts.tracer.along(light, seen.point) {
+        let name = facts.tracer.name(hit.place).to_owned();
+        let is_flat = off(seen.point + towards * hit.towards_light) <= OFF_PLANE * 1e-3;
+        if hit.towards_light > distance {
+            beyond.push((name, hit.towards_light - distance));
+        } else if hit.towards_light < 0.0 && !is_flat {
+            below.push((name, -hit.towards_light));
         }
     }
     (beyond, below)
 }
 
-/// A caster with a triangle that reaches past the light's height over the surface's plane, and whose corners span the
-/// surface when each is carried through the light on its own: its name, and how far the triangle reaches under and
-/// over that height, metres.
+/// Returns a caster with a triangle that reaches past the light's height over the surface's plane and whose corners,
+/// flattened one by one, span the surface: its name, and how many metres the triangle reaches under and over that
+/// height.
 fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(String, f64, f64)> {
     let position = facts.tracer.light_position(light);
     if position.w == 0.0 {
@@ -251,12 +254,12 @@ fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }
 
-/// The settings of planar shadows; `None` for another technique.
+/// Returns the settings of planar shadows; `None` for another technique.
 fn settings(facts: &FrameFacts) -> Option<PlanarSettings> {
     (facts.technique() == Technique::Planar).then(|| PlanarSettings::read(facts.choice.settings()))
 }
 
-/// Returns whether casters are flattened whole, with what lies beyond the light or below the receiver.
+/// Returns whether casters are flattened without clipping (`clip` is off).
 fn is_unclipped(facts: &FrameFacts) -> bool {
     settings(facts).is_some_and(|settings| settings.clip == FlattenClip::Off)
 }
@@ -345,7 +348,7 @@ fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     }
 }
 
-/// Returns whether a triangle's flat piece is among those that have a texture.
+/// Returns whether the flat piece that a triangle lies in has a receiver texture.
 fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
@@ -408,7 +411,7 @@ fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     SuspectedCause::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }
 
-/// Returns fixes: a map of twice the size, one of four times, and a technique that needs none.
+/// Returns fixes for coarse texels: twice the size, four times (at most `most`), and a technique without texels.
 pub(crate) fn larger(size: f64, most: f64) -> Vec<Fix> {
     let mut sizes = vec![size];
     for larger in [size * 2.0, size * 4.0].map(|larger| larger.min(most)) {

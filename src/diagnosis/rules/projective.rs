@@ -36,42 +36,42 @@ pub(crate) fn look(
         RegionKind::Wrong(Finding::FalseShadow) => {
             let along = facts.tracer.along(light, seen.point);
             let mut others =
-                along.iter().filter(|met| met.place.object != seen.place.object && drawn(met.place.object));
+                along.iter().filter(|hit| hit.place.object != seen.place.object && drawn(hit.place.object));
             let reverses = facts.plan.lights.get(light)?.map.as_ref().is_some_and(|map| map.projects_backwards);
-            let behind = others.clone().find(|met| met.towards_light > distance && reverses);
-            let below = others.rfind(|met| met.towards_light < 0.0);
+            let behind = others.clone().find(|hit| hit.towards_light > distance && reverses);
+            let below = others.rfind(|hit| hit.towards_light < 0.0);
             Some(match (behind, below) {
-                (Some(met), _) => (Cause::ReverseProjection, Some(met.place.object), met.towards_light - distance),
-                (None, Some(met)) => (Cause::Between, Some(met.place.object), -met.towards_light),
+                (Some(hit), _) => (Cause::ReverseProjection, Some(hit.place.object), hit.towards_light - distance),
+                (None, Some(hit)) => (Cause::Between, Some(hit.place.object), -hit.towards_light),
                 (None, None) => smearing(facts, light, seen)
                     .map_or((Cause::Aliasing, None, 0.0), |(object, far)| (Cause::EdgeSmear, Some(object), far)),
             })
         }
         RegionKind::Wrong(Finding::MissingShadow) => {
             let between = facts.tracer.between(light, seen);
-            let other = between.iter().find(|met| met.place.object != seen.place.object);
+            let other = between.iter().find(|hit| hit.place.object != seen.place.object);
             Some(match other {
                 None => (Cause::SelfShadow, Some(seen.place.object), between.first()?.towards_light),
-                Some(met) if place_in_picture(facts, light, met.place.object, seen).is_some_and(is_outside) => {
-                    (Cause::OutsideMap, Some(met.place.object), met.towards_light)
+                Some(hit) if place_in_picture(facts, light, hit.place.object, seen).is_some_and(is_outside) => {
+                    (Cause::OutsideMap, Some(hit.place.object), hit.towards_light)
                 }
-                Some(met) if drawn(met.place.object) => (Cause::Aliasing, Some(met.place.object), met.towards_light),
-                Some(met) => (Cause::OutsideMap, Some(met.place.object), met.towards_light),
+                Some(hit) if drawn(hit.place.object) => (Cause::Aliasing, Some(hit.place.object), hit.towards_light),
+                Some(hit) => (Cause::OutsideMap, Some(hit.place.object), hit.towards_light),
             })
         }
         _ => None,
     }
 }
 
-/// Returns where a surface point is in the picture of a caster's silhouette: from −1 to 1 across it. `None` behind the
-/// light.
+/// Returns where a surface point is in the picture of a caster's silhouette: normalized device coordinates, −1 to 1.
+/// `None` behind the light, or where the caster has no picture.
 fn place_in_picture(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurface) -> Option<DVec2> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let clip = *map.clip_from_light.get(layer_of(facts, light, caster)?)? * seen.point.extend(1.0);
     (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
 }
 
-/// Returns the layer of a light's map that is a caster's picture.
+/// Returns the index of a caster's layer in a light's silhouettes; `None` where it was not drawn.
 fn layer_of(facts: &FrameFacts, light: usize, caster: usize) -> Option<usize> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let name = &facts.scene.objects.get(caster)?.name;
@@ -82,7 +82,8 @@ fn is_outside(place: DVec2) -> bool {
     place.abs().max_element() > 1.0
 }
 
-/// Returns the caster whose picture's last texels, repeated beyond it, darken this place, with the place across it.
+/// Returns the index of the caster whose picture's edge texels, repeated beyond it, darken the surface point, and the
+/// point's place across the picture (1 at its edge).
 fn smearing(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
     facts.plan.lights.get(light)?.map.as_ref().filter(|map| map.repeats_edge)?;
     let last_texel = 1.0 - 2.0 / facts.texels();
@@ -119,7 +120,7 @@ fn is_covered(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurfac
     };
     let near = [-1.0, 0.0, 1.0].into_iter().flat_map(|x| [-1.0, 0.0, 1.0].map(|y| center(x, y)));
     let mut points = near.map(line_at).filter(|point| point.is_finite());
-    points.any(|point| facts.tracer.along(light, point).iter().any(|met| met.place.object == caster))
+    points.any(|point| facts.tracer.along(light, point).iter().any(|hit| hit.place.object == caster))
 }
 
 /// Returns, for the samples that show `cause`, the first one's caster name and measured number ([`look`]), and how many

@@ -25,28 +25,29 @@ pub(crate) const RULES: &[CauseRule] = &[
     cap_fighting,
 ];
 
-/// Returns whether counting in front of surfaces begins at the near plane with one number for all pixels.
+/// Returns whether z-pass counting begins with the same number at all pixels.
 fn begins_with_one_number(facts: &FrameFacts, light: usize) -> bool {
     let has_near_count = facts.passes(light).any(Pass::counts_at_near_plane);
     matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
 }
 
-/// Returns whether that number is the count of volumes around the eye.
+/// Returns whether that number is the count of volumes around the eye, by the setting `start`.
 fn starts_at_eye(facts: &FrameFacts) -> bool {
     facts.volumes().is_some_and(|settings| settings.starts_at_eye)
 }
 
-/// Returns the fix that draws the caps again: by the setting that leaves them out, or in the plan itself.
+/// Returns the fix that draws missing caps: by the setting that leaves them out, or else in the plan. `light_or_dark`
+/// is 0 for light caps, 1 for dark caps.
 fn draw_caps(facts: &FrameFacts, light_or_dark: usize, edit: PlanEdit) -> Fix {
     let is_set = facts.volumes().is_some_and(|settings| !settings.caps[light_or_dark]);
     if is_set { Fix::setting("caps", "both") } else { Fix::plan(edit) }
 }
 
-/// Returns the casters whose volumes contain a point, with how many volumes those are.
+/// Returns the names of casters whose volumes contain a point, and how many volumes (casting triangles) those are.
 fn holding(facts: &FrameFacts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
-    let mut met = facts.tracer.between_points(light, point);
-    met.retain(|met| facts.casts(light, met));
-    (facts.names(&met), met.len() as u64)
+    let mut hits = facts.tracer.between_points(light, point);
+    hits.retain(|hit| facts.casts(light, hit));
+    (facts.names(&hits), hits.len() as u64)
 }
 
 fn eye_in_volume(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -109,7 +110,7 @@ fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-/// Returns the casters that intersect the space between near rectangle and light.
+/// Returns the names of casters that reach into the near-clip volume of a light.
 fn meeting_near_clip(facts: &FrameFacts, light: usize) -> Vec<String> {
     let camera = &facts.scene.camera;
     let [width, height] = facts.plan.size.map(f64::from);
@@ -159,12 +160,13 @@ fn part_of<'f>(facts: &'f FrameFacts, light: usize, caster: &'f str, part: DrawP
     facts.draws(light, part).filter(move |draw| draw.caster.as_deref() == Some(caster) && !draw.triangles.is_empty())
 }
 
-/// Returns whether the plan states why a caster does without something.
+/// Returns whether the plan records why a caster goes without a cap.
 fn is_excused(facts: &FrameFacts, caster: &str, decision: Decision) -> bool {
     facts.plan.left_out.iter().any(|left| left.is(decision, caster) || left.is(Decision::Caps, caster))
 }
 
-/// Returns the first caster that is counted wrongly at a sample and for which `lacks` is true.
+/// Returns the first caster that is counted wrongly and for which `lacks` is true (name, counted, expected), and how
+/// many samples show such a caster.
 fn lacking(
     facts: &FrameFacts,
     case: &RegionSamples,
@@ -233,7 +235,7 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
     SuspectedCause::new(Cause::MissingLightCap, evidence, vec![Fix::setting("light-caps", "tested")], shown_by)
 }
 
-/// Writes `1 of its triangles lies`.
+/// Returns words such as `1 of its triangles lies`.
 fn lie(count: i32) -> String {
     match count {
         0 => "none of its triangles lies".to_owned(),
@@ -276,7 +278,7 @@ fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::FarClip, evidence, fixes, shown_by)
 }
 
-/// Clamped depth cuts no volume, but a surface beyond the far plane has the same depth as the background.
+/// Looks for surfaces beyond the far plane under clamped depth, which get the depth of the background.
 fn beyond_clamped(facts: &FrameFacts, case: &RegionSamples, far: f64) -> Option<SuspectedCause> {
     let (distance, shown_by) = case.shown(|sample| {
         let distance = facts.tracer.depth_of(sample.seen?.point);
@@ -301,16 +303,16 @@ fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     let ((caster, reach, needed), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
         let distance = facts.tracer.light_distance(light, seen.point);
-        let mut casting = sample.between.iter().filter(|met| facts.casts(light, met)).peekable();
+        let mut casting = sample.between.iter().filter(|hit| facts.casts(light, hit)).peekable();
         casting.peek()?;
         // How far the volume continues behind the caster, and how far it would have to.
-        let reaches = casting.map(|met| {
-            let caster = facts.tracer.name(met.place);
+        let reaches = casting.map(|hit| {
+            let caster = facts.tracer.name(hit.place);
             let reach = match distance.is_finite() {
-                true => factor * (distance - met.towards_light),
+                true => factor * (distance - hit.towards_light),
                 false => factor * size_of(facts, caster),
             };
-            (caster.to_owned(), reach, met.towards_light)
+            (caster.to_owned(), reach, hit.towards_light)
         });
         let best = reaches.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
         // The end is flat, so its middle may be nearer than the corners are carried.
@@ -324,17 +326,17 @@ fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     SuspectedCause::new(Cause::FiniteExtrusion, evidence, vec![Fix::setting("extrusion", "infinite")], shown_by)
 }
 
-/// Errors of single precision in a volume that a vertex shader carries.
+/// Single-precision errors in a volume that a vertex shader extrudes.
 struct ExtrusionInF32 {
-    /// Number of triangles that are computed to face another way than they do.
+    /// Number of triangles that the shader takes to face the wrong way.
     misfaced: usize,
     triangles: usize,
-    /// How far the farthest vertex is carried beside its exact direction, radians.
+    /// The largest angle between a vertex's computed and exact extrusion direction, radians.
     beside: f64,
 }
 
 impl ExtrusionInF32 {
-    /// Measures the errors; `None` where the CPU carries the volume.
+    /// Measures the errors for a caster; `None` where the CPU extrudes its volume.
     fn of(facts: &FrameFacts, light: usize, caster: &str) -> Option<ExtrusionInF32> {
         let draw = part_of(facts, light, caster, DrawPart::Side).next()?;
         let extruded = facts.plan.meshes.get(draw.mesh.0)?.extruded.as_ref()?;
@@ -406,7 +408,7 @@ fn light_not_added(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
     SuspectedCause::new(Cause::LightNotAdded, evidence, vec![Fix::setting("far-vertices", "from-light")], shown_by)
 }
 
-/// Returns the diagonal of an object's bounding box, world space, metres.
+/// Returns the length in metres of the diagonal of an object's bounding box.
 fn size_of(facts: &FrameFacts, name: &str) -> f64 {
     let Some((_, object)) = facts.object(name) else { return 0.0 };
     AxisBox::around(object.world_positions()).diagonal()

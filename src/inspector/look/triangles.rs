@@ -74,11 +74,11 @@ fn fill_triangle(picture: &mut Picture, corners: [Vertex; 3], clip: Rect, letter
 fn between([a, b, c]: [Pos2; 3], y: f32) -> Option<[f32; 2]> {
     let crossing = |[p, q]: [Pos2; 2]| {
         let [upper, lower] = if p.y <= q.y { [p, q] } else { [q, p] };
-        let is_met = upper.y <= y && y < lower.y;
-        is_met.then(|| upper.x + (y - upper.y) / (lower.y - upper.y) * (lower.x - upper.x))
+        let is_crossed = upper.y <= y && y < lower.y;
+        is_crossed.then(|| upper.x + (y - upper.y) / (lower.y - upper.y) * (lower.x - upper.x))
     };
-    let met = [[a, b], [b, c], [c, a]].into_iter().filter_map(crossing);
-    met.fold(None, |ends: Option<[f32; 2]>, x| Some(ends.map_or([x, x], |[low, high]| [low.min(x), high.max(x)])))
+    let crossings = [[a, b], [b, c], [c, a]].into_iter().filter_map(crossing);
+    crossings.fold(None, |ends: Option<[f32; 2]>, x| Some(ends.map_or([x, x], |[low, high]| [low.min(x), high.max(x)])))
 }
 
 /// Interpolates the corners' colours with barycentric weights `shares`, times the nearest texel of the font texture.

@@ -142,7 +142,7 @@ pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoSte
 impl Model {
     /// Returns the picture that is shown: of the selected point of the frame, or of the one before it.
     pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
-        let now = self.view.shown(capture, self.moment());
+        let now = self.view.shown(capture, self.shown_point());
         match self.modes.phase {
             StepPhase::Before => match now {
                 Some(now) if !has_phases(now.kind) => Some(now),
@@ -157,7 +157,7 @@ impl Model {
     /// # Errors
     /// There is nothing before it, or it is not known.
     pub fn shown_before(&self, capture: &Capture) -> Result<ShownPicture, NoStepBefore> {
-        let at = self.moment();
+        let at = self.shown_point();
         let before = before(capture, at)?;
         let kind = self.view.kind_at(capture, at).ok_or(NoStepBefore::First)?;
         let mut shown = self.view.shown_as(capture, before, kind).ok_or(NoStepBefore::First)?;
@@ -241,7 +241,7 @@ impl Model {
     /// Returns the light whose counts a pixel is read from, and those: the light whose picture is shown, else the
     /// step's.
     pub fn counts_to_show<'a>(&self, capture: &'a Capture) -> Option<(usize, &'a Arc<Image>)> {
-        let at = self.moment();
+        let at = self.shown_point();
         if self.view.shown(capture, at).is_some_and(|shown| shown.kind == PictureKind::Count) {
             let light = self.view.light_with(capture, |light: &CapturedLight| light.count.is_some())?;
             let drawn = at.count(capture).filter(|(of, _)| *of == light);

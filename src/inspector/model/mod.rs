@@ -141,13 +141,13 @@ impl Model {
 
     /// Returns the kind of picture that is shown at the selected point of the frame.
     pub fn kind(&self) -> Option<PictureKind> {
-        self.view.kind_at(self.frame.capture.as_ref()?, self.moment())
+        self.view.kind_at(self.frame.capture.as_ref()?, self.shown_point())
     }
 
     /// Asks for the truth where its picture is chosen and it is not known.
     pub fn want_truth(&self) {
         let is_missing = self.frame.capture.as_ref().is_some_and(|capture| {
-            let kinds = available(capture, self.moment());
+            let kinds = available(capture, self.shown_point());
             !has_truth(capture) && self.view.kind.is_some_and(|kind| kinds.contains(&kind))
         });
         if self.view.wants_truth() && is_missing {

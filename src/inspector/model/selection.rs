@@ -95,7 +95,7 @@ impl Model {
     }
 
     /// Returns the point of the frame that is shown: the selected one, or the one shown before while that is not known.
-    pub fn moment(&self) -> CapturePoint {
+    pub fn shown_point(&self) -> CapturePoint {
         let selected = self.selected();
         let is_known = self.frame.capture.as_ref().is_none_or(|capture| selected.is_known(capture));
         if is_known { selected } else { self.selection.stays }
@@ -136,7 +136,7 @@ impl Model {
 
     /// Selects a point of the frame; where its step has no draw of that number, the step.
     pub fn select(&mut self, at: CapturePoint) {
-        let stays = self.moment();
+        let stays = self.shown_point();
         self.select_step(at.step);
         self.selection.stays = stays;
         let step = self.frame.capture.as_ref().and_then(|capture| capture.steps.get(self.selection.step));

@@ -47,7 +47,7 @@ pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
 /// Draws the pass's attachments, and what they contain at its start.
 fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
     let name = |id: crate::plan::AttachmentId| plan.attachments.get(id.0).map_or("?", |attachment| &attachment.name);
-    let kept = || "kept".to_owned();
+    let loaded = || "kept".to_owned();
     egui::Grid::new("pass attachments").num_columns(2).spacing([12.0, 4.0]).min_row_height(0.0).show(ui, |ui| {
         let mut row = |what: &str, text: String| {
             ui.label(theme::note(what));
@@ -56,12 +56,12 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
         };
         row("seen from", plan.views.get(pass.view.0).map_or_else(|| "?".to_owned(), |view| view.name.clone()));
         if let Some(color) = &pass.color {
-            let load = color.clear.map_or_else(kept, |_| "cleared".to_owned());
+            let load = color.clear.map_or_else(loaded, |_| "cleared".to_owned());
             row("colour", format!("{}, {load} at the start", name(color.attachment)));
         }
         if let Some(target) = &pass.depth_stencil {
-            let depth = target.clear_depth.map_or_else(kept, |value| format!("cleared to {value}"));
-            let stencil = target.clear_stencil.map_or_else(kept, |value| format!("cleared to {value}"));
+            let depth = target.clear_depth.map_or_else(loaded, |value| format!("cleared to {value}"));
+            let stencil = target.clear_stencil.map_or_else(loaded, |value| format!("cleared to {value}"));
             row("depth, stencil", format!("{}: depth {depth}, stencil {stencil}", name(target.attachment)));
         }
         if let Some(recorded) = &pass.recorded {

@@ -54,7 +54,7 @@ fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &ShownPicture) 
 
 fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
     let [x, y] = at;
-    let Some(frame) = model.moment().frame(capture) else { return };
+    let Some(frame) = model.shown_point().frame(capture) else { return };
     if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
         theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
         ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));

@@ -62,7 +62,7 @@ const DIRECT_3D: &[&str] = &[
     "BlendEnable = FALSE;",
 ];
 
-/// Returns the lines that state the API's defaults, which [`lines`](super::lines) marks as saying nothing new.
+/// Returns the lines of [`lines`](super::lines) that state the API's defaults, and so need not be written in code.
 pub fn defaults(api: RasterApi) -> &'static [&'static str] {
     match api {
         RasterApi::WebGpu => WEB_GPU,

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::report::{Report, ReportRow, table};
 
-/// Describes the plot in a sentence, for screen readers.
+/// Returns a sentence that describes the plot, for screen readers.
 pub fn summary(report: &Report) -> String {
     let (rows, scenes) = (report.rows.len(), report.scenes());
     let front: Vec<String> = report.rows.iter().filter(|row| row.pareto).map(ReportRow::summary).collect();
@@ -17,7 +17,7 @@ pub fn summary(report: &Report) -> String {
     )
 }
 
-/// Adds the title and what it was measured on; returns where the charts begin.
+/// Adds the title and the adapter that it was measured on; returns the y coordinate in points where the charts begin.
 pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
     let adapter = &report.adapter;
     let sizes = table::sizes(report.rows.iter().map(|row| row.size));
@@ -27,7 +27,7 @@ pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
     plot.add_heading(&lines) + 4.0
 }
 
-/// Wraps a text into lines of at most `width` points.
+/// Returns the lines of a text, each at most `width` points wide.
 fn wrapped(text: &str, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -42,7 +42,8 @@ fn wrapped(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
-/// Returns the legend: each technique's mark, and what filled marks, lines and whiskers mean.
+/// Returns the legend as a plot `width` points wide: each technique's mark, and what filled marks, lines and whiskers
+/// mean.
 pub fn legend(report: &Report, width: f64) -> Plot {
     let mut legend = Plot::empty(width);
     let mut used: Vec<(&'static TechniqueStyle, &str)> = Vec::new();
@@ -76,7 +77,7 @@ pub fn legend(report: &Report, width: f64) -> Plot {
     legend
 }
 
-/// Lays out entries of a legend in lines.
+/// Places the legend's entries one after another, and begins a new line where one is full.
 struct LegendFlow<'a> {
     legend: &'a mut Plot,
     at: [f64; 2],
@@ -84,7 +85,7 @@ struct LegendFlow<'a> {
 }
 
 impl LegendFlow<'_> {
-    /// Adds an entry: a sign of 14 points, then its text.
+    /// Adds an entry: a sign of 14 points' width, which `sign` draws at a position, then its text.
     fn add(&mut self, words: &str, ink: PlotInk, sign: &dyn Fn(&mut Plot, [f64; 2])) {
         let taken = 18.0 + text_width(words, SMALL_SIZE) + 14.0;
         if self.at[0] > 8.0 && self.at[0] + taken > self.width {

@@ -10,10 +10,10 @@ pub(crate) const BREAK: f64 = 7.0;
 const BAND_EDGE: f64 = 3.0;
 /// The range of the vertical axis where no row has a position on it, per cent.
 const NO_ERRORS: [f64; 2] = [0.01, 10.0];
-/// The tick text of the band.
+/// The tick text of the band for rows without a wrong pixel.
 pub(crate) const NONE_WRONG: &str = "none wrong";
 
-/// A value on an axis.
+/// A tick on an axis: its position and text.
 #[derive(Debug)]
 pub(crate) struct Tick {
     /// Position along the axis, points.
@@ -23,14 +23,14 @@ pub(crate) struct Tick {
 }
 
 impl Tick {
-    /// Returns ticks at `values` of a scale.
+    /// Returns ticks at these `values` of a scale.
     pub fn along(scale: &LogScale, values: impl IntoIterator<Item = f64>, unit: &str) -> Vec<Tick> {
         let tick = |value| Tick { at: scale.position(value), text: format!("{}\u{a0}{unit}", number(value)) };
         values.into_iter().map(tick).collect()
     }
 }
 
-/// Writes a tick's number: as short as it is exact.
+/// Returns a tick's number as text, as short as it is exact.
 fn number(value: f64) -> String {
     match value {
         1e-5..1e3 => value.to_string(),
@@ -39,7 +39,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// The axes of a chart, relative to its corner.
+/// The axes of a chart, in points relative to the chart's upper left corner.
 #[derive(Debug)]
 pub(crate) struct Axes {
     /// Area of points with wrong pixels.
@@ -74,7 +74,7 @@ impl Axes {
         Axes { area, band, lane_height, up, x_ticks, y_ticks }
     }
 
-    /// Returns the vertical position of a share of wrong pixels; without a wrong pixel it is in its lane of the band.
+    /// Returns the y coordinate of a percentage of wrong pixels; where it is 0, that of the `lane` of the band.
     pub fn height(&self, percent: f64, lane: usize) -> f64 {
         if percent > 0.0 {
             self.up.position(percent)
@@ -83,7 +83,7 @@ impl Axes {
         }
     }
 
-    /// Returns a line at each tick.
+    /// Returns a grid line for each tick.
     pub fn grid(&self) -> Vec<PlotLine> {
         let [left, right] = [self.area.min[0], self.area.max[0]];
         let level = self.y_ticks.iter().map(|tick| PlotLine::grid([[left, tick.at], [right, tick.at]]));
@@ -93,7 +93,7 @@ impl Axes {
         level.chain(upright).collect()
     }
 
-    /// Returns the texts of the title and of both axes.
+    /// Returns the texts of the chart's title and of the captions of both axes.
     pub fn captions(&self, title: &str, across: &str) -> Vec<PlotText> {
         vec![
             PlotText::new([8.0, 10.0], title, TITLE_SIZE, PlotInk::Text).strong(),

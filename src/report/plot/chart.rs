@@ -22,7 +22,7 @@ const LANE: f64 = 18.0;
 /// The range of the horizontal axis where no row has a position on it, milliseconds.
 pub(super) const NO_TIMES: [f64; 2] = [1.0, 100.0];
 
-/// Size and axes that all charts of a plot share, relative to the chart's corner.
+/// The size and axes that all charts of a plot share, in points relative to a chart's upper left corner.
 #[derive(Debug)]
 pub struct ChartFrame {
     /// Width and height in points.
@@ -84,7 +84,7 @@ impl ChartFrame {
     }
 }
 
-/// Returns the chart of `rows` at a position of the page.
+/// Returns the chart of these `rows` of the report, at a position of the page.
 pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, corner: [f64; 2]) -> SceneChart {
     let captions = captions(report, rows);
     let Axes { area, band, .. } = frame.axes;
@@ -116,7 +116,7 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, c
     SceneChart { texts: frame.texts(&title), title, area, band, lines, spots, labels }.moved(corner)
 }
 
-/// Returns rows without a wrong pixel, those on the front first: they are nearest to the chart's area.
+/// Returns the rows without a wrong pixel, those on the Pareto front first: they are nearest to the chart's area.
 fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a ReportRow)> {
     let rows = rows.iter().map(|index| (*index, &report.rows[*index]));
     let mut rows: Vec<_> = rows.filter(|(_, row)| row.wrong_fraction == 0.0).collect();
@@ -162,7 +162,7 @@ fn lanes(
     found
 }
 
-/// Returns the ends of the whisker from the fastest to the slowest frame around the median, which is at `x`.
+/// Returns the x coordinates of the whisker's ends, from the fastest to the slowest frame, around the median at `x`.
 fn whiskers(row: &ReportRow, x: f64, across: &LogScale) -> [f64; 2] {
     let length = |ms: f64| if ms.is_finite() { (across.position(ms) - x).abs() } else { 0.0 };
     [length(row.frame_ms.min), length(row.frame_ms.max)]
@@ -186,7 +186,7 @@ fn spot(report: &Report, index: usize, at: [f64; 2], frame: &ChartFrame) -> Plot
 #[derive(Debug)]
 struct MarkCaption {
     text: String,
-    /// True where it is the only one in the chart that names its technique.
+    /// True where no other mark's text in the chart names the technique.
     names_technique: bool,
 }
 
@@ -247,7 +247,7 @@ fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
     keys.into_iter().map(along).rev().max_by_key(longest).unwrap_or_default()
 }
 
-/// Returns the front as a staircase: right of it and above it, every row is beaten.
+/// Returns the Pareto front as a staircase line: rows above it and to its right are beaten.
 fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<PlotLine> {
     let mut on_front: Vec<[f64; 2]> =
         rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();

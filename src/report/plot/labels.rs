@@ -5,10 +5,10 @@
 
 use super::{PlotInk, PlotLine, PlotRect, PlotText, RADIUS, SMALL_SIZE, TextAnchor, text_width};
 
-/// A label to be placed.
+/// A text that is to be placed beside a mark.
 #[derive(Debug, Clone)]
 pub struct LabelRequest {
-    /// Centre of its point.
+    /// Centre of the mark, points.
     pub at: [f64; 2],
     /// How far its whiskers reach to the left and to the right of it, points.
     pub whiskers: [f64; 2],
@@ -16,27 +16,27 @@ pub struct LabelRequest {
     pub text: String,
     /// Its colour.
     pub ink: PlotInk,
-    /// The area that it must stay in.
+    /// The rectangle that the text must stay in.
     pub area: PlotRect,
-    /// True where it must not be left out.
+    /// True where the text must not be left out.
     pub must: bool,
 }
 
-/// What labels avoid.
+/// The marks and lines that texts must not cover.
 #[derive(Debug, Default)]
 pub struct LabelObstacles {
-    /// Centres of marks: never covered.
+    /// Centres of marks, points; they are never covered.
     pub marks: Vec<[f64; 2]>,
-    /// Lines: covered only where there is no other place.
+    /// Ends of lines, points; lines are covered only where there is no other place.
     pub segments: Vec<[[f64; 2]; 2]>,
 }
 
-/// A label at its position.
+/// A text beside a mark at the position found for it.
 #[derive(Debug, Clone)]
 pub struct PlacedLabel {
-    /// The text.
+    /// The text with its position.
     pub text: PlotText,
-    /// A line from the mark to a text that is far away.
+    /// Ends of a line from the mark to the text, points; `None` where the text is near.
     pub leader: Option<[[f64; 2]; 2]>,
 }
 
@@ -60,7 +60,7 @@ const LINE_COST: f64 = 2.6;
 /// Gap between a text and a line, points.
 const LINE_GAP: f64 = 2.0;
 
-/// Returns the texts of [`place`], and the lines back from those that are far away.
+/// Returns the texts that [`place`] places, and the lines from marks to texts that are far away.
 pub fn words_and_leaders(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> (Vec<PlotText>, Vec<PlotLine>) {
     let placed: Vec<PlacedLabel> = place(wishes, obstacles).into_iter().flatten().collect();
     let leader = |placed: &PlacedLabel| {
@@ -71,7 +71,7 @@ pub fn words_and_leaders(wishes: &[LabelRequest], obstacles: &LabelObstacles) ->
     (placed.into_iter().map(|placed| placed.text).collect(), leaders)
 }
 
-/// Places labels in the order of `wishes`; `None` for those that are left out.
+/// Returns the place of each label, found in the order of `wishes`; `None` for those that are left out.
 pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<PlacedLabel>> {
     let mut taken: Vec<PlotRect> = Vec::new();
     wishes
@@ -88,7 +88,8 @@ pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<
         .collect()
 }
 
-/// Returns the best free position at a distance.
+/// Returns the free position with the lowest cost at the distance `away` from the mark, in points; `None` where none is
+/// free.
 fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[PlotRect]) -> Option<PlotText> {
     let candidates = AROUND.iter().filter_map(|(direction, cost)| {
         let text = beside(wish, *direction, away);
@@ -105,7 +106,7 @@ fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[Plo
     candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, text)| text)
 }
 
-/// Returns the text in a direction from its point.
+/// Returns the label's text at the distance `away` from its mark, in a direction.
 fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     let anchor = if right > 0.0 {
         TextAnchor::Start
@@ -122,7 +123,7 @@ fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     PlotText::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
 }
 
-/// Returns the rectangle that a mark covers.
+/// Returns the rectangle that a mark with this centre covers.
 fn around([x, y]: [f64; 2]) -> PlotRect {
     PlotRect { min: [x - RADIUS, y - RADIUS], max: [x + RADIUS, y + RADIUS] }
 }

@@ -5,7 +5,7 @@
 
 use crate::technique::Technique;
 
-/// The shape of a mark.
+/// The shape of a technique's mark in plots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarkShape {
     /// A disc.
@@ -14,30 +14,30 @@ pub enum MarkShape {
     Square,
     /// A square that stands on a corner.
     Diamond,
-    /// Point up.
+    /// A triangle that points up.
     TriangleUp,
-    /// Point down.
+    /// A triangle that points down.
     TriangleDown,
-    /// Point right.
+    /// A triangle that points right.
     TriangleRight,
-    /// Point left.
+    /// A triangle that points left.
     TriangleLeft,
     /// A star of five points.
     Star,
-    /// Two thick bars, upright.
+    /// A plus sign of two thick bars.
     Plus,
-    /// Two thick bars, slanted.
+    /// A slanted cross of two thick bars.
     Cross,
     /// A hexagon.
     Hexagon,
 }
 
-/// How a technique looks in every plot.
+/// The shape and colours of a technique's mark in every plot.
 #[derive(Debug, PartialEq)]
 pub struct TechniqueStyle {
     /// Name of the technique.
     pub technique: &'static str,
-    /// Its shape.
+    /// The mark's shape.
     pub mark: MarkShape,
     /// Colour on white paper, sRGB.
     pub paper: [u8; 3],
@@ -49,7 +49,7 @@ const fn style(technique: &'static str, mark: MarkShape, paper: [u8; 3], screen:
     TechniqueStyle { technique, mark, paper, screen }
 }
 
-/// Techniques in teaching order.
+/// The styles of all techniques, in teaching order.
 pub static STYLES: [TechniqueStyle; Technique::ALL.len()] = {
     let mut styles = [const { style("", MarkShape::Hexagon, [0; 3], [0; 3]) }; Technique::ALL.len()];
     let mut index = 0;
@@ -117,7 +117,7 @@ impl MarkShape {
     }
 }
 
-/// Returns the outline of two upright bars.
+/// Returns the outline of a plus sign of two bars.
 fn bars(radius: f64) -> Vec<[f64; 2]> {
     let [short, long] = [0.4 * radius, 1.25 * radius];
     let arm = [[-short, -short], [-short, -long], [short, -long]];

@@ -1,6 +1,6 @@
 //! Logarithmic scales and their ticks at 1, 2 and 5 times powers of ten.
 
-/// A logarithmic scale of values from `low` to `high` on points from `start` to `end`.
+/// A logarithmic scale that maps values from `low` to `high` to positions from `start` to `end`, in points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogScale {
     low: f64,
@@ -27,20 +27,21 @@ pub fn range(values: impl Iterator<Item = f64>, fallback: [f64; 2]) -> [f64; 2] 
 }
 
 impl LogScale {
-    /// Returns a scale of this range from `start` to `end`, which may run backwards.
+    /// Returns a scale that maps the range `low` to `high` to positions from `start` to `end`, which may be less than
+    /// `start`.
     pub fn new([low, high]: [f64; 2], [start, end]: [f64; 2]) -> LogScale {
         LogScale { low, high, start, end }
     }
 
-    /// Returns the position of a value; values beyond an end are at it.
+    /// Returns the position of a value in points; values beyond an end are placed at it.
     pub fn position(&self, value: f64) -> f64 {
         let [low, high] = [self.low.log10(), self.high.log10()];
         let share = (value.max(self.low).log10() - low) / (high - low);
         self.start + share.clamp(0.0, 1.0) * (self.end - self.start)
     }
 
-    /// Returns ticks inside, at least `apart` points from one to the next: 1, 2, 5, 10 …, or powers of ten only, or
-    /// every second, third … of them.
+    /// Returns the values of the ticks within the scale, at least `apart` points from one to the next: 1, 2, 5, 10 …,
+    /// or powers of ten only, or every second, third … of them.
     pub fn ticks(&self, apart: f64) -> Vec<f64> {
         let [low, high] = [self.low.log10(), self.high.log10()];
         let decade = (self.end - self.start).abs() / (high - low);

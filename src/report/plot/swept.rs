@@ -14,7 +14,7 @@ const HEIGHT: f64 = 400.0;
 /// Space above a chart's area and below it, points.
 const TOP: f64 = 44.0;
 const BOTTOM: f64 = 44.0;
-/// Space beside it: milliseconds on the left, frames per second and names on the right, points.
+/// Space left and right of a chart's area, points: milliseconds on the left, frames per second and names on the right.
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = 210.0;
 /// Where numbers of frames per second begin, right of the area, points.
@@ -24,7 +24,7 @@ const NAMES: f64 = 58.0;
 /// Distance from a name to the next below it, points.
 const NAME_HEIGHT: f64 = 13.0;
 
-/// Lays out the page of a report that is a sweep.
+/// Returns the plot of a report that is a sweep: frame times against the sweep's values.
 pub fn sweep(report: &Report) -> Plot {
     let scenes = report.scenes();
     let name = report.rows.iter().find_map(|row| Some(row.sweep.as_ref()?.name.clone())).unwrap_or_default();
@@ -43,7 +43,8 @@ pub fn sweep(report: &Report) -> Plot {
     plot
 }
 
-/// Returns the lines of the chart: the rows of a technique with its settings, from value to value.
+/// Returns the lines of a scene's chart: the name of each technique with its settings, and its rows from value to
+/// value.
 fn lines_of(report: &Report, scene: &str) -> Vec<(String, Vec<usize>)> {
     let mut lines: Vec<(String, Vec<usize>)> = Vec::new();
     for index in report.rows_of(scene) {

@@ -342,8 +342,8 @@ mod tests {
                     let place = clip.truncate() / clip.w;
                     assert!((place - at.extend(curve.depth(distance))).length() < 1e-12, "{camera:?}: {place}");
                 }
-                let met = camera.relative_eye();
-                let beside = (from * met.w - along * (1.0 - met.w)).cross(met.truncate());
+                let eye = camera.relative_eye();
+                let beside = (from * eye.w - along * (1.0 - eye.w)).cross(eye.truncate());
                 assert!(beside.length() < 1e-12, "lines of sight meet in the eye");
             }
         }

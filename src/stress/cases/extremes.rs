@@ -10,7 +10,7 @@ pub use eyes::under_a_roof;
 
 use crate::stress::StressCase;
 
-/// All cases of single extremes.
+/// Returns all stress cases that are single extremes.
 pub fn all() -> impl Iterator<Item = &'static StressCase> {
     [eyes::ALL, lights::ALL, meshes::ALL, receivers::ALL, wrong_forms::ALL].into_iter().flatten()
 }

@@ -13,7 +13,7 @@ mod who;
 
 use super::StressCase;
 
-/// Every case: sweeps, then random scenes, then single extremes.
+/// Returns every stress case: sweeps, then random scenes, then single extremes.
 pub fn all() -> impl Iterator<Item = &'static StressCase> {
     sweeps::ALL.iter().chain([&random::RANDOM]).chain(extremes::all())
 }

@@ -40,7 +40,8 @@ const SEEDS: [f64; 1000] = {
     seeds
 };
 
-/// Numbers in [0, 1) (Knuth's MMIX constants): the same on every machine.
+/// A generator of pseudo-random numbers in [0, 1): a linear congruential generator with Knuth's MMIX constants, the
+/// same on every machine.
 struct Random(u64);
 
 impl Random {

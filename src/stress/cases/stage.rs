@@ -6,22 +6,22 @@ use glam::DVec3;
 /// Ambient light, so that shadows are dark and not black.
 const AMBIENT: [f32; 3] = [0.12; 3];
 
-/// A scene with one light, seen by an eye with a field of view of 45 degrees.
+/// Returns a scene with one light, seen from `eye` towards `target` with a field of view of 45 degrees.
 pub fn scene(eye: [f64; 3], target: [f64; 3], light: Light, objects: Vec<Object>) -> Scene {
     SceneBuilder::new("stress").ambient(AMBIENT).light(light).objects(objects).seen_from(eye, target).build()
 }
 
-/// A level square around the origin, `half` each way, at height 0.
+/// Returns a level square around the origin at height 0, which extends `half` metres each way.
 pub fn floor(half: f64) -> Result<Object, MeshError> {
     Ok(Object::of("floor", shapes::quad([2.0 * half; 2])?))
 }
 
-/// A closed box of `size` around `center`.
+/// Returns a closed box of this name, of `size` in metres around `center`.
 pub fn cuboid(name: &str, center: [f64; 3], size: [f64; 3]) -> Result<Object, MeshError> {
     Ok(Object::of(name, shapes::cuboid(size)?).at(center))
 }
 
-/// Moves the scene, eye and lights with it.
+/// Returns the scene moved by a vector, eye and lights with it.
 pub fn carried(mut scene: Scene, by: DVec3) -> Scene {
     scene.camera.eye += by;
     scene.camera.target += by;
@@ -32,7 +32,7 @@ pub fn carried(mut scene: Scene, by: DVec3) -> Scene {
     scene
 }
 
-/// Scales the scene about the origin, eye and lights with it.
+/// Returns the scene scaled about the origin by a factor, eye and lights with it.
 pub fn enlarged(mut scene: Scene, factor: f64) -> Scene {
     scene.camera.eye *= factor;
     scene.camera.target *= factor;
@@ -48,7 +48,7 @@ pub fn enlarged(mut scene: Scene, factor: f64) -> Scene {
     scene
 }
 
-/// A box that floats over a floor, under a lamp: the easiest of all shadows.
+/// Returns the easiest scene for all shadows: a box that floats over a floor, under a lamp.
 pub fn still_life() -> Result<Scene, MeshError> {
     let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
     Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), objects))

@@ -11,7 +11,7 @@ use crate::stress::{CaseNumber, ExpectedTrend, FailureSymptom, KnownFailure, Lea
 use crate::technique::Technique;
 use glam::DVec3;
 
-/// All sweeps.
+/// All stress cases that are sweeps.
 pub const ALL: &[StressCase] = &[
     NEAR_FAR,
     WORLD_OFFSET,
@@ -83,7 +83,7 @@ const ROUNDED: KnownFailure =
         .is_mixed()
         .at_most(0.33);
 
-/// Single pixels at first.
+/// Rounding at large ratios of far to near; it shows in single pixels at first.
 const ROUNDING: KnownFailure = KnownFailure {
     symptom: FailureSymptom { kind: WrongPixelKind::Either, most: 0.001, ..ROUNDED.symptom },
     at: |ratio| ratio >= 1e5,
@@ -189,12 +189,13 @@ const SLIVER: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A metre wide at its near end, in view; its tip is far away.
+/// Returns a triangle one metre wide at its near end, which is in view, with its tip far away: `aspect` is its length
+/// against its width.
 fn sliver(aspect: f64) -> [[f64; 3]; 3] {
     [[-0.5, 0.0, 1.0], [0.5, 0.0, 1.0], [0.0, 0.0, 1.0 - aspect]]
 }
 
-/// A count of 256 or 512 over a pixel.
+/// Stencil counts of 256 or 512 over a pixel, which eight bits can't distinguish from zero.
 const WRAPS: KnownFailure = fails(Z_FAIL, "wrap-256", "a count of 256 reads 0 in eight bits")
     .at(|count| count % 256.0 == 0.0)
     .is_missing()
@@ -278,7 +279,7 @@ const THIN_GAP: StressCase = StressCase {
     ..PLAIN
 };
 
-/// Two halves of a board with a slit along z between them.
+/// Returns the corners of two halves of a board, with a slit of this width along z between them.
 fn slit(width: f64) -> [[f64; 3]; 8] {
     let half = |side: f64| {
         let [inner, outer] = [side * width / 2.0, side * (width / 2.0 + 1.6)];
@@ -296,7 +297,8 @@ const THINNER_THAN_TEXELS: KnownFailure =
         .is_mixed()
         .at_most(0.07);
 
-/// Nearly every pixel that differs is near an edge: the failure shows in the number of excused ones.
+/// Bars thinner than a texel: nearly every pixel that differs is near an edge, so the failure shows in the number of
+/// excused ones.
 const THINNER_THAN_EDGES: KnownFailure =
     fails(COARSE, "aliasing", "a bar is thinner than a texel, and all that differs lies along edges")
         .at(|pixels| pixels < 0.3)
@@ -338,7 +340,7 @@ const FINE_GRID: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A pixel or two of a picture, in one view of hundreds.
+/// Corners snapped to 1/256 of a pixel: wrong is a pixel or two of a picture, in one view of hundreds.
 const SNAPPED: KnownFailure = fails(
     Z_FAIL,
     "subpixel-edges",
@@ -407,7 +409,7 @@ const TRIANGLE_COUNT: StressCase = StressCase {
     ..PLAIN
 };
 
-/// The coarsest maps.
+/// Texels of the coarsest maps, each many pixels large.
 const COARSE_TEXELS: KnownFailure =
     fails(MAP, "aliasing", "each texel is many pixels of the floor").at(|size| size <= 64.0).at_most(0.005);
 
@@ -435,7 +437,7 @@ const MAP_SIZE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A thousand steps of the light, each far less than a pixel of its shadow.
+/// The times of a thousand steps of the light, each far less than a pixel of its shadow.
 const ORBIT_STEPS: [f64; 1000] = {
     let mut steps = [0.0; 1000];
     let mut index = 0;

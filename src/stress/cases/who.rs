@@ -35,12 +35,12 @@ pub const DETACHED: Entrant = Entrant::with(Technique::ShadowMap, &[("bias-slope
 pub const UNCLIPPED: Entrant = Entrant::with(Technique::Planar, &[("clip", "off")]);
 pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse", "on")]);
 
-/// Returns a known failure.
+/// Returns a known failure of a technique that shows at every value, by its name and reason.
 pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> KnownFailure {
     KnownFailure::new(of, name, because)
 }
 
-/// Facing and far vertices are computed in 24 bits.
+/// Rounding in a vertex shader that computes facing and far vertices in 24 bits.
 pub const FACING_IN_F32: KnownFailure = fails(
     BY_VERTEX_SHADER,
     "f32-limit",
@@ -70,11 +70,11 @@ pub const NO_FIT: KnownFailure = fails(
     "no picture holds a caster that reaches behind the light, so it casts nothing and the plan says so",
 )
 .is_missing();
-/// Near-plane cuts; each case has its own share of wrong pixels.
+/// Volumes cut by the near plane, so that z-pass misses counts; each case has its own share of wrong pixels.
 pub const CUT_BY_NEAR: KnownFailure =
     fails(Z_PASS, "near-plane", "faces that the near plane cuts away, or that are behind the eye, are not counted");
 
-/// The defaults of a case: one value of the easiest scene.
+/// The defaults of a case's fields: one value, in the easiest scene.
 pub const PLAIN: StressCase = StressCase {
     name: "",
     lesson: "",

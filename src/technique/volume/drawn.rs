@@ -18,7 +18,7 @@ use std::ops::Range;
 pub struct ParallelFarEnd {
     /// How many casting triangles the ray from the light along the view direction hits: so many volumes contain the far
     /// end.
-    pub met: u32,
+    pub count: u32,
     /// How far beside the light lies the point that far vertices are carried away from: metres, or radians for a
     /// directional light; 0 at the light itself.
     pub beside: f64,
@@ -210,7 +210,7 @@ fn outlined(
         let is_point = position.w != 0.0;
         let scale = if is_point { position.w } else { position.truncate().length() };
         let beside = (from - position).length() / scale;
-        (from, ParallelFarEnd { met: far_point.count(from, casting), beside, is_point })
+        (from, ParallelFarEnd { count: far_point.count(from, casting), beside, is_point })
     });
     let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, extrusion));
     let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(CapFan::vertices));
@@ -243,7 +243,7 @@ impl VolumeMesh {
         match (&parts.dark_cap, far_end) {
             (DarkCap::Fan(..), Some(far_end)) if draws_dark_caps => {
                 self.left_out.push(LeftOut::new(Decision::DarkCap, caster, far_end.because()));
-                self.begins_with = far_end.met;
+                self.begins_with = far_end.count;
             }
             (DarkCap::None, far_end) => {
                 let beside = far_end.map_or_else(String::new, ParallelFarEnd::beside);
@@ -292,7 +292,7 @@ impl ParallelFarEnd {
         format!(
             "lines of sight are parallel, and what lies at infinity is a line in the picture: the count begins at {} \
              for it, the casting triangles that a ray from the light along them meets{beside}",
-            self.met
+            self.count
         )
     }
 }

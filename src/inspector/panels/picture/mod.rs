@@ -195,7 +195,7 @@ pub fn layers(
 /// Returns the names of the sides of a comparison: of the compared picture, and of the shown one.
 pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
     let now = match compare.with {
-        ComparedWith::Step(_) => model.moment().words(capture),
+        ComparedWith::Step(_) => model.shown_point().words(capture),
         ComparedWith::Technique(_) => capture.technique.clone(),
     };
     [compare.with.words(capture), now]
@@ -214,7 +214,8 @@ pub fn change_of(
     let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
     let change = own.changes.change([&before.images[0], &shown.images[0]], shown.measure)?;
     // Counts and depths are shown over the finished frame, in which the place is recognised.
-    let at = if shown.kind == PictureKind::Color { model.moment() } else { capture.steps.len().checked_sub(1)?.into() };
+    let at =
+        if shown.kind == PictureKind::Color { model.shown_point() } else { capture.steps.len().checked_sub(1)?.into() };
     let colors = at.frame(capture)?.color.image.clone();
     Some((own.changes.ground(&colors), change))
 }
@@ -295,7 +296,7 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
 /// Draws a button for what each step writes, and one for each kind of picture. A kind that this step does not have has
 /// its button too, so that nothing moves from step to step.
 fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
-    let available = available(capture, model.moment());
+    let available = available(capture, model.shown_point());
     let kinds: Vec<PictureKind> =
         PictureKind::ALL.into_iter().filter(|kind| !kind.is_of_some_frames() || available.contains(kind)).collect();
     let shown = model.kind();

@@ -260,12 +260,12 @@ fn show_in_scene(model: &mut Model, event: &PixelEvent) {
 }
 
 /// Returns the point of the frame after the draw of an event; a clear comes before all draws of its step.
-fn moment_of(event: &PixelEvent) -> CapturePoint {
+fn point_of(event: &PixelEvent) -> CapturePoint {
     CapturePoint { step: event.pass, draw: event.triangle().map(|one| one.draw) }
 }
 
 fn go_to(model: &mut Model, event: &PixelEvent) {
-    model.select(moment_of(event));
+    model.select(point_of(event));
 }
 
 fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Color32) {
@@ -333,8 +333,8 @@ fn selected(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHi
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 4.0;
         ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::of(ui).text)).wrap());
-        let text = theme::note(format!("Go to {}, {}", moment_of(event).words(capture), event.pass_name));
-        if moment_of(event) != model.selected() && ui.button(text).clicked() {
+        let text = theme::note(format!("Go to {}, {}", point_of(event).words(capture), event.pass_name));
+        if point_of(event) != model.selected() && ui.button(text).clicked() {
             go_to(model, event);
         }
         if can_show_in_scene(model, event) && ui.button(theme::note(IN_SCENE)).clicked() {

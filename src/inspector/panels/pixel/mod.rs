@@ -151,7 +151,7 @@ fn sentence(
 
 /// Draws names and values, one in each row, or two where `is_tight`.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
-    theme::heading(ui, &format!("After {}", model.moment().words(capture)));
+    theme::heading(ui, &format!("After {}", model.shown_point().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
     let in_row = if is_tight { 2 } else { 1 };
@@ -159,12 +159,12 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
     grid("pixel values").num_columns(2 * in_row).spacing(spacing).show(ui, |ui| {
         let mut pairs = ValuePairs { in_row, done: 0 };
         pairs.text(ui, "pixel", &format!("{}, {}", at[0], at[1]));
-        match model.moment().frame(capture) {
+        match model.shown_point().frame(capture) {
             Some(frame) => frame_values(ui, &mut pairs, capture, frame, at),
             None => pairs.text(ui, "picture", "not begun yet"),
         }
     });
-    let has_count = model.moment().frame(capture).is_some() && model.counts_to_show(capture).is_some();
+    let has_count = model.shown_point().frame(capture).is_some() && model.counts_to_show(capture).is_some();
     let texel = model.selection.map_pick.filter(|_| model.kind() == Some(PictureKind::Map));
     if has_count || texel.is_some() {
         // Some of these values are long.
@@ -294,7 +294,9 @@ fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r,
 
 /// Draws the picked texel of the map that is shown.
 fn map_values(ui: &mut Ui, model: &Model, capture: &Capture, texel: [u32; 2]) {
-    let Some(shown) = model.view.shown(capture, model.moment()).filter(|shown| shown.images.len() == 1) else { return };
+    let Some(shown) = model.view.shown(capture, model.shown_point()).filter(|shown| shown.images.len() == 1) else {
+        return;
+    };
     if let (Some(bytes), Some(layer)) = (shown.images[0].rgba_at(texel), shown.layers.first()) {
         let what = MapContent::of_capture(capture).map_or("map", MapContent::one);
         return let_through_values(ui, what, &layer.name, texel, bytes);

@@ -130,8 +130,8 @@ impl SceneView {
     pub fn reset(&mut self, anatomy: &Anatomy) {
         let (middle, radius) = stage::framed(anatomy, &stage::holders(anatomy));
         for pane in Pane::ALL {
-            let kept = *self.view_mut(pane);
-            let mut view = PaneView { projection: kept.projection, oblique: kept.oblique, ..pane.first_view() };
+            let previous = *self.view_mut(pane);
+            let mut view = PaneView { projection: previous.projection, oblique: previous.oblique, ..pane.first_view() };
             view.center = middle;
             view.height = MARGIN * radius;
             if pane == Pane::Free {

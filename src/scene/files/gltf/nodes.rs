@@ -64,11 +64,11 @@ impl GltfNodes {
 
 /// Returns these nodes and all below them, each once, and after the node that it hangs on.
 fn below(root: &Root, from: &[usize]) -> Vec<usize> {
-    let mut is_met = vec![false; root.nodes.len()];
+    let mut is_visited = vec![false; root.nodes.len()];
     let mut waiting: Vec<usize> = from.iter().rev().copied().collect();
     let mut found = Vec::new();
     while let Some(node) = waiting.pop() {
-        let Some(known) = root.nodes.get(node).filter(|_| !std::mem::replace(&mut is_met[node], true)) else {
+        let Some(known) = root.nodes.get(node).filter(|_| !std::mem::replace(&mut is_visited[node], true)) else {
             continue;
         };
         found.push(node);

@@ -7,7 +7,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, LeastShares, StressCase};
 use glam::DVec3;
 
-/// All cases of this file.
+/// The stress cases with an extreme eye: its position or near plane.
 pub const ALL: &[StressCase] =
     &[EYE_IN_VOLUME, EYE_ON_SIDE_PLANE, LIGHT_BEHIND_EYE, SKY_BEHIND_VOLUME, SUN_ALONG_VIEW, ONE_PIXEL, WIDE, TALL];
 
@@ -20,7 +20,7 @@ const EYE_IN_VOLUME: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A box on a floor, and a roof whose shadow contains the eye.
+/// Returns the scene of a box on a floor, and a roof whose shadow contains the eye.
 pub fn under_a_roof() -> Result<Scene, MeshError> {
     let roof = Object::of("roof", shapes::quad([2.5; 2])?).at([1.3, 4.0, 3.2]);
     let objects = vec![floor(3.0)?, roof, cuboid("box", [0.0, 0.5, 0.0], [0.6; 3])?];

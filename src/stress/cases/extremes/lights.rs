@@ -8,7 +8,7 @@ use crate::stress::{CaseNumber, KnownFailure, LeastShares, StressCase};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
-/// All cases of this file.
+/// The stress cases with extreme lights.
 pub const ALL: &[StressCase] = &[
     LIGHT_AT_SHEET,
     FLIPPED_SHEET,

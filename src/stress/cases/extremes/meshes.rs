@@ -7,7 +7,7 @@ use crate::stress::{CaseNumber, LeastShares, StressCase};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// All cases of this file.
+/// The stress cases with extreme meshes.
 pub const ALL: &[StressCase] = &[
     BOTH_SIDES,
     OPEN_MESH,
@@ -23,7 +23,7 @@ pub const ALL: &[StressCase] = &[
     UNDRAWN,
 ];
 
-/// Casters over the usual floor.
+/// Returns a scene of these casters over the usual floor.
 fn over_floor(casters: Vec<Object>) -> Result<Scene, MeshError> {
     let mut objects = vec![floor(3.0)?];
     objects.extend(casters);
@@ -216,7 +216,7 @@ const BESIDE_DEGENERATE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A triangle of three points in a line, with none, two or three of them equal.
+/// Returns an object of one triangle whose three corners lie in a line; `alike` of them are equal: none, two or three.
 fn line(alike: f64) -> Result<Object, MeshError> {
     let points = [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
     let triangle = match alike as u32 {

@@ -5,7 +5,7 @@ use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, LeastShares, StressCase};
 
-/// All cases of this file.
+/// The stress cases with extreme receivers.
 pub const ALL: &[StressCase] =
     &[COPLANAR, ACROSS_LIGHT, THROUGH_FLOOR, BEHIND_PROJECTOR, SHELF_BETWEEN, ROUND_RECEIVER, NO_CASTER, NO_RECEIVER];
 

@@ -6,7 +6,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, Entrant, StressCase};
 use crate::technique::Technique;
 
-/// All cases of this file.
+/// The stress cases of techniques in forms that are known to be wrong.
 pub const ALL: &[StressCase] = &[CAPS, LIGHT_AND_ORIGIN, SILHOUETTE_PICTURE];
 
 const LIGHT_CAP_ALONE: Entrant = Entrant::with(Technique::ZFail, &[("caps", "light")]);

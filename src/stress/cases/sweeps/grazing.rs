@@ -58,7 +58,8 @@ pub const GRAZING_EDGE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// A board two metres from its shadow at any height of the sun.
+/// Returns a scene in which a board's shadow lies two metres from it, at any height of the sun in degrees; `form`
+/// changes the board.
 fn beside_a_board(degrees: f64, form: fn(Object) -> Object) -> Result<Scene, MeshError> {
     let slope = degrees.to_radians().tan();
     let board = form(Object::of("board", shapes::quad([2.0, 1.0])?).at([0.0, 2.0 * slope, 1.5]));
@@ -90,7 +91,7 @@ pub const GRAZING_BOARD: StressCase = StressCase {
     ..GRAZING_EDGE
 };
 
-/// Failures that all techniques have that count volumes, and others.
+/// Returns the failures `alike` for each technique that counts shadow volumes, followed by the `others`.
 const fn of_volumes<const N: usize, const ALL: usize>(
     alike: [KnownFailure; N],
     others: [KnownFailure; 3],
@@ -109,7 +110,7 @@ const fn of_volumes<const N: usize, const ALL: usize>(
     all
 }
 
-/// A texel's image on the floor is kilometres long.
+/// Texels whose image on the floor is spread over metres: under the lowest light it is kilometres long.
 const SPREAD: KnownFailure = fails(MAP, "aliasing", "what lies within a texel of the edge is metres of the floor")
     .at(|degrees| degrees < 5e-4)
     .at_most(0.02)
@@ -122,7 +123,7 @@ const SUNK: KnownFailure = fails(Z_FAIL, "f32-limit", "a step of depth moves the
     .at(|degrees| degrees < 5e-3)
     .is_mixed();
 
-/// It shows in larger pictures.
+/// The failure [`SUNK`] where the light is higher: it is a small part of a pixel and shows in larger pictures only.
 const SINKING: KnownFailure =
     fails(Z_FAIL, "f32-limit", "several steps of depth, as sides and floor round apart, are part of a pixel")
         .at(|degrees| degrees < 0.2)

@@ -7,7 +7,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, KnownFailure, StressCase};
 use crate::technique::Technique;
 
-/// Fifty distances of the near plane, from before the box to behind it.
+/// Fifty distances of the near plane, from before the box to behind it, metres.
 const NEAR_STEPS: [f64; 50] = {
     let mut steps = [0.0; 50];
     let mut index = 0;
@@ -59,8 +59,8 @@ const CRACK: KnownFailure = fails(
 )
 .at_most(0.0007);
 
-/// A sheet in many folds along z: a plane across them cuts it along a line of some thirty metres, and
-/// cracks are single pixels of it.
+/// Returns a sheet in many folds along z: a plane across them cuts it along a line of some thirty metres, and cracks
+/// are single pixels of it.
 fn corrugated() -> Result<Mesh, MeshError> {
     let (folds, parts) = (160, 8);
     let at = |fold: u32, part: u32| {
@@ -96,7 +96,8 @@ pub const NEAR_IN_VOLUME: StressCase = StressCase {
     ..PLAIN
 };
 
-/// Wrong pixels are ten times as many where the plane is ten times as near.
+/// Rounding in the light's view through the near rectangle: wrong pixels are ten times as many where the plane is ten
+/// times as near.
 const ROUNDED: KnownFailure = fails(
     Z_PASS_PLUS,
     "near-plane-rounding",

@@ -8,7 +8,7 @@ use crate::technique::Technique;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// Each seam by itself: by chance, a tenth of them have a hole.
+/// A hole in a seam between sides: each seam is rounded by itself, and by chance a tenth of them have one.
 const HOLE: KnownFailure = fails(
     Z_FAIL,
     "f32-limit",
@@ -71,7 +71,7 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
     Ok(scene(eye, target, Light::point(lamp), objects))
 }
 
-/// A column or two.
+/// A clipped strip's end that rounding moves: a column or two of pixels at the picture's edge are wrong.
 const MOVED_END: KnownFailure = fails(
     Z_FAIL,
     "f32-limit",
