@@ -152,7 +152,7 @@ pub fn sign(test: TestResult) -> &'static str {
     }
 }
 
-/// Returns a stencil operation in a few letters, such as `+1`. Wrapping and clamping look the same; [`line`]
+/// Returns a stencil operation in a few letters, such as `+1`. Wrapping and clamping look the same; [`line()`]
 /// distinguishes them.
 pub fn short(operation: StencilOperation) -> &'static str {
     match operation {

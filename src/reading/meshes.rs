@@ -29,7 +29,7 @@ pub fn pictures(object: &Object) -> Vec<String> {
     lines
 }
 
-/// Returns whether a mesh has none of the defects that [`line`] lists.
+/// Returns whether a mesh has none of the defects that [`line()`] lists.
 pub fn is_whole(topology: &Topology) -> bool {
     findings(topology).is_empty()
 }
