@@ -88,6 +88,7 @@ fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: View
     is_usable.then(|| [to([light; 4]), to(near.map(onwards))])
 }
 
+/// Returns the camera's view frustum, world space, up to `far` metres; where that is `None`, without an end.
 pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
     let rays = CORNERS.map(|corner| camera.rays(aspect).through(corner));
     let at = |ray: Ray, distance: f64| (camera.eye + ray.at(distance)).extend(1.0);

@@ -129,7 +129,7 @@ impl WindowSurface {
         }
     }
 
-    /// Passes a request of assistive technology to egui.
+    /// Passes an AccessKit event (tree requested, action requested, deactivated) to egui, and asks for a redraw.
     pub fn on_access(&mut self, event: egui_winit::accesskit_winit::WindowEvent) {
         use egui_winit::accesskit_winit::WindowEvent as Access;
         match event {

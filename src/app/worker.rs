@@ -186,7 +186,8 @@ impl WorkerState {
         }
     }
 
-    /// Carries out orders until the window is closed, and, when none comes for a while, the work that waits for that.
+    /// Carries out orders until the window is closed; when none has come for [`IDLE`], answers questions that wait for
+    /// quiet, then gives memory back.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
         let mut inbox = Inbox { orders, queue: OrderQueue::default(), is_closed: false };
         let mut is_tidy = false;

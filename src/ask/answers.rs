@@ -209,7 +209,7 @@ impl Answers {
         self.slot_mut(kind).known = None;
     }
 
-    /// Sets the time, in seconds of any clock, by which it is measured how long answers are waited for.
+    /// Sets the current time, in seconds of any steady clock; [`Reply::waits_for`] is measured by it.
     pub fn tick(&mut self, now: f64) {
         self.now = now;
     }

@@ -65,8 +65,8 @@ impl Incident {
         1 - 2 * (self.0 & 1) as i32
     }
 
-    /// Returns what its triangle adds to the edge's multiplicity: the triangle's facing times its direction along the
-    /// edge.
+    /// Returns what its triangle adds to the edge's multiplicity (−1, 0 or 1): its facing times its direction along the
+    /// edge. `signs_and_none` has each triangle's facing, and then one entry for "no triangle".
     fn of(self, signs_and_none: &[i8]) -> i32 {
         i32::from(signs_and_none[self.triangle()]) * self.direction()
     }

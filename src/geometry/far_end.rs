@@ -76,7 +76,8 @@ impl CapFan {
         PROBES.iter().find_map(spheres_along).map(|spheres| CapFan { apex, spheres })
     }
 
-    /// Returns how many triangles its spheres have.
+    /// Returns the total number of triangles of the octahedra that stand for whole spheres at infinity: eight for each
+    /// sphere that is added or taken away.
     pub fn sphere_triangles(&self) -> usize {
         OCTAHEDRON.len() * self.spheres.unsigned_abs() as usize
     }

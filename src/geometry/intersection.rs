@@ -99,7 +99,8 @@ impl IntersectionSearch<'_> {
         &self.hierarchy.primitive_indices[first..first + node.prim_count as usize]
     }
 
-    /// Returns whether a triangle of one leaf intersects one of another, or of the same.
+    /// Returns whether a triangle of one leaf intersects one of the other in more than shared corners and edges, or,
+    /// where both are the same slice, another of that leaf; true also where it can't be decided.
     fn meet_in(&self, leaf: &[u32], other: &[u32]) -> bool {
         let same = std::ptr::eq(leaf, other);
         leaf.iter().enumerate().any(|(at, one)| {

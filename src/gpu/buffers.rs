@@ -22,8 +22,9 @@ impl Buffers {
         self.cached.next_plan();
     }
 
-    /// Returns the buffer with `blob`'s content, readable as vertices, indices and, as far as [`check_bound`] allows
-    /// it, as storage.
+    /// Returns the buffer with a blob's content, uploaded on first use and cached by content; an empty blob gets a
+    /// placeholder. It can be bound as vertex, index or storage buffer; call `check_bound` before the last. Fails where
+    /// it exceeds the device's largest buffer.
     pub fn get<T: bytemuck::Pod>(&mut self, device: &Device, blob: &Blob<T>) -> Result<Buffer, GpuError> {
         let contents = blob.bytes();
         check(contents.len() as u64, device.limits().max_buffer_size)?;

@@ -144,7 +144,8 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
 /// The WGSL source that writes the depths a target starts with.
 pub(super) const START: &str = file!("start.wgsl");
 
-/// Returns the WGSL source that logs the fragments of one pixel.
+/// Returns the WGSL module that logs every fragment of its draw (triangle, side, depth) into a storage buffer; it is
+/// drawn for one pixel.
 pub(super) fn fragment_log() -> String {
     [file!("shared.wgsl"), file!("fragment_log.wgsl")].join("\n")
 }

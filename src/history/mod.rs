@@ -302,7 +302,8 @@ impl PixelHistory {
         self.disagreements().is_empty()
     }
 
-    /// Returns the events that are triangles, in order, each with its triangle.
+    /// Returns the events in which a triangle covers the pixel, not clears, in the order in which they happened, each
+    /// with its triangle.
     pub fn triangles(&self) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
         self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
     }

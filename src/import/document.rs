@@ -5,6 +5,7 @@ use serde::Deserialize;
 /// The version of the format that the script writes.
 pub const FORMAT: u32 = 1;
 
+/// The whole document that the script writes of a frame.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocDocument {
     pub format: u32,
@@ -28,6 +29,7 @@ pub enum RenderDocBlob {
     Joined { pieces: Vec<usize> },
 }
 
+/// A texture, renderbuffer or swapchain image of the document.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocTexture {
     pub name: String,
@@ -38,6 +40,7 @@ pub struct RenderDocTexture {
     pub samples: u32,
 }
 
+/// A mip level and layer of a texture that is drawn into.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub struct RenderDocTarget {
     pub texture: usize,
@@ -45,12 +48,14 @@ pub struct RenderDocTarget {
     pub layer: u32,
 }
 
+/// The content of a target as the frame begins.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocStart {
     pub target: RenderDocTarget,
     pub contents: Option<usize>,
 }
 
+/// An event of the frame: a draw, a clear, or another call.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocEvent {
     pub id: u32,
@@ -66,6 +71,7 @@ pub struct RenderDocEvent {
     pub draw: Option<RenderDocDraw>,
 }
 
+/// The geometry and the states of a draw.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocDraw {
     pub stencil_test: bool,
@@ -96,6 +102,7 @@ pub struct RenderDocDraw {
     pub shader: Option<RenderDocShader>,
 }
 
+/// The stencil state of one side of triangles.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocStencilFace {
     pub fail: String,
@@ -107,6 +114,7 @@ pub struct RenderDocStencilFace {
     pub write_mask: u32,
 }
 
+/// The vertices of one instance of a draw after the vertex shader.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocInstance {
     pub topology: String,
@@ -119,6 +127,7 @@ pub struct RenderDocInstance {
     pub restart: Option<u32>,
 }
 
+/// The blend state of the first colour target.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocBlend {
     pub enabled: bool,
@@ -128,6 +137,7 @@ pub struct RenderDocBlend {
     pub logic: bool,
 }
 
+/// The blend factors and operation of colour or alpha.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocBlendEquation {
     pub source: String,
@@ -135,6 +145,7 @@ pub struct RenderDocBlendEquation {
     pub operation: String,
 }
 
+/// The fragment shader of a draw.
 #[derive(Debug, Deserialize)]
 pub struct RenderDocShader {
     pub encoding: String,

@@ -141,7 +141,7 @@ impl Picture {
         [(digits * DIGIT_WIDTH + 1) * dot, (DIGIT_HEIGHT + 2) * dot]
     }
 
-    /// Returns the picture as a PNG file.
+    /// Encodes the picture as PNG (8-bit sRGB) and returns the bytes.
     pub fn to_png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.size[0], self.size[1]);

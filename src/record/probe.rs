@@ -17,7 +17,7 @@ pub(super) struct Probe {
     is_automatic: bool,
 }
 
-/// Returns the index of a group of the pipeline's that is free for a log.
+/// Returns the first bind group index after those that the pipeline uses, where a probe's log can be bound.
 ///
 /// # Errors
 /// No group is free; or the pipeline draws in a way that is not followed.

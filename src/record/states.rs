@@ -161,6 +161,7 @@ pub fn shape(pipeline: &PipelineSource, clip_planes: bool) -> RawShape {
     }
 }
 
+/// Returns how the pipeline's vertices form primitives, in the form of imported frames.
 pub fn topology(pipeline: &PipelineSource) -> RawTopology {
     match pipeline.primitive.topology {
         wgpu::PrimitiveTopology::PointList => RawTopology::Points,

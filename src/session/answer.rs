@@ -31,7 +31,8 @@ pub struct RunFrame {
     pub source: Option<Arc<FrameSource>>,
 }
 
-/// The inputs that a frame was planned from.
+/// The scene that a frame shows, and the request that it was planned from; for another program's frame, the scene that
+/// its draws reveal, without a request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSource {
     /// The scene in the state that was captured.

@@ -42,8 +42,9 @@ impl ExpectedTrend {
     }
 }
 
-/// Checks that the difference from the other scene's truth falls to nothing, except for techniques that are not right
-/// in the end.
+/// Returns one technique's course towards the limit scene of [`ExpectedTrend::ConvergesTo`]: the numbers of wrong
+/// pixels against that scene's truth. It holds where they never rise, begin above 0 and end at 0, or where the
+/// technique isn't expected to be right at the last value. `None` where fewer than two rows have such a number.
 fn converges(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     let off: Vec<u64> = rows.iter().filter_map(|row| row.off_limit).collect();
     let [first, .., last] = off[..] else { return None };

@@ -252,7 +252,8 @@ impl ScaledPlane {
     }
 }
 
-/// Bounds for the rounding errors of a triangle's plane.
+/// Bounds the rounding error of a point's scaled height over a triangle's plane, so that the sign of a larger height is
+/// certain.
 #[derive(Debug, Clone, Copy)]
 pub struct PlaneRounding {
     /// The error of a height for each unit of span.

@@ -11,6 +11,7 @@ use wgpu::custom::{AdapterInterface, DispatchDevice, DispatchQueue, DispatchSurf
 /// log their triangle.
 const WANTED: wgpu::Features = wgpu::Features::VERTEX_WRITABLE_STORAGE.union(wgpu::Features::PRIMITIVE_INDEX);
 
+/// A wrapped adapter: hands each call to the real one.
 #[derive(Debug)]
 pub struct Adapter {
     pub inner: wgpu::Adapter,

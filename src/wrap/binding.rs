@@ -5,6 +5,7 @@ use std::sync::Arc;
 use wgpu::BindingResource as Resource;
 use wgpu::custom::{BindGroupInterface, BindGroupLayoutInterface, PipelineLayoutInterface};
 
+/// A wrapped bind group layout: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct BindGroupLayout {
     pub inner: wgpu::BindGroupLayout,
@@ -12,6 +13,7 @@ pub struct BindGroupLayout {
 
 impl BindGroupLayoutInterface for BindGroupLayout {}
 
+/// A wrapped pipeline layout: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct PipelineLayout {
     pub inner: wgpu::PipelineLayout,
@@ -36,6 +38,7 @@ impl PipelineLayout {
     }
 }
 
+/// A wrapped bind group: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct BindGroup {
     pub inner: wgpu::BindGroup,

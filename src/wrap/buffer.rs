@@ -1,6 +1,7 @@
 use std::ops::Range;
 use wgpu::custom::{BufferInterface, BufferMapCallback, BufferMappedRangeInterface, DispatchBufferMappedRange};
 
+/// A wrapped buffer: hands each call to the real one.
 #[derive(Debug)]
 pub struct Buffer {
     pub inner: wgpu::Buffer,

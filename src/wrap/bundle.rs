@@ -7,6 +7,7 @@ use wgpu::custom::{
     RenderBundleInterface,
 };
 
+/// A wrapped render bundle: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct RenderBundle {
     pub inner: wgpu::RenderBundle,

@@ -302,7 +302,8 @@ impl PassCommand {
         around.into_iter().chain(within).chain(around)
     }
 
-    /// Returns whether what it begins must end in the same pass.
+    /// Returns whether the command begins a query (occlusion or pipeline statistics), which has to end in the same
+    /// pass, so that the pass can't be split into its draws.
     pub fn spans(&self) -> bool {
         matches!(self, PassCommand::BeginOcclusion(_) | PassCommand::BeginStatistics(..))
     }

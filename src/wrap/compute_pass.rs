@@ -5,6 +5,7 @@ use wgpu::custom::{
     DispatchTextureView,
 };
 
+/// A wrapped compute pass: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct ComputePass {
     /// `None` where the encoder was finished before.

@@ -22,6 +22,7 @@ thread_local! {
 
 static NEXT_SCOPE: AtomicU32 = AtomicU32::new(0);
 
+/// A wrapped device: makes wrapped objects, and has the recorder that encoders and the queue report to.
 #[derive(Debug)]
 pub struct Device {
     pub inner: wgpu::Device,

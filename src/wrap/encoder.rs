@@ -231,6 +231,7 @@ impl CommandEncoderInterface for CommandEncoder {
     }
 }
 
+/// A wrapped command buffer: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct CommandBuffer {
     finished: Mutex<Option<FinishedCommands>>,

@@ -6,6 +6,7 @@ use std::future::ready;
 use std::pin::Pin;
 use wgpu::custom::{DispatchAdapter, DispatchSurface, EnumerateAdapterFuture, InstanceInterface, RequestAdapterFuture};
 
+/// A wrapped instance: hands each call to the real one.
 #[derive(Debug)]
 pub struct Instance {
     inner: wgpu::Instance,

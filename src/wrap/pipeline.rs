@@ -6,6 +6,7 @@ use wgpu::custom::{
     ComputePipelineInterface, DispatchBindGroupLayout, PipelineCacheInterface, RenderPipelineInterface,
 };
 
+/// A wrapped render pipeline: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct RenderPipeline {
     pub inner: wgpu::RenderPipeline,
@@ -145,6 +146,7 @@ impl RenderPipelineInterface for RenderPipeline {
     }
 }
 
+/// A wrapped compute pipeline: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct ComputePipeline {
     pub inner: wgpu::ComputePipeline,
@@ -168,6 +170,7 @@ impl ComputePipelineInterface for ComputePipeline {
     }
 }
 
+/// A wrapped pipeline cache: hands each call to the real one.
 #[derive(Debug)]
 pub struct PipelineCache {
     pub inner: wgpu::PipelineCache,

@@ -8,6 +8,8 @@ use wgpu::custom::{
     DispatchSurfaceOutputDetail, QueueInterface, QueueWriteBufferInterface,
 };
 
+/// A wrapped queue: forwards writes to the real queue, hands submitted command buffers to the recorder, and reports to
+/// it when a picture is presented.
 #[derive(Debug)]
 pub struct Queue {
     pub inner: wgpu::Queue,

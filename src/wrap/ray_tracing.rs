@@ -7,6 +7,7 @@ use wgpu::custom::{BlasCompactCallback, BlasInterface, TlasInterface};
 pub const NOT_WRAPPED: wgpu::Features =
     wgpu::Features::EXPERIMENTAL_RAY_QUERY.union(wgpu::Features::EXPERIMENTAL_MESH_SHADER);
 
+/// A wrapped bottom-level acceleration structure: hands each call to the real one.
 #[derive(Debug)]
 pub struct Blas {
     pub inner: wgpu::Blas,
@@ -22,6 +23,7 @@ impl BlasInterface for Blas {
     }
 }
 
+/// A wrapped top-level acceleration structure: hands each call to the real one.
 #[derive(Debug)]
 pub struct Tlas {
     pub inner: wgpu::Tlas,

@@ -7,6 +7,7 @@ use wgpu::custom::{
     RenderPassInterface,
 };
 
+/// A wrapped render pass: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct RenderPass {
     /// `None` where the encoder was finished before.

@@ -4,6 +4,7 @@ use std::pin::Pin;
 use std::sync::{Arc, OnceLock};
 use wgpu::custom::{ShaderCompilationInfoFuture, ShaderModuleInterface};
 
+/// A wrapped shader module: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct ShaderModule {
     pub inner: wgpu::ShaderModule,

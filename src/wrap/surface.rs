@@ -7,6 +7,7 @@ use wgpu::custom::{
 };
 use wgpu::{CurrentSurfaceTexture, SurfaceStatus};
 
+/// A wrapped surface: hands each call to the real one.
 #[derive(Debug)]
 pub struct Surface {
     pub inner: wgpu::Surface<'static>,

@@ -4,6 +4,7 @@ use wgpu::custom::{
     DispatchTextureView, ExternalTextureInterface, SamplerInterface, TextureInterface, TextureViewInterface,
 };
 
+/// A wrapped texture: hands each call to the real one.
 #[derive(Debug)]
 pub struct Texture {
     pub inner: wgpu::Texture,
@@ -37,6 +38,7 @@ pub struct ViewSubresource {
     pub layer: u32,
 }
 
+/// A wrapped texture view: the real one, and what a recording needs to know of it.
 #[derive(Debug)]
 pub struct TextureView {
     pub inner: wgpu::TextureView,
@@ -45,6 +47,7 @@ pub struct TextureView {
 
 impl TextureViewInterface for TextureView {}
 
+/// A wrapped sampler: hands each call to the real one.
 #[derive(Debug)]
 pub struct Sampler {
     pub inner: wgpu::Sampler,
@@ -52,6 +55,7 @@ pub struct Sampler {
 
 impl SamplerInterface for Sampler {}
 
+/// A wrapped external texture: hands each call to the real one.
 #[derive(Debug)]
 pub struct ExternalTexture {
     pub inner: wgpu::ExternalTexture,

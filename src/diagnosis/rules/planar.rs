@@ -123,7 +123,8 @@ fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     })
 }
 
-/// Returns how many metres a visible surface lies off a flattened triangle's plane; `None` where it lies in it.
+/// Returns the distance in metres, never negative, of a visible surface point from a flattened triangle's plane; `None`
+/// where it is within the tolerance, or where the triangle defines no plane.
 fn off_plane(facts: &FrameFacts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
     let off = plane_of(facts, one)?.at(seen.point.extend(1.0)).abs();
     (off > OFF_PLANE * (seen.point - facts.scene.camera.eye).length()).then_some(off)
@@ -348,7 +349,7 @@ fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     }
 }
 
-/// Returns whether the flat piece that a triangle lies in has a receiver texture.
+/// Returns whether the visible triangle is drawn with a receiver texture for a light.
 fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);

@@ -36,7 +36,8 @@ impl Default for SceneBounds {
 }
 
 impl SceneBounds {
-    /// Returns the bounds of these points; `None` where there are none, or where their extents can't be measured.
+    /// Returns the axis-aligned bounding box of these points, in their space; `None` where there are none, or where the
+    /// sum of its extents isn't finite.
     pub fn of<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<SceneBounds> {
         let mut points = points.into_iter();
         let first = *points.next()?;

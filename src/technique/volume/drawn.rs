@@ -286,7 +286,8 @@ impl ParallelFarEnd {
         }
     }
 
-    /// Returns the reason why the volume has no dark cap.
+    /// Returns why an infinite volume gets no dark cap under a parallel (orthographic or oblique) camera, as a sentence
+    /// for the user, with the number that the count begins at instead.
     fn because(self) -> String {
         let beside = self.beside();
         format!(

@@ -49,7 +49,7 @@ impl ReportPanel {
     }
 }
 
-/// Draws the panel Report: errors and times of all techniques on the open scene.
+/// Draws the panel Report: a plot and a table of every technique's errors and times on the open scene.
 pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let reply = model.answers.under_way::<ReportOf>();
     let measured = model.answers.last::<ReportOf>().map(|(_, measured)| Arc::clone(measured));

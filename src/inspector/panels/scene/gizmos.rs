@@ -100,7 +100,8 @@ fn is_directional(draft: &RunRequest, grip: HandleKind) -> bool {
     matches!(grip, HandleKind::Light(index) if draft.lights[index].is_directional())
 }
 
-/// The view that is drawn.
+/// The view of one pane that gizmos are drawn into: its lens (world to screen), its rectangle, and the anchor that
+/// directional lights are placed around.
 pub struct GizmoView<'a> {
     pane: Pane,
     lens: &'a Lens,

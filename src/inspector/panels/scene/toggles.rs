@@ -1,6 +1,6 @@
 //! Which parts of a scene are shown.
 
-/// Which kinds of geometry are shown.
+/// Which parts of the views of the scene in space are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SceneToggles {
     /// The objects.

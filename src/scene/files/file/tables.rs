@@ -19,6 +19,7 @@ pub fn unplaced<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }
 
+/// A scene file as it is written: its tables before they are checked.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneTable {
@@ -32,6 +33,7 @@ pub struct SceneTable {
     pub technique: Option<TechniqueTable>,
 }
 
+/// The table of the camera in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
@@ -47,6 +49,7 @@ pub struct CameraTable {
     pub far: Option<SpannedNumber>,
 }
 
+/// The table of a light in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LightTable {
@@ -61,6 +64,7 @@ pub struct LightTable {
     pub swing: Option<SwingTable>,
 }
 
+/// The motion of a light or object on a circle, in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitTable {
@@ -69,6 +73,7 @@ pub struct OrbitTable {
     pub degrees_per_second: SpannedNumber,
 }
 
+/// The motion of a light or object to and fro, in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SwingTable {
@@ -78,6 +83,7 @@ pub struct SwingTable {
     pub period_seconds: SpannedNumber,
 }
 
+/// The table of an object in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectTable {
@@ -95,6 +101,7 @@ pub struct ObjectTable {
     pub material: Option<MaterialTable>,
 }
 
+/// The material of an object in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialTable {
@@ -110,6 +117,7 @@ pub struct MaterialTable {
     pub texture_clamps: Option<Spanned<bool>>,
 }
 
+/// The table of the technique in a scene file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TechniqueTable {

@@ -82,7 +82,8 @@ struct PrimitiveVertices {
 }
 
 impl PrimitiveVertices {
-    /// Reads the vertices that its triangles use; others of the same accessors may be another part's.
+    /// Reads a primitive's triangles and the vertices that they use, transformed by `form`; vertices that no triangle
+    /// uses are left out, since primitives may share accessors.
     fn read(
         document: &GltfDocument,
         primitive: &Primitive,
