@@ -51,7 +51,8 @@ pub struct PlanMap {
     /// True clamps lookups outside of the map to its edge; false lets all of the light through there.
     #[serde(default)]
     pub repeats_edge: bool,
-    /// Whether its texture is kept from frame to frame while what draws it is the same.
+    /// Whether its texture is cached from frame to frame while what draws it is the same.
+    #[serde(rename = "is_kept")]
     pub is_cached: bool,
 }
 
@@ -71,4 +72,23 @@ pub struct MapLookup {
     pub bias_receiver_plane: bool,
     /// Width of the filter: texels averaged along each side.
     pub filter_width: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_of_earlier_versions_are_read() {
+        let written = r#"{"attachment": 1, "faces": [1], "light_from_world": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
+            "clip_from_light": [], "clip_from_relative": [], "layer_names": [], "lookup": null,
+            "projects_backwards": false, "repeats_edge": false, "is_kept": true}"#;
+        let map: PlanMap = serde_json::from_str(written).expect("a map");
+        assert!(map.is_cached);
+        let rewritten = serde_json::to_value(&map).expect("a value");
+        let written: serde_json::Value = serde_json::from_str(written).expect("a value");
+        let keys =
+            |value: &serde_json::Value| value.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
+        assert_eq!(keys(&rewritten), keys(&written));
+    }
 }
