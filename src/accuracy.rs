@@ -163,10 +163,10 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> 
     Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, truth.size), findings }
 }
 
-/// Counts the pixels whose colour is wrong: red, green or blue differs by more than [`COLOR_TOLERANCE`] from the right
-/// picture's, background included. Excused is what labels are excused for: pixels where no light's label is
-/// [wrong](Finding::is_wrong), and the truth of one changes within those distances. `findings` are those of each light
-/// that has labels, and pictures are given by rows of four bytes a pixel.
+/// Counts the pixels of `picture` whose red, green or blue differs from that of `right` by more than
+/// [`COLOR_TOLERANCE`], background included. A pixel is excused where no light's label is [wrong](Finding::is_wrong) and
+/// the truth of at least one light changes within the distances that excuse labels along edges. `findings` has, for each
+/// light with labels, one [`Finding`] byte a pixel; `picture` and `right` are rows of RGBA bytes.
 ///
 /// # Panics
 /// If rows or findings are not of the truth's size.

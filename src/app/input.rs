@@ -28,7 +28,9 @@ pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
     std::mem::take(events)
 }
 
-/// Returns the index of the first event that a frame which begins with these must not see.
+/// Returns the index of the first event to leave for a later frame; `None` where one frame may take them all. Splits
+/// where pointer movement and a button or key in one frame would be confused: at a movement after a button event, or at
+/// a release or key press after a movement.
 fn end_of_frame(events: &[Event]) -> Option<usize> {
     let (mut has_button, mut has_moved) = (false, false);
     events.iter().position(|event| match event {

@@ -228,6 +228,7 @@ enum CenterCoverage {
         depth: f64,
         is_safe: bool,
     },
+    /// It is not inside, but not surely more than [`DOUBT`] pixels away.
     Near,
 }
 
@@ -264,8 +265,9 @@ impl PixelSquare {
         sieve.extend(vertices.iter().map(outside));
     }
 
-    /// Returns where the centre lies relative to a triangle; `None` where the triangle is farther from it than
-    /// [`DOUBT`].
+    /// Classifies the pixel's centre against a triangle: inside, with depth and winding, or near. Returns `None` where
+    /// the lines through its edges show that it is outside by more than [`DOUBT`] pixels; `Near` may so be farther off.
+    /// `corners` are multiplied by `clip_from_relative`, or are in clip space where that is `None`.
     fn look(&self, clip_from_relative: Option<Mat4>, corners: [[f32; 4]; 3]) -> Option<CenterCoverage> {
         let corners = corners.map(|corner| DVec4::from_array(corner.map(f64::from)));
         let clip = clip_from_relative.map_or(corners, |matrix| corners.map(|corner| matrix.as_dmat4() * corner));

@@ -332,7 +332,8 @@ fn in_bits(settings: &VolumeSettings) -> String {
     }
 }
 
-/// Explains how the light's shadow map decides, with the picked pixel's numbers; `None` where no map decides.
+/// Explains the comparison with the light's shadow map: texel, stored depth and own depth of the picked pixel, or a
+/// prompt to pick one. `None` where no map decides for this light.
 fn compared(known: &ExplainContext, light: usize) -> Option<ExplainFact> {
     if known.capture.decided_by(light) != DecidedBy::Map {
         return None;

@@ -43,7 +43,8 @@ pub fn line(topology: &Topology) -> String {
     parts.join(", ")
 }
 
-/// Returns a paragraph for each defect: which techniques it affects, and how.
+/// Returns paragraphs separated by blank lines: first what a closed, consistently wound mesh allows, where it is one,
+/// then for each defect which techniques it affects, and how. Empty where there is nothing to say.
 pub fn effects(topology: &Topology) -> String {
     let mut paragraphs: Vec<&str> = findings(topology).into_iter().map(|(_, effect)| effect).collect();
     if topology.is_closed() && topology.is_oriented() {

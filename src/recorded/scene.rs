@@ -72,7 +72,8 @@ pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Dra
     draws(plan, |draw| draw.part.is_of_volume()).into_iter().filter_map(thrown).collect()
 }
 
-/// Returns the places that are not at infinity.
+/// Returns the view-space points whose w is 1, without w; leaves out unknown ones and those at infinity. Expects w to
+/// be 1 or 0, and does not divide by it.
 fn finite(places: &[Option<DVec4>]) -> Vec<DVec3> {
     places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
 }

@@ -84,7 +84,8 @@ impl Session {
         Ok(rows)
     }
 
-    /// Returns the truth of the scene to which the case converges.
+    /// Returns the ray-traced truth, at `size` pixels, of the scene to which the case converges; `None` where it
+    /// converges to none.
     fn limit_of(&mut self, case: &StressCase, size: [u32; 2]) -> Result<Option<Arc<TracedScene>>, SessionError> {
         let Some(ExpectedTrend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
         let named = |source| SceneError::Mesh { name: format!("the limit of {}", case.name), source };

@@ -6,7 +6,8 @@ use crate::technique::Technique;
 use std::fmt;
 
 impl StressResults {
-    /// Returns a table by case: which techniques are right, which break where, and whether that was known.
+    /// Returns the results as plain text: under each case's name and lesson one line for each technique (right, or
+    /// where it breaks, and whether that was known); at the end the number of each verdict.
     pub fn to_table(&self) -> String {
         let summaries = self.summary();
         let width = summaries.iter().map(|summary| summary.entrant.to_string().len()).max().unwrap_or(0);

@@ -176,7 +176,8 @@ pub fn depth_color(by: f32) -> Color32 {
     }
 }
 
-/// Returns the grey of a stored depth: near is light.
+/// Returns the grey of a stored depth on a scale, near light and far dark; the background colour where the depth is
+/// that of no surface.
 pub fn depth(scale: DepthScale, depth: f32) -> Color32 {
     scale.place(depth).map_or(palette::NO_SURFACE, palette::near_far)
 }

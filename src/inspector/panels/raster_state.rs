@@ -145,7 +145,7 @@ fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: 
     }
 }
 
-/// Draws a matrix as four rows of four; `columns` has its columns in order.
+/// Draws a matrix with its name, as four rows of four; `columns` is column-major.
 fn matrix(ui: &mut Ui, name: &str, columns: &[f32; 16]) {
     ui.label(theme::note(name));
     let rows: Vec<String> = (0..4)

@@ -250,7 +250,7 @@ fn show_face(own: &mut ShadowMapPanel, face: usize) {
     own.pick = None;
 }
 
-/// Brings a texel to the middle, so large that it shows its number.
+/// Shows a texel's face, centres the texel and zooms in until its number is legible. Clears the picked texel.
 fn show_texel(own: &mut ShadowMapPanel, texel: MapTexel) {
     show_face(own, texel.face);
     own.view.zoom = TexelZoom::Pixels(canvas::NUMBERS_FROM + 4.0);

@@ -16,8 +16,8 @@ use wgpu::TextureFormat;
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
 
 impl FrameBuilder<'_> {
-    /// Returns a drawing that adds a light without any shadow test; with a stencil buffer only once at each pixel,
-    /// where surfaces coincide.
+    /// Returns a drawing that adds the light of the pass it is put into, without a shadow test. With a stencil buffer
+    /// it draws only where the stencil is 0 and increments it, so that coinciding surfaces are lit once at each pixel.
     pub fn light_everywhere(&self) -> SurfaceDrawing {
         let once = SurfaceDrawing::light_once_where_zero(0xff);
         if self.has_stencil {

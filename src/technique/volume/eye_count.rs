@@ -10,8 +10,8 @@ use crate::plan::LightId;
 use crate::technique::frame::FrameBuilder;
 use glam::{DVec3, DVec4};
 
-/// Returns how many of a light's volumes contain the eye, or, for a parallel projection, the middle of the near plane.
-/// Far ends of volumes are ignored.
+/// Returns the stencil value from which z-pass counts: the number of casting triangles in `volumes` whose own shadow
+/// volume, extended to infinity, contains the eye, or, for a parallel projection, the middle of the near plane.
 pub fn at(frame: &FrameBuilder, light: LightId, volumes: &[VolumePlan]) -> u32 {
     let (place, light) = (frame.job.scene.camera.counting_place(), frame.light_position(light));
     let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame, light));

@@ -134,7 +134,8 @@ fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, mark: Option<&str
     theme::line(ui, pos2(left, row.center().y - 7.0), width, &draw.name, TextStyle::Small, color);
 }
 
-/// Explains, under a selected draw, why its state is not known and does not come.
+/// Draws, under the selected draw, why the state after it can't be shown: the folder has none, or fetching it failed.
+/// Draws nothing while it is still being fetched.
 fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws>) {
     if model.selected().is_known(capture) {
         return;

@@ -206,7 +206,8 @@ fn checked(root: &Root) -> GltfResult<()> {
     }
 }
 
-/// Returns whether a file may require it.
+/// Returns whether a file that requires this extension is read all the same: the extension is supported, or changes
+/// only materials. Whether it is fully supported is `is_done`.
 pub fn is_known(extension: &str) -> bool {
     KNOWN_EXTENSIONS.contains(&extension) || extension.starts_with("KHR_materials_")
 }

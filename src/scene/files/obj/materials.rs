@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 /// Bytes of the largest library.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// The materials of a model's libraries.
+/// The materials that have been read from a model's `.mtl` files, by name, with their textures, which a borrowed image
+/// loader loads.
 #[derive(Debug)]
 pub struct MaterialLibraries<'a> {
     materials: Vec<tobj::Material>,
