@@ -223,11 +223,7 @@ struct PixelSquare {
 /// Whether a pixel's centre lies inside a triangle.
 enum CenterCoverage {
     /// It is inside, with the triangle's depth there in clip space.
-    Inside {
-        runs_counterclockwise: bool,
-        depth: f64,
-        is_safe: bool,
-    },
+    Inside { runs_counterclockwise: bool, depth: f64, is_safe: bool },
     /// It is not inside, but not surely more than [`DOUBT`] pixels away.
     Near,
 }
