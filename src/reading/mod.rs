@@ -3,10 +3,12 @@
 //! a widget.
 //!
 //! ```text
-//! steps.rs     numbered steps, and masks      capture_point.rs after a step or a draw   shown.rs    the picture of it
-//! layers.rs    maps, textures                left_out.rs what the frame left out
-//! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
-//! explain_facts.rs a step as a formula       meshes.rs   the topology of meshes  outcomes.rs results of a step's tests
+//! steps.rs     numbered steps, and masks      capture_point.rs   a frame's state after a step or a draw
+//! picture_view.rs  the picture of it          layers.rs          maps, textures
+//! depth.rs     what a stored depth means      left_out.rs        what the frame left out
+//! counts.rs    counts beyond eight bits       change.rs          what a step changed
+//! explain_facts.rs a step as a formula        outcomes.rs        results of a step's tests
+//! meshes.rs    the topology of meshes
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
 //! map_decision.rs what a texel stores against a pixel's depth; texture_decision.rs what textures let through to it
 //! texels_read.rs both, as text and as JSON                    shading.rs   what each light adds, term by term
