@@ -42,17 +42,21 @@ named_enum! {
 }
 
 impl Finding {
-    /// Returns the finding of that number, as in an error picture.
+    /// Returns the finding with this number, which is its place in [`Finding::ALL`] and the value of its pixels in an
+    /// error picture; `None` for any other byte.
     pub fn from_byte(byte: u8) -> Option<Finding> {
         Finding::ALL.get(usize::from(byte)).copied()
     }
 
-    /// Returns whether it counts as wrong.
+    /// Returns whether the finding counts as an error: a false shadow, a missing shadow or a wrong surface. An excused
+    /// disagreement ([`Finding::EdgeBand`]) does not.
     pub fn is_wrong(self) -> bool {
         matches!(self, Finding::FalseShadow | Finding::MissingShadow | Finding::WrongSurface)
     }
 
-    /// Returns the finding without excuses.
+    /// Compares two labels, without excusing any pixel: `NotCompared` where the truth is neither lit nor in shadow,
+    /// `Agrees` where both are equal, `WrongSurface` where the answer is neither lit nor in shadow. Never returns
+    /// `EdgeBand`.
     fn of(truth: u8, answer: u8) -> Finding {
         match (truth, answer) {
             (LIT | SHADOW, _) if truth == answer => Finding::Agrees,
@@ -131,7 +135,8 @@ pub struct WrongRegion {
     pub at: [u32; 2],
 }
 
-/// A technique's accuracy for one light.
+/// How a technique's labels for one light differ from the truth: numbers of pixels, a finding for each pixel, and the
+/// largest wrong region (`None` where no pixel is wrong).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Accuracy {
     /// Numbers of pixels by finding.
@@ -197,7 +202,9 @@ fn differ(one: [u8; 4], other: [u8; 4]) -> bool {
     (0..3).any(|channel| one[channel].abs_diff(other[channel]) > COLOR_TOLERANCE)
 }
 
-/// Returns whether the truth changes so near the pixel's centre that no rasteriser can be expected to agree with it.
+/// Returns whether a disagreement at pixel (`x`, `y`) is excused: the truth's label at one of eight points 1/8 pixel
+/// around the centre is not `label`, or the triangle visible at one of eight points 1/256 pixel around it is not the
+/// one at the centre.
 fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2]) -> bool {
     let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
     let labels = tracer.labels_at(light, around(center, LABEL_REACH));
@@ -208,13 +215,15 @@ fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2]) -> 
     tracer.visible_at(around(center, SURFACE_REACH)).iter().any(|other| *other != here)
 }
 
-/// Returns the eight neighbours of a point in a grid of that spacing.
+/// Returns the eight points around a point that are `reach` away along x, along y or along both (those at the corners
+/// are √2 times as far). The point itself is left out.
 fn around([x, y]: [f64; 2], reach: f64) -> [[f64; 2]; 8] {
     let steps = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
     steps.map(|[dx, dy]| [x + f64::from(dx) * reach, y + f64::from(dy) * reach])
 }
 
-/// Returns the largest connected set of wrong pixels of one kind.
+/// Returns the region with the most wrong pixels; of equal ones the first in reading order, `None` where no pixel is
+/// wrong. Pixels of a region have the same finding and touch, corners included; excused pixels belong to none.
 fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<WrongRegion> {
     let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
     let mut left = findings.to_vec();
@@ -231,7 +240,8 @@ fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<WrongRegio
     worst
 }
 
-/// Removes the region around a wrong pixel and describes it.
+/// Sets the region that contains pixel number `start` to `NotCompared` in `left`, and returns its size, kind and
+/// bounds. `start` must be its first pixel in reading order, which becomes [`WrongRegion::at`].
 fn take_region(left: &mut [u8], start: usize, size: [u32; 2]) -> WrongRegion {
     let kind = Finding::from_byte(left[start]).unwrap_or(Finding::WrongSurface);
     let at = place(start, size);
@@ -245,7 +255,7 @@ fn take_region(left: &mut [u8], start: usize, size: [u32; 2]) -> WrongRegion {
     region
 }
 
-/// Returns column and row of a pixel by its number.
+/// Returns the column and row, from the top left, of the pixel with this index in row-major order.
 pub(crate) fn place(index: usize, [width, _]: [u32; 2]) -> [u32; 2] {
     [(index % width as usize) as u32, (index / width as usize) as u32]
 }

@@ -55,7 +55,8 @@ pub fn open_plain(path: &Path) -> Result<File, ReadError> {
     Ok(File::open(path)?)
 }
 
-/// Returns the bytes of a plain file of at most `most`; a file that grows while it is read is cut at the limit.
+/// Returns the bytes of a plain file; an error where it is longer than `most` bytes, also if it grows beyond that while
+/// it is read, or is no plain file.
 pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     let file = open_plain(path)?;
     if file.metadata()?.len() > most {
@@ -96,7 +97,9 @@ pub struct WholeFile {
 static BEGUN: AtomicU64 = AtomicU64::new(0);
 
 impl WholeFile {
-    /// Begins a file.
+    /// Begins a file under another name beside `path`; [`WholeFile::finish`] moves it there. Links are followed; a
+    /// device or a pipe at `path` is written directly. Dropped unfinished, the new file is removed and what was at
+    /// `path` stays.
     pub fn create(path: &Path) -> io::Result<WholeFile> {
         // A link to a file stays a link: what it points to is replaced.
         let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
@@ -114,13 +117,13 @@ impl WholeFile {
         Ok(WholeFile { file, beside, target })
     }
 
-    /// Returns a writer. It must be flushed before the file is finished.
+    /// Returns a buffered writer to the file. It must be flushed before the file is finished.
     #[cfg(feature = "program")]
     pub fn writer(&self) -> io::Result<io::BufWriter<File>> {
         Ok(io::BufWriter::new(self.file.try_clone()?))
     }
 
-    /// Moves the file to its place.
+    /// Moves the file to its place, replacing what is there; does nothing where it was written in place.
     pub fn finish(mut self) -> io::Result<()> {
         if let Some(beside) = &self.beside {
             std::fs::rename(beside, &self.target)?;
@@ -139,14 +142,16 @@ impl Drop for WholeFile {
     }
 }
 
-/// Writes a file beside its place and renames it.
+/// Writes a file so that `path` has all of these bytes or what it had before: beside its place, then renamed. A device
+/// or a pipe is written directly.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = WholeFile::create(path)?;
     file.file.write_all(bytes)?;
     file.finish()
 }
 
-/// Returns the path of a file as another file beside it would name it: relative, where that is possible.
+/// Returns the path to `other` as the file `file` would name it: relative to the folder of `file`; `other` unchanged
+/// where its path can't be resolved or lies on another drive. `other` must exist to become relative.
 pub fn from_beside(file: &Path, other: &Path) -> String {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let both = folder.canonicalize().ok().zip(other.canonicalize().ok());
@@ -154,7 +159,8 @@ pub fn from_beside(file: &Path, other: &Path) -> String {
     way.unwrap_or_else(|| other.to_owned()).to_string_lossy().into_owned()
 }
 
-/// Returns the relative path from a folder to a file, both absolute; `None` where there is none, as between two drives.
+/// Returns the relative path from a folder to a file, both absolute and resolved; `None` where they have nothing in
+/// common, as on two drives.
 fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
     let (folder, file): (Vec<Component>, Vec<Component>) = (folder.components().collect(), file.components().collect());
     let common = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();

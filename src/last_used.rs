@@ -25,26 +25,26 @@ impl<K, V> Default for LastUsed<K, V> {
 }
 
 impl<K: Eq + Hash, V: Clone> LastUsed<K, V> {
-    /// Drops values that were not used since the last call.
+    /// Drops values that were not used or added since the last call.
     pub fn next_plan(&mut self) {
         self.cached.retain(|_, cached| std::mem::take(&mut cached.is_used));
         self.weight = self.cached.values().map(|cached| cached.weight).sum();
     }
 
-    /// Returns the value of a key, if it is cached.
+    /// Returns the value of a key and marks it as used; `None` where it is not cached.
     pub fn get(&mut self, key: &K) -> Option<V> {
         let cached = self.cached.get_mut(key)?;
         cached.is_used = true;
         Some(cached.value.clone())
     }
 
-    /// Returns the value of a key, computed by `make` if it is not cached.
+    /// Returns the value of a key, computed by `make` and cached, with weight 0, if it is not cached yet.
     pub fn get_or_make(&mut self, key: K, make: impl FnOnce() -> V) -> V {
         self.get_or_make_within(usize::MAX, key, || (make(), 0))
     }
 
-    /// Returns the value of a key. A value that is computed comes with its weight, and is cached only while the weights
-    /// of all values sum to at most `most`.
+    /// Returns the cached value of a key, else the one that `make` computes, with its weight. That is cached only if
+    /// the weights of all values then sum to at most `most`; nothing is dropped for it.
     pub fn get_or_make_within(&mut self, most: usize, key: K, make: impl FnOnce() -> (V, usize)) -> V {
         if let Some(value) = self.get(&key) {
             return value;

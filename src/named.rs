@@ -44,7 +44,7 @@ macro_rules! named_enum {
                 }
             }
 
-            /// Returns the variant of that name.
+            /// Returns the variant with exactly this name (case matters); `None` where there is none.
             pub fn from_name(name: &str) -> Option<$Enum> {
                 $Enum::ALL.into_iter().find(|one| one.name() == name)
             }

@@ -1,7 +1,7 @@
 //! Numbers as text, alike in tables, plots, stories and panels: thousands with a thin space, two
 //! digits of a share, lengths with their unit, and stencil counts with their sign.
 
-/// Writes a count, its thousands separated by a thin space: `47 425`.
+/// Writes a count, groups of three digits separated by a thin space (U+2009) from the thousands on: `1 234`, `47 425`.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -19,7 +19,8 @@ pub fn reads_zero_in_eight_bits(count: f32) -> bool {
     count != 0.0 && (count.round() as i64).rem_euclid(256) == 0
 }
 
-/// Writes a share of 1 in per cent with two digits, without the sign; exactly `0` only where it is.
+/// Writes a share of 1 in per cent with about two digits, without the sign: `0` only for exactly 0, never rounded up to
+/// 100; `–` where it is not finite.
 pub fn per_hundred(fraction: f64) -> String {
     let value = fraction * 100.0;
     if value == 0.0 || !value.is_finite() {
@@ -33,7 +34,7 @@ pub fn per_hundred(fraction: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Writes a share of 1 in per cent: `0.12 %`; exactly `0` only where it is.
+/// Writes a share of 1 in per cent with its sign after a no-break space: `0.12 %`. Exactly 0 is `0` without the sign.
 pub fn percent(fraction: f64) -> String {
     match per_hundred(fraction) {
         zero if zero == "0" => zero,
@@ -41,7 +42,8 @@ pub fn percent(fraction: f64) -> String {
     }
 }
 
-/// Writes milliseconds without the unit, with two or three digits.
+/// Writes milliseconds without the unit: three decimals below 0.1, two below 1, one below 100, none from there on, with
+/// separated thousands. `0` for exactly 0, `–` where it is not finite.
 pub fn milliseconds(value: f64) -> String {
     match value {
         _ if !value.is_finite() => "–".to_owned(),
@@ -53,7 +55,7 @@ pub fn milliseconds(value: f64) -> String {
     }
 }
 
-/// Writes bytes in MiB, without the unit.
+/// Writes bytes in MiB without the unit: one decimal below 100 MiB, none from there on.
 pub fn mebibytes(bytes: u64) -> String {
     let value = bytes as f64 / f64::from(1 << 20);
     if value < 100.0 { format!("{value:.1}") } else { count(value.round() as u64) }
@@ -69,7 +71,8 @@ pub fn length(value: f64, unit: &str) -> String {
     format!("{} {unit}", digits(value))
 }
 
-/// Writes about four digits of a number.
+/// Writes a number with about four digits: in scientific notation below 0.001 and from 100 000 on; `0` for exactly 0,
+/// `∞` for positive infinity.
 pub fn digits(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
@@ -87,7 +90,8 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// Writes seven digits of a number that others are computed from.
+/// Writes a number rounded to seven significant digits, without trailing zeros; in scientific notation below 1e-6 and
+/// from 1e9 on.
 pub fn precise(value: f64) -> String {
     let digits = format!("{value:.6e}").parse().unwrap_or(value);
     if digits != 0.0 && !(1e-6..1e9).contains(&f64::abs(digits)) { format!("{digits:e}") } else { digits.to_string() }
@@ -103,7 +107,8 @@ pub fn light(index: usize) -> String {
     format!("light {}", index + 1)
 }
 
-/// Writes a count that is stored as a float, with its sign; digits after the point only where it has some.
+/// Writes a count that is stored as a float, with `−` (U+2212) where it is negative and separated thousands; decimals,
+/// then without separators, only where it has some.
 pub fn count_in_float(value: f32) -> String {
     if value.fract() != 0.0 || !value.is_finite() {
         return value.to_string().replace('-', "−");
@@ -112,7 +117,7 @@ pub fn count_in_float(value: f32) -> String {
     format!("{sign}{}", count(value.abs() as u64))
 }
 
-/// Writes a stencil value as it is shown: 255 is `−1 (255)`.
+/// Writes a stencil byte as a signed number where it is 128 or more: 255 is `−1 (255)`, 127 is `127`.
 pub fn signed(value: u8) -> String {
     if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
 }

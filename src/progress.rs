@@ -17,7 +17,7 @@ struct Inner {
 }
 
 impl Progress {
-    /// Starts over with `of` steps to do.
+    /// Starts over with `of` steps to do: none is done, and there is no current item. A request to stop stays.
     pub fn start(&self, of: usize) {
         self.0.done.store(0, Ordering::Relaxed);
         self.0.item.store(0, Ordering::Relaxed);
@@ -29,7 +29,7 @@ impl Progress {
         self.0.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Sets the current item of those that were asked for, by its index.
+    /// Sets the index of the item that is being worked on, of those that were asked for.
     pub fn turn_to(&self, item: usize) {
         self.0.item.store(item + 1, Ordering::Relaxed);
     }
@@ -39,17 +39,17 @@ impl Progress {
         self.0.item.load(Ordering::Relaxed).checked_sub(1)
     }
 
-    /// Returns how many steps are done, and how many there are.
+    /// Returns how many steps are done, and how many there are to do in all (0 before the start).
     pub fn steps(&self) -> (usize, usize) {
         (self.0.done.load(Ordering::Relaxed), self.0.of.load(Ordering::Relaxed))
     }
 
-    /// Asks the work to stop soon and discard its result.
+    /// Asks the work to stop soon and discard its result; it must look for that itself ([`Progress::is_cancelled`]).
     pub fn cancel(&self) {
         self.0.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Returns whether it was asked to stop.
+    /// Returns whether the work was asked to stop.
     pub fn is_cancelled(&self) -> bool {
         self.0.cancelled.load(Ordering::Relaxed)
     }

@@ -144,7 +144,8 @@ pub struct ResultsFile<R> {
     pub rows: Vec<R>,
 }
 
-/// Returns the rows of all parts in the order of the whole run.
+/// Returns the rows of all parts in the order of the whole run. Fails where a part is missing, twice there or damaged,
+/// where one is a whole run, or where parts are of different runs or adapters.
 pub fn merged<R>(parts: Vec<ResultsFile<R>>) -> Result<Vec<R>, MergeError> {
     let mut first: Option<(String, String, ShardPart)> = None;
     let mut names: Vec<Option<String>> = Vec::new();

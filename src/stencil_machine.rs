@@ -52,7 +52,8 @@ pub fn stencil_passes(state: &RasterState, front_facing: bool, stored: u8) -> bo
     compare(face.compare, reference & read, stored & read)
 }
 
-/// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces have no fragments.
+/// Tests a fragment against the stored values as WebGPU does: stencil first, then depth; returns the results and what
+/// the pixel stores then. Masks and depth writes are respected, culling is not: culled faces have no fragments.
 pub fn test(state: &RasterState, fragment: IncomingFragment, stored: DepthStencil) -> TestOutcome {
     let (face, FaceMasks { reference, write, .. }) = state.face(fragment.front_facing);
     let stencil_passed = stencil_passes(state, fragment.front_facing, stored.stencil);
@@ -69,7 +70,8 @@ pub fn test(state: &RasterState, fragment: IncomingFragment, stored: DepthStenci
     TestOutcome { stencil_passed, depth_passed, operation, after: DepthStencil { depth, stencil } }
 }
 
-/// Returns `new ? stored`, with the new value on the left, as all APIs define it.
+/// Returns `new FUNCTION stored`, with the new value on the left, as all APIs define it: `Less` is true where `new` is
+/// less.
 fn compare<T: PartialOrd>(function: CompareFunction, new: T, stored: T) -> bool {
     match function {
         CompareFunction::Never => false,

@@ -27,7 +27,7 @@ const OVER: Option<wgpu::BlendState> = Some(wgpu::BlendState::PREMULTIPLIED_ALPH
 const CORNER: [VertexAttribute; 3] = vertex_attr_array![0 => Float32x4, 1 => Snorm16x4, 2 => Unorm8x4];
 const LINE: [VertexAttribute; 4] = vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Unorm8x4];
 
-/// A vertex of faces.
+/// A vertex of a shaded triangle, as it is uploaded to the GPU: position, normal and colour.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct ViewportVertex {
@@ -47,7 +47,7 @@ impl ViewportVertex {
     }
 }
 
-/// A line.
+/// A line segment of the 3D view, as it is uploaded to the GPU.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct ViewportLine {
@@ -78,7 +78,7 @@ pub struct ViewportGeometry {
     pub lines: Vec<ViewportLine>,
 }
 
-/// The camera of a drawing.
+/// The camera of a 3D view in the window, as the shaders' uniforms have it.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ViewportCamera {
@@ -96,7 +96,7 @@ pub struct ViewportCamera {
     pub unused: [f32; 3],
 }
 
-/// Geometry in a rectangle of the window.
+/// Geometry to be drawn into a rectangle of the window, seen by a camera.
 #[derive(Debug)]
 pub struct ViewportDrawing {
     /// The geometry.
@@ -112,13 +112,13 @@ pub struct ViewportDrawing {
 }
 
 impl ViewportDrawing {
-    /// Returns it as a shape for egui's painter.
+    /// Returns the drawing as a shape for egui's painter, which draws it when the window is painted.
     pub fn shape(self) -> Shape {
         Shape::Callback(Callback::new_paint_callback(self.rect, self))
     }
 }
 
-/// The resources that are cached in the window's renderer.
+/// The pipelines, uploaded geometry and pictures of 3D views, cached in the window's renderer.
 pub struct Viewports {
     pipelines: [[wgpu::RenderPipeline; 5]; 2],
     window: wgpu::RenderPipeline,
@@ -187,7 +187,7 @@ impl CallbackTrait for ViewportDrawing {
 }
 
 impl Viewports {
-    /// Returns the picture that was drawn last for [`ViewportDrawing::slot`].
+    /// Returns the picture that was drawn last for [`ViewportDrawing::slot`]; `None` where none was.
     pub fn picture(&self, slot: usize) -> Option<&DrawnPicture> {
         self.pictures.get(&slot)
     }
@@ -267,7 +267,8 @@ impl Viewports {
         }
     }
 
-    /// Draws the picture of a drawing, unless it is cached already.
+    /// Draws the picture of a drawing into its slot, unless geometry, camera, size and samples are those of the cached
+    /// one. While a view moves on a CPU, it is drawn with fewer samples.
     fn draw(
         &mut self,
         what: &ViewportDrawing,

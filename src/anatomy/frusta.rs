@@ -9,8 +9,8 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 /// The corners of a view: right top, left top, left bottom, right bottom.
 const CORNERS: [DVec2; 4] = [DVec2::ONE, DVec2::new(-1.0, 1.0), DVec2::NEG_ONE, DVec2::new(1.0, -1.0)];
 
-/// Returns the camera's frustum, then those of the faces of maps that are drawn: of depths, of receivers' textures, of
-/// projected silhouettes.
+/// Returns the camera's frustum, then one for each face of a light's map that is drawn: of depths or of a receiver's
+/// texture. A projected silhouette gives two. Left out are faces without a view, and frusta that would not be finite.
 pub fn all(scene: &Scene, plan: &FramePlan, objects: &[PlacedObject], aspect: f64) -> Vec<Frustum> {
     let mut frusta = vec![of_camera(&scene.camera, aspect, plan.depth.far)];
     for (light, position) in scene.lights.iter().map(Light::homogeneous).enumerate() {
@@ -41,7 +41,8 @@ fn is_reversed(map: &PlanMap) -> bool {
     map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0)
 }
 
-/// Returns how surfaces read a light's map.
+/// Returns how the first draw that reads a map in this light's passes (shading or labels) uses it; `None` where no draw
+/// reads one.
 fn reading(plan: &FramePlan, light: usize) -> Option<Visibility> {
     let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
     passes.flat_map(|pass| &pass.draws).find_map(|draw| match draw.program {
@@ -50,14 +51,16 @@ fn reading(plan: &FramePlan, light: usize) -> Option<Visibility> {
     })
 }
 
-/// Returns the object that a face of a map is drawn from.
+/// Returns the index of the object named by the first draw of the view's first pass; `None` where there is no such
+/// pass, draw or object.
 fn caster_of(plan: &FramePlan, view: ViewId, objects: &[PlacedObject]) -> Option<usize> {
     let pass = plan.passes.iter().find(|pass| pass.view == view)?;
     let name = pass.draws.first()?.caster.as_deref()?;
     objects.iter().position(|object| object.name == name)
 }
 
-/// Returns the frustum from the rectangle on a receiver to its light; depth 0 is the receiver's plane.
+/// Returns the frustum from a receiver's rectangle (`near`, clip depth 0) to the light: all four `far` corners are the
+/// light's homogeneous position. `None` where a corner is not finite.
 fn of_receiver(clip_from_world: DMat4, light: DVec4, of: ViewOf) -> Option<Frustum> {
     let world_from_clip = clip_from_world.inverse();
     let near = CORNERS.map(|at| {
@@ -99,7 +102,8 @@ pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
     }
 }
 
-/// Returns the frustum of a matrix; `None` where it has no inverse, or sees no frustum.
+/// Returns the frustum that a matrix maps to clip space, in world space; corners at infinity are directions (w 0).
+/// `is_reversed` is true where the near plane has depth 1. `None` where a corner is not finite, as without an inverse.
 fn of_matrix(clip_from_world: DMat4, is_reversed: bool, of: ViewOf) -> Option<Frustum> {
     let world_from_clip = clip_from_world.inverse();
     let corner = |at: DVec2, depth: f64| {
@@ -113,7 +117,8 @@ fn of_matrix(clip_from_world: DMat4, is_reversed: bool, of: ViewOf) -> Option<Fr
     frustum.near.iter().chain(&frustum.far).all(|corner| corner.is_finite()).then_some(frustum)
 }
 
-/// Returns the near-clip volume of a light; `None` where the light lies in the near plane.
+/// Returns the near-clip volume of a light: the camera's near rectangle in world space, and the light as its apex.
+/// `None` where the light lies in the near plane, within rounding.
 pub fn near_clip(camera: &Camera, aspect: f64, light: &Light) -> Option<NearClip> {
     let position = light.homogeneous();
     let relative = (position.truncate() - camera.eye * position.w).extend(position.w);

@@ -56,7 +56,8 @@ fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
     }
 }
 
-/// Returns the average reflectance of an object's parts, textures included.
+/// Returns the linear RGB colour of an object: the materials of its parts times the mean of their textures, weighted by
+/// numbers of triangles, not by area. Black for a mesh without triangles.
 fn color(object: &Object) -> [f32; 3] {
     let groups = object.mesh.groups();
     let count = groups.iter().map(|group| group.triangles.len()).sum::<usize>().max(1) as f32;
@@ -69,7 +70,8 @@ fn color(object: &Object) -> [f32; 3] {
     groups.iter().map(part).sum::<Vec3>().to_array()
 }
 
-/// Returns the edges worth drawing: creases, borders, and edges of more than two triangles.
+/// Returns the edges that are worth drawing: those of one triangle or of more than two, and those of two whose normals,
+/// turned to agree, differ by more than about 25 degrees (or one of which has no area).
 fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Edge> {
     let normal = |triangle: usize| {
         let [a, b, c] = triangles[triangle].map(|corner| positions[corner as usize]);
@@ -85,8 +87,8 @@ fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) 
     (0..edges.edges().len()).filter(is_worth).map(|index| edges.edges()[index]).collect()
 }
 
-/// Returns the corners of a triangle of another program's pass as points of its anatomy; `None` where the pass is our
-/// own, or they are not finite.
+/// Returns the corners of a triangle (clip space) of pass number `pass` as homogeneous points of the frame's anatomy.
+/// `None` where there is no such pass, it is not of another program's frame, or a corner is not finite.
 pub fn recorded_places(plan: &FramePlan, pass: usize, corners: [[f32; 4]; 3]) -> Option<[DVec4; 3]> {
     let pass = plan.passes.get(pass).filter(|pass| pass.recorded.is_some())?;
     let space = PassSpace::new(plan, pass);

@@ -22,7 +22,8 @@ use crate::scene::{Camera, Mesh};
 use glam::{DVec3, DVec4};
 use std::sync::Arc;
 
-/// The geometry of a frame in space.
+/// The geometry of a frame in world space: objects, lights, shadow volumes, silhouettes and frusta. Of another
+/// program's frame it is in the view space of an assumed eye.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Anatomy {
     /// Name of the technique.
@@ -49,7 +50,7 @@ pub struct Anatomy {
     pub near_clips: Vec<Option<NearClip>>,
 }
 
-/// An object at its place.
+/// An object of the scene with its vertices in world space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedObject {
     /// Unique within its scene.
@@ -70,7 +71,7 @@ pub struct PlacedObject {
     pub edges: Vec<Edge>,
 }
 
-/// A light at its place.
+/// A light of the scene: its position or direction in world space, its colour and its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedLight {
     /// World space, homogeneous: `w = 1` a point, `w = 0` the direction towards the light.
@@ -81,7 +82,8 @@ pub struct PlacedLight {
     pub range: Option<f64>,
 }
 
-/// A shadow volume as it is drawn.
+/// The shadow volume of one caster and one light as the GPU draws it: homogeneous vertices, and the parts that are
+/// drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShadowVolume {
     /// Index of the light.

@@ -10,7 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The view of the camera.
 const CAMERA: ViewId = ViewId(0);
 
-/// Returns all volumes that the camera's passes draw, in the order of lights and casters.
+/// Returns the volumes that passes of the camera's view draw, one for each light and caster, sorted by light, then
+/// caster. A part that is drawn twice is there once; draws without a known caster, or of a second mesh for the same
+/// light and caster, are left out.
 pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> {
     let index: BTreeMap<&str, usize> = objects.iter().enumerate().map(|(i, object)| (&*object.name, i)).collect();
     let mut found: BTreeMap<(usize, usize), (MeshId, ShadowVolume)> = BTreeMap::new();
@@ -34,7 +36,8 @@ pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> 
     found.into_values().map(|(_, volume)| volume).collect()
 }
 
-/// Returns the volumes of another program's frame, one for each draw, in the space of its assumed eye.
+/// Returns the volumes that another program's frame draws, one for each draw whose pass has a light, in the view space
+/// of its assumed eye. Equal volumes are there once; triangles with a corner that is not finite are left out.
 pub fn recorded(plan: &FramePlan, scene: &Scene) -> Vec<ShadowVolume> {
     let mut found = Vec::new();
     for (pass, draw, caster) in recorded::casters(plan, scene) {
@@ -105,7 +108,8 @@ fn add_part(volume: &mut ShadowVolume, part: DrawPart, triangles: impl Iterator<
     }
 }
 
-/// Returns the triangles of a draw, counter-clockwise seen from outside its volume.
+/// Returns the triangles of a draw as vertex indices (its base vertex added), counter-clockwise seen from outside:
+/// flipped where the draw faces inwards. Empty where the mesh lacks a part of its range.
 fn corners(draw: &Draw, mesh: &DrawMesh) -> impl Iterator<Item = [u32; 3]> {
     let range = draw.triangles.start as usize..draw.triangles.end as usize;
     let triangles = mesh.indices.data().as_chunks::<3>().0.get(range).unwrap_or_default();

@@ -13,6 +13,8 @@ mod gnu {
     /// How many heaps all threads share.
     const HEAPS: i32 = 2;
 
+    /// Sets glibc's allocator for the whole process: blocks of 128 KiB and more are mapped on their own, so that they
+    /// go back to the system as soon as they are freed, and all threads share two heaps.
     #[expect(unsafe_code, reason = "glibc's own switches: any thread may set them at any time")]
     pub fn give_back_at_once() {
         // An option that a libc does not know it refuses, and nothing changes.
@@ -22,6 +24,7 @@ mod gnu {
         }
     }
 
+    /// Returns free pages of glibc's heaps to the system, also those between blocks that are in use.
     #[expect(unsafe_code, reason = "glibc locks its heaps while it looks for pages that nothing uses")]
     pub fn give_back() {
         unsafe {
@@ -30,7 +33,8 @@ mod gnu {
     }
 }
 
-/// Sets up the allocator so that freed memory goes back; call it before anything large is allocated.
+/// Sets up the process's allocator so that freed blocks of 128 KiB and more go back to the system at once, with two
+/// heaps for all threads; call it before anything large is allocated. Does nothing where the allocator is not glibc's.
 pub fn give_back_at_once() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     gnu::give_back_at_once();

@@ -33,7 +33,8 @@ enum DialogFilter {
     Folder,
 }
 
-/// The panels and the worker.
+/// Joins the panels, the worker, the reader thread and the file watch: hands the panels' actions on as orders, and
+/// shows in the panels what comes back.
 pub struct Controller {
     /// The panels.
     pub inspector: Inspector,
@@ -108,7 +109,9 @@ impl Controller {
         self.inspector.model.answers.is_waiting()
     }
 
-    /// Handles an event that woke the window, except those that only the window can handle.
+    /// Handles an event that woke the window; repaint requests and assistive technology's events are ignored, as only
+    /// the window can handle them. A path that the open dialog gave is opened, a file that changed is only noted in the
+    /// panels, and an answer read from the capture also begins the question that waits for the reader.
     pub fn wake(&mut self, news: WindowNews) {
         match news {
             WindowNews::Worker(news) => self.hear(news),
@@ -125,7 +128,9 @@ impl Controller {
         }
     }
 
-    /// Handles news of the worker.
+    /// Shows news of the worker in the panels. An opened scene's or folder's files become those that are watched (none
+    /// for a folder without a scene), and for a scene the window's settings are stored; a captured frame is shown, and
+    /// the first one applies the requested step, error picture and pick.
     pub fn hear(&mut self, news: News) {
         match news {
             News::Busy(job) => self.inspector.set_job(Some(job)),
@@ -183,7 +188,9 @@ impl Controller {
         }
     }
 
-    /// Carries out an action of the panels.
+    /// Carries out an action of the panels: most become an order to the worker; dialogs, exports and questions that are
+    /// answered from the capture run on threads of their own. Opening, running and reloading stop long work first.
+    /// Failures are shown in the panels.
     pub fn act(&mut self, action: Action) {
         let order = match action {
             Action::Open(name) => {
@@ -243,7 +250,8 @@ impl Controller {
         }
     }
 
-    /// Asks for a film, which is written beside other work.
+    /// Asks the worker for a film, where it may be written; otherwise shows why not, or asks whether to replace the
+    /// file, and starts nothing.
     fn film(&mut self, subject: FilmSubject, path: String, replace: bool) {
         match export::check(Path::new(&path), replace) {
             Some(problem) => self.end_export(problem),
@@ -254,7 +262,7 @@ impl Controller {
         }
     }
 
-    /// Answers a question from the shown capture.
+    /// Answers a question from the shown capture, on the reader thread. Does nothing where no capture is shown.
     fn read(&mut self, asked: PendingQuestion) {
         let Some(capture) = self.inspector.model.frame.capture.as_ref().cloned() else { return };
         let reading = ReadRequest { asked, capture, plan: self.inspector.model.frame.plan.as_ref().cloned() };
@@ -262,7 +270,8 @@ impl Controller {
         self.say_if_failed(begun);
     }
 
-    /// Renders with the technique and settings of a row of the report.
+    /// Renders the open scene with the technique and settings of a row of the report; shows an error where they can't
+    /// be parsed.
     fn open_report_row(&mut self, row: TechniqueRequest) {
         match Choice::parse(&row) {
             Ok(choice) => self.inspector.choose(choice).into_iter().for_each(|action| self.act(action)),
@@ -270,7 +279,9 @@ impl Controller {
         }
     }
 
-    /// Asks for a file or folder in the system's dialog, beside the window.
+    /// Asks for a scene or model file, or for a capture folder, in the system's dialog on a thread of its own: the
+    /// chosen path comes as `WindowNews::Chosen`, nothing where the dialog is cancelled, and an error is shown where no
+    /// thread can be started.
     fn browse(&mut self, wanted: DialogFilter) {
         let dialog = rfd::AsyncFileDialog::new();
         // Created here, as some systems allow dialogs on the main thread only.
@@ -292,7 +303,8 @@ impl Controller {
         }
     }
 
-    /// Asks with the system's dialog where to export to, beside the window.
+    /// Asks with the system's save dialog where to export to, on a thread of its own, with the file name of `path`
+    /// suggested. The chosen path comes as `WindowNews::ChosenExport`; nothing comes where the dialog is cancelled.
     fn browse_export(&mut self, path: &str) {
         let dialog = rfd::AsyncFileDialog::new().set_title("Export");
         let name = Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
@@ -309,7 +321,8 @@ impl Controller {
         }
     }
 
-    /// Shows how an export ended.
+    /// Shows how an export ended: its result, its failure, or, where the path is taken, the question whether to replace
+    /// the file.
     pub fn end_export(&mut self, exported: Exported) {
         match exported {
             Exported::Done(what) => self.inspector.end_export(Ok(what)),
@@ -318,7 +331,8 @@ impl Controller {
         }
     }
 
-    /// Stores settings that have changed; a failure is reported, and the window goes on.
+    /// Stores the window's settings if they have changed since the last time; does nothing where nothing is watched (a
+    /// run without a window). A failure is shown in the panels, and not tried again until they change.
     pub fn remember(&mut self) {
         let now = self.inspector.remembered();
         if self.watch.is_some() && now != self.remembered {

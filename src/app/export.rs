@@ -10,7 +10,7 @@ use crate::report::Report;
 use crate::session::RunFrame;
 use std::path::{Path, PathBuf};
 
-/// The content to be written.
+/// The content of an export.
 #[derive(Debug, Clone)]
 pub enum ExportContent {
     /// A frame with its plan, as a capture folder.
@@ -31,7 +31,8 @@ pub fn start(data: ExportContent, path: String, replace: bool, notify: Notify) -
     std::thread::Builder::new().name("export".to_owned()).spawn(run).map(drop)
 }
 
-/// Returns why nothing may be written there, if so.
+/// Returns why nothing may be written to `path`: it is a folder (even with `replace`), or something exists there and
+/// `replace` is false; `None` where writing is allowed.
 pub fn check(path: &Path, replace: bool) -> Option<Exported> {
     if path.is_dir() {
         return Some(Exported::Failed(format!("{} is a folder: give the file a name", path.display())));
@@ -98,7 +99,8 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
     }
 }
 
-/// Returns a report in the format of the file's extension.
+/// Returns a report in the format of the file's extension, in any case: `csv`, `md` or `json` for the rows, `svg` or
+/// `png` for the plot. Another extension, or none, is an error.
 fn report_bytes(report: &Report, file: &Path) -> Result<Vec<u8>, String> {
     let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
     let made = match ending.to_str() {

@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// After so long without news the worker has no more: it times a frame after a while.
 const SILENCE: Duration = Duration::from_millis(700);
 
-/// Panels without a window.
+/// Panels and worker without a window: frames are run by hand, and drawn only when a picture is asked for.
 pub struct Headless {
     ctx: egui::Context,
     controller: Controller,
@@ -36,7 +36,7 @@ pub struct Headless {
     shapes: Vec<egui::epaint::ClippedShape>,
 }
 
-/// The time of a frame of the panels on the CPU.
+/// The time that a frame of the panels takes on the CPU, and when the next one is due.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameCost {
     /// The panels' own code.
@@ -55,7 +55,8 @@ impl FrameCost {
 }
 
 impl Headless {
-    /// Opens what is asked for in a window of `size` points that would have `scale` pixels a point.
+    /// Opens what `request` asks for in a window of `size` points that would have `scale` pixels a point. Runs no frame
+    /// yet, watches no files and stores no settings.
     pub fn new(request: ViewRequest, size: [f32; 2], scale: f32) -> Result<Headless, AppError> {
         let (send, news) = channel();
         let controller = Controller::new(request, Arc::new(move |news| drop(send.send(news))), false)?;
@@ -77,7 +78,9 @@ impl Headless {
         &mut self.controller.inspector
     }
 
-    /// Runs a frame with these events.
+    /// Runs one frame of the panels, 1/60 s after the last, with these events: handles all news that has come, then
+    /// carries out the actions of the panels. Draws nothing (see [`Headless::picture`]), and the cost counts neither
+    /// news nor actions.
     pub fn frame(&mut self, events: Vec<Event>) -> FrameCost {
         while let Ok(news) = self.news.try_recv() {
             self.controller.wake(news);
@@ -113,7 +116,9 @@ impl Headless {
         cost
     }
 
-    /// Runs frames until the worker has nothing to do, and all is shown.
+    /// Runs frames until the worker has nothing to do, no question waits and no news has come for 0.7 s, then three
+    /// more for sizes that egui learns while it draws. Fails with `AppError::Silent` where a busy worker reports
+    /// nothing for two minutes.
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
@@ -139,7 +144,8 @@ impl Headless {
         actions.into_iter().for_each(|action| self.controller.act(action));
     }
 
-    /// Runs the open scene with a draft, and draws frames until its capture is shown; returns when it was.
+    /// Runs the open scene with a draft, handles news until the first capture comes, and runs one frame that shows it;
+    /// returns the time after that frame. Fails with `AppError::Silent` where no news comes for two minutes.
     pub fn run_and_show(&mut self, draft: RunRequest) -> Result<Instant, AppError> {
         let actions = self.controller.inspector.rerun(draft);
         self.act(actions);
@@ -154,7 +160,7 @@ impl Headless {
         }
     }
 
-    /// Presses and releases a key.
+    /// Presses a key in one frame and releases it in the next; returns the cost of the first.
     pub fn key(&mut self, modifiers: Modifiers, key: Key) -> FrameCost {
         let event = |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
         let cost = self.frame(vec![event(true)]);
@@ -162,12 +168,14 @@ impl Headless {
         cost
     }
 
-    /// Moves the pointer to a position in the window, as shares of its size.
+    /// Moves the pointer to a position in the window, as shares of its width and height from the top left corner, in
+    /// one frame.
     pub fn point(&mut self, [x, y]: [f32; 2]) -> FrameCost {
         self.frame(vec![Event::PointerMoved(pos2(x * self.size[0], y * self.size[1]))])
     }
 
-    /// Returns what the window would show.
+    /// Returns what the window would show after the last frame, in pixels (the size times the scale, rounded). Opens a
+    /// GPU on first use.
     pub fn picture(&mut self) -> Result<Picture, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,

@@ -7,19 +7,22 @@ use crate::files::write_whole;
 use crate::inspector::StoredSettings;
 use std::path::PathBuf;
 
-/// Returns the file's path; `None` where the system names no folder.
+/// Returns the path of the settings file, `window.json` in the user's configuration folder; `None` where the system
+/// names no such folder.
 fn file() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "stencilscope")?;
     Some(folders.config_dir().join("window.json"))
 }
 
-/// Returns the stored settings, or the initial ones where there are none, or they can't be read.
+/// Returns the stored settings, or the default ones where none are stored or they can't be read or parsed; that is not
+/// reported.
 pub fn load() -> StoredSettings {
     let text = file().and_then(|file| std::fs::read_to_string(file).ok());
     text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
 }
 
-/// Stores the settings.
+/// Stores the settings in the user's configuration folder, which is created if necessary. Does nothing, with `Ok`,
+/// where the system names no such folder.
 ///
 /// # Errors
 /// The file can't be written: the reason, and how to fix it.

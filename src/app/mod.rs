@@ -48,7 +48,7 @@ pub struct ViewRequest {
     pub truth: bool,
 }
 
-/// What the window opens.
+/// What the window opens, already loaded.
 #[derive(Debug, Clone)]
 pub enum ViewSource {
     /// A scene, as loaded: at time 0.
@@ -57,7 +57,7 @@ pub enum ViewSource {
     Folder(Box<WholeFrame>),
 }
 
-/// Why there is no window.
+/// Why the window or its headless panels can't be opened or go on.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
     /// There is no display, or no GPU that can draw on it.
@@ -74,13 +74,14 @@ pub enum AppError {
     NoThread(std::io::Error),
 }
 
-/// Shows the window until it is closed.
+/// Sets up the allocator, and shows the window until it is closed.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
     allocator::give_back_at_once();
     window::run(request)
 }
 
-/// Returns the system's message about why there is no window, without the place in a library's source.
+/// Returns the error for a window that can't be opened: with the system's message, of which only what follows the last
+/// `: ` remains where it begins with a place in a library's source (`os error at `).
 fn no_window(error: &dyn std::fmt::Display) -> AppError {
     let text = error.to_string();
     let reason = text.rsplit(": ").next().filter(|_| text.starts_with("os error at "));

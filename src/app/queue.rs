@@ -84,12 +84,14 @@ impl Order {
     }
 }
 
-/// Orders that wait, in order of urgency.
+/// Orders that wait, one a kind, in order of urgency: saving, questions that the next picture depends on, pictures,
+/// other questions.
 #[derive(Debug, Default)]
 pub struct OrderQueue(BTreeMap<OrderKind, Order>);
 
 impl OrderQueue {
-    /// Adds an order.
+    /// Adds an order in place of the waiting one of its kind; but a run that comes after an order to open a scene is
+    /// dropped, as it was asked for before the window knew that scene.
     pub fn add(&mut self, order: Order) {
         let sort = order.sort();
         if sort != OrderKind::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.outlasts(&order)) {
@@ -102,12 +104,13 @@ impl OrderQueue {
         self.0.entry(rest.sort()).or_insert(rest);
     }
 
-    /// Takes the most urgent order.
+    /// Removes and returns the most urgent order, also a question that waits for quiet; `None` where no order waits.
     pub fn next(&mut self) -> Option<Order> {
         self.0.pop_first().map(|(_, order)| order)
     }
 
-    /// Takes the most urgent order that does not wait until no other order comes.
+    /// Removes and returns the most urgent order; `None` where no order waits, or the most urgent one is a question
+    /// that waits for quiet, which stays.
     pub fn next_now(&mut self) -> Option<Order> {
         let first = self.0.first_entry()?;
         (!matches!(first.key(), OrderKind::Question(kind) if kind.waits_for_quiet())).then(|| first.remove())
@@ -127,7 +130,7 @@ impl OrderQueue {
     }
 }
 
-/// The channel of orders, and those that wait.
+/// The channel of the window's orders, and the orders that were received and wait.
 #[derive(Debug)]
 pub struct Inbox<'a> {
     /// Receives the window's orders.

@@ -34,7 +34,8 @@ pub struct ReaderThread {
 }
 
 impl ReaderThread {
-    /// Answers a question now, or after the present one.
+    /// Answers a question on a thread of its own; while one is being answered, this one waits in place of any other
+    /// that waits, which is dropped unanswered. The answer comes as `WindowNews::Read`.
     pub fn read(&mut self, reading: ReadRequest, notify: &Notify) -> Result<(), NoReader> {
         if self.is_running {
             self.next = Some(reading);
@@ -51,7 +52,7 @@ impl ReaderThread {
         Ok(())
     }
 
-    /// Begins the waiting question, once the present one is answered.
+    /// Begins the waiting question, if there is one; call it once the present one is answered.
     pub fn go_on(&mut self, notify: &Notify) -> Result<(), NoReader> {
         self.is_running = false;
         self.next.take().map_or(Ok(()), |next| self.read(next, notify))

@@ -53,8 +53,8 @@ pub struct WindowSurface {
 }
 
 impl WindowSurface {
-    /// Opens the window and a GPU that can draw on it, the one named in part by `adapter` where
-    /// there is one.
+    /// Opens the window and a GPU that can draw on it; with `adapter`, the first whose name contains that in any case,
+    /// and an error where there is none. The window is shown only after the GPU and assistive technology are set up.
     pub fn new(
         event_loop: &ActiveEventLoop,
         ctx: &Context,
@@ -99,7 +99,7 @@ impl WindowSurface {
         })
     }
 
-    /// Sets the window's title.
+    /// Sets the window's title; does nothing where it is the same already.
     pub fn set_title(&mut self, title: String) {
         if self.title != title {
             self.window.set_title(&title);
@@ -107,7 +107,7 @@ impl WindowSurface {
         }
     }
 
-    /// Returns, once, why the pointer could not be grabbed.
+    /// Returns why the pointer could not be grabbed, once for each failure; `None` where nothing new failed.
     pub fn take_grab_failure(&mut self) -> Option<String> {
         self.grab_failed.take()
     }
@@ -117,7 +117,8 @@ impl WindowSurface {
         self.window.request_redraw();
     }
 
-    /// Passes an event to egui; asks for a redraw where it changes anything.
+    /// Passes a window event to egui, and asks for a redraw where egui wants one. A changed size also resizes the
+    /// surface, and an occluded window is not drawn.
     pub fn on_event(&mut self, event: &WindowEvent) {
         match event {
             WindowEvent::Resized(size) => self.resize(*size),
@@ -172,7 +173,8 @@ impl WindowSurface {
         }
     }
 
-    /// Runs `ui` and draws its output, unless the window is fully hidden.
+    /// Runs `ui` and draws its output. Does nothing, and does not run `ui`, while the window is fully hidden or has no
+    /// area; events that must wait for a later frame are left, and a redraw is asked for.
     pub fn draw(&mut self, event_loop: &ActiveEventLoop, ctx: &Context, ui: impl FnMut(&mut egui::Ui)) {
         let size = self.window.inner_size();
         if self.hidden || size.width == 0 || size.height == 0 {

@@ -14,14 +14,16 @@ const EVERY: Duration = Duration::from_secs(1);
 /// When a file was last written, and its size in bytes; `None` while it does not exist.
 type FileStamp = Option<(SystemTime, u64)>;
 
-/// Watches a list of files.
+/// Watches a list of files for changed times and sizes, once a second, on a thread that ends when the last clone is
+/// dropped.
 #[derive(Debug, Default, Clone)]
 pub struct Watch {
     files: Arc<Mutex<Vec<(PathBuf, FileStamp)>>>,
 }
 
 impl Watch {
-    /// Starts watching, with an empty list.
+    /// Starts the thread, with an empty list of files; each change of a file is reported as `WindowNews::FileChanged`,
+    /// at most one a second.
     pub fn start(notify: Notify) -> std::io::Result<Watch> {
         let watch = Watch::default();
         let files = Arc::clone(&watch.files);
@@ -42,7 +44,7 @@ impl Watch {
         Ok(watch)
     }
 
-    /// Sets the files that are watched from now on.
+    /// Replaces the list of watched files. Only changes from now on are reported.
     pub fn look_at(&self, files: Vec<PathBuf>) {
         if let Ok(mut watched) = self.files.lock() {
             *watched = files.into_iter().map(|file| (file.clone(), stamp(&file))).collect();
@@ -55,7 +57,9 @@ fn stamp(file: &Path) -> FileStamp {
     Some((facts.modified().ok()?, facts.len()))
 }
 
-/// Returns the first file that changed and exists; each change is reported once.
+/// Returns the first file whose time or size differs from its stamp and that exists, and updates its stamp, so that
+/// each change is reported once; other changed files wait for the next call. `None` where none changed: a file that is
+/// deleted is not reported until it is back.
 fn first_changed(files: &mut [(PathBuf, FileStamp)]) -> Option<String> {
     files.iter_mut().find_map(|(file, before)| {
         let now = stamp(file);

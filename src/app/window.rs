@@ -154,7 +154,8 @@ impl ApplicationHandler<WindowNews> for App {
     }
 }
 
-/// Returns an egui context that wakes the loop when it wants to be drawn.
+/// Returns an egui context that sends `WindowNews::Repaint` to the event loop when it wants to be drawn within an hour,
+/// and that takes a press of up to 2 seconds as a click.
 fn context(proxy: &EventLoopProxy<WindowNews>) -> egui::Context {
     let ctx = egui::Context::default();
     ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);

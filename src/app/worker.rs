@@ -63,7 +63,7 @@ impl Drop for Worker {
     }
 }
 
-/// What a worker is started with.
+/// What a worker starts with: the source to show first and how to render.
 #[derive(Debug)]
 pub struct WorkerStart {
     /// The scene or capture to open first.
@@ -79,7 +79,8 @@ pub struct WorkerStart {
 }
 
 impl Worker {
-    /// Starts the thread; `notify` receives its news.
+    /// Starts the worker's thread, which shows the source and then carries out orders; `notify` receives its news, on
+    /// that thread.
     pub fn start(start: WorkerStart, notify: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let (alive, ended) = channel();
@@ -171,7 +172,8 @@ impl WorkerState {
         }
     }
 
-    /// Shows the first scene or capture.
+    /// Shows the scene or capture that the window was started with, and reports that the worker is idle, with an error
+    /// where a scene failed.
     fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
         match source {
             ViewSource::Folder(whole) => {
@@ -186,8 +188,9 @@ impl WorkerState {
         }
     }
 
-    /// Carries out orders until the window is closed; when none has come for [`IDLE`], answers questions that wait for
-    /// quiet, then gives memory back.
+    /// Carries out orders until the window is closed; orders that wait then are dropped. When none has come for
+    /// [`IDLE`], answers the questions that wait for quiet, and then gives freed memory back, once until the next
+    /// order.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
         let mut inbox = Inbox { orders, queue: OrderQueue::default(), is_closed: false };
         let mut is_tidy = false;
@@ -238,7 +241,8 @@ impl WorkerState {
         self.finish(done);
     }
 
-    /// Answers a question that is still asked: at once, or in parts.
+    /// Answers a question. Stress cases, films and reports are answered in parts, with other orders in between. A
+    /// question that was cancelled is not answered; what its stress run or film has begun is dropped.
     fn answer_in_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
             match asked.ask.kind() {
@@ -256,7 +260,9 @@ impl WorkerState {
         }
     }
 
-    /// Answers a question, if it is about what is shown.
+    /// Answers a question and reports the answer or the error. Ignores a question about another scene or frame than the
+    /// one shown, except a diagnosis, which reports that as an error; a question that was cancelled meanwhile gets no
+    /// answer.
     fn answer(&mut self, of: [u64; 2], asked: &PendingQuestion) {
         if asked.ask.kind() != QuestionKind::DiagnosisOf && !self.is_meant(of, asked) {
             return;
@@ -275,7 +281,8 @@ impl WorkerState {
         }
     }
 
-    /// Returns whether a question is about what is shown now.
+    /// Returns whether a question is about the frame or the scene that is shown now, as its kind requires; true for a
+    /// kind that always holds, and, for one about a frame, where there is no frame yet.
     fn is_meant(&self, [scene, frame]: [u64; 2], asked: &PendingQuestion) -> bool {
         match asked.ask.kind().holds() {
             AnswerLifetime::Frame => self.last.is_none() || frame == self.frames,
@@ -284,7 +291,8 @@ impl WorkerState {
         }
     }
 
-    /// Computes the answer to a question.
+    /// Computes the answer to a question. An error where a diagnosis is of another scene or frame, where a question
+    /// about a frame is asked while there is none, and, for the timing, where the last capture took longer than 250 ms.
     fn found(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<crate::ask::Answer, SessionError> {
         let kind = asked.ask.kind();
         if kind == QuestionKind::DiagnosisOf && (of[1] != self.frames || !self.is_meant(of, asked)) {
@@ -327,7 +335,9 @@ impl WorkerState {
         self.show_scene(Box::new(scene), 0.0, StressOverrides::default())
     }
 
-    /// Shows the content of a capture folder: a frame with its plan, or only a capture.
+    /// Shows the content of a capture folder. With a plan and a scene it becomes the open scene; with only a plan, its
+    /// frame is shown and no scene is open; without a plan, only the capture is shown. Another program's frame is
+    /// compared with its rerun first.
     fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
         self.scenes += 1;
         let name = folder.to_owned();
@@ -355,7 +365,8 @@ impl WorkerState {
         self.show(frame, Duration::ZERO);
     }
 
-    /// Runs the draws of another program's frame again where that has not been done yet, as an import does.
+    /// Compares another program's frame with its rerun, and returns it with the differences. Returns a frame as it is
+    /// where it was drawn by this program, was compared before, has no plan, or can't be run here.
     fn checked(&mut self, whole: WholeFrame) -> WholeFrame {
         let is_checked = whole.capture.steps.iter().flat_map(|step| &step.draws).any(|draw| draw.differs.is_some());
         let is_meant = whole.capture.origin.is_some() && !is_checked;
@@ -369,7 +380,8 @@ impl WorkerState {
         }
     }
 
-    /// Reports a frame that was run.
+    /// Counts and reports a frame that was run, and makes it the last one. `took` is how long its capture took, which
+    /// decides whether it can be timed.
     fn show(&mut self, frame: RunFrame, took: Duration) {
         self.took = took;
         self.frames += 1;
@@ -397,7 +409,9 @@ impl WorkerState {
         self.open_as(Box::new(scene), &request)
     }
 
-    /// Writes the scene as it is run, with its motions.
+    /// Writes the open scene as the request changes it, at its start and with its motions, with the technique in use,
+    /// and reports how that ended. Fails where another scene than number `number` is open, or `path` may not be
+    /// written.
     fn save_scene(&mut self, number: u64, request: &RunRequest, path: &str, replace: bool) {
         let file = Path::new(path);
         let of_this = self.open.as_ref().filter(|_| number == self.scenes);
@@ -418,7 +432,7 @@ impl WorkerState {
         (self.notify)(News::Exported(news));
     }
 
-    /// Returns the session, opened on first use.
+    /// Returns the GPU session, which is opened and reported as busy on first use.
     fn session(&mut self) -> Result<&mut Session, SessionError> {
         match &mut self.session {
             Some(session) => Ok(session),
@@ -437,7 +451,8 @@ impl WorkerState {
         self.open_as(scene, &request)
     }
 
-    /// Makes a scene the open one, run as in the request.
+    /// Makes a scene the open one, with the next number, reports it with its source and files, and runs it as the
+    /// request says. The last frame is dropped.
     fn open_as(&mut self, scene: Box<Scene>, request: &RunRequest) -> Result<(), String> {
         self.scenes += 1;
         let source = self.spec.as_ref().map(|spec| spec.name.clone());
@@ -454,7 +469,8 @@ impl WorkerState {
         self.run(request)
     }
 
-    /// Opens a stress case's scene at a value, with the technique of `entrant`.
+    /// Opens a stress case's scene at a value and at time 0, with the technique of `entrant` or, where that is `None`,
+    /// the one in use with the case's value applied. A scene opened so has no source: it can't be reloaded.
     fn open_case(&mut self, case: &'static StressCase, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
         (self.notify)(News::Busy(format!("opening {}", case.name)));
         let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
@@ -468,7 +484,8 @@ impl WorkerState {
         self.show_scene(Box::new(scene), 0.0, StressOverrides { choice, size: case.size })
     }
 
-    /// Stores the choices of a run request, except what the open scene overrides.
+    /// Makes the technique and the size of a run request those of scenes opened later; a value that equals what the
+    /// open scene or stress case overrides is not stored, and one that differs ends the override.
     fn take_over(&mut self, request: &RunRequest) {
         if self.brought.choice.as_ref() != Some(&request.choice) {
             self.brought.choice = None;
@@ -497,7 +514,7 @@ impl WorkerState {
         Ok(())
     }
 
-    /// Reports that the work is over, and an error if there was one.
+    /// Reports the error, if there was one, and then that the worker is idle.
     fn finish(&self, done: Result<(), String>) {
         if let Err(reason) = done {
             (self.notify)(News::Failed(reason));

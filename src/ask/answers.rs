@@ -81,7 +81,7 @@ struct KnownAnswer {
     is_current: bool,
 }
 
-/// Questions and answers by kind of question: the last of each.
+/// The last question and the last answer of each kind, and the questions that wait to be sent.
 #[derive(Debug)]
 pub struct Answers {
     slots: Vec<AnswerSlot>,
@@ -114,7 +114,8 @@ impl Default for Answers {
 }
 
 impl Answers {
-    /// Returns what is known about a question, which is asked if necessary.
+    /// Returns what is known about a question, and marks it to be asked by the next [`Answers::take_asked`] if it is
+    /// neither answered, being asked nor given up. A question of a kind that is started by hand is only looked up.
     pub fn want<Q: Question>(&self, question: Q) -> Reply<Q::Answer> {
         let ask = question.into();
         let reply = self.reply::<Q>(&ask);
@@ -148,18 +149,21 @@ impl Answers {
         }
     }
 
-    /// Returns the last answer of a kind, also where its frame is no longer shown, with its question.
+    /// Returns the last answer of a kind with its question, also where the frame that it is about is no longer shown;
+    /// `None` where there is none or it was dropped.
     pub fn last<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         let known = self.slot(Q::KIND).known.as_ref()?;
         Some((Q::of(&known.ask)?, Q::answer(&known.answer)?))
     }
 
-    /// Returns the last answer of a kind, where it belongs to what is shown now.
+    /// Returns the last answer of a kind with its question; `None` where there is none, or it is about a frame that is
+    /// no longer shown.
     pub fn current<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         self.last::<Q>().filter(|_| self.slot(Q::KIND).known.as_ref().is_some_and(|known| known.is_current))
     }
 
-    /// Returns the state of the question of a kind that is being answered; or why the last one was given up.
+    /// Returns the state of a kind's question: of the one that is being answered, else the one given up last, else the
+    /// one answered last. Nothing of a reply is set where there is none.
     pub fn under_way<Q: Question>(&self) -> Reply<Q::Answer> {
         let slot = self.slot(Q::KIND);
         let asked = slot.asked.as_ref().map(|asked| &asked.ask);
@@ -168,7 +172,7 @@ impl Answers {
         asked.or(given_up).or(known).map_or_else(Reply::default, |ask| self.reply::<Q>(ask))
     }
 
-    /// Returns the question of a kind that is being answered.
+    /// Returns the question of a kind that is being answered; `None` where none is.
     pub fn asked<Q: Question>(&self) -> Option<&Q> {
         Q::of(&self.slot(Q::KIND).asked.as_ref()?.ask)
     }
@@ -184,7 +188,8 @@ impl Answers {
         self.slot_mut(kind).given_up = None;
     }
 
-    /// Stops a question of this kind; it is not asked again automatically.
+    /// Stops the question of this kind that is being answered; it is not asked again automatically, only by
+    /// [`Answers::start`] or [`Answers::try_again`]. Does nothing where none is being answered.
     pub fn cancel(&mut self, kind: QuestionKind) {
         self.give_up(kind, None);
     }
@@ -197,7 +202,7 @@ impl Answers {
         }
     }
 
-    /// Stops a question of this kind; it is asked again when it is wanted.
+    /// Stops the question of this kind that is being answered; it is asked again when a panel wants it.
     fn pause(&mut self, kind: QuestionKind) {
         if let Some(asked) = self.slot_mut(kind).asked.take() {
             asked.progress.cancel();
@@ -214,7 +219,9 @@ impl Answers {
         self.now = now;
     }
 
-    /// Returns the questions that have to be asked now, each once.
+    /// Returns the questions that have to be sent now: all that were started, then the wanted ones that are neither
+    /// answered, being asked nor given up. Each replaces the one of its kind that is being answered. Left out is what
+    /// can't be answered without a frame or scene. Urgent questions also stop long work, some the truth.
     pub fn take_asked(&mut self) -> Vec<PendingQuestion> {
         let wanted = std::mem::take(self.wanted.get_mut());
         let started = std::mem::take(&mut self.started);
@@ -264,8 +271,9 @@ impl Answers {
         Some(slot.asked.insert(PendingQuestion { ticket, ask, progress: Progress::default() }).clone())
     }
 
-    /// Stores an answer, or why there is none; returns the kind of its question, or `None` where that is no longer
-    /// asked. `is_last`: no more parts come.
+    /// Stores an answer, or the reason why there is none, and returns the kind of its question; `None`, and nothing is
+    /// stored, where no question with this ticket is being answered. A part of an answer is joined to the parts before
+    /// it; the question stays asked until `is_last`.
     pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) -> Option<QuestionKind> {
         let kind = QuestionKind::ALL
             .iter()
@@ -284,7 +292,9 @@ impl Answers {
         Some(kind)
     }
 
-    /// Stores the answer to a question that was not asked, or why there is none.
+    /// Stores the answer, or the reason why there is none, to a question that was answered without being asked; it
+    /// replaces what is known of its kind, and a question of that kind that is being answered is dropped (without being
+    /// cancelled).
     pub fn take_in<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
         let ask = question.into();
         let slot = self.slot_mut(Q::KIND);
@@ -299,14 +309,16 @@ impl Answers {
         }
     }
 
-    /// Ends the question of this ticket: an answer that came in parts is complete.
+    /// Ends the question of this ticket, if it is still asked, as its answer came in parts and is complete; the parts
+    /// stay.
     pub fn end(&mut self, ticket: u64) {
         for slot in &mut self.slots {
             slot.asked.take_if(|asked| asked.ticket == ticket);
         }
     }
 
-    /// Adapts to another frame: answers that are valid for one frame become older ones, or are dropped.
+    /// Adapts to a new frame: answers about a frame become older ones ([`Reply::older`]) where their kind outlives its
+    /// frame, or are dropped; those about the scene stay. Questions about the frame that were not started by hand stop.
     pub fn new_frame(&mut self) {
         self.has_frame = true;
         self.replace(AnswerLifetime::Frame, |kind, slot| match &mut slot.known {
@@ -327,8 +339,8 @@ impl Answers {
         self.has_plan = true;
     }
 
-    /// Drops the questions and failures of answers with this lifetime. What the user started goes on, or its worker
-    /// says why it does not.
+    /// For each kind whose answers have this lifetime, stops its question (unless it was started by hand), forgets why
+    /// the last one was given up, and calls `change` with its slot.
     fn replace(&mut self, holds: AnswerLifetime, change: impl Fn(QuestionKind, &mut AnswerSlot)) {
         for kind in QuestionKind::ALL.iter().copied().filter(|kind| kind.holds() == holds) {
             if !kind.is_started_by_hand() {
@@ -340,7 +352,8 @@ impl Answers {
         }
     }
 
-    /// Stops long work on this frame, as another picture is asked for and must not wait.
+    /// Stops long work, as another picture is asked for and must not wait: the truth is asked again when it is wanted;
+    /// a diagnosis and a report are given up with a message. Other questions go on.
     pub fn make_way(&mut self) {
         self.pause(QuestionKind::TruthOf);
         for kind in QuestionKind::ALL {
@@ -350,12 +363,13 @@ impl Answers {
         }
     }
 
-    /// Returns whether any question is still waiting for its answer.
+    /// Returns whether any question was sent and is not answered in full.
     pub fn is_waiting(&self) -> bool {
         self.slots.iter().any(|slot| slot.asked.is_some())
     }
 
-    /// Returns whether a question is being answered that reports progress.
+    /// Returns whether a question that takes long and reports progress is being answered: truth, diagnosis of an own
+    /// frame, report, film or stress cases.
     pub fn has_progress(&self) -> bool {
         let takes_in = [
             QuestionKind::TruthOf,

@@ -38,11 +38,11 @@ pub trait Question: Clone + Into<Ask> {
     type Answer;
     /// The kind of questions of this type.
     const KIND: QuestionKind;
-    /// Returns the question, where `ask` is of this kind.
+    /// Returns the question in `ask`; `None` where it is of another kind.
     fn of(ask: &Ask) -> Option<&Self>;
-    /// Returns the answer, where it is one to this kind.
+    /// Returns the content of `answer`; `None` where it answers another kind of question.
     fn answer(answer: &Answer) -> Option<&Arc<Self::Answer>>;
-    /// Wraps the answer as one of any kind.
+    /// Wraps an answer to this kind of question as an [`Answer`].
     fn into_answer(answer: Arc<Self::Answer>) -> Answer;
 }
 
@@ -77,11 +77,11 @@ macro_rules! questions {
             }
         )*
 
-        /// Any question.
+        /// A question of any kind, with what it asks about.
         #[derive(Debug, Clone, PartialEq)]
         pub enum Ask { $($(#[$doc])* $name($name)),* }
 
-        /// The answer to a question of the same name.
+        /// An answer to a question of any kind, in the variant of the question's name.
         #[derive(Debug, Clone)]
         pub enum Answer { $($(#[$doc])* $name(Arc<$answer>)),* }
 
@@ -183,7 +183,7 @@ impl ReportOf {
     /// How many frames of each row of the default report are timed.
     const RUNS: usize = 3;
 
-    /// Returns a report of every technique over its default settings.
+    /// Returns the question for a report of the default rows of techniques and settings, with three timed frames each.
     pub fn grid() -> Result<ReportOf, ChoiceError> {
         Ok(ReportOf { choices: Choice::report_grid()?, runs: ReportOf::RUNS })
     }
@@ -201,7 +201,9 @@ pub enum AnswerLifetime {
 }
 
 impl QuestionKind {
-    /// Returns how long an answer to a question of this kind is valid.
+    /// Returns how long an answer to a question of this kind is valid: while its scene is open for walls, captures to
+    /// compare, meshes, diagnoses and reports; always for films and stress cases; otherwise only while its frame is
+    /// shown.
     pub fn holds(self) -> AnswerLifetime {
         match self {
             QuestionKind::WallsOf
@@ -220,7 +222,8 @@ impl QuestionKind {
         matches!(self, QuestionKind::HistoryOf | QuestionKind::AnatomyOf)
     }
 
-    /// Returns whether the question is only asked when a button is pressed, as it takes long.
+    /// Returns whether a question of this kind takes long and is only asked when a button is pressed: diagnoses (also
+    /// of other programs' frames), reports, films and stress cases.
     pub fn is_started_by_hand(self) -> bool {
         matches!(
             self,
@@ -232,8 +235,8 @@ impl QuestionKind {
         )
     }
 
-    /// Returns whether the question is about the shown frame and takes about as long as a frame. Long work is
-    /// interrupted for it.
+    /// Returns whether a question of this kind is about the shown frame and takes about as long as a frame: states
+    /// after draws, history, anatomy and test results. Long work is interrupted for it.
     pub fn is_short(self) -> bool {
         matches!(
             self,
@@ -262,8 +265,8 @@ impl QuestionKind {
         matches!(self, QuestionKind::DrawsOf | QuestionKind::CaptureOf)
     }
 
-    /// Returns the message when it is stopped because another picture is asked for; `None` where it goes on, or is
-    /// asked again when it is wanted.
+    /// Returns the message for a diagnosis or a report that is stopped because another picture is asked for; `None` for
+    /// the other kinds, which go on, or are asked again when they are wanted.
     pub fn stopped_by_picture(self) -> Option<&'static str> {
         match self {
             QuestionKind::DiagnosisOf => {
@@ -276,7 +279,8 @@ impl QuestionKind {
 }
 
 impl Ask {
-    /// Describes the work on it in a few words; `None` where it is too quick to be shown.
+    /// Describes the work on the question in a few words, for the status line; `None` where it is too quick to be shown
+    /// or shows its progress itself.
     pub fn doing(&self) -> Option<String> {
         match self {
             Ask::DrawsOf(_) => Some("capturing the pass draw by draw".to_owned()),
@@ -306,7 +310,8 @@ impl Ask {
 }
 
 impl Answer {
-    /// Returns the answer together with the parts before it, where it comes in parts.
+    /// Returns the answer with the parts before it in front, for stress cases, the one kind that comes in parts; any
+    /// other answer is returned as it is.
     #[must_use]
     fn after(self, before: Option<&Answer>) -> Answer {
         match (self, before) {

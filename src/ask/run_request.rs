@@ -36,7 +36,8 @@ pub struct ObjectChanges {
 }
 
 impl ObjectChanges {
-    /// Returns a copy of the opened scene with these changes applied.
+    /// Returns a copy of the opened scene with the moved objects' poses replaced and the added objects appended; a
+    /// moved index without an object is ignored.
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let mut scene = loaded.clone();
         for (index, pose) in &self.moved {
@@ -48,7 +49,8 @@ impl ObjectChanges {
         scene
     }
 
-    /// Returns, as the error, what can't be run, in a few words and with how to fix it.
+    /// Checks that not too many objects were added and that all moved and added poses can be used. The error says in a
+    /// few words what can't be run, and how to fix it.
     fn check(&self) -> Result<(), String> {
         if self.added.len() > MOST_ADDED {
             return Err(format!("no more than {MOST_ADDED} objects can be added: delete some"));
@@ -72,7 +74,8 @@ impl RunRequest {
         }
     }
 
-    /// Checks that the scene can be run so.
+    /// Checks that a scene can be run so: usable camera, lights and objects' poses, not too many added objects, at
+    /// least one pixel each way, and a finite time.
     ///
     /// # Errors
     /// A camera or light that can't be used, a picture without pixels: in a few words, with how to fix it.
@@ -91,15 +94,15 @@ impl RunRequest {
         Ok(())
     }
 
-    /// Returns whether another request differs in nothing but the time.
+    /// Returns whether another request is the same in everything but the time, which may differ or be equal.
     pub fn is_same_but_for_time(&self, other: &RunRequest) -> bool {
         let RunRequest { choice, size, camera, lights, time: _, off, objects } = other;
         let own = (&self.choice, &self.size, &self.camera, &self.lights, &self.off, &self.objects);
         own == (choice, size, camera, lights, off, objects)
     }
 
-    /// Returns the scene with this camera, these lights, its objects changed, and without those that are switched off;
-    /// still at its start.
+    /// Returns the opened scene with this camera, these lights and the changed and added objects, without those that
+    /// are switched off; it is at its start: the request's time is not applied.
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
         let scene = without(self.objects.applied_to(loaded), &self.off);
         Scene { camera: self.camera, lights: self.lights.clone(), ..scene }
@@ -174,7 +177,8 @@ fn carried_lights(own: &[Light], before: &[Light], after: &[Light]) -> Option<Ve
     is_as_many.then(|| own.iter().zip(before).zip(after).map(one).collect())
 }
 
-/// Returns a scene without some of its objects, by index.
+/// Returns a scene without the objects of these indices, so that later objects get smaller indices; an index without an
+/// object is ignored.
 pub fn without(mut scene: Scene, off: &BTreeSet<usize>) -> Scene {
     let mut index = 0;
     scene.objects.retain(|_| {

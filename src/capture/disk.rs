@@ -26,7 +26,8 @@ const MANIFEST: &str = "manifest.json";
 const PLAN: &str = "plan.txt";
 const SCENE: &str = "scene.toml";
 
-/// The data that a capture folder is written from.
+/// What is written to a capture folder: a capture and, where given, the plan and the scene, without which the frame
+/// can't be run or examined again.
 #[derive(Debug, Clone, Copy)]
 pub struct FolderContents<'a> {
     /// The captured attachments.
@@ -54,7 +55,7 @@ pub struct WholeFrame {
     pub scene: Option<Scene>,
 }
 
-/// Returns whether there is a capture folder at this path.
+/// Returns whether a capture folder is at this path: one with a file `manifest.json`, whose content is not checked.
 pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
 }
@@ -64,7 +65,9 @@ pub fn scene_file(folder: &Path) -> PathBuf {
     folder.join(SCENE)
 }
 
-/// Checks that [`write()`] may write a capture to this path, before any work is done for it.
+/// Checks, before any work is done, that [`write()`] may write a capture to this path: nothing or an empty folder is
+/// there, or a capture folder and `overwrite` is true. Other files and folders are never replaced. Whether the disk can
+/// be written to is not checked.
 pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> {
     let is_empty_folder = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
     let folder = folder.to_owned();
@@ -90,7 +93,8 @@ pub fn write<'a>(contents: impl Into<FolderContents<'a>>, folder: &Path, overwri
     write_folder(folder, |new| write_files(contents, new))
 }
 
-/// Writes a picture's values as a NumPy array, or those of all layers of a map; colours as numbers too.
+/// Writes the raw values of one picture, or of all faces of a map as one array with one more dimension, to a NumPy
+/// file. Colours are written as numbers too, not as PNG. Without any picture it fails.
 pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureError> {
     match images {
         [image] => files::write_array(file, image),
@@ -124,7 +128,8 @@ pub fn write_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, Capt
     })
 }
 
-/// Returns a hidden name in the same folder, so that renaming stays on one file system.
+/// Returns the path `.NAME.WHICH-PID` beside a folder, so that renaming stays on one file system; NAME is `capture` for
+/// a path without a name.
 fn beside(folder: &Path, which: &str) -> PathBuf {
     let name = folder.file_name().map_or("capture".into(), |name| name.to_string_lossy());
     folder.with_file_name(format!(".{name}.{which}-{}", std::process::id()))
@@ -216,7 +221,8 @@ fn write_step(
     })
 }
 
-/// Names the file of a light's map for a pass that drew a face of it: the map stores what the pass left.
+/// Returns the file and face that a pass of a light's map refers to: the light's textures where the map holds colours,
+/// else its depths. Writes nothing.
 fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
     let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
     if map.is_some_and(CapturedMap::holds_colors) {
@@ -226,7 +232,9 @@ fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
     }
 }
 
-/// Writes the picture's aspects that no earlier file has.
+/// Writes colour (PNG), depth and stencil (NumPy) of a step, and returns their names. Pictures that `written` has
+/// already are not written again: their earlier file is named. Aspects that the step did not change are listed in
+/// `unchanged`.
 fn frame_files(
     folder: &Path,
     stem: &str,
@@ -251,7 +259,8 @@ fn frame_files(
 struct WrittenImages(BTreeMap<*const Image, String>);
 
 impl WrittenImages {
-    /// Writes a picture to `file` unless it has a file already; returns the file that it has.
+    /// Writes a picture to `file` in `folder` and returns that name. If the same picture (the same `Arc`, not an equal
+    /// one) was written before, writes nothing and returns its earlier name.
     fn write(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
         if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
             return Ok(earlier.clone());

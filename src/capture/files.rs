@@ -27,7 +27,7 @@ pub(super) fn write(
     filled.map_err(|source| CaptureError::Write { file: path.to_owned(), source })
 }
 
-/// Writes one picture: PNG for colour, NumPy for the rest.
+/// Writes one picture: sRGB colour as PNG, every other format (linear colour too) as a NumPy array.
 pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError> {
     match image.format() {
         PixelFormat::Rgba8Srgb => write(path, |out| write_png(out, image)),
@@ -40,7 +40,8 @@ pub(super) fn write_array(path: &Path, image: &Image) -> Result<(), CaptureError
     write(path, |out| write_arrays(out, &[], [image], image))
 }
 
-/// Writes values as an array of rows of `columns`, or of one dimension where that is 1.
+/// Writes values, row-major, as a NumPy array of shape (rows, `columns`), or of one dimension where `columns` is 1. The
+/// number of values must be a multiple of `columns`.
 pub(super) fn write_values<T: Element>(path: &Path, values: &[T], columns: u64) -> Result<(), CaptureError> {
     let shape = [values.len() as u64 / columns, columns];
     let shape = if columns == 1 { &shape[..1] } else { &shape[..] };
@@ -50,7 +51,8 @@ pub(super) fn write_values<T: Element>(path: &Path, values: &[T], columns: u64) 
     })
 }
 
-/// Reads an array that [`write_values`] wrote.
+/// Reads an array that [`write_values`] wrote, row by row. Fails where its shape is not (any number, `columns`), or of
+/// one dimension for 1 column, or its numbers are of another type.
 pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T>, CaptureError> {
     let read = || {
         let (array, bytes) = open(path)?;
@@ -64,7 +66,8 @@ pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T
     read().map_err(|reason| broken(path, reason))
 }
 
-/// Writes pictures of one size and format as one array with one more dimension.
+/// Writes pictures of one size and format as one NumPy array whose first dimension is the picture. Fails where there
+/// are none.
 pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
     write(path, |out| {
         let first = layers.first().ok_or_else(|| io::Error::other("a map without faces"))?;
@@ -72,7 +75,8 @@ pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), Cap
     })
 }
 
-/// Writes pictures like `first` as one array, whose shape begins with `outer`.
+/// Writes pictures of the size and format of `first` as one NumPy array of shape `outer`, height, width, and 4 for
+/// colours. `first` itself is only written if it is among `images`.
 fn write_arrays<'a>(
     out: &mut impl Write,
     outer: &[u64],
@@ -106,7 +110,8 @@ fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads one picture, which must have the format that its place in the manifest asks for.
+/// Reads one picture as the given format: PNG for sRGB colour, else a NumPy array. Fails where the file's type or shape
+/// is not that of the format.
 pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, CaptureError> {
     let read = match format {
         PixelFormat::Rgba8Srgb => read_png(path),
@@ -117,7 +122,8 @@ pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, Capt
     one.ok_or_else(|| broken(path, "it is empty".to_owned()))
 }
 
-/// Reads the faces of a shadow map, or the layers of a light's textures.
+/// Reads all layers of a NumPy array of pictures: an array of three dimensions as depths (faces of a shadow map), any
+/// other as linear RGBA (a light's textures).
 pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
     let read = open(path).and_then(|(array, _)| match array.shape().len() {
         3 => read_floats(path, PixelFormat::Depth32F, 3),
@@ -129,7 +135,7 @@ pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
 /// Bytes of the longest text that is read.
 const MOST_TEXT: u64 = 2 << 30;
 
-/// Reads a text file of a folder.
+/// Reads a UTF-8 text file; fails where it is larger than a text of a capture folder may be, or no plain file.
 pub(super) fn read_text(path: &Path) -> Result<String, CaptureError> {
     let bytes = read_plain(path, MOST_TEXT).map_err(|error| broken(path, error.to_string()))?;
     String::from_utf8(bytes).map_err(|_| broken(path, "it is no text".to_owned()))
@@ -139,7 +145,8 @@ fn broken(path: &Path, reason: String) -> CaptureError {
     CaptureError::Read { file: path.to_owned(), reason }
 }
 
-/// Opens an array, and returns it with the bytes of its file.
+/// Opens a NumPy file and reads its header; returns the array, whose numbers are not read yet, and the size of the
+/// whole file in bytes.
 fn open(path: &Path) -> Result<(Array<BufReader<File>>, u64), String> {
     let file = open_plain(path).map_err(|error| error.to_string())?;
     let bytes = file.metadata().map_err(|error| error.to_string())?.len();

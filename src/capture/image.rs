@@ -24,7 +24,7 @@ pub enum PixelFormat {
 }
 
 impl PixelFormat {
-    /// Returns the bytes of one texel.
+    /// Returns the number of bytes of one texel: 1 or 4.
     pub fn texel_bytes(self) -> usize {
         match self {
             PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 | PixelFormat::Depth32F | PixelFormat::Count32F => 4,
@@ -38,7 +38,7 @@ const STRIP_ROWS: u32 = 8;
 /// A picture shares rows with another where at most so many quarters of its strips differ.
 const MOST_CHANGED_QUARTERS: usize = 3;
 
-/// A picture of texels of one format.
+/// A picture of texels of one format, rows from the top. Clones and parts of equal pictures may share memory.
 #[derive(Clone)]
 pub struct Image {
     format: PixelFormat,
@@ -61,7 +61,8 @@ impl RowStrip {
         &self.bytes[start..start + row_bytes]
     }
 
-    /// Returns some of its rows, in the same memory.
+    /// Returns these rows (counted from the strip's first) as a strip that shares its memory. `row_bytes` is the length
+    /// of a row without padding.
     fn part(&self, rows: Range<u32>, row_bytes: usize) -> RowStrip {
         let start = rows.start as usize * self.row_stride;
         let last = rows.end.saturating_sub(1) as usize * self.row_stride;
@@ -70,7 +71,8 @@ impl RowStrip {
 }
 
 impl Image {
-    /// Wraps rows that lie `row_stride` bytes apart.
+    /// Wraps rows, top first, that begin `row_stride` bytes apart. Nothing is copied where `bytes` is owned already;
+    /// padding and bytes after the last row are ignored.
     ///
     /// # Panics
     /// If `bytes` is too short for the rows, or `row_stride` for the texels of one.
@@ -133,7 +135,7 @@ impl Image {
         Some(Image { format: self.format, size: self.size, strip_rows: STRIP_ROWS, strips })
     }
 
-    /// Returns the rows of one strip.
+    /// Returns these rows of the picture in the same memory. All of them must lie in one of its strips.
     fn strip(&self, rows: Range<u32>) -> RowStrip {
         let index = rows.start / self.strip_rows;
         let first = index * self.strip_rows;
@@ -154,7 +156,8 @@ impl Image {
         self.size
     }
 
-    /// Returns the ranges of memory of its rows, padding included: pictures that share rows return equal ranges.
+    /// Returns the ranges of memory addresses of its strips of rows, padding included: pictures that share rows return
+    /// overlapping ranges.
     pub fn memory(&self) -> impl Iterator<Item = Range<usize>> {
         let place = |strip: &RowStrip| {
             let start = strip.bytes.as_ptr() as usize;
@@ -163,7 +166,7 @@ impl Image {
         self.strips.iter().map(place)
     }
 
-    /// Returns the bytes of its memory that it does not share with `other`.
+    /// Returns the number of bytes of its memory that `other` does not use too; all of them where `other` is `None`.
     pub fn bytes_beside(&self, other: Option<&Image>) -> u64 {
         let others: Vec<Range<usize>> = other.into_iter().flat_map(Image::memory).collect();
         covered(self.memory().chain(others.iter().cloned()).collect()) - covered(others)
@@ -178,7 +181,8 @@ impl Image {
         self.strips[(y / self.strip_rows) as usize].row(y % self.strip_rows, self.row_bytes())
     }
 
-    /// Returns a smaller picture of one texel for each square of `times` by `times` texels: the one in its middle.
+    /// Returns a picture that is `times` smaller on each side: of each square of `times` by `times` texels, the texel
+    /// in its middle, unfiltered. Columns and rows that don't fill a square are dropped.
     pub fn every(&self, times: u32) -> Image {
         let size = self.size.map(|side| side / times.max(1));
         let middle = |at: u32| at * times + times / 2;
@@ -206,26 +210,29 @@ impl Image {
         (self.format == PixelFormat::U8).then(|| self.texel(at).map(|texel| texel[0])).flatten()
     }
 
-    /// Returns one depth texel; `None` outside the picture or for another format.
+    /// Returns the stored depth at a texel; `None` outside the picture, or where its format is not
+    /// [`PixelFormat::Depth32F`].
     pub fn depth_at(&self, at: [u32; 2]) -> Option<f32> {
         let texel = (self.format == PixelFormat::Depth32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
-    /// Returns one count; `None` outside the picture or for another format.
+    /// Returns the signed count at a texel; `None` outside the picture, or where its format is not
+    /// [`PixelFormat::Count32F`].
     pub fn count_at(&self, at: [u32; 2]) -> Option<f32> {
         let texel = (self.format == PixelFormat::Count32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
-    /// Returns one colour texel as bytes; `None` outside the picture or for another format.
+    /// Returns one colour texel as its stored bytes, sRGB or linear as the format says; `None` outside the picture or
+    /// for a format without colour.
     pub fn rgba_at(&self, at: [u32; 2]) -> Option<[u8; 4]> {
         let is_color = matches!(self.format, PixelFormat::Rgba8Srgb | PixelFormat::Rgba8);
         let texel = is_color.then(|| self.texel(at)).flatten()?;
         texel.try_into().ok()
     }
 
-    /// Returns how many texels of a byte picture have each value.
+    /// Returns how many texels of a byte picture ([`PixelFormat::U8`]) have each value; all zero for another format.
     pub fn histogram(&self) -> [u64; 256] {
         let mut counts = [0; 256];
         if self.format == PixelFormat::U8 {

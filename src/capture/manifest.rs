@@ -151,7 +151,8 @@ pub(super) struct MatricesEntry {
 }
 
 impl Manifest {
-    /// Returns the manifest of a capture without its passes and lights, whose files the writer names.
+    /// Returns the manifest of a capture with empty lists of passes and lights: the writer adds them with their files'
+    /// names.
     pub fn new(capture: &Capture) -> Manifest {
         Manifest {
             schema: SCHEMA,
@@ -173,7 +174,8 @@ impl Manifest {
 }
 
 impl LightEntry {
-    /// Returns an entry of a light without files.
+    /// Returns the entry of light number `index` with its kind and its position or direction, and no files. A zero
+    /// `position` is a light whose place is unknown, and w 0 a directional one.
     pub fn new(index: usize, position: DVec4) -> LightEntry {
         let at = position.truncate().to_array();
         let (kind, position, towards) = if position == DVec4::ZERO {
@@ -186,8 +188,8 @@ impl LightEntry {
         LightEntry { index, kind: kind.to_owned(), position, towards, ..LightEntry::default() }
     }
 
-    /// Returns what decided where its shadow is: as the folder states it, or derived from technique and files in a
-    /// folder that does not.
+    /// Returns what decided where the light's shadow is: as the folder states it; where it does not (an older folder),
+    /// as the technique's name and the light's files suggest, [`DecidedBy::Nothing`] if they suggest nothing.
     pub fn decided_by(&self, technique: &str) -> DecidedBy {
         let side = match technique {
             "z-pass" | "z-pass-plus" => Some(CountedSide::InFront),
@@ -207,8 +209,8 @@ impl LightEntry {
         })
     }
 
-    /// Returns the homogeneous position; zero where it is not known, `None` where neither position nor direction is
-    /// given.
+    /// Returns the homogeneous position: w 1 for a point, w 0 for a direction towards the light, zero for kind
+    /// `unknown`. `None` where another kind has neither position nor direction.
     pub fn homogeneous(&self) -> Option<DVec4> {
         if self.kind == "unknown" {
             return Some(DVec4::ZERO);

@@ -54,7 +54,7 @@ pub struct Capture {
     pub origin: Option<Origin>,
 }
 
-/// The program that drew a frame, and the recorder that wrote it down.
+/// The program that drew a frame, and the recorder that recorded it.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Origin {
     /// The program, where that is known.
@@ -142,7 +142,7 @@ pub struct RecomputeDifference {
     pub rounded: u64,
 }
 
-/// The state after one draw of a pass.
+/// What the attachments hold after one draw of a pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawState {
     /// The attachments, as after a step. An aspect that the draw did not change is shared with the draw before it, or
@@ -280,7 +280,8 @@ pub struct StepDraws {
 /// Bytes that a capture may take with the draws of several steps; beyond, those of other steps are dropped.
 const MOST_DRAWS_BYTES: u64 = 1 << 27;
 
-/// A light's shadow map or textures after the whole frame.
+/// A light's shadow map, receiver textures or silhouettes as they are after the whole frame, with the matrices by which
+/// they are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedMap {
     /// Depth as stored: one face, or six in wgpu's order (+x −x +y −y +z −z). Or the colour that each texture lets
@@ -326,8 +327,8 @@ impl Capture {
         self.lights.iter().any(|light| light.decided_by.counts_volumes())
     }
 
-    /// Returns the picture's aspects after step `index`; for a map pass, those of the nearest step before it that has
-    /// any.
+    /// Returns the picture's colour, depth and stencil after step `index`; for a pass into a map, those after the
+    /// nearest earlier step that has them. `None` where there is no such step, or only map passes up to it.
     pub fn frame_at(&self, index: usize) -> Option<&FrameSnapshot> {
         let upto = self.steps.get(..=index)?;
         upto.iter().rev().find_map(|step| match &step.snapshot {
@@ -348,8 +349,8 @@ impl Capture {
         self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
     }
 
-    /// Returns the bytes of all images; shared memory counts once. It visits every image: call it once for each
-    /// capture.
+    /// Returns the bytes of memory of all its images, padding included; shared memory counts once. It visits every
+    /// image: call it once for each capture.
     pub fn bytes(&self) -> u64 {
         let mut seen = std::collections::BTreeSet::new();
         let mut places = Vec::new();
@@ -367,7 +368,8 @@ impl Capture {
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
     }
 
-    /// Returns the capture with its truth added.
+    /// Returns a copy with each light's truth replaced by that of `truth`, in order (also by `None`). A count of
+    /// `truth` replaces the light's count; where it has none, the light's own stays.
     pub fn with_truth(&self, truth: &FrameTruth) -> Capture {
         let mut capture = self.clone();
         for (light, truth) in capture.lights.iter_mut().zip(&truth.lights) {
@@ -413,7 +415,8 @@ impl Capture {
 }
 
 impl Snapshot {
-    /// Returns the picture's aspects, as far as there are any.
+    /// Returns colour, depth and, where there is one, stencil after the pass; nothing for a pass that draws into a
+    /// light's map.
     pub fn aspects(&self) -> impl Iterator<Item = &Aspect> {
         let frame = match self {
             Snapshot::Frame(frame) => Some(frame),
@@ -441,7 +444,8 @@ impl Step {
         self.draws.iter().map(|draw| draw.triangles).sum()
     }
 
-    /// Returns the caster of all draws, if they have one in common.
+    /// Returns the caster that all of the step's draws have in common; `None` where they differ, one has none, or there
+    /// are no draws.
     pub fn caster(&self) -> Option<&str> {
         let first = self.draws.first()?.caster.as_deref()?;
         self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)

@@ -33,7 +33,8 @@ impl Element for f32 {
     const KIND: &'static str = "<f4";
 }
 
-/// Writes the header of an array: its numbers follow, row by row.
+/// Writes the header (version 1.0) of a C-order NumPy array of this shape. The caller writes the numbers after it, row
+/// by row.
 pub(super) fn write_header<T: Element>(out: &mut impl Write, shape: &[u64]) -> io::Result<()> {
     let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
     let words = format!("{{'descr': '{}', 'fortran_order': False, 'shape': ({sides}), }}", T::KIND);
@@ -56,7 +57,7 @@ pub(super) struct Array<R> {
 }
 
 impl<R: Read> Array<R> {
-    /// Reads the header.
+    /// Reads the header of a NumPy file (format version 1 to 3) and leaves `file` at its first number.
     ///
     /// # Errors
     /// The file is no array, or one of a kind that our folders don't have.
@@ -123,7 +124,8 @@ struct Header {
 }
 
 impl Header {
-    /// Parses a Python dictionary of a string, a truth value and a tuple, in any order.
+    /// Parses a header's Python dictionary with the keys `descr`, `fortran_order` and `shape`, in any order; a missing
+    /// key leaves its field `None`. `None` for any other key, broken syntax or more than eight dimensions.
     fn read(words: &str) -> Option<Header> {
         let mut header = Header::default();
         let mut rest = words.trim().strip_prefix('{')?.strip_suffix('}')?.trim_start();
@@ -158,7 +160,8 @@ impl Header {
     }
 }
 
-/// Parses a quoted word, and returns it with the text after it.
+/// Parses a string in single or double quotes at the very beginning of `words`; returns it without quotes (no escapes
+/// are known) and the text after it. `None` without a quote, or without its end.
 fn quoted(words: &str) -> Option<(&str, &str)> {
     let quote = words.chars().next().filter(|quote| matches!(quote, '\'' | '"'))?;
     words[1..].split_once(quote)

@@ -71,7 +71,8 @@ fn milliseconds(text: &str) -> Result<u16, String> {
         .ok_or_else(|| format!("give a whole number of milliseconds from {LEAST_MILLISECONDS} to {MOST_MILLISECONDS}"))
 }
 
-/// Runs the command `animate`: writes the animated picture and prints what it shows.
+/// Runs the command `animate`: writes the passes of a frame, or with `--light-round` a light's way round the scene, as
+/// an animated PNG, and prints what it shows.
 pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     check_target(&arguments.output, arguments.overwrite)?;
     let refused = "an animation shows whole passes";
@@ -108,7 +109,8 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     output::print(&format!("{output}: {name}, {width}x{height}, {pictures} pictures of {delay} ms, {bytes}\n"))
 }
 
-/// Fails, before long work, where the file must not or can't be written.
+/// Fails, before long work, where the file's extension is neither png nor apng, its folder is missing, or it exists and
+/// `overwrite` is false.
 fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     let name = file.escape_debug();
     let ending = Path::new(file).extension().unwrap_or_default().to_ascii_lowercase();
@@ -144,7 +146,8 @@ fn steps(subject: Subject, gpu: &mut LazySession) -> Result<Arc<crate::capture::
     }
 }
 
-/// Returns the scene from which the subject's frame is rendered, and the capture request for it.
+/// Returns the scene and capture request that the subject's frame is rendered from. Fails for a folder whose frame has
+/// none, such as another program's; `name` names it in the error.
 fn made<'a>(name: &str, subject: &'a Subject) -> Result<(&'a Scene, &'a CaptureRequest), CliError> {
     match subject {
         Subject::Scene(scene) => Ok((&scene.scene, &scene.request)),

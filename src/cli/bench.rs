@@ -46,7 +46,7 @@ pub struct BenchArguments {
     frame: FrameOptions,
 }
 
-/// Runs the command `bench`: the benchmarks that are named.
+/// Runs the command `bench`: the named benchmarks in order, after checking all names. Each prints its own result.
 pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     arguments.names.iter().try_for_each(|name| check_name(name))?;
     arguments.frame.refuse_draws("a benchmark times whole passes")?;
@@ -64,7 +64,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Runs the benchmark `capture`: times frames with snapshots and without.
+/// Runs the benchmark `capture`: times each scene's frame with snapshots and without, and prints both.
 fn capture(arguments: &BenchArguments) -> Result<(), CliError> {
     let scenes = scenes(arguments, || Ok(vec![arguments.scene_options.open("tori")?, bumpy_model(62, 31)?]))?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
@@ -86,7 +86,8 @@ fn check_name(name: &str) -> Result<(), CliError> {
     Err(CliError::Usage(format!("no benchmark is called `{}`: {instead}", name.escape_debug())))
 }
 
-/// Runs the benchmark `truth`: measures traced rays a second, and building the hierarchies apart from tracing.
+/// Runs the benchmark `truth`: for each scene prints median times of building the ray hierarchies and of tracing, and
+/// rays a second with and without building. The technique does not matter, only the picture's size.
 fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     let size = arguments.frame.picture_size();
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
@@ -110,7 +111,8 @@ fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Runs the benchmark `history`: times the histories of single pixels, and the frame to which they belong.
+/// Runs the benchmark `history`: for each scene times histories of single pixels, and prints them beside the time of
+/// the frame and whether all histories agree with the stored results.
 fn history(arguments: &BenchArguments) -> Result<(), CliError> {
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
         let request = arguments.frame.request(&scene)?;
@@ -143,8 +145,9 @@ fn history(arguments: &BenchArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Times `auto`, which leaves out what it can, against the fastest technique that is right and against z-fail, from
-/// positions all round.
+/// Runs the benchmark `auto`: from random camera positions (`--cameras` of them a scene, those that see no surface to
+/// compare not counted) prints the ratio of its frame time to the fastest technique without wrong pixels, and to
+/// z-fail.
 fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let built_in = || builtin::ALL.iter().map(|of| Ok(of.scene()?)).collect();
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
@@ -198,7 +201,8 @@ fn frame_ms(of: &MeasuredTechnique) -> f64 {
     median_ms(&of.frames).unwrap_or(f64::NAN)
 }
 
-/// Returns `auto`, z-fail, and the techniques that are right and may be as fast as the fastest of these.
+/// Returns the choices to time again: `auto` and z-fail always, and every technique without wrong pixels whose frame
+/// took at most `MAY_WIN` times that of the fastest of these.
 fn contenders(tried: &[MeasuredTechnique]) -> Vec<Choice> {
     let right = || tried.iter().filter(|one| one.error.wrong() == 0);
     let fastest = right().map(frame_ms).fold(f64::INFINITY, f64::min);
@@ -213,7 +217,8 @@ fn named(rivals: &BTreeMap<&str, usize>) -> String {
     if each.is_empty() { String::new() } else { format!("; that was {}", each.join(", ")) }
 }
 
-/// Returns the median, least and greatest of some ratios, as text.
+/// Returns the median, least and greatest of the ratios as `1.20 (from 1.00 to 1.50)`; `none` where there are none. Of
+/// an even number the higher middle one is the median.
 fn spread(mut ratios: Vec<f64>) -> String {
     ratios.sort_by(f64::total_cmp);
     match (ratios.first(), ratios.get(ratios.len() / 2), ratios.last()) {
@@ -230,7 +235,9 @@ fn scenes(
     if arguments.scene.is_empty() { own() } else { arguments.scene.iter().map(open).collect() }
 }
 
-/// Runs the benchmark `volumes`: times the geometry of shadow volumes, once for a mesh and again for each new light.
+/// Runs the benchmark `volumes`: times the edge list of a mesh, and silhouettes and volumes again for each new light.
+/// Measures the casters of the given scenes; without scenes two bumpy spheres, with the ratio of their times per
+/// triangle.
 fn volumes(arguments: &BenchArguments) -> Result<(), CliError> {
     if arguments.scene.is_empty() {
         let small = bumpy_mesh(264, 133)?;
@@ -295,7 +302,8 @@ fn bumpy_mesh(around: u32, up: u32) -> Result<Mesh, SceneError> {
     builder.build().map_err(fail)
 }
 
-/// Returns lines with the times, what snapshots add, and how long copying as many bytes takes in plain memory.
+/// Returns lines with the frame's median times without and with snapshots, and how long plain memory takes to copy as
+/// many bytes. Where the snapshots don't fit in memory at once, only the frame's time and that fact.
 fn capture_lines(title: &str, cost: &CaptureCost) -> String {
     let frame = median_ms(&cost.frames).unwrap_or(f64::NAN);
     if cost.captured.is_empty() {

@@ -19,14 +19,15 @@ const LIMIT_PANELS_MS: f64 = 8.0;
 #[cfg(feature = "inspector")]
 const LIMIT_LIGHT_MS: f64 = 150.0;
 
-/// Without a window there are no panels.
+/// Returns an error, always: a build without a window has no panels to measure.
 #[cfg(not(feature = "inspector"))]
 pub fn run(_: &[String], _: &SceneOptions, _: &FrameOptions) -> Result<(), CliError> {
     let _ = output::note;
     Err(CliError::Window("this build has no panels to measure".to_owned()))
 }
 
-/// Draws the panels over each scene without a window, and says what that costs.
+/// Runs the benchmark `panels`: draws the inspector without a window over each scene (`tori` where none is named) and
+/// prints the times of its tabs, of dragging, stepping and a moved light, and whether it idles.
 #[cfg(feature = "inspector")]
 pub fn run(scenes: &[String], scene_options: &SceneOptions, frame: &FrameOptions) -> Result<(), CliError> {
     use crate::app::headless::Headless;
@@ -68,7 +69,8 @@ mod measured {
         format!("{:.2} of the limit {limit} ms", value / limit)
     }
 
-    /// Times each tab in front, with the pointer moving over all of the window.
+    /// Times each tab in front while the pointer moves over the whole window, and returns a line of text for each.
+    /// Picks a pixel first, so that tabs have something to show, and ends with the Picture tab.
     pub fn tabs(panels: &mut Headless) -> String {
         let middle = width_of(panels) / 2;
         panels.inspector().model.selection.pick = Some([middle, 200]);
@@ -100,7 +102,8 @@ mod measured {
         text
     }
 
-    /// Times the Scene tab while its view is dragged: all of it is drawn in each frame.
+    /// Times the Scene tab while its view is dragged, and returns a line of text with CPU times of a frame and the
+    /// GPU's time of the view. An error becomes text too.
     pub fn orbit(panels: &mut Headless) -> String {
         panels.inspector().model.requests.panels.push(PanelKind::Scene);
         let middle = [0.55, 0.4];
@@ -150,7 +153,8 @@ mod measured {
         panels.inspector().model.frame.capture.as_ref().map_or(2, |capture| capture.size[0])
     }
 
-    /// Reports whether another frame is asked for while nothing happens.
+    /// Lets the panels settle with the pointer still, and returns a line that says how many of the next frames ask for
+    /// yet another frame; 0 is right.
     pub fn idle(panels: &mut Headless) -> String {
         panels.point([0.5, 0.02]);
         // Hints and focus need a second to settle.
@@ -161,7 +165,8 @@ mod measured {
         format!("  idle: {wishes} of {FRAMES} frames wish for another one while nothing changes\n")
     }
 
-    /// Steps forward and back, and reports whether the step is shown in the frame that handled the key.
+    /// Presses right and left arrow in turn from the first step, and returns a line that says how often the very frame
+    /// that took the key shows the new step, and its median time.
     pub fn stepping(panels: &mut Headless) -> String {
         let mut costs = Vec::new();
         let mut in_next = 0;
@@ -179,7 +184,8 @@ mod measured {
         )
     }
 
-    /// Moves the light, and reports how long it takes until its capture is shown.
+    /// Moves the first light back and forth, and returns a line with the median time until the new capture is shown;
+    /// the first move is not counted. Stops early where the scene has no light.
     pub fn light(panels: &mut Headless) -> Result<String, AppError> {
         let mut times = Vec::new();
         for index in 0..=LIGHTS {

@@ -41,7 +41,8 @@ pub struct CaptureArguments {
     page: Option<String>,
 }
 
-/// Runs the command `capture`: renders a scene and stores its capture in a folder.
+/// Runs the command `capture`: renders a scene, stores its capture in a folder, with `--page` also as an HTML file, and
+/// prints a summary.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
     let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, timing, page } = arguments;
     if let Some(page) = page {
@@ -56,7 +57,7 @@ pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
 /// How many frames are timed where that is asked for, each with and without snapshots, after one of each that is not.
 const TIMING_RUNS: usize = 5;
 
-/// A capture that is ready to run: its input was checked.
+/// A capture that is ready to run: its scene is loaded, and its options and target folder are checked.
 pub struct CaptureJob<'a> {
     started: Instant,
     scene: Scene,
@@ -78,7 +79,8 @@ pub struct CaptureOutput<'a> {
 }
 
 impl<'a> CaptureJob<'a> {
-    /// Returns the job after checking, before the GPU is opened, everything that can be wrong without one.
+    /// Loads the scene and checks options and target folder (not the page's file) before the GPU is opened. `name` is
+    /// the scene as on the command line.
     pub fn new(
         name: &str,
         scene_options: &SceneOptions,
@@ -92,7 +94,8 @@ impl<'a> CaptureJob<'a> {
         Ok(CaptureJob { started, scene, request, adapter: frame.adapter.as_deref(), writing })
     }
 
-    /// Writes the capture's folder and prints what it contains.
+    /// Renders the scene, traces its truth where asked for, writes the folder and the page where one is named, and
+    /// prints a summary.
     pub fn run(self) -> Result<(), CliError> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
@@ -119,7 +122,8 @@ impl<'a> CaptureJob<'a> {
     }
 }
 
-/// Returns a line about counts that eight bits can't distinguish from zero; empty where there are none.
+/// Returns a line with the number of pixels whose count is a multiple of 256 other than 0, which eight bits read as 0.
+/// Empty where there is none, or no light is decided by a stencil count.
 fn wrapped_line(capture: &Capture) -> String {
     let pixels: u64 = capture.lights.iter().filter_map(crate::capture::CapturedLight::wrapped_pixels).sum();
     if pixels == 0 || !capture.lights.iter().any(|light| matches!(light.decided_by, DecidedBy::StencilCount { .. })) {

@@ -43,7 +43,8 @@ pub struct DiagnoseArguments {
     no_techniques: bool,
 }
 
-/// Runs the command `diagnose`: finds and prints the causes of wrong pixels of a frame.
+/// Runs the command `diagnose`: finds and prints the causes of wrong pixels of a frame, and writes the files that are
+/// asked for. Fails too where pixels are wrong.
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let DiagnoseArguments { scene_options, frame, output: folder, .. } = arguments;
     frame.refuse_draws("a diagnosis looks at draws by itself")?;
@@ -89,7 +90,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     verdict(&diagnosis)
 }
 
-/// Diagnoses a frame of another program and prints the result.
+/// Diagnoses another program's frame and prints or writes the result. Fails where `-o` or `--fix` is given, as there is
+/// no scene, and at the end where pixels are wrong.
 fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliError> {
     if arguments.output.is_some() || arguments.fix.is_some() {
         let why = "another program drew this frame, and there is no scene to write: leave `-o` and `--fix` out";
@@ -132,7 +134,8 @@ fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
     Err(CliError::Wrong { pixels: all, because })
 }
 
-/// Fails where the folder exists, unless it is a diagnosis that may be replaced.
+/// Fails where the folder exists and is not empty, unless it holds a diagnosis and `overwrite` is true; fails too for
+/// paths without a name, such as `.` or `..`.
 fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
     let name = folder.display();
     let is_empty = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
@@ -149,7 +152,8 @@ fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
 
 type DiagnosisFiles = Vec<(&'static str, Vec<u8>)>;
 
-/// Returns the files of the diagnosis' folder: pictures before and after, text and JSON document.
+/// Returns the names and contents of the files of the diagnosis' folder: a picture of the wrong regions, text and JSON.
+/// With advice that keeps the picture's size, also a picture of the frame run with that fix.
 fn files(
     session: &mut Session,
     scene: &Scene,

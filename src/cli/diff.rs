@@ -107,7 +107,8 @@ fn folder(name: &str) -> Result<Capture, CliError> {
     Ok(disk::read(path)?)
 }
 
-/// Captures the scene with two techniques, or with one and different settings.
+/// Captures one scene with two techniques, or with one and different settings, as A and B. Fails where a capture folder
+/// is named alone, more than two techniques are, or both choices are the same.
 fn techniques(arguments: &DiffArguments) -> Result<[Capture; 2], CliError> {
     let name = &arguments.first;
     if disk::is_capture(Path::new(name)) {
@@ -153,7 +154,8 @@ fn request(
     frame.request(scene)
 }
 
-/// Returns a line that says which capture is A, and which B.
+/// Returns two lines that say what A and B are: scene, technique, size and passes, with the folder's name where two
+/// folders are compared.
 fn heading(arguments: &DiffArguments, captures: [&Capture; 2]) -> String {
     let folders = [Some(&arguments.first), arguments.second.as_ref()];
     let line = |(side, (folder, capture)): (&str, (Option<&String>, &Capture))| {
@@ -164,7 +166,8 @@ fn heading(arguments: &DiffArguments, captures: [&Capture; 2]) -> String {
     ["A", "B"].into_iter().zip(folders.into_iter().zip(captures)).map(line).collect()
 }
 
-/// Writes a picture of the difference to `file` and prints its name.
+/// Writes a PNG of A, of B and of where they differ to `file`, and returns a line about it for the user. Writes nothing
+/// where no pixel differs, and the line says so.
 fn picture(difference: &Difference, [a, b]: [&Capture; 2], file: &str) -> Result<String, CliError> {
     let Some(shown) = difference.shown(a, b) else {
         return Ok("no picture: no pixel that both have differs\n".to_owned());

@@ -10,7 +10,7 @@ use crate::session::{CaptureRequest, Session};
 use crate::technique::Choice;
 use std::path::Path;
 
-/// The scene file that a fixed scene is written to.
+/// A checked target for `--fix`: the scene file to write, and the name by which the scene was opened.
 pub struct FixOutput<'a> {
     file: &'a str,
     /// The name by which the scene was opened.
@@ -18,7 +18,8 @@ pub struct FixOutput<'a> {
 }
 
 impl<'a> FixOutput<'a> {
-    /// Returns the target after checking, before long work, that the scene file may be written and is not the source.
+    /// Returns the target after checking, before long work, that `file` ends in .toml, is not the source itself, does
+    /// not exist or may be overwritten, and lies in an existing folder.
     pub fn new(file: &'a str, source: &'a str, overwrite: bool) -> Result<FixOutput<'a>, CliError> {
         let usage = |what: &str| Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())));
         let path = Path::new(file);
@@ -36,7 +37,8 @@ impl<'a> FixOutput<'a> {
         }
     }
 
-    /// Writes `loaded` with the fix, with its motions; opens it again and says how many pixels are wrong then.
+    /// Writes the scene with the best fix, keeping its motions, opens and renders the file again, and returns a line on
+    /// how many pixels are wrong then. Where nothing is wrong, or nothing helps, writes nothing and says so.
     pub fn write(
         &self,
         session: &mut Session,
@@ -68,7 +70,8 @@ impl<'a> FixOutput<'a> {
     }
 }
 
-/// Returns the scene with the fix made, and with the technique that it asks for.
+/// Returns a copy of the scene with the fix applied. Its technique is then `choice` with the fix's changes, every
+/// setting that differs from the scene's included.
 fn fixed(loaded: &Scene, mut choice: Choice, fix: &Fix) -> Result<Scene, CliError> {
     let mut scene = loaded.clone();
     fix.apply(&mut scene, &mut choice)?;

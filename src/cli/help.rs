@@ -40,7 +40,8 @@ pub struct HelpArguments {
     key: Option<String>,
 }
 
-/// Runs the command `help`: prints the explanation of a key, or without one the list of keys.
+/// Runs the command `help`: prints the explanation of a key, or without one the program's help with the list of keys.
+/// Fails for an unknown key.
 pub fn run(arguments: &HelpArguments) -> Result<(), CliError> {
     match arguments.key.as_deref() {
         None => output::print(&overview()),
@@ -62,7 +63,7 @@ fn overview() -> String {
     CommandLine::command().render_help().to_string()
 }
 
-/// Returns the text below the commands: everything that has a name.
+/// Returns the text below the list of commands: the names of all pages, techniques, settings and scenes.
 pub fn everything() -> String {
     let pages = PAGES.iter().map(|(name, of, _)| (*name, *of)).chain([CAUSES]);
     let line = |(name, of): (&str, &str)| format!("  {name:14}  {of}\n");
@@ -76,7 +77,8 @@ pub fn everything() -> String {
     )
 }
 
-/// Returns the text below the options of a command that takes a scene: the names that they may use.
+/// Returns the text below the options of a command that takes a scene: the names of scenes, techniques and settings,
+/// and how to get help on one.
 pub fn names() -> String {
     let techniques = Technique::ALL.map(Technique::name).join(" ");
     format!(
@@ -98,7 +100,8 @@ fn scenes() -> String {
     )
 }
 
-/// Returns the keys by the techniques that have them; those that all have come first.
+/// Returns lines with the settings' keys, grouped by the set of techniques that have them, in the order in which the
+/// keys first appear.
 fn settings_of_techniques() -> String {
     let mut rows: Vec<(Vec<&str>, Vec<&str>)> = Vec::new();
     for key in settings() {
@@ -121,7 +124,8 @@ fn indented(text: &str) -> String {
     wrapped(text, WIDTH - 2).lines().map(|line| format!("  {line}\n")).collect()
 }
 
-/// Returns text in lines of at most `width` columns; rows of a table stay as they are.
+/// Returns the text with its lines broken at spaces, to less than `width` characters each; a longer word stays whole,
+/// and so do lines that begin with `|` (rows of a table).
 fn wrapped(text: &str, width: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for line in text.lines() {
@@ -141,7 +145,7 @@ fn wrapped(text: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// Returns every setting's key once, in the order of the techniques.
+/// Returns every setting's key once, in the order of [`Technique::ALL`] and of each technique's settings.
 fn settings() -> Vec<&'static str> {
     let mut keys: Vec<&str> = Vec::new();
     for spec in Technique::ALL.iter().flat_map(|technique| technique.settings()) {
@@ -164,7 +168,7 @@ fn technique(technique: Technique) -> String {
     )
 }
 
-/// Returns a lesson with its formula and its sources.
+/// Returns a lesson's text with its formula and its sources; without a source it says that no publication is known.
 fn lesson(lesson: &Lesson) -> String {
     let sources: String = match lesson.sources {
         [] => "- this program; no publication is known\n".to_owned(),
@@ -174,7 +178,8 @@ fn lesson(lesson: &Lesson) -> String {
     format!("{}\n\nFormula:\n\n{}\nSource:\n\n{sources}", wrapped(text, WIDTH), indented(formula))
 }
 
-/// Returns the explanation of one setting, for each of the techniques that have it.
+/// Returns the page of a setting: its meaning and values for each technique that has it, and the lesson of the first.
+/// `None` where no technique has this key.
 fn setting(key: &str) -> Option<String> {
     let mut specs: Vec<(&SettingSpec, Vec<&str>)> = Vec::new();
     for technique in Technique::ALL {
@@ -225,7 +230,8 @@ fn scene(key: &str) -> Option<String> {
     builtin.or(shipped)
 }
 
-/// Returns the tables of a scene file with their keys' explanations: the text under each heading of the page.
+/// Returns, for each second-level heading of the page on scene files, the heading and its bullets with their
+/// continuation lines. Other text is left out.
 fn scene_tables() -> Vec<(&'static str, Vec<String>)> {
     let sections = SCENE_FILE.split("\n## ").skip(1);
     let table = |section: &'static str| {
@@ -243,13 +249,14 @@ fn scene_tables() -> Vec<(&'static str, Vec<String>)> {
     sections.map(table).collect()
 }
 
-/// Returns the keys that a bullet explains: those before its colon.
+/// Returns the keys that a bullet explains: the words in backticks before its first colon and space.
 fn keys_of(bullet: &str) -> Vec<&str> {
     let head = bullet.split(": ").next().unwrap_or(bullet);
     head.split('`').skip(1).step_by(2).collect()
 }
 
-/// Returns the explanation of a key of scene files, in each of the tables that have it.
+/// Returns the page of a key of scene files: its explanation in each table that has it, and the keys of the table of
+/// the same name. `None` where no table explains the key, even if a table has that name.
 fn scene_key(key: &str) -> Option<String> {
     let tables = scene_tables();
     let of_table = |(heading, bullets): &(&str, Vec<String>)| {
@@ -266,7 +273,8 @@ fn scene_key(key: &str) -> Option<String> {
     })
 }
 
-/// Returns all names that have a page of their own.
+/// Returns every key that `help` explains by name, keys of scene files excepted: pages, techniques, settings, commands
+/// and scenes.
 fn named() -> impl Iterator<Item = &'static str> {
     let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
     let techniques = Technique::ALL.iter().map(|technique| technique.name());

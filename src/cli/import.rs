@@ -58,7 +58,8 @@ pub struct ReaderOptions {
 }
 
 impl ReaderOptions {
-    /// Returns the options of the import; a list needs no pictures.
+    /// Returns the options for RenderDoc's replay: the interpreter, time in seconds and memory in bytes. Pictures are
+    /// read only where the frame is to be stored, not for a list alone.
     pub fn options(&self, target: &ImportTarget) -> RenderDocOptions {
         RenderDocOptions {
             python: self.python.clone(),
@@ -75,7 +76,8 @@ impl ImportTarget {
         Ok(self.output.as_deref().map_or(Ok(()), |folder| disk::check_target(folder, self.overwrite))?)
     }
 
-    /// Prints the list of the frame's events where asked for, and writes the frame's folder where one was named.
+    /// Prints the list of the frame's events where asked for; where a folder was named, converts the frame, runs it
+    /// again on the GPU to compare, writes the folder and prints a summary. `name` becomes the frame's name.
     pub fn deliver(&self, frame: RawFrame, name: &str) -> Result<(), CliError> {
         if self.list {
             output::print(&import::list(&frame))?;
@@ -96,7 +98,8 @@ impl ImportTarget {
     }
 }
 
-/// Returns text about what was written to the folder, and where the frame is not to be trusted.
+/// Returns text about the written folder: its size, how many draws leave the same values when run again here, which
+/// lights were found, and what histories can't know.
 fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
     let [width, height] = capture.size;
     let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();

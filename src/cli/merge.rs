@@ -7,7 +7,7 @@ use crate::shards::MergeError;
 use crate::stress::StressResults;
 use clap::Args;
 
-/// Text after the help: how parts are run on several machines.
+/// Text after the help of `report merge`: how the parts of a run are made on several cores or machines.
 pub const EXAMPLES: &str = "\
 Parts of a run side by side, here four; a part that was killed is run again alone:
 
@@ -51,7 +51,8 @@ pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
     }
 }
 
-/// Prints results of stress cases, and writes them in the formats asked for.
+/// Prints or writes merged stress results in the formats asked for, with the plot. Fails where CSV is asked for, and at
+/// the end where a result is unexpected.
 fn deliver_stress(merged: &StressResults, command: &str, results: &ReportResults) -> Result<(), CliError> {
     let [json, csv, markdown, page] = results.targets();
     if csv.is_some() {

@@ -96,7 +96,8 @@ enum CliCommand {
     Help(help::HelpArguments),
 }
 
-/// Runs the command line `arguments`, the program's name first.
+/// Runs the command line `arguments`, the program's name first. A first word that is no command is opened with `view`;
+/// one that is no scene and no file either is an error that suggests names.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let word = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
@@ -128,7 +129,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     }
 }
 
-/// Returns the command line in a form that a shell accepts.
+/// Returns the command line as a shell accepts it: the first argument becomes `stencilscope`, and words with other than
+/// plain characters are quoted.
 fn spoken(arguments: &[OsString]) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=+".contains(c);
     let quoted = |word: &OsString| {
@@ -140,7 +142,8 @@ fn spoken(arguments: &[OsString]) -> String {
     std::iter::once("stencilscope".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// Inserts `view` before a first word that is no command.
+/// Inserts `view` after the program's name where the next word is no command and no `-h`, `--help`, `-V` or
+/// `--version`, also where there is no next word. An empty list gets a program name first.
 fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_known = |word: &OsString| {
         let text = word.to_string_lossy();
@@ -163,7 +166,8 @@ fn is_nothing(word: &str) -> bool {
     !(word.is_empty() || word.starts_with('-') || COMMANDS.contains(&word) || is_scene || is_file)
 }
 
-/// Returns the error message about a first word that is nothing: the nearest name, and which names there are.
+/// Returns the error message about a first word that is no command, scene or file: the nearest name, where one is near,
+/// and the names of all commands.
 fn unknown(word: &str) -> String {
     let scenes = builtin::ALL.iter().map(|builtin| builtin.name).chain(SHIPPED.iter().map(|shipped| shipped.name));
     let known: Vec<&str> = COMMANDS.into_iter().chain(scenes).collect();

@@ -71,7 +71,8 @@ enum SceneTime {
 /// The largest number of frames that a range of times may have.
 const MOST_FRAMES: usize = 10_000;
 
-/// Parses `--time`: `SECONDS`, `A..B` or `A..B:N`.
+/// Parses `--time`: `SECONDS`, or a range `A..B` or `A..B:N` with A less than B and N frames (from 1 to the most that
+/// are allowed). An error says what to give.
 fn when(text: &str) -> Result<SceneTime, String> {
     let Some((from, rest)) = text.split_once("..") else { return finite(text).map(SceneTime::At) };
     let (to, frames) = rest.split_once(':').map_or((rest, None), |(to, frames)| (to, Some(frames)));
@@ -107,13 +108,13 @@ pub struct FrameOptions {
 }
 
 impl SceneOptions {
-    /// Returns how to open the scene again, without these options.
+    /// Returns how to open the scene again without these options, floor and up axis excepted.
     pub fn spec(&self, name: &str) -> OpenSpec {
         let up = if self.z_up { UpAxis::Z } else { UpAxis::Y };
         OpenSpec { name: name.to_owned(), floor: !self.no_floor, up }
     }
 
-    /// Returns whether no option changes the scene.
+    /// Returns whether none of these options was given; a time of 0 counts as not given, any other as a change.
     fn is_untouched(&self) -> bool {
         let SceneOptions { no_floor, z_up, eye, target, up, fov, near, far, light, sun, off, time } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
@@ -133,7 +134,7 @@ impl SceneOptions {
         Ok(self.load(name)?.at(self.seconds()?))
     }
 
-    /// Returns the time at which scenes are rendered, seconds.
+    /// Returns the single time at which scenes are rendered, in seconds; an error where `--time` gave a range.
     pub fn seconds(&self) -> Result<f64, CliError> {
         match self.time {
             SceneTime::At(seconds) => Ok(seconds),
@@ -143,8 +144,8 @@ impl SceneOptions {
         }
     }
 
-    /// Returns the frames that were asked for, `usual` ones where their number was not; `None` where only one time was
-    /// given.
+    /// Returns the frames of a motion, `usual` many where `--time A..B` gave no number; `None` where one time, or none,
+    /// was given.
     pub fn motion_frames(&self, moves: MovingPart, usual: usize) -> Option<MotionFrames> {
         match self.time {
             SceneTime::At(_) => None,
@@ -154,7 +155,9 @@ impl SceneOptions {
         }
     }
 
-    /// Opens the scene and applies these options; the result is at time 0, with all motions.
+    /// Opens the scene and applies these options' camera and lights; the result is at time 0 with all motions, whatever
+    /// `--time` says. Given lights replace all of the scene's. Fails for options that don't apply, such as `--z-up` for
+    /// no bare model.
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
         let mut scene = open(&self.spec(name))?;
         if self.z_up && !is_model(name) {
@@ -257,7 +260,7 @@ impl Subject {
         whole.map(Subject::Folder).map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))
     }
 
-    /// Returns width and height of the picture, pixels.
+    /// Returns width and height of the picture in pixels: as requested for a scene, as stored for a folder.
     pub fn size(&self) -> [u32; 2] {
         match self {
             Subject::Scene(scene) => scene.request.size,
@@ -273,7 +276,8 @@ impl Subject {
         }
     }
 
-    /// Returns the scene from which the frame is rendered.
+    /// Returns the scene from which the frame is rendered, and how. Of a folder, `loaded` and `scene` are the same.
+    /// Fails for a folder whose frame has no scene or known technique.
     pub fn scene(self) -> Result<SceneSubject, CliError> {
         match self {
             Subject::Scene(scene) => Ok(*scene),
@@ -286,7 +290,8 @@ impl Subject {
 }
 
 impl FrameOptions {
-    /// Returns what to capture of `scene`, with timing.
+    /// Returns what to capture of `scene`: technique, settings, size and snapshots as the options say, else the
+    /// scene's, else the defaults. Without timing.
     pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
         Ok(CaptureRequest {
             every: self.every()?,
@@ -312,7 +317,8 @@ impl FrameOptions {
         Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
     }
 
-    /// Returns an error where draws are to be snapshot, for a command that does not do so; `why` explains it.
+    /// Fails where `--every draw` (or an invalid value) is given, for a command that can't use it; `why` explains it in
+    /// the error.
     pub fn refuse_draws(&self, why: &str) -> Result<(), CliError> {
         match self.every()? {
             SnapshotInterval::Pass => Ok(()),
@@ -322,7 +328,8 @@ impl FrameOptions {
         }
     }
 
-    /// Returns an error where the frame is to be bracketed, for a command without a frame; `why` explains it.
+    /// Fails where `--external-capture` is given, for a command that does not render exactly one frame; `why` explains
+    /// it in the error.
     pub fn refuse_external_capture(&self, why: &str) -> Result<(), CliError> {
         if self.external_capture {
             return Err(CliError::Usage(format!("`--external-capture` is for captures; {why}: leave it out")));
@@ -345,7 +352,7 @@ pub fn technique_named(name: &str) -> Result<Technique, CliError> {
     Ok(Choice::parse(&request)?.technique())
 }
 
-/// Parses a point or vector `X,Y,Z` of finite numbers.
+/// Parses a point or vector `X,Y,Z` of three finite numbers; spaces around the numbers are allowed.
 pub fn point(text: &str) -> Result<DVec3, String> {
     let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>()?;
     let [x, y, z] = numbers[..] else {
@@ -354,7 +361,7 @@ pub fn point(text: &str) -> Result<DVec3, String> {
     Ok(DVec3::new(x, y, z))
 }
 
-/// Parses a finite number.
+/// Parses a number; an error for NaN, infinity and text around the number, spaces included.
 pub fn finite(text: &str) -> Result<f64, String> {
     let number: Option<f64> = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "give finite numbers".to_owned())
@@ -371,7 +378,8 @@ pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Parses the column and row of a pixel, `X,Y`.
+/// Parses the column and row of a pixel, `X,Y`, counted from 0 at the top left. Whether it lies in the picture is not
+/// checked.
 pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(',').map(|(x, y)| [x.trim().parse(), y.trim().parse()]);
     match sides {
@@ -380,7 +388,8 @@ pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Parses `KEY=VALUE` into the key and the value of a setting.
+/// Splits `KEY=VALUE` at its first `=`. Fails without `=` or with an empty key; an empty value, and unknown keys, are
+/// accepted.
 pub fn setting(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),

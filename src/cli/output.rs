@@ -3,7 +3,7 @@
 use super::CliError;
 use std::io::{ErrorKind, Write};
 
-/// Writes `text` to standard output.
+/// Writes `text` to standard output and flushes it; no newline is added. A closed pipe is [`CliError::ClosedOutput`].
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = std::io::stdout().lock();
     let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
@@ -13,7 +13,8 @@ pub fn print(text: &str) -> Result<(), CliError> {
     })
 }
 
-/// Fails, before long work, where a file can't be made at this path.
+/// Fails, before long work, where `path` is a folder or its parent folder does not exist. A file that is there, and
+/// permissions, are not checked.
 pub fn check_target(path: &str) -> Result<(), CliError> {
     let path_of = std::path::Path::new(path);
     let folder = path_of.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -27,7 +28,7 @@ pub fn check_target(path: &str) -> Result<(), CliError> {
     problem.map_or(Ok(()), |kind| Err(CliError::Output { path: path.to_owned(), source: kind.into() }))
 }
 
-/// Writes `text` to `file`, or to standard output where there is none.
+/// Writes `text` to `file`, which is replaced if it is there; to standard output where `file` is `None`.
 pub fn deliver(text: &str, file: Option<&str>) -> Result<(), CliError> {
     let Some(path) = file else { return print(text) };
     write(path, text.as_bytes())

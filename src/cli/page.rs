@@ -39,7 +39,7 @@ pub struct PageArguments {
     truth: bool,
 }
 
-/// Runs the command `page`: writes the frame as a web page and prints its file's name.
+/// Runs the command `page`: writes the frame as one HTML file and prints its name, what it shows and its size.
 pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
     check_target(output, *overwrite)?;
@@ -56,7 +56,8 @@ pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     output::print(&format!("{output}: {scene}, {technique}, {width}x{height}, {passes} passes, {bytes}\n"))
 }
 
-/// Fails, before long work, where the file must not or can't be written.
+/// Fails, before long work, where the file's extension is neither html nor htm, its folder is missing, or it exists and
+/// `overwrite` is false.
 pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     let name = file.escape_debug();
     let ending = Path::new(file).extension().unwrap_or_default().to_ascii_lowercase();
@@ -70,7 +71,8 @@ pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Returns the rendered or stored frame; one from a folder needs no GPU unless its truth is asked for.
+/// Returns the subject's frame, rendered now or as stored, with its truth added where `truth` asks for it. A stored
+/// frame opens no GPU unless its truth is asked for and it has none yet.
 fn made(subject: Subject, options: &FrameOptions, truth: bool) -> Result<RunFrame, CliError> {
     let mut session = match &subject {
         Subject::Folder(frame) if !truth || frame.capture.error().is_some() => None,

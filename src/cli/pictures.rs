@@ -28,7 +28,7 @@ fn parse_scale(text: &str) -> Result<f32, String> {
     scale.ok_or_else(|| format!("`{text}` is no number from 0.5 to 4"))
 }
 
-/// Without a window there is nothing to take a picture of.
+/// Returns an error, always: a build without a window can't take pictures of it.
 #[cfg(not(feature = "inspector"))]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     let PicturesArguments { output, adapter, only, window, scale } = arguments;
@@ -36,7 +36,8 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     Err(CliError::Window("this build has no window to take pictures of".to_owned()))
 }
 
-/// Draws all pictures.
+/// Runs the command `pictures`: draws the inspector's pictures, and the animated tour, whose names contain the word of
+/// `--only` (empty: all), and writes them as PNG files.
 #[cfg(feature = "inspector")]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
     let window = arguments.window.map(|side| side as f32);
@@ -166,6 +167,9 @@ mod shots {
         ]
     }
 
+    /// Writes a PNG of each picture whose name contains `only` (and the animated tour where its name does) to `folder`,
+    /// which is created. `window` is in points, `scale` in pixels a point; the tour has a size of its own. Fails where
+    /// no name matches.
     pub fn run(folder: &str, adapter: Option<&str>, only: &str, window: [f32; 2], scale: f32) -> Result<(), CliError> {
         let wanted: Vec<PictureSubject> = shots().into_iter().filter(|shot| shot.name.contains(only)).collect();
         let wants_tour = TOUR.contains(only);
@@ -185,7 +189,7 @@ mod shots {
         Ok(())
     }
 
-    /// Returns the error message where no picture's name contains the word `only`: which names there are.
+    /// Returns the error message where no picture's name contains `only`: it lists all names, the tour's last.
     fn nothing_named(only: &str) -> String {
         let names: Vec<&str> = shots().iter().map(|shot| shot.name).chain([TOUR]).collect();
         format!("no picture's name has `{only}`: give `--only` a part of one of {}", names.join(", "))

@@ -91,7 +91,8 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-/// Returns the coordinates of the vertices that are asked for.
+/// Prints the coordinates of the vertices that `--vertex` names; with `--json` writes them as JSON to `file`, or prints
+/// that where it is `None`. Fails where the frame's scene is not there (`source` is `None`).
 fn vertices(
     arguments: &PixelArguments,
     capture: &Capture,

@@ -7,7 +7,8 @@ use std::time::Duration;
 
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Runs `work` while a bar shows its progress, and returns its result; `what` names the work beside the bar.
+/// Runs `work` while a bar on standard error shows the steps of `progress`, which `work` gets too; returns its result,
+/// and removes the bar. `what` is the text beside the bar.
 pub fn with_bar<R>(what: &str, progress: &Progress, work: impl FnOnce(&Progress) -> R) -> R {
     let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %") {

@@ -30,7 +30,8 @@ pub struct RecordArguments {
     command: Vec<String>,
 }
 
-/// Runs the command `record`: runs a program under RenderDoc until it has shown the frame, and prints or stores that.
+/// Runs the command `record`: runs a program under RenderDoc until it has shown the chosen frame, and prints or stores
+/// that frame as `import` does. With `--keep` the RenderDoc capture stays too.
 pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     arguments.keep.as_ref().map_or(Ok(()), |file| output::check_target(&file.to_string_lossy()))?;

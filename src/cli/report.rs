@@ -61,8 +61,8 @@ enum MergedFiles {
     Merge(MergeArguments),
 }
 
-/// Runs the command `report`: measures techniques and prints or writes the results; `command` is the command line, for
-/// the page.
+/// Runs the command `report`: measures techniques on scenes and prints or writes the results, or merges the parts of a
+/// run. With a shard it measures only its rows. `command` is the command line to print in the page.
 pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     if let Some(MergedFiles::Merge(arguments)) = &arguments.merge {
         return merge::run(arguments, command);
@@ -129,7 +129,8 @@ fn moves(name: &str) -> Result<MovingPart, String> {
     MovingPart::from_name(name).ok_or_else(|| suggestion(name, &names))
 }
 
-/// Returns what is measured of a scene: one block, or one for each value of a sweep.
+/// Returns what is measured of a scene, each with `name`: one block, or one for each value of the sweep. Fails where
+/// the scene can't be swept.
 fn blocks(
     arguments: &ReportArguments,
     scene: &Scene,
@@ -145,7 +146,8 @@ fn blocks(
     Ok(blocks.into_iter().map(|block| (name.clone(), block)).collect())
 }
 
-/// Returns the names of a block's rows, which are the same in all parts of a run.
+/// Returns a name for each row of a block, with scene, technique, settings, size and swept value: the same in all parts
+/// of a run, by which they are merged.
 fn names_of(name: &str, SweepBlock { what, swept, .. }: &SweepBlock) -> Vec<String> {
     let [width, height] = what.size;
     let swept = swept.as_ref().map_or_else(String::new, |swept| format!(" · {} {}", swept.name, swept.text));
@@ -183,7 +185,8 @@ fn choices(arguments: &ReportArguments) -> Result<Vec<Choice>, CliError> {
     Ok(choices)
 }
 
-/// Returns names of scenes, numbered where two are the same: rows of different scenes are never compared.
+/// Returns the scenes' names, in order; a name that came before gets its number in brackets: `box`, `box (2)`. So rows
+/// of different scenes are never compared.
 fn distinct_names(scenes: &[Scene]) -> Vec<String> {
     let name = |(index, scene): (usize, &Scene)| {
         let earlier = scenes[..index].iter().filter(|other| other.name == scene.name).count();
@@ -192,7 +195,8 @@ fn distinct_names(scenes: &[Scene]) -> Vec<String> {
     scenes.iter().enumerate().map(name).collect()
 }
 
-/// Checks that no result replaces a scene: an option uses the word after it as its file.
+/// Fails where a file of results has the name of a scene file, a built-in scene or one of `scenes`: an option such as
+/// `--json` takes the word after it as its file.
 fn check_no_scene(files: &[&str], scenes: &[String]) -> Result<(), CliError> {
     let is_scene = |file: &&&str| {
         is_scene_file(Path::new(file)) || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == **file)

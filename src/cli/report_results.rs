@@ -27,17 +27,19 @@ pub struct ReportResults {
 }
 
 impl ReportResults {
-    /// Returns the targets of the formats in their order, and of the page.
+    /// Returns the targets of JSON, CSV, Markdown and the page, in this order; the plot is not among them.
     pub fn targets(&self) -> [ResultTarget; 4] {
         [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
     }
 
-    /// Fails, before long work, where one of the files can't be written.
+    /// Fails, before long work, where a file can't be made, one file is named for two results, or two results would go
+    /// to standard output.
     pub fn check(&self) -> Result<(), CliError> {
         results::check(&self.targets().each_ref(), &self.plot)
     }
 
-    /// Writes all that is asked for, the table where nothing is; `command` is the command line, for the page.
+    /// Writes the plot and each format that is asked for; prints the table where no format is, even if a plot was
+    /// written. `command` is the command line to print in the page.
     pub fn deliver(&self, command: &str, report: &Report) -> Result<(), CliError> {
         if let Some(file) = &self.plot {
             let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
@@ -67,7 +69,7 @@ pub fn plot_file(text: &str) -> Result<String, String> {
     if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
 }
 
-/// Parses the path of a page.
+/// Parses the path of a page, which must end in `.md` (in any case).
 pub fn page_file(text: &str) -> Result<String, String> {
     let is_page = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md"));
     if is_page { Ok(text.to_owned()) } else { Err("give a file that ends in .md".to_owned()) }

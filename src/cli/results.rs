@@ -12,7 +12,7 @@ pub fn target(file: &Option<String>) -> ResultTarget {
     file.clone().map(Some)
 }
 
-/// Returns the path of the plot, which is written already, relative to the page.
+/// Returns the plot's path relative to the page's folder; `None` unless both are named. Opens neither file.
 pub fn plot_beside(page: &Option<String>, plot: &Option<String>) -> Option<String> {
     let (page, plot) = page.as_ref().zip(plot.as_ref())?;
     Some(from_beside(Path::new(page), Path::new(plot)))
@@ -24,7 +24,8 @@ pub fn files<'a>(forms: &[&'a ResultTarget], plot: &'a Option<String>) -> Vec<&'
     of_forms.chain(plot.as_deref()).collect()
 }
 
-/// Fails, before long work, where one of the results' files can't be written.
+/// Fails, before long work, where a named file can't be made, one file is named twice, or more than one format goes to
+/// standard output.
 pub fn check(forms: &[&ResultTarget], plot: &Option<String>) -> Result<(), CliError> {
     let files = files(forms, plot);
     files.iter().try_for_each(|file| output::check_target(file))?;
@@ -44,7 +45,8 @@ pub fn check(forms: &[&ResultTarget], plot: &Option<String>) -> Result<(), CliEr
 /// The target of a format, and the function that returns its text.
 pub type ResultFormat<'a> = (&'a ResultTarget, &'a dyn Fn() -> Result<String, CliError>);
 
-/// Writes the formats that are asked for; the table where none is.
+/// Writes each format that is asked for, files before standard output; prints `table` instead only where no format is
+/// asked for.
 pub fn deliver(forms: &[ResultFormat], table: impl FnOnce() -> String) -> Result<(), CliError> {
     if forms.iter().all(|(target, _)| target.is_none()) {
         return output::print(&table());

@@ -11,7 +11,8 @@ pub struct ScenesArguments {
     json: Option<Option<String>>,
 }
 
-/// Prints one line for each scene, name first; or JSON.
+/// Runs the command `scenes`: prints one line for each scene, name first; with `--json` JSON instead, to the file if
+/// one is named.
 pub fn run(arguments: &ScenesArguments) -> Result<(), CliError> {
     match &arguments.json {
         None => output::print(&lines()),

@@ -85,8 +85,8 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     deliver(&stress, command, forms, &arguments.output, &arguments.plot)
 }
 
-/// Checks that every technique that is asked for runs in a chosen case, and that every case that is named runs one: a
-/// run that compares nothing is no success.
+/// Fails where a technique of `only` runs in none of the chosen cases, or, if cases were named (`is_named`), where a
+/// chosen case runs none of `only`: a run that compares nothing is no success. An empty `only` passes.
 fn check_that_all_run(chosen: &[&StressCase], is_named: bool, only: &[Technique]) -> Result<(), CliError> {
     let runs = |case: &StressCase, technique| case.entrants().iter().any(|entrant| entrant.technique == technique);
     if let Some(technique) = only.iter().find(|technique| !chosen.iter().any(|case| runs(case, **technique))) {
@@ -111,7 +111,8 @@ fn runs_nowhere(chosen: &[&StressCase], is_named: bool, technique: Technique) ->
     }))
 }
 
-/// Writes JSON, Markdown and the page where they are asked for, else the table; and the plot.
+/// Writes the plot, and JSON, Markdown and the page where asked for, else prints the table. Then fails where a case's
+/// result is not the expected one.
 pub fn deliver(
     stress: &StressResults,
     command: &str,

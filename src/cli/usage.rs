@@ -3,7 +3,7 @@
 use super::{CliError, output};
 use clap::error::ErrorKind;
 
-/// Prints help and version, which are results; returns everything else as an error line that says how to fix it.
+/// Prints the text where the "error" is a request for help or the version; returns any other as a one-line usage error.
 pub fn answer(error: &clap::Error) -> Result<(), CliError> {
     let text = error.render().to_string();
     match error.kind() {
@@ -12,7 +12,8 @@ pub fn answer(error: &clap::Error) -> Result<(), CliError> {
     }
 }
 
-/// Returns the message and its tips, without the usage text below them.
+/// Returns clap's message and its tips on one line, without `error: ` and the usage text, and with a hint at `--help`
+/// at the end.
 fn one_line(text: &str) -> String {
     let message = text.split("\nUsage:").next().unwrap_or(text);
     let message = message.split("\nFor more information").next().unwrap_or(message);

@@ -28,7 +28,8 @@ pub struct ViewArguments {
     truth: bool,
 }
 
-/// Opens the window; with no display, or built without one, says so and captures instead.
+/// Runs the command `view`: opens the window. Where it can't open, says so and captures the scene into a folder
+/// instead, replacing a capture there; a capture folder is an error then.
 pub fn run(arguments: &ViewArguments) -> Result<(), CliError> {
     match no_window_because() {
         None => window::open(arguments),
@@ -72,6 +73,8 @@ pub mod window {
     use crate::technique::{Choice, Technique};
     use std::path::Path;
 
+    /// Opens the window and returns when it is closed. Captures into a folder instead where the system turns out to
+    /// have no window.
     pub fn open(arguments: &ViewArguments) -> Result<(), CliError> {
         match app::run(request(arguments)?) {
             Err(AppError::NoWindow(reason)) => capture_instead(arguments, &format!("no window ({reason})")),
@@ -79,7 +82,9 @@ pub mod window {
         }
     }
 
-    /// Returns the request for the window, after checking everything that can be wrong with the arguments.
+    /// Returns the request for the window: a folder or shipped frame as it was stored (options of scene and frame are
+    /// ignored, the adapter excepted), else a scene as the options say. Fails for `--external-capture` and what can't
+    /// be opened.
     fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
         let why =
             "a window draws many frames, of which the debugger's own key records one; `capture` brackets its frame";
@@ -108,7 +113,8 @@ pub mod window {
         })
     }
 
-    /// Returns the request that opens a scene in a window, or in panels without one.
+    /// Returns the request that opens a scene, at the options' time, in a window or in panels without one; with no
+    /// step, no picked pixel and no truth.
     pub fn scene_request(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<ViewRequest, CliError> {
         let loaded = scene.load(name)?;
         let capture = frame.request(&loaded)?;

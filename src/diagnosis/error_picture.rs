@@ -31,7 +31,8 @@ impl Diagnosis {
     }
 }
 
-/// Draws the final picture of a capture in grey, with its wrong pixels in colour.
+/// Draws the final picture of a capture in dark grey, and pixels that are wrong for any light in their finding's
+/// colour. Excused pixels stay grey; without truth nothing is coloured.
 pub fn wrong_pixels(capture: &Capture) -> Picture {
     let mut picture = Picture::filled(capture.size, colors::NOTHING);
     let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));

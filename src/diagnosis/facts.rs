@@ -62,6 +62,7 @@ pub(crate) struct SuspectedCause {
 }
 
 impl SuspectedCause {
+    /// Returns the suspected cause with weight 0; `None` where no sample shows it (`shown_by` is 0).
     pub fn new(cause: Cause, evidence: String, fixes: Vec<Fix>, shown_by: usize) -> Option<SuspectedCause> {
         (shown_by > 0).then_some(SuspectedCause { cause, evidence, fixes, shown_by, weight: 0 })
     }
@@ -111,7 +112,8 @@ impl<'a> FrameFacts<'a> {
         self.passes(light).any(|pass| pass.view.0 == 0 && pass.draws.iter().any(|draw| draw.part.is_of_volume()))
     }
 
-    /// Returns whether a caster's volume is counted behind the visible surface.
+    /// Returns whether a draw of the caster's volume sides counts for this light behind the visible surface (z-fail):
+    /// by stencil operations on depth failure, or in a float target with another depth test than "nearer".
     pub fn counts_behind(&self, light: usize, caster: &str) -> bool {
         let of_caster = |draw: &&Draw| draw.caster.as_deref() == Some(caster);
         let mut sides = self.draws(light, DrawPart::Side).filter(of_caster);
@@ -124,7 +126,8 @@ impl<'a> FrameFacts<'a> {
         })
     }
 
-    /// Returns the depth test that only nearer fragments pass.
+    /// Returns the strict depth test of the frame's depth mapping that nearer fragments pass: `Greater` where depth is
+    /// reversed, else `Less`.
     fn nearer(&self) -> wgpu::CompareFunction {
         let is_reversed = self.plan.depth.mapping.is_reversed();
         if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
@@ -144,7 +147,8 @@ impl<'a> FrameFacts<'a> {
         2.0 * self.scene.camera.half_height_at(depth) / f64::from(self.plan.size[1])
     }
 
-    /// Returns the angle in radians that a pixel's height takes in the view.
+    /// Returns by how many metres a pixel's width grows a metre of distance: about its angle in radians. At least 1e-9,
+    /// as in a parallel view, where it does not grow.
     pub fn pixel_angle(&self) -> f64 {
         let [near, away] = [0.0, 1.0].map(|depth| self.pixel_width(depth));
         (away - near).max(1e-9)
@@ -173,8 +177,8 @@ impl RegionSamples<'_> {
         self.region.key.kind == RegionKind::TooDark
     }
 
-    /// Returns what `look` returned for the first sample for which it is not `None`, and for how many samples that is
-    /// so.
+    /// Returns the first value that `look` returns for a sample, and for how many samples it returns one; `None` where
+    /// it returns none. `look` runs for every sample.
     pub fn shown<T>(&self, look: impl FnMut(&PixelSample) -> Option<T>) -> Option<(T, usize)> {
         let mut found: Vec<T> = self.samples.iter().filter_map(look).collect();
         let count = found.len();
@@ -188,7 +192,8 @@ impl PixelSample {
         self.pixel.map(|n| f64::from(n) + 0.5)
     }
 
-    /// Returns what a caster's volume added to a light's count at this pixel, as if the count had no limits.
+    /// Returns the sum of steps (up or down) by which a caster's volume changed a light's count at this pixel, as if
+    /// the count had no limits; 0 where there is no history.
     pub fn counted(&self, light: usize, caster: &str) -> i32 {
         self.volume_events(light)
             .filter(|(_, one)| one.caster.as_deref() == Some(caster))
@@ -196,7 +201,8 @@ impl PixelSample {
             .sum()
     }
 
-    /// Returns the events of a light's volume faces at this pixel.
+    /// Returns the events at this pixel, with their triangles, in which faces of a light's shadow volumes were drawn;
+    /// none where there is no history.
     pub fn volume_events(
         &self,
         light: usize,

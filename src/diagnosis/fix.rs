@@ -123,12 +123,13 @@ impl Fix {
         Fix { larger: Some(times), ..Fix::default() }
     }
 
-    /// Returns whether it changes nothing.
+    /// Returns whether the fix changes nothing at all.
     pub fn is_empty(&self) -> bool {
         *self == Fix::default()
     }
 
-    /// Returns both fixes as one; where both change technique, size or a setting, `other` decides.
+    /// Returns both fixes as one; where both change technique, size or the same setting, `other` decides. Edits of
+    /// scene and plan are united, sorted, equal ones once.
     pub fn and(&self, other: &Fix) -> Fix {
         let mut both = self.clone();
         both.technique = other.technique.or(self.technique);
@@ -143,7 +144,8 @@ impl Fix {
         both
     }
 
-    /// Applies the changes of scene, technique and settings.
+    /// Applies the fix's changes of objects, technique and settings; not those of the plan ([`Fix::edit`]) and of the
+    /// picture's size. On an error the changes before it stay.
     pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), FixError> {
         for SceneEdit { object, name, change } in &self.scene {
             let missing = || FixError::NoObject { object: *object, name: name.clone() };
@@ -163,7 +165,7 @@ impl Fix {
     }
 
     /// Applies the changes of technique and settings alone. A new technique keeps the settings that both have, except
-    /// `size`.
+    /// `size`; its others are the defaults. The fix's own settings come last.
     pub fn choose(&self, choice: &mut Choice) -> Result<(), FixError> {
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
@@ -186,7 +188,8 @@ impl Fix {
         size.map(|side| side.saturating_mul(self.larger.unwrap_or(1)))
     }
 
-    /// Applies the changes of the plan; `fresh` is the technique's own plan of the same scene and settings.
+    /// Applies the fix's changes of the plan alone; `fresh` is the technique's own plan of the same scene and settings,
+    /// from which missing draws, cap draws and views are taken. Passes are matched by their place.
     pub fn edit(&self, plan: &mut FramePlan, fresh: &FramePlan) {
         for edit in &self.plan {
             match edit {
@@ -207,8 +210,8 @@ impl Fix {
         self.scene.is_empty() && self.plan.is_empty() && self.larger.is_none() && !self.is_empty()
     }
 
-    /// Returns how much it changes, for choosing the smallest fix: a setting weighs less than a scene edit, that less
-    /// than a technique.
+    /// Returns how much the fix changes, for choosing the smallest: 1 for each setting, 2 for each edit of the plan, 3
+    /// for each of the scene, 10 for another technique, 20 for a larger picture.
     pub fn weight(&self) -> usize {
         let [technique, larger] = [self.technique.is_some(), self.larger.is_some()].map(usize::from);
         self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * technique + 20 * larger
@@ -239,7 +242,8 @@ impl Fix {
     }
 }
 
-/// Adds the draws of a part that `plan` lacks and `fresh` has.
+/// Appends to each pass the draws of a part that the pass of `fresh` at the same place has and it lacks (by name and
+/// part). `None` adds nothing.
 fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<DrawPart>) {
     for (pass, fresh) in plan.passes.iter_mut().zip(&fresh.passes) {
         let missing = fresh.draws.iter().filter(|draw| Some(draw.part) == part);
@@ -251,7 +255,8 @@ fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<DrawPart>)
     }
 }
 
-/// Replaces cap draws by those of the technique's own plan, whose vertices are in the surface's order.
+/// Replaces each light cap and dark cap draw, and its mesh, by that of the same name and part in `fresh`, whose
+/// vertices are in the surface's order. Draws that `fresh` lacks stay.
 fn draw_caps_in_order(plan: &mut FramePlan, fresh: &FramePlan) {
     for (pass, fresh_pass) in plan.passes.iter_mut().zip(&fresh.passes) {
         for draw in pass.draws.iter_mut().filter(|draw| matches!(draw.part, DrawPart::LightCap | DrawPart::DarkCap)) {

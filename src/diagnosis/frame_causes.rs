@@ -113,7 +113,8 @@ impl FrameCauseFound {
         format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
     }
 
-    /// Returns sentences that explain the cause and what to do, also for causes that were removed together with it.
+    /// Returns sentences, in one paragraph, that explain the cause and what to do, then the same for each cause that
+    /// was removed together with it.
     pub fn meaning(&self) -> String {
         let all = std::iter::once(&self.cause).chain(&self.together_with);
         all.map(|cause| meaning(*cause)).collect::<Vec<_>>().join(" ")
@@ -143,7 +144,8 @@ impl FrameDiagnosis {
         self.lights.iter().map(|(error, _)| error.wrong()).sum()
     }
 
-    /// Returns the diagnosis as text for people.
+    /// Returns the diagnosis as text for people: the wrong pixels, each light's largest region, whether a second run
+    /// agrees, and the causes with their proofs.
     pub fn to_text(&self) -> String {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
         let mut text = format!(
@@ -195,7 +197,8 @@ impl FrameDiagnosis {
         text
     }
 
-    /// Returns the diagnosis as JSON for scripts: as `diagnose --json` of a scene, with one region a light.
+    /// Returns the diagnosis as JSON in the form of `diagnose --json` of a scene: with one region for each light that
+    /// has wrong pixels, no casters, receivers or fixes.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
         let cause = |found: &FrameCauseFound| {
@@ -242,7 +245,9 @@ pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Fram
     RULES.iter().filter_map(|rule| suspicion(rule.cause, plan, light, position)).collect()
 }
 
-/// Returns the evidence for a cause in a plan; `None` where there is none.
+/// Looks for evidence of one cause in a light's passes of a recorded plan, and returns it with the plan in which that
+/// is corrected. `position` is the light's homogeneous position. `None` without evidence, or where no rule looks for
+/// this cause.
 pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<FrameSuspicion> {
     let rule = RULES.iter().find(|rule| rule.cause == cause)?;
     let (evidence, fixed) = (rule.look)(&CountingDraws { plan, light }, position)?;
@@ -260,7 +265,8 @@ fn counts(operation: Operation) -> bool {
     matches!(operation, IncrementClamp | IncrementWrap | DecrementClamp | DecrementWrap)
 }
 
-/// Returns whether a raster state counts behind the surface, and whether it counts in front of it.
+/// Returns two flags: whether a raster state counts in the stencil behind the surface (on depth failure), and whether
+/// it does in front of it (on pass), for front or back faces.
 fn sides(raster: &RasterState) -> [bool; 2] {
     let faces = [&raster.stencil.front, &raster.stencil.back];
     [faces.iter().any(|face| counts(face.depth_fail_op)), faces.iter().any(|face| counts(face.pass_op))]
@@ -441,8 +447,9 @@ impl CountingDraws<'_> {
         Some((evidence, plan))
     }
 
-    /// Looks for draws counted behind the surface whose depth test passes at equal depth; the fix lets only nearer
-    /// fragments pass.
+    /// Looks for volume draws that count behind the surface with a less-or-equal or greater-or-equal depth test, so
+    /// that equal depth passes; returns the evidence and the plan with the strict test in them. `None` where there is
+    /// none.
     fn cap_fighting(&self) -> Option<(String, FramePlan)> {
         use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
         let is_meant =
@@ -462,7 +469,8 @@ impl CountingDraws<'_> {
         ))
     }
 
-    /// Looks for open edges in the volumes that are counted behind the surface; the fix closes them with caps.
+    /// Looks for open edges in the volumes that are counted behind the surface; returns the evidence and a plan with
+    /// one more draw, appended to the first such draw's pass, whose caps close them. `None` where no cap is missing.
     fn open(&self) -> Option<(String, FramePlan)> {
         let draws = || self.draws().filter(|(_, draw)| sides(&draw.raster)[0]);
         let open = OpenEdges::of(self.plan, draws().map(|(_, draw)| draw));

@@ -74,7 +74,8 @@ fn cause(found: &CauseFound) -> Value {
     })
 }
 
-/// Returns a fix as JSON: its changes, and the same in words.
+/// Returns a fix as a JSON object: only what it changes, and always the same in words (`words`). Edits of objects are
+/// by name.
 fn fix(fix: &Fix) -> Value {
     let mut table = Map::new();
     if let Some(technique) = fix.technique.map(Technique::name) {

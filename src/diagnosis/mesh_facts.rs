@@ -41,6 +41,8 @@ pub(crate) struct MeshFacts {
 }
 
 impl MeshFacts {
+    /// Measures an object's mesh for defects: open, split, near, non-manifold and inconsistent edges, flat and dropped
+    /// triangles, duplicates, slivers and whether a whole mesh is inside out. Places are in world space.
     pub fn new(object: &Object, edges: &EdgeList, topology: &Topology) -> MeshFacts {
         let mesh = &object.mesh;
         let world = object.world_positions();
@@ -162,7 +164,8 @@ impl MeshFacts {
     }
 }
 
-/// Returns the world-space middles of edges of one triangle, sorted into open, split and near.
+/// Returns the world-space middles of the edges that have one triangle, in three lists: open; split (another such edge
+/// has its ends at the same positions); near (another's ends are within a small part of the mesh's size).
 fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3>; 3] {
     let positions = mesh.positions();
     let lone: Vec<[u32; 2]> = (0..edges.edges().len())
@@ -200,7 +203,8 @@ fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3
     sorted
 }
 
-/// Returns the indices of triangles that have the same corners as an earlier one.
+/// Returns the indices of triangles that have the same vertex indices, in any order, as an earlier one; the first of
+/// each is left out.
 fn duplicates(mesh: &Mesh) -> Vec<usize> {
     let mut seen = BTreeMap::new();
     let mut found = Vec::new();

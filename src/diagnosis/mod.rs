@@ -60,10 +60,12 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The most regions that are listed one by one.
+    /// The most regions that a diagnosis lists one by one, with causes; the others are only counted
+    /// ([`Diagnosis::rest`]).
     pub const MOST_REGIONS: usize = 12;
 
-    /// Returns a few words on why no cause was found for a region.
+    /// Returns words for a region without a cause: that no shadows were asked for, where shadows are missing and the
+    /// technique is `none`; else that no known cause fits.
     pub fn without_cause(&self, region: &RegionFound) -> &'static str {
         let is_missing = region.kind == RegionKind::Wrong(Finding::MissingShadow);
         match self.technique {
@@ -127,7 +129,8 @@ impl RegionKind {
     }
 }
 
-/// A cause that fits a region, with its fix and the proof.
+/// A cause that may explain a region's wrong pixels, with its evidence, its fix and what running the frame with that
+/// fix has shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseFound {
     /// The cause.

@@ -19,8 +19,9 @@ impl WrongPixels {
     }
 }
 
-/// Compares a run with a fix to the run before: returns what it proves about a region, and how many pixels are still
-/// wrong or newly wrong in its box.
+/// Compares the wrong pixels of a run with a fix to those before: returns the proof for one region, and how many of its
+/// pixels are still wrong plus how many are newly wrong in its bounding box. Proven only where that is 0; partly where
+/// any of its pixels is right now.
 pub(crate) fn judge(
     region: &ConnectedRegion,
     before: &WrongPixels,
@@ -50,7 +51,8 @@ pub(crate) struct TriedCause {
 }
 
 impl TriedCause {
-    /// Returns the sort key: causes with a smaller key are named first.
+    /// Returns the sort key of a cause: proven first, then partly, then refuted, then not run (an `f32` limit without a
+    /// run comes second); then fewer pixels left, more samples, larger weight, smaller fix.
     fn rank(&self) -> (u8, u64, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>, usize, Cause) {
         let is_limit = self.suspicion.cause == Cause::F32Limit;
         let proof = match self.proof {
@@ -72,7 +74,7 @@ impl TriedCause {
     }
 }
 
-/// Sorts causes by likelihood, the most likely first.
+/// Sorts the tried causes, the most likely first, and converts them; none is dropped.
 pub(crate) fn ranked(mut tried: Vec<TriedCause>) -> Vec<CauseFound> {
     tried.sort_by_key(TriedCause::rank);
     let found = |tried: TriedCause| CauseFound {

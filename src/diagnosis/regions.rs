@@ -30,7 +30,9 @@ pub(crate) struct ConnectedRegion {
     pub bounds: [u32; 4],
 }
 
-/// Finds the connected regions of a light. `keys` has for each pixel its key, `None` for a right one.
+/// Finds the connected regions of a light, in reading order of their first pixels. `keys` has a key for each pixel,
+/// row-major, `None` for a right one; pixels with equal keys that are at most `REACH` columns and rows apart are of one
+/// region.
 pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2]) -> Vec<ConnectedRegion> {
     let mut regions = Vec::new();
     for start in 0..keys.len() {
@@ -50,7 +52,8 @@ pub(crate) fn find(light: usize, mut keys: Vec<Option<RegionKey>>, size: [u32; 2
 }
 
 impl ConnectedRegion {
-    /// Returns up to `most` of its pixels: the innermost first, then others spread over it.
+    /// Returns up to `most` different pixels of the region (column, row): the innermost first, then others spread
+    /// evenly in reading order.
     pub fn samples(&self, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {
         let count = self.pixels.len();
         let inmost = self.inmost(size);
@@ -64,7 +67,8 @@ impl ConnectedRegion {
         samples.into_iter().map(|index| place(index, size)).collect()
     }
 
-    /// Returns the index of the pixel that is left last when the region is eroded.
+    /// Returns the index (row-major in the picture of this size) of a pixel among those that are left last when the
+    /// region is eroded ring by ring.
     fn inmost(&self, size: [u32; 2]) -> usize {
         let [left, top, right, bottom] = self.bounds;
         let [width, height] = [right - left + 3, bottom - top + 3].map(|n| n as usize);
@@ -91,7 +95,8 @@ impl ConnectedRegion {
         }
     }
 
-    /// Returns the indices of all pixels of its bounding box.
+    /// Returns the row-major indices of all pixels of the region's bounding box, also of those that are not in the
+    /// region.
     pub fn boxed(&self, [width, _]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {
         let [left, top, right, bottom] = self.bounds;
         (top..=bottom).flat_map(move |y| (left..=right).map(move |x| y as usize * width as usize + x as usize))

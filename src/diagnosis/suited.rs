@@ -22,7 +22,8 @@ impl TechniqueFit {
         plain.chain(Choice::new(Technique::ZFail).counting_in_floats()).collect()
     }
 
-    /// Returns the technique's name with the settings that differ from the defaults: `z-fail counter=float`.
+    /// Returns the technique's name with the settings that differ from the defaults, in the technique's order: `z-fail
+    /// counter=float`.
     pub fn name(&self) -> String {
         let technique = self.choice.technique();
         let changed = technique.settings().iter().filter_map(|spec| {

@@ -118,7 +118,8 @@ impl Diagnosis {
 }
 
 impl RegionFound {
-    /// Returns a line that says what is wrong, where, and with which objects.
+    /// Returns a line that says what is wrong with which objects, at how many pixels, in which columns and rows
+    /// (counted from 0), at which pixel for example, and for which light.
     pub fn place(&self) -> String {
         let [left, top, right, bottom] = self.bounds;
         let [x, y] = self.at;
@@ -130,7 +131,8 @@ impl RegionFound {
         )
     }
 
-    /// Says what is wrong with which objects: `missing shadow of bunny on floor`.
+    /// Returns words for what is wrong with which objects: `missing shadow of bunny on floor`. Objects that are not
+    /// known are left out, and a wrong surface names no caster.
     pub fn title(&self) -> String {
         let casters = names(&self.casters);
         let on = names(&self.receivers).map_or_else(String::new, |receivers| format!(" on {receivers}"));
@@ -153,7 +155,8 @@ impl Fix {
     }
 }
 
-/// Returns whether two regions have the same causes with the same fixes and proofs.
+/// Returns whether two regions have the same causes in the same order, with the same fixes and proofs; evidence and
+/// numbers may differ. False where the first has no cause.
 fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
     let said = |region: &RegionFound| -> Vec<(Cause, Option<Fix>, Proof)> {
         region.causes.iter().map(|found| (found.cause, found.fix.clone(), found.proof)).collect()
@@ -161,14 +164,15 @@ fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
     !one.causes.is_empty() && said(one) == said(other)
 }
 
-/// Returns a line that says that this region has the same causes as region `like` (counted from 0).
+/// Returns a line that refers to an earlier region for the causes, with this region's own evidence for the first of
+/// them. `like` counts from 0, the text from 1.
 fn as_before(region: &RegionFound, like: usize) -> String {
     let first = region.causes.first();
     let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
     format!("   as {}{evidence}\n", like + 1)
 }
 
-/// Returns words for a cause's fix and what running it has shown.
+/// Returns words for a cause's fix, with its command-line options where it has any, and for what running it has shown.
 fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
     let Some(fix) = fix else { return "no mend to run".to_owned() };
     let options = fix.options();

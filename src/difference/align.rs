@@ -16,8 +16,8 @@ pub(super) enum AlignedPair {
     Second(usize),
 }
 
-/// Returns the common order of two lists: elements of only one come before the next that both have, the first list's
-/// before the second's.
+/// Merges two lists into one order that contains every element once, equal ones as pairs where that keeps both orders.
+/// Elements of only one list come before the next pair, the first list's before the second's.
 pub(super) fn align<K: Ord>(a: &[K], b: &[K]) -> Vec<AlignedPair> {
     let mut pairs = Vec::new();
     let (mut next_a, mut next_b) = (0, 0);
@@ -34,7 +34,8 @@ pub(super) fn align<K: Ord>(a: &[K], b: &[K]) -> Vec<AlignedPair> {
     pairs
 }
 
-/// Pairs the k-th element of a name in one list with the k-th in the other, in the first list's order.
+/// Pairs the k-th element of a key in one list with the k-th equal one in the other, as indices, in the first list's
+/// order. Elements without a partner are left out.
 fn paired<K: Ord>(a: &[K], b: &[K]) -> Vec<(usize, usize)> {
     let mut places: BTreeMap<&K, Vec<usize>> = BTreeMap::new();
     // Last first, so that the first is popped first.
@@ -43,7 +44,8 @@ fn paired<K: Ord>(a: &[K], b: &[K]) -> Vec<(usize, usize)> {
     a.iter().enumerate().filter_map(partner).collect()
 }
 
-/// Returns the longest part of the pairs whose second numbers increase as the first do.
+/// Returns the longest subsequence of the pairs in which the second numbers strictly increase; the pairs come sorted by
+/// their first numbers.
 fn increasing(pairs: &[(usize, usize)]) -> Vec<(usize, usize)> {
     // `ends[n]`: the pair that ends the best run of n + 1 pairs so far; `before`: the pair before it.
     let (mut ends, mut before): (Vec<usize>, Vec<Option<usize>>) = (Vec::new(), Vec::new());

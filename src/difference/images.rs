@@ -49,7 +49,8 @@ pub enum Texel {
     Byte(u8),
 }
 
-/// Compares two pictures; `None` where every bit is the same.
+/// Compares two pictures bit by bit; `None` where all is the same. Regions are of differing texels that touch, corners
+/// included; of equal ones the first is returned.
 ///
 /// # Panics
 /// If they are of other formats or sizes.

@@ -47,7 +47,8 @@ named_enum! {
     }
 }
 
-/// Two frames compared.
+/// The result of comparing two captures, A and B: what was asked for differently, and every pass and light with what
+/// differs in it (also those that are the same).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Scene, technique and settings of each frame.
@@ -101,7 +102,7 @@ pub struct DrawDifference {
     pub aspects: Vec<AspectDifference>,
 }
 
-/// An aspect that differs.
+/// An aspect (colour, depth, stencil, labels, a map…) that differs after a pass, a draw or the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AspectDifference {
     /// The aspect.
@@ -123,7 +124,7 @@ pub enum AspectChange {
     Sizes([[u32; 2]; 2]),
 }
 
-/// What can differ after a pass, or for a light.
+/// A kind of picture that can differ after a pass, or for a light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AspectKind {
     /// The picture, sRGB.
@@ -157,7 +158,8 @@ pub struct LightDifference {
     pub aspects: Vec<AspectDifference>,
 }
 
-/// Compares two captures.
+/// Compares two captures of one size, pass by pass and light by light. Passes are matched by name and light, lights by
+/// index; lights that only one has are not compared, only their number is.
 pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> {
     if a.size != b.size {
         return Err(DifferenceError::Sizes { sizes: [a.size, b.size] });
@@ -196,12 +198,14 @@ impl Difference {
         self.conditions.is_empty() && self.first().is_none() && self.lights.iter().all(|light| light.aspects.is_empty())
     }
 
-    /// Returns the first pass that differs, or that only one frame has.
+    /// Returns the first pass, in the common order, after which anything differs or that only one frame has; `None`
+    /// where there is none (lights may differ all the same).
     pub fn first(&self) -> Option<&PassDifference> {
         self.passes.iter().find(|pass| pass.differs())
     }
 
-    /// Returns the first pass after which texels differ.
+    /// Returns the first pass after which, or after one of whose draws, texels differ; passes and aspects that only one
+    /// frame has don't count. `None` where there is none.
     pub fn first_in_pixels(&self) -> Option<&PassDifference> {
         self.passes.iter().find(|pass| pass.states().flatten().any(|aspect| aspect.pixels().is_some()))
     }
@@ -215,12 +219,12 @@ impl ComparedFrame {
 }
 
 impl PassDifference {
-    /// Returns whether anything after it differs, or only one frame has it.
+    /// Returns whether an aspect differs after the pass or one of its draws, or only one frame has the pass.
     pub fn differs(&self) -> bool {
         self.only_in().is_some() || self.states().any(|aspects| !aspects.is_empty())
     }
 
-    /// Returns the only frame that has it; `None` where both do.
+    /// Returns the only frame that has the pass; `None` where both do.
     pub fn only_in(&self) -> Option<ComparedSide> {
         match self.index {
             [Some(_), None] => Some(ComparedSide::A),
@@ -236,7 +240,7 @@ impl PassDifference {
 }
 
 impl AspectDifference {
-    /// Returns where texels differ; `None` where the difference is another one.
+    /// Returns which texels differ; `None` where only one frame has the aspect, or the sizes differ.
     pub fn pixels(&self) -> Option<&PixelDifference> {
         match &self.found {
             AspectChange::Pixels(pixels) => Some(pixels),
@@ -266,7 +270,7 @@ impl AspectKind {
         !matches!(self, AspectKind::Labels | AspectKind::Truth | AspectKind::Findings)
     }
 
-    /// Returns the face of a map, or the layer of textures.
+    /// Returns the index of the map's face, or of the textures' layer; `None` for other aspects.
     pub fn layer(self) -> Option<usize> {
         match self {
             AspectKind::Map(layer) | AspectKind::Textures(layer) => Some(layer),
@@ -295,7 +299,8 @@ impl ImageComparisons {
         *self.0.entry([Arc::as_ptr(a), Arc::as_ptr(b)]).or_insert_with(compared)
     }
 
-    /// Returns the aspects that differ between two states, in the order of their kinds.
+    /// Returns the aspects that differ between two states, in the order of [`AspectKind`]: differing texels or sizes,
+    /// and those that only one state has. Empty where all are the same.
     fn states(&mut self, a: &ComparedState, b: &ComparedState) -> Vec<AspectDifference> {
         let mut kinds: Vec<AspectKind> = a.keys().chain(b.keys()).copied().collect();
         kinds.sort_unstable();
@@ -341,7 +346,8 @@ fn pass(pictures: &mut ImageComparisons, [a, b]: [&Capture; 2], pair: AlignedPai
     }
 }
 
-/// Compares draws that both have, by name, caster and part.
+/// Compares the states after the draws of two steps, matched by name, caster and part, and returns those that differ.
+/// Draws of only one step, or without a captured state, are left out.
 fn draws(pictures: &mut ImageComparisons, a: &Step, b: &Step) -> Vec<DrawDifference> {
     let keys = |step: &Step| {
         step.draws.iter().map(|draw| (draw.name.clone(), draw.caster.clone(), draw.part)).collect::<Vec<_>>()
@@ -391,7 +397,8 @@ fn after_draw<'a>(step: &Step, after: &'a DrawState) -> ComparedState<'a> {
     state
 }
 
-/// Returns the picture's aspects.
+/// Returns colour, depth and, where there is one, stencil of a pass's snapshot, each with whether the pass left it
+/// unchanged; nothing for a pass into a map.
 fn of_snapshot(snapshot: &Snapshot) -> ComparedState<'_> {
     let Snapshot::Frame(frame) = snapshot else { return ComparedState::new() };
     let stencil = frame.stencil.as_ref().map(|stencil| (AspectKind::Stencil, stencil));
@@ -404,7 +411,8 @@ fn layer(image: &Image, index: usize) -> AspectKind {
     if image.format() == PixelFormat::Rgba8 { AspectKind::Textures(index) } else { AspectKind::Map(index) }
 }
 
-/// Compares a light at the end of the frame.
+/// Compares what a light has at the end of the frame: labels, count, map, truth and findings. Label changes are counted
+/// only where both have labels.
 fn of_light(pictures: &mut ImageComparisons, light: usize, a: &CapturedLight, b: &CapturedLight) -> LightDifference {
     let labels = match (&a.shadow, &b.shadow) {
         (Some(in_a), Some(in_b)) => changes(in_a, in_b),
@@ -426,7 +434,7 @@ fn at_the_end(light: &CapturedLight) -> ComparedState<'_> {
     state
 }
 
-/// Counts pixels by their labels in both pictures, where these differ.
+/// Counts pixels by their pair of labels in both pictures of one size; pixels with equal labels are not counted.
 fn changes(a: &Image, b: &Image) -> BTreeMap<[u8; 2], u64> {
     let mut counts = BTreeMap::new();
     let pairs = a.rows().flatten().zip(b.rows().flatten());

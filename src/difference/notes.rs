@@ -19,7 +19,8 @@ pub struct DifferenceNote {
 /// Text for a missing value.
 const NONE: &str = "none";
 
-/// Compares scene, technique, settings, adapter and plan.
+/// Returns what was asked for differently: scene, technique, settings, adapter and driver; of different techniques only
+/// settings that both have. Only where none of these differs, also the first line in which the plans differ.
 pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
     let mut notes = NoteList::default();
     notes.add("scene", &a.scene, &b.scene);
@@ -40,7 +41,8 @@ pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
     notes.0
 }
 
-/// Compares camera, depth mapping and lights.
+/// Returns differences of camera, depth mapping, number of lights, and the positions and map matrices of lights that
+/// both have.
 pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<DifferenceNote> {
     let mut notes = NoteList::default();
     let far = |capture: &Capture| capture.camera.far.map_or_else(|| NONE.to_owned(), |far| far.to_string());
@@ -74,7 +76,8 @@ impl NoteList {
         }
     }
 
-    /// Adds the first line in which two plans differ; nothing where one is not known.
+    /// Adds a note with the first line in which two plans differ; nothing where they are equal or one is empty, as it
+    /// is not known.
     fn plans(&mut self, a: &str, b: &str) {
         if a.is_empty() || b.is_empty() {
             return;
@@ -98,7 +101,8 @@ fn light(position: DVec4) -> String {
     format!("{kind} {}", point(position.truncate()))
 }
 
-/// Writes the matrices of a map, in the fewest digits that read back as the same bits.
+/// Returns the matrices of a light's map as text, row by row, in the fewest digits that read back as the same bits;
+/// `None` where it has no map.
 fn matrices(light: &CapturedLight) -> Option<String> {
     let map = light.map.as_ref()?;
     let all = std::iter::once(&map.light_from_world).chain(&map.clip_from_light);

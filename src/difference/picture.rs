@@ -30,7 +30,9 @@ pub struct ShownDifference {
 }
 
 impl Difference {
-    /// Draws the first pass whose pixels differ, of the captures that were compared; `None` where no pixel differs.
+    /// Draws side by side A, B and where they differ, for the first pass whose pixels differ, else for the first such
+    /// aspect of a light. `a` and `b` must be the captures that were compared. `None` where no pixel that both have
+    /// differs.
     pub fn shown(&self, a: &Capture, b: &Capture) -> Option<ShownDifference> {
         let of_pass = self.first_in_pixels().and_then(|pass| of_pass(pass, a, b));
         let (aspect, in_a, in_b) = of_pass.or_else(|| self.of_lights(a, b))?;
@@ -55,7 +57,8 @@ impl Difference {
         Some(ShownDifference { picture, aspect })
     }
 
-    /// Finds an aspect of a light that no pass shows, such as the truth.
+    /// Returns the first aspect of a light, in the lights' order, whose texels differ at the end of the frame, with its
+    /// pictures in both captures; `None` where there is none.
     fn of_lights(&self, a: &Capture, b: &Capture) -> Option<AspectPair> {
         self.lights.iter().find_map(|light| {
             let aspect = light.aspects.iter().find(|aspect| aspect.pixels().is_some())?.aspect;
@@ -84,7 +87,8 @@ fn of_pass(pass: &PassDifference, a: &Capture, b: &Capture) -> Option<AspectPair
     })
 }
 
-/// Draws an aspect in the colours of the window.
+/// Draws an image of this aspect in the colours of the window; `range` is the smallest and largest depth, for the greys
+/// of depths.
 fn colored(aspect: AspectKind, image: &Image, range: [f32; 2]) -> Picture {
     let [width, height] = image.size();
     let mut picture = Picture::filled(image.size(), colors::NOTHING);
@@ -121,7 +125,8 @@ fn color(aspect: AspectKind, image: &Image, at: [u32; 2], [low, high]: [f32; 2])
     }
 }
 
-/// Returns the smallest and largest finite depth of both pictures.
+/// Returns the smallest and largest finite depth of all depth pictures; infinite and reversed (+∞, −∞) where there is
+/// none.
 fn range(images: &[&Arc<Image>]) -> [f32; 2] {
     let mut range = [f32::INFINITY, f32::NEG_INFINITY];
     for image in images.iter().filter(|image| image.format() == PixelFormat::Depth32F) {

@@ -8,7 +8,8 @@ use crate::numbers;
 use crate::truth::PixelLabel;
 
 impl Difference {
-    /// Returns the difference as text: passes and lights count from 1, pixels from 0 as in `pixel --at`.
+    /// Returns the difference as text: what was asked for differently, the first difference in detail, a line for each
+    /// pass and light. Passes and lights count from 1, pixels from 0 as in `pixel --at`.
     pub fn to_text(&self) -> String {
         let mut out = String::new();
         self.asked.iter().chain(&self.conditions).for_each(|one| out += &note(one));
@@ -33,7 +34,8 @@ impl Difference {
         out
     }
 
-    /// Says where the first difference is, in a few words: `pass 2, light 1: volumes`; `None` where there is none.
+    /// Returns where the first difference is, in a few words: `pass 2, light 1: volumes`; where no pass differs a
+    /// light's, else the first differing condition. `None` where nothing of these differs.
     pub fn first_place(&self) -> Option<String> {
         let of_light = |light: &LightDifference| {
             let aspect = light.aspects.first()?.aspect.title();
@@ -52,7 +54,7 @@ impl PassDifference {
 }
 
 impl AspectKind {
-    /// Returns its name in words: layers count from 1.
+    /// Returns the aspect's name in words for people; faces and layers count from 1.
     pub fn title(self) -> String {
         match self {
             AspectKind::Map(face) => format!("face {} of the map", face + 1),
@@ -132,7 +134,8 @@ fn pixel_count(pixels: u64) -> String {
     format!("{} {noun}", numbers::count(pixels))
 }
 
-/// Writes `most at 160,120: 1 in A, 3 in B, 2 apart`; labels differ without a distance.
+/// Returns `most at 160,120: 1 in A, 3 in B, 2 apart` for the texel that differs most; for labels `such as at …`
+/// without a distance.
 fn texel(aspect: AspectKind, TexelDifference { at, values, by }: &TexelDifference) -> String {
     let [a, b] = values.map(|value| value_text(aspect, value));
     let by = match (aspect, values) {
@@ -162,7 +165,8 @@ fn value_text(aspect: AspectKind, value: Texel) -> String {
     }
 }
 
-/// Writes one line for a pass.
+/// Returns one line for a pass: its number (from 1, both where they differ), its name and what differs, `the same` or
+/// `only in A`.
 fn row(pass: &PassDifference) -> String {
     let found = match pass.only_in() {
         Some(side) => format!("only in {}", side.name()),
@@ -192,7 +196,8 @@ fn summary(AspectDifference { aspect, found, carried }: &AspectDifference) -> St
     format!("{}: {found}{carried}", aspect.title())
 }
 
-/// Writes the light's labels at the end, and what else differs for it.
+/// Returns lines on what differs for a light at the end of the frame, and how many pixels changed from which label to
+/// which; empty where no aspect differs.
 fn of_light(light: &LightDifference) -> String {
     if light.aspects.is_empty() {
         return String::new();
@@ -213,7 +218,7 @@ fn of_light(light: &LightDifference) -> String {
     out
 }
 
-/// Writes all layers that only one frame has, as one.
+/// Returns words for a whole map or all textures that only one frame has, without the number of the face or layer.
 fn of_map(AspectDifference { aspect, found, .. }: &AspectDifference) -> String {
     match found {
         AspectChange::OnlyIn(side) => format!("{}: only in {}", aspect.name(), side.name()),

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// A light nearer to the axis than this share of its distance does not move visibly.
 const ON_AXIS: f64 = 1e-6;
 
-/// The positions of a light on its way round.
+/// A light of a scene that goes once round the scene's vertical axis, in steps of the same angle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightRound {
     scene: Scene,
@@ -19,8 +19,9 @@ pub struct LightRound {
 }
 
 impl LightRound {
-    /// Moves a light of a scene that stands still round in `places` steps of the same angle; the first is where the
-    /// light is.
+    /// Prepares the light of index `light` to go round the scene's middle in `places` steps of the same angle; the
+    /// first is where the light is, and a directional light's direction turns instead. An error where there is no such
+    /// light, or it is straight above or below the middle.
     pub fn new(scene: Scene, light: usize, places: u32) -> Result<LightRound, FilmError> {
         let lights = scene.lights.len();
         let Some(rotated) = scene.lights.get(light) else { return Err(FilmError::NoLight { light, lights }) };
@@ -38,7 +39,8 @@ impl LightRound {
         self.places
     }
 
-    /// Returns the scene with the light at a position, counted from 0.
+    /// Returns the scene with the light rotated by `place` of the `places` steps about the vertical axis,
+    /// counter-clockwise seen from above; height and distance stay. Position 0 is the scene unchanged.
     pub fn scene(&self, place: u32) -> Scene {
         let mut scene = self.scene.clone();
         let Some(light) = scene.lights.get_mut(self.light).filter(|_| place > 0) else { return scene };
@@ -50,7 +52,8 @@ impl LightRound {
     }
 }
 
-/// Returns the middle of the box around the casters that are not flat ground; around everything where there are none.
+/// Returns the middle of the world box around the casters that are not flat ground, or around all objects where there
+/// are none; the origin for a scene without vertices.
 fn middle(objects: &[Object]) -> DVec3 {
     let boxes: Vec<(&Object, DVec3, DVec3)> = objects
         .iter()

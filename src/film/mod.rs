@@ -96,7 +96,8 @@ pub enum FilmContent {
 }
 
 impl FilmContent {
-    /// Returns the number of pictures of the film.
+    /// Returns how many pictures the film has: one for each numbered pass (masks have none), or one for each position
+    /// of the light.
     pub fn pictures(&self) -> u32 {
         match self {
             FilmContent::Steps(capture) => step_numbers::count(capture) as u32,
@@ -104,7 +105,8 @@ impl FilmContent {
         }
     }
 
-    /// Returns width and height of each picture, pixels.
+    /// Returns width and height of each picture, pixels: the frame's, with a bar for the caption below it where passes
+    /// are shown.
     pub fn size(&self) -> [u32; 2] {
         match self {
             FilmContent::Steps(capture) => steps::size(capture),
@@ -144,7 +146,7 @@ impl FilmContent {
     }
 }
 
-/// A function that renders a scene for a picture of a film.
+/// A function that renders a scene as a request says; only a film of a moving light calls it.
 pub type FilmRenderer<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
 
 /// A film that is being written. One that is dropped before its end leaves no file.
@@ -159,7 +161,8 @@ pub struct Film {
 }
 
 impl Film {
-    /// Begins a film, which replaces the file at `path` once it is finished.
+    /// Begins a film that shows each picture for `milliseconds`. The file at `path` is replaced only once the film is
+    /// finished; dropped before, it leaves no file.
     pub fn begin(shows: FilmContent, path: &Path, milliseconds: u16) -> Result<Film, FilmError> {
         let format =
             AnimationFormat { size: shows.size(), pictures: shows.pictures(), milliseconds, colors: shows.colors() };
@@ -178,7 +181,8 @@ impl Film {
         self.shows.pictures()
     }
 
-    /// Writes the next picture; returns false where there is none left.
+    /// Renders and writes the next picture, and returns true; returns false, and writes nothing, where all pictures are
+    /// written.
     pub fn shoot(&mut self, render: &mut FilmRenderer) -> Result<bool, FilmError> {
         if self.next == self.pictures() {
             return Ok(false);
@@ -189,7 +193,8 @@ impl Film {
         Ok(true)
     }
 
-    /// Moves the finished film to its path, and returns its size in bytes.
+    /// Completes the film and moves it to its path, replacing a file there; returns the size of the file in bytes. Call
+    /// it once all pictures are written.
     pub fn finish(self) -> Result<u64, FilmError> {
         let Film { animation, file, path, .. } = self;
         let failed = |source| FilmError::Write { path: path.clone(), source };

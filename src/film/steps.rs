@@ -31,7 +31,9 @@ fn bar_height(width: u32) -> u32 {
     (width / WIDTH_A_HEIGHT).clamp(HEIGHTS[0], HEIGHTS[1])
 }
 
-/// Returns the picture of a pass, one pixel for each texel; maps as large as they fit.
+/// Returns the picture of what a pass wrote, with a bar for its name, light and kind of picture below. A frame's pixels
+/// are shown one to one; a map of another size is fitted into the frame's size, in the middle. Without anything
+/// written, the picture is empty.
 pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError> {
     let mut all = Picture::filled(size(capture), colors::BACKGROUND);
     let written = WrittenAspects::by_step(capture, index);
@@ -47,7 +49,8 @@ pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError
     Ok(all)
 }
 
-/// Draws words at the left, as many as fit, and dim ones at the right, which are left out where they do not fit.
+/// Returns the caption bar, `width` pixels wide: `left` bright, cut off with an ellipsis where it does not fit, and
+/// `right` dim at the right end, left out where it would take more than half of the bar.
 fn bar(width: u32, left: &str, right: &str) -> Result<Picture, SvgError> {
     let height = bar_height(width);
     let beside = height as f32 * BESIDE;

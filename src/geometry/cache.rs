@@ -112,7 +112,8 @@ impl GeometryCache {
         })
     }
 
-    /// Returns the edge list of `mesh`, built on first use.
+    /// Returns the edge list of `mesh`, built on first use and then cached by the mesh's content. Building may drop
+    /// other cached results where too much is cached.
     pub fn edges(&mut self, mesh: &Mesh) -> Arc<EdgeList> {
         if let Some(edges) = self.edges.get(&mesh.content_hash()) {
             return edges.clone();
@@ -123,7 +124,8 @@ impl GeometryCache {
         edges
     }
 
-    /// Returns the planes of a caster's triangles, computed on first use.
+    /// Returns the planes of a caster's triangles in world space, computed on first use and then cached by the mesh's
+    /// content and its pose.
     pub fn planes(&mut self, caster: Caster) -> Arc<CasterPlanes> {
         let key = (caster.mesh.content_hash(), caster.pose.bits());
         if let Some(planes) = self.planes.get(&key) {
@@ -135,8 +137,9 @@ impl GeometryCache {
         planes
     }
 
-    /// Writes the vertex indices of a volume into `out` and returns which ranges of triangles are its parts: computes
-    /// facings, the silhouette, and [`write_indices`].
+    /// Computes the shadow volume of a caster and a light: writes its vertex indices into `out`, replacing what it
+    /// held, and returns which ranges of triangles are sides and caps. Facings and silhouette are computed anew each
+    /// time, planes and edges are cached.
     pub fn volume_indices(&mut self, of: &VolumeRequest, out: &mut Vec<u32>) -> VolumeParts {
         let VolumeRequest { caster, light, .. } = *of;
         let triangles = caster.mesh.triangles();
@@ -188,14 +191,15 @@ impl GeometryCache {
         self.surfaces.get_or_make_within(MOST_SURFACES_CACHED, key, || (make(), mesh.triangles().len()))
     }
 
-    /// Returns the topology of `mesh`, examined on first use.
+    /// Returns the topology of `mesh`, examined on first use and then cached by the mesh's content.
     pub fn topology(&mut self, mesh: &Mesh) -> Arc<Topology> {
         let connectivity = self.connectivity(mesh);
         let build = || Arc::new(Topology::new(mesh, connectivity));
         self.topologies.entry(mesh.content_hash()).or_insert_with(build).clone()
     }
 
-    /// Returns how the triangles of a mesh are connected by their edges, examined on first use.
+    /// Returns how the triangles of a mesh are connected by their edges, examined on first use and then cached by the
+    /// mesh's content.
     pub fn connectivity(&mut self, mesh: &Mesh) -> Arc<Connectivity> {
         let edges = self.edges(mesh);
         let build = || Arc::new(Connectivity::new(mesh, &edges));
@@ -229,7 +233,8 @@ impl GeometryCache {
         }
     }
 
-    /// Returns whether two triangles of a placed mesh have the same corners; calls `find_out` only once for each pose.
+    /// Returns the result of `find_out`: whether two triangles of a placed mesh have the same corners. It is called
+    /// once for each mesh and pose, then the cached result is returned.
     pub fn has_doubles(&mut self, caster: Caster, find_out: impl FnOnce() -> bool) -> bool {
         let key = (caster.mesh.content_hash(), caster.pose.bits());
         if let Some(known) = self.doubled.get(&key) {

@@ -45,7 +45,9 @@ pub struct Connectivity {
 }
 
 impl Connectivity {
-    /// Examines a mesh and its edges.
+    /// Counts the mesh's open edges (of one triangle), inconsistent edges (of two that run the same way) and
+    /// non-manifold edges (of more), each with the middles of the first, and numbers the components of triangles joined
+    /// by edges.
     pub fn new(mesh: &Mesh, edges: &EdgeList) -> Connectivity {
         let positions = mesh.positions();
         let mut connectivity = Connectivity::default();
@@ -110,7 +112,8 @@ impl DisjointSets {
         member
     }
 
-    /// Joins the sets of two members. The smaller root stays, so that a set's root is its first member.
+    /// Joins the sets of two members; nothing changes where they are in one set already. The set's root is its smallest
+    /// member.
     pub(super) fn join(&mut self, one: usize, other: usize) {
         let (one, other) = (self.root(one), self.root(other));
         self.parent[one.max(other)] = one.min(other) as u32;

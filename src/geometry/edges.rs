@@ -73,7 +73,8 @@ impl Incident {
 }
 
 impl EdgeList {
-    /// Builds the list of the edges of `triangles`, whose corners index `vertex_count` vertices.
+    /// Builds the list of the edges of `triangles`, each once, sorted by (low, high), with all triangles at each.
+    /// Corners must be less than `vertex_count`.
     pub fn new(triangles: &[[u32; 3]], vertex_count: usize) -> EdgeList {
         let mut buckets = buckets_by_low_vertex(triangles, vertex_count);
         let none = Incident(triangles.len() as u32 * 2);
@@ -115,8 +116,8 @@ impl EdgeList {
         &self.edges
     }
 
-    /// Returns the triangles at the edge with this index, each with +1 where it runs from low to high and −1 where it
-    /// runs back.
+    /// Returns the triangles at the edge with this index (ascending), each with +1 where it runs from low to high and
+    /// −1 where it runs back.
     pub fn incident(&self, index: usize) -> impl Iterator<Item = (usize, i32)> {
         let fan = self.fans.binary_search_by_key(&(index as u32), |fan| fan.edge).map(|fan| self.fans[fan]);
         let incidents = fan.map_or(&self.pairs[index][..], |fan| self.of_fan(fan));
@@ -161,7 +162,8 @@ impl EdgeList {
         }
     }
 
-    /// Returns how many blocks of edges there are.
+    /// Returns how many blocks the edges are divided into for [`EdgeList::for_each_unbalanced`]; the last may be
+    /// shorter.
     pub(super) fn blocks(&self) -> usize {
         self.neighbourhoods.len()
     }

@@ -23,7 +23,7 @@ pub struct ExtrudedCorner {
     pub plane: [f32; 4],
 }
 
-/// How a vertex shader carries vertices away from one light.
+/// The uniform values by which a vertex shader carries vertices away from one light, in single precision.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Carry {
     /// The light's homogeneous position, relative to the origin of the pass's view.
@@ -46,7 +46,8 @@ impl Carry {
         !matches!(side.partial_cmp(&0.0), Some(std::cmp::Ordering::Greater))
     }
 
-    /// Returns where a vertex is carried.
+    /// Returns the homogeneous position that a vertex (relative to the view's origin) is carried to; its own w is
+    /// ignored.
     pub fn far(&self, [x, y, z, _]: [f32; 4]) -> [f32; 4] {
         let [to_x, to_y, to_z] = self.offset;
         [self.scale * x + to_x, self.scale * y + to_y, self.scale * z + to_z, self.w]
@@ -63,13 +64,15 @@ pub struct Extruded {
 }
 
 impl Extruded {
-    /// Returns which of these vertices (by index) are carried to the far end.
+    /// Returns for each of these vertices (by index) whether it is carried to the far end; false for an index without a
+    /// vertex.
     pub fn carried(&self, vertices: [u32; 3]) -> [bool; 3] {
         let is_carried = |corner: &ExtrudedCorner| self.carry.carries(corner.plane);
         vertices.map(|vertex| self.corners.data().get(vertex as usize).is_some_and(is_carried))
     }
 
-    /// Returns the positions at which the shader puts the vertices, computed when they are first asked for.
+    /// Returns the homogeneous positions to which the shader moves all vertices, near or far, computed when their data
+    /// is first asked for.
     pub fn vertices(&self) -> Blob<[f32; 4]> {
         let Extruded { corners, carry } = self.clone();
         let place = move |corner: &ExtrudedCorner| match carry.carries(corner.plane) {
@@ -110,7 +113,9 @@ pub struct ExtrudedVolume {
 }
 
 impl ExtrudedVolume {
-    /// Makes the volume of a mesh with vertices `world`; positions are relative to `origin`.
+    /// Builds the corners and triangles of a mesh's volume for a vertex shader to extrude: sides first, then one copy
+    /// of the triangles, or two. They don't depend on the light; positions are world-space ones less `origin`, in
+    /// single precision.
     pub fn new(
         world: &[DVec3],
         triangles: &[[u32; 3]],
@@ -145,8 +150,8 @@ impl ExtrudedVolume {
 }
 
 impl ExtrudedForm {
-    /// Returns the planes that decide about a triangle's two copies: it stays where its front casts, and where its back
-    /// does.
+    /// Returns the planes that decide whether a triangle's two copies stay or are carried: the triangle's plane for the
+    /// front, its negative for the back; zero, so that it is always carried, for a side that does not cast.
     fn planes(self, plane: [f32; 4]) -> [[f32; 4]; 2] {
         let (front, back) = (plane, plane.map(|value| -value));
         match self {
@@ -169,7 +174,8 @@ fn quad([p, q]: [u32; 2], [p_far, q_far]: [u32; 2], out: &mut Vec<u32>) {
     out.extend([q, p, p_far, q, p_far, q_far]);
 }
 
-/// Adds, for each edge, a quad between the two triangles that share it.
+/// Appends, for each edge that two triangles run along in opposite ways, the two triangles of a quad between their
+/// corners; edges without such a pair give none.
 fn between_neighbours(triangles: &[[u32; 3]], edges: &EdgeList, out: &mut Vec<u32>) {
     for (index, edge) in edges.edges().iter().enumerate() {
         let corner = |triangle: usize, vertex: u32| {

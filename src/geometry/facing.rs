@@ -78,7 +78,8 @@ pub struct Facings {
 }
 
 impl Facings {
-    /// Returns facings with these signs, such as those of [`facing`](super::facing).
+    /// Returns facings with these signs, one for each triangle in order: positive towards the light, negative away,
+    /// zero edge-on.
     pub fn from_signs(signs: impl IntoIterator<Item = Sign>) -> Facings {
         let mut facings = Facings::default();
         facings.signs.extend(signs.into_iter().map(|sign| sign.value() as i8));
@@ -119,7 +120,8 @@ impl Facings {
         self.away
     }
 
-    /// Sets the sign of triangles that do not cast to 0, as if they were edge-on.
+    /// Sets the sign of triangles that do not cast to 0, as if they were edge-on: none for [`Casters::All`], else those
+    /// that face the other way.
     pub fn keep_casting(&mut self, casters: Casters) {
         let keep = |sign: i8| match casters {
             Casters::All => sign,
@@ -148,14 +150,16 @@ impl Facings {
     }
 }
 
-/// Returns the sign that all have in common, or [`MIXED`].
+/// Returns the sign that all triangles of a run have in common; [`MIXED`] where they differ or there are none.
 fn sign_of_run(signs: &[i8]) -> i8 {
     let first = signs.first().copied().unwrap_or(MIXED);
     if signs.iter().fold(0, |different, sign| different | (sign ^ first)) == 0 { first } else { MIXED }
 }
 
 impl CasterPlanes {
-    /// Computes the planes of `triangles` with vertices `world`.
+    /// Computes single-precision planes of `triangles` with vertices `world`, and their error bound, for
+    /// [`CasterPlanes::facings`]. A triangle without a usable plane is marked by NaN: its facing is always computed
+    /// exactly.
     pub fn new(world: &[DVec3], triangles: &[[u32; 3]]) -> CasterPlanes {
         let Some(first) = world.first() else { return CasterPlanes::default() };
         let (low, high) = world.iter().fold((*first, *first), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -177,8 +181,8 @@ impl CasterPlanes {
         CasterPlanes { blocks, extremes, middle, reach }
     }
 
-    /// Computes on which side of every triangle a homogeneous `light` is, exactly, into `out`. `world` and `triangles`
-    /// must be those that the planes were made of.
+    /// Computes for every triangle on which side of its plane a homogeneous `light` is, exactly, and replaces `out` by
+    /// it: positive in front of it. `world` and `triangles` must be those that the planes were made of.
     pub fn facings(&self, world: &[DVec3], triangles: &[[u32; 3]], light: DVec4, out: &mut Facings) {
         let view = PlaneLight::new(self, light);
         if out.signs.len() != triangles.len() + 1 {
@@ -253,7 +257,8 @@ impl PlaneLight {
         PlaneLight { light: relative.to_array().map(|part| part as f32), w: f32::from(u8::from(light.w != 0.0)), bound }
     }
 
-    /// Returns the sign of each run, or [`MIXED`] where its planes' extremes do not decide.
+    /// Returns for each run of triangles the sign that all certainly have (1 or −1), or [`MIXED`] where the extremes of
+    /// their planes do not decide.
     fn runs(&self, extremes: &PlaneExtremes) -> [i8; RUNS] {
         let mut signs = [MIXED; RUNS];
         let light = [self.light[0], self.light[1], self.light[2], self.w];
@@ -278,7 +283,8 @@ impl PlaneLight {
         signs
     }
 
-    /// Writes the signs of a run's triangles into `out`; returns their sum, and how many are not 0.
+    /// Writes the signs of a run's triangles into `out`, by their planes where these decide, else by `exact` (called
+    /// with the triangle's number in the block); returns the signs' sum, and how many are not 0.
     fn run(&self, block: &PlaneBlock, run: usize, out: &mut [i8], exact: impl Fn(usize) -> i8) -> (i64, i64) {
         let [x, y, z] = self.light;
         let [nx, ny, nz] = &block.normal;
@@ -297,7 +303,8 @@ impl PlaneLight {
 }
 
 impl PlaneExtremes {
-    /// Returns the extremes of the first `count` planes of a block.
+    /// Returns the least and greatest of each plane component for every run among the first `count` planes of a block;
+    /// NaN for a run with a plane that is NaN.
     fn of(block: &PlaneBlock, count: usize) -> PlaneExtremes {
         let mut extremes = PlaneExtremes { low: [[f32::NAN; RUNS]; 4], high: [[f32::NAN; RUNS]; 4] };
         let [x, y, z] = &block.normal;

@@ -82,14 +82,15 @@ impl CapFan {
         OCTAHEDRON.len() * self.spheres.unsigned_abs() as usize
     }
 
-    /// Returns the apex, then the corners of the octahedron that stands for a sphere if there is any, as directions (w
-    /// = 0).
+    /// Returns the fan's vertices as directions (w = 0): its apex, then the six corners of an octahedron that stands
+    /// for a sphere; no octahedron where no sphere is needed.
     pub fn vertices(&self) -> impl Iterator<Item = DVec4> + use<> {
         let axes = if self.spheres == 0 { &AXES[..0] } else { &AXES[..] };
         std::iter::once(self.apex).chain(axes.iter().copied()).map(|direction| direction.extend(0.0))
     }
 
-    /// Returns the triangles of its spheres as vertex indices; `first` is the index of the octahedron's first corner.
+    /// Returns the triangles of its octahedra as vertex indices, all octahedra on the same vertices, flipped where
+    /// their number is negative; `first` is the index of the octahedron's first corner. Empty where it has none.
     pub fn sphere_indices(&self, first: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
         let is_flipped = self.spheres < 0;
         let side = move |[a, b, c]: [u32; 3]| {
@@ -99,7 +100,9 @@ impl CapFan {
     }
 }
 
-/// Returns the direction from a light into the box from `low` to `high`; `None` where the light is inside or on it.
+/// Returns a direction from a light towards the box from `low` to `high`: the inward axis of the side that it is
+/// farthest outside of, or the unit direction to the box's middle where that is nearly as steep. `None` where the light
+/// is inside or on it.
 fn into_box(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
     let above = [(DVec3::X, light.x - high.x), (DVec3::Y, light.y - high.y), (DVec3::Z, light.z - high.z)];
     let below = [(DVec3::NEG_X, low.x - light.x), (DVec3::NEG_Y, low.y - light.y), (DVec3::NEG_Z, low.z - light.z)];
@@ -110,8 +113,9 @@ fn into_box(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
     (outside > 0.0).then_some(if is_steep { to_middle } else { -outward })
 }
 
-/// Returns 1 where the cone of a triangle from the light contains a direction, −1 where it is flipped, otherwise 0;
-/// `None` where the direction is on its border.
+/// Returns 1 or −1, by the triangle's winding as seen from the light, where the cone from the light through the
+/// triangle strictly contains a direction; 0 where it does not, or the triangle is edge-on; `None` where the direction
+/// is on the cone's border.
 fn containment(light: DVec3, [a, b, c]: [DVec3; 3], direction: DVec3) -> Option<i32> {
     let turn = side_of_triangle([light, a, b], c.extend(1.0));
     let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| side_of_triangle([light, p, q], direction.extend(0.0)));

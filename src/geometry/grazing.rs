@@ -14,8 +14,8 @@ const GRAZING: f64 = 0.002;
 /// The sine below which single precision may take the light to be on a triangle's other side.
 const EDGE_ON: f64 = 1e-6;
 
-/// Moves the silhouette edges whose sides graze a triangle of `caster` to the end, keeping the order otherwise; returns
-/// how many there are.
+/// Moves the silhouette edges at which some triangle of `caster` is grazed by the light to the end, keeping the order
+/// otherwise; returns how many there are. `edges` is only a faster way to find the triangles.
 pub fn move_grazing_last(
     silhouette: &mut [SilhouetteEdge],
     caster: Caster,

@@ -46,8 +46,8 @@ impl IntersectionSearch<'_> {
     /// About how many pairs of nodes are shared among threads.
     const SHARED: usize = 1024;
 
-    /// Returns whether any two triangles intersect. Traverses the hierarchy against itself, so that each pair is
-    /// visited once.
+    /// Returns whether any two triangles intersect in more than a shared corner or edge. Stops at the first pair that
+    /// it finds.
     fn finds_any(&self) -> bool {
         let mut pairs: Vec<NodePair> = vec![[0, 0]];
         while !pairs.is_empty() && pairs.len() < Self::SHARED {
@@ -68,8 +68,8 @@ impl IntersectionSearch<'_> {
         })
     }
 
-    /// Returns whether triangles of two leaves intersect. For inner nodes, adds to `below` the pairs of children whose
-    /// boxes overlap.
+    /// Looks at a pair of nodes: for two leaves returns whether any of their triangles intersect; otherwise returns
+    /// false and appends to `below` the pairs of children whose boxes overlap.
     fn look(&self, [one, other]: NodePair, below: &mut Vec<NodePair>) -> bool {
         let node = |index: u32| &self.hierarchy.nodes[index as usize];
         let overlap = |pair: &NodePair| node(pair[0]).aabb().intersect_aabb(node(pair[1]).aabb());
@@ -114,8 +114,8 @@ impl IntersectionSearch<'_> {
             && meet(self.world, [one, other].map(|triangle| (self.triangles[triangle], self.has_area[triangle])))
     }
 
-    /// Returns the first triangle in the mesh's order that intersects a later one, and that one: the same pair in every
-    /// run.
+    /// Returns the first triangle in the mesh's order that intersects a later one in more than a shared corner or edge,
+    /// and one that it intersects: the same pair in every run. `None` where none does.
     fn first(&self) -> Option<[usize; 2]> {
         let with = |one: usize| {
             let mut found = None;
@@ -130,7 +130,8 @@ impl IntersectionSearch<'_> {
     }
 }
 
-/// Returns the bounding box of a triangle in `f32`, rounded outwards.
+/// Returns the bounding box of a triangle in `f32`, one step of `f32` larger on every side, so that it certainly
+/// contains the triangle.
 fn outer_box([a, b, c]: [DVec3; 3]) -> Aabb {
     let round = |p: DVec3, towards: fn(f32) -> f32| Vec3A::from_array(p.to_array().map(|x| towards(x as f32)));
     Aabb { min: round(a.min(b).min(c), f32::next_down), max: round(a.max(b).max(c), f32::next_up) }
@@ -179,7 +180,8 @@ struct FlatTriangle {
 }
 
 impl FlatTriangle {
-    /// Projects a triangle along the first axis that leaves it an area; `None` where the corners are collinear.
+    /// Projects a triangle along the first coordinate axis along which it keeps an area, exactly decided; `None` where
+    /// the corners are collinear.
     fn of(triangle: [DVec3; 3]) -> Option<FlatTriangle> {
         (0..3).find_map(|axis| {
             let corners = triangle.map(|corner| flat(corner, axis));
@@ -224,7 +226,8 @@ fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
     flat.inside_of(0, flat.flat(other_tip)) >= 0
 }
 
-/// Returns whether two triangles that share their corner 0 intersect in more than that.
+/// Returns whether two triangles that share their corner 0 (and no other) intersect in more than that point, exactly. A
+/// triangle without area counts as intersecting where the other's plane does not settle it.
 fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     let same_side = |signs: [Sign; 2]| signs[0] != Sign::Zero && signs[0] == signs[1];
     let of_other = [side(one, other[1]), side(one, other[2])];
@@ -256,7 +259,8 @@ fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     }
 }
 
-/// Returns whether two wedges in one plane with a common apex are separated by a line along an edge of either.
+/// Returns whether two wedges in one plane with a common apex have only the apex in common: all ends of each are
+/// strictly outside the other. False where the second has no area. `other` has the ends of the second.
 fn wedges_are_apart(one: &FlatTriangle, other: [DVec3; 2]) -> bool {
     let apex = one.corners[0];
     let [c, d] = other.map(|point| one.flat(point));
@@ -269,7 +273,8 @@ fn wedges_are_apart(one: &FlatTriangle, other: [DVec3; 2]) -> bool {
         && [a, b].iter().all(|p| other.wedge_keeps_out(*p))
 }
 
-/// Returns whether two triangles that share no corner intersect.
+/// Returns whether two triangles that share no corner intersect or touch, exactly. One without area counts as
+/// intersecting where the other's plane does not settle it.
 fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     let one_side = |signs: [Sign; 3]| signs[0] != Sign::Zero && signs[0] == signs[1] && signs[1] == signs[2];
     let of_other = other.map(|corner| side(one, corner));
@@ -294,7 +299,7 @@ fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
     pierces(one, &flat_one, other, of_other) || pierces(other, &flat_other, one, of_one)
 }
 
-/// Projects a triangle along an axis in whose direction its plane has an area.
+/// Projects a triangle along the given coordinate axis, without checking that it keeps an area then.
 fn flat_along(triangle: [DVec3; 3], axis: usize) -> FlatTriangle {
     let corners = triangle.map(|corner| flat(corner, axis));
     FlatTriangle { axis, corners, turn: side_of_line([corners[0], corners[1]], corners[2]) }

@@ -40,8 +40,8 @@ pub fn may_exceed(triangles: Vec<[DVec3; 3]>, light: DVec4, limit: usize) -> boo
     })
 }
 
-/// Returns the triangles relative to a point light; for a directional one, in a frame in which all its rays are (x, y,
-/// 1).
+/// Returns the triangles' corners relative to a point light. For a directional light returns their coordinates across
+/// its direction with z = 1, so that all of its rays are (x, y, 1).
 fn seen_from(mut triangles: Vec<[DVec3; 3]>, light: DVec4) -> Vec<[DVec3; 3]> {
     let corners = triangles.iter_mut().flatten();
     if light.w != 0.0 {
@@ -63,7 +63,7 @@ const MOST_IN_FULL: usize = 1 << 16;
 /// An upper bound for the rounding error of a position on a face, relative to 1 or, beyond that, to the position.
 const BESIDE: f64 = 1e-9;
 
-/// Returns a range on a face, widened by its rounding error.
+/// Returns the range from `low` to `high` on a face, widened at both ends by the rounding error of such positions.
 fn around(low: f64, high: f64) -> [f64; 2] {
     [low - BESIDE * low.abs().max(1.0), high + BESIDE * high.abs().max(1.0)]
 }
@@ -86,7 +86,8 @@ impl CubeFace {
         CubeFace { axis: 2, side: -1.0 },
     ];
 
-    /// Returns each corner's coordinates for this face: the two across it, and the distance ahead.
+    /// Returns each corner's coordinates for this cube face: the two across it (in cyclic order of the axes), and the
+    /// distance ahead, negative behind the light.
     fn seen<const N: usize>(self, corners: &[DVec3; N]) -> [DVec3; N] {
         corners.map(|corner| {
             let [across, other] = [1, 2].map(|step| corner[(self.axis + step) % 3]);
@@ -133,7 +134,8 @@ impl CoverageGrid {
         Some([along(0)?, along(1)?])
     }
 
-    /// Returns the cell of directions through a box.
+    /// Returns the range of directions (position across over distance ahead) that the grid's box in this column and row
+    /// covers.
     fn directions(&self, at: [usize; 2]) -> DirectionCell {
         let border = |axis: usize, index: usize| self.cell.low[axis] + index as f64 / self.scale[axis];
         let borders = |more: usize| [border(0, at[0] + more), border(1, at[1] + more)];
@@ -210,8 +212,8 @@ impl DirectionCell {
     /// All directions with positive z.
     const PLANE: DirectionCell = DirectionCell { low: [f64::NEG_INFINITY; 2], high: [f64::INFINITY; 2] };
 
-    /// Returns the part of this cell that a box with these corners can cover: all of it where the box reaches behind
-    /// the light, `None` where it covers none.
+    /// Returns the part of this cell that a box with these corners can cover, as seen from the light. Where the box
+    /// reaches behind the light, all of the cell if it may reach into it at all. `None` where it covers none.
     fn part_before(&self, corners: &[DVec3; 8]) -> Option<DirectionCell> {
         if corners.iter().any(|corner| corner.z <= 0.0) {
             return self.may_hold(corners).then_some(*self);
@@ -250,8 +252,8 @@ impl DirectionCell {
         })
     }
 
-    /// Returns whether something with these corners may reach into the cell: false only where all corners are outside
-    /// one of the planes around it.
+    /// Returns whether something with these corners may reach into the cell: false only where all corners are behind
+    /// the light, or outside one of the four planes around the cell.
     fn may_hold<const N: usize>(&self, corners: &[DVec3; N]) -> bool {
         let some = |inside: &dyn Fn(&DVec3) -> bool| corners.iter().any(inside);
         some(&|p| p.z >= 0.0)

@@ -74,8 +74,8 @@ pub fn fit(casters: &[[DVec3; 3]], light: DVec4, storage: &MapStorage) -> Option
     Some(perspective(&relative, eye, border, storage).unwrap_or_else(|| cube(&relative, eye, storage)))
 }
 
-/// Fits one perspective face around casters, given relative to the light; `None` where they do not fit into the widest
-/// cone.
+/// Fits one perspective face around casters' triangles, relative to a point light at `eye`; `border` widens it on all
+/// sides. `None` without triangles, or where they do not fit into the widest cone.
 fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64, storage: &MapStorage) -> Option<LightFrame> {
     let points = || relative.iter().flatten().copied();
     let directions = || points().map(DVec3::normalize_or_zero);
@@ -205,8 +205,8 @@ pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DV
 /// small objects such as floors and walls.
 const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 
-/// Returns whether an object can darken any of the points `receivers`: some triangle of it can. True without a test for
-/// an object of many triangles.
+/// Returns whether some triangle of an object can darken any of the points `receivers` (world space) under a
+/// homogeneous light. Always true for an object of many triangles, which are not tested.
 pub fn object_can_darken<R: Iterator<Item = DVec3>>(
     world: &[DVec3],
     triangles: &[[u32; 3]],
@@ -228,7 +228,8 @@ pub fn can_darken(corners: [DVec3; 3], light: DVec4, mut receivers: impl Iterato
     light_side != Sign::Zero && receivers.any(behind)
 }
 
-/// Returns the distance from the origin to a triangle (Ericson 2005, "Real-Time Collision Detection", 5.1.5).
+/// Returns the distance from the origin to the nearest point of a triangle, its border and inside included (Ericson
+/// 2005, "Real-Time Collision Detection", 5.1.5).
 fn distance_to_triangle([a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let over_inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(-*p).dot(normal) >= 0.0);

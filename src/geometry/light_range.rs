@@ -24,8 +24,8 @@ pub enum RangeInView {
     Nothing,
 }
 
-/// Returns which pixels of a picture of `size` pixels may show points within `range` metres of the world position
-/// `light`.
+/// Returns which pixels of a picture of `size` pixels may show points within `range` metres of `light` (world space):
+/// more than needed rather than fewer. Nothing only where none can be in view, as wholly before the near plane.
 pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) -> RangeInView {
     let center = camera.world_from_view().transpose() * (light - camera.eye);
     let radius = range * (1.0 + MARGIN) + center.length() * MARGIN;

@@ -58,7 +58,7 @@ fn plane_of(positions: &[DVec3], corners: [u32; 3]) -> Option<Plane> {
     (normal.length() > 0.0 && normal.is_finite()).then(|| Plane::through(a, normal))
 }
 
-/// Returns for each triangle the indices of its three edges.
+/// Returns for each of `count` triangles the indices of its edges in the list, ascending.
 fn edges_of_triangles(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
     let mut of_triangle = vec![Vec::with_capacity(3); count];
     for edge in 0..edges.edges().len() {
@@ -75,7 +75,9 @@ struct EdgeTraversal<'a> {
 }
 
 impl EdgeTraversal<'_> {
-    /// Returns the triangles connected with `seed` for which `belongs` is true, ascending, and marks them as taken.
+    /// Returns `seed` and the triangles that are connected with it by edges through triangles for which `belongs` is
+    /// true, ascending, and marks them as taken. Triangles taken before are left out; `belongs` is not asked about
+    /// `seed`.
     fn from(&mut self, seed: u32, belongs: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut members = vec![seed];
         let mut waiting = vec![seed];
@@ -139,7 +141,8 @@ pub struct FlattenedCaster {
 }
 
 impl FlattenedCaster {
-    /// Returns a hash of all fields, equal for equal values.
+    /// Returns a hash of all fields, for the cache: equal for equal values. It may differ between versions of the
+    /// program.
     pub fn key(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         // Debug text prints every number in full.
@@ -169,8 +172,9 @@ impl Flattener {
         (light_height > 0.0).then(|| Flattener { plane, light, clip, light_height, triangles: Vec::new() })
     }
 
-    /// Adds the shadow of a mesh. The vertices with the indices `on_plane` belong to the receiver and count as exactly
-    /// on its plane.
+    /// Appends the flattened triangles of a mesh (vertices in world space). The vertices with the indices `on_plane`
+    /// count as exactly on the plane. With clipping, what does not lie between plane and light adds nothing; without,
+    /// only triangles in the plane are left out.
     pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
         let mut heights: Vec<f64> = world.iter().map(|position| self.plane.height(*position)).collect();
         on_plane.iter().for_each(|vertex| heights[*vertex as usize] = 0.0);
@@ -190,8 +194,8 @@ impl Flattener {
         }
     }
 
-    /// Adds the shadow of a triangle, clipped to what lies between plane and light; each corner has its height over the
-    /// plane.
+    /// Appends the shadow of one triangle, clipped to what lies between the plane and a point light (only above the
+    /// plane for a directional one), as a fan of triangles. Each corner comes with its height over the plane.
     fn add_triangle(&mut self, corners: [(DVec3, f64); 3]) {
         let mut polygon = clip(&corners, 0.0, |h| h);
         if self.light.w != 0.0 {
@@ -209,8 +213,8 @@ impl Flattener {
         point.extend(1.0) - self.light * (height / self.light_height)
     }
 
-    /// Returns the flattened point, divided by w: a point beyond the light is carried back through it. A point level
-    /// with the light stays at infinity.
+    /// Returns the flattened point divided by w (w is 1): a point beyond the light is carried back through it onto the
+    /// plane. A point level with the light stays a direction, w 0.
     fn projected(&self, point: DVec3, height: f64) -> DVec4 {
         let shadow = self.shadow(point, height);
         if shadow.w == 0.0 { shadow } else { shadow / shadow.w }

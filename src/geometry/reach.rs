@@ -49,8 +49,8 @@ pub struct OutsidePlane {
 }
 
 impl ViewVolume {
-    /// Returns the volume that a camera sees; `aspect` is width over height. It has no far plane, as shadow volumes
-    /// must not be cut there.
+    /// Returns the volume that a camera sees, relative to the eye: near plane and four sides; `aspect` is width over
+    /// height. It has no far plane, as shadow volumes must not be cut there.
     pub fn new(camera: &Camera, aspect: f64) -> ViewVolume {
         let world_from_view = camera.world_from_view();
         let rays = camera.rays(aspect);
@@ -100,15 +100,17 @@ impl ViewVolume {
         outside(&[self.planes[0].flipped()], points).is_some()
     }
 
-    /// Returns the side plane of the view that all of these directions are outside of; `None` where they may be in
-    /// view. The near plane does not matter at infinity.
+    /// Returns the first side plane of the view that all of these directions are outside of; `None` where they may be
+    /// in view, or there are none. The near plane does not matter at infinity.
     pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<OutsidePlane> {
         let points: Vec<DVec4> = directions.iter().map(|direction| direction.extend(0.0)).collect();
         let sides = outside(&self.planes[1..], &points);
         sides.map(|found| OutsidePlane { plane: found.plane + 1, ..found })
     }
 
-    /// Returns the near-clip volume of a light, whose position is homogeneous and relative to the eye.
+    /// Returns the near-clip volume of a light, whose position is homogeneous and relative to the eye: the planes
+    /// between near rectangle and light, or where the light lies in the near plane, within rounding, that plane as a
+    /// slab without thickness.
     pub fn near_clip(&self, light: DVec4) -> NearClipVolume {
         let near_plane = &self.planes[0];
         let height = near_plane.at(light);
@@ -134,7 +136,8 @@ impl ViewVolume {
 }
 
 impl NearClipVolume {
-    /// Where points lie outside of it; `None` where they may not.
+    /// Returns the first of its planes that all points (homogeneous, relative to the eye) are outside of, by more than
+    /// rounding; a slab has two, one for each side. `None` where some may be inside, or there are no points.
     pub fn outside(&self, points: &[DVec4]) -> Option<OutsidePlane> {
         match self {
             NearClipVolume::Planes(planes) => outside(planes, points),
@@ -143,7 +146,8 @@ impl NearClipVolume {
     }
 }
 
-/// Returns the first plane that all points are outside of, by more than rounding may move them.
+/// Returns the first plane that all points are outside of by more than rounding may move them, with the distance of the
+/// nearest; `None` where there is none, or no points are given.
 fn outside(planes: &[Plane], points: &[DVec4]) -> Option<OutsidePlane> {
     let beyond = |plane: &Plane| {
         let mut nearest = f64::INFINITY;

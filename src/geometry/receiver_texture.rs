@@ -25,8 +25,8 @@ pub struct ReceiverParallelogram {
 }
 
 impl ReceiverParallelogram {
-    /// Returns the receiver itself where it is a parallelogram, else the smallest rectangle around it that is parallel
-    /// to one of its edges.
+    /// Returns the receiver itself where it has four vertices that form a parallelogram, else the smallest rectangle
+    /// around it that is parallel to one of its triangles' edges.
     pub fn around(receiver: &Receiver, world: &[DVec3], triangles: &[[u32; 3]]) -> ReceiverParallelogram {
         let members = || receiver.triangles.iter().map(|triangle| triangles[*triangle as usize]);
         let mut vertices: Vec<u32> = members().flatten().collect();
@@ -50,8 +50,8 @@ impl ReceiverParallelogram {
         self.ex.cross(self.ey).length()
     }
 
-    /// Returns the matrix that maps the space between the parallelogram and a homogeneous light to a box; `None` where
-    /// the light lies in the plane.
+    /// Returns the matrix from world space to the box: x and y from 0 to 1 across the parallelogram, z 1 on it and more
+    /// towards the homogeneous light. `None` where the light lies in its plane.
     pub fn box_from_world(&self, light: DVec4) -> Option<DMat4> {
         let ReceiverParallelogram { corner: b, ex, ey } = *self;
         // From the light to the corner; for a directional light against its direction.

@@ -99,8 +99,8 @@ pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivit
     Ok(())
 }
 
-/// Returns whether a light is outside a closed mesh, exactly: false where it is on the surface, always true for a
-/// directional light.
+/// Returns whether a light is outside a closed mesh (its winding number there is 0), exactly: false where it is or may
+/// be on the surface, always true for a directional light.
 pub fn light_is_outside(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> bool {
     let is_beyond = || !AxisBox::around(world.iter().copied()).holds(light.truncate() / light.w);
     light.w == 0.0 || is_beyond() || winding_number(world, triangles, light.truncate()) == Some(0)

@@ -34,7 +34,8 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Examines a mesh whose connectivity is known.
+    /// Examines a mesh for split vertices and flat triangles (in object space); its connectivity and dropped triangles
+    /// are taken over.
     pub fn new(mesh: &Mesh, connectivity: Arc<Connectivity>) -> Topology {
         let (positions, triangles) = (mesh.positions(), mesh.triangles());
         let mut topology = Topology {
@@ -111,7 +112,8 @@ fn is_flat(corners: [DVec3; 3]) -> bool {
     (0..3).all(is_flat_along)
 }
 
-/// Finds pairs of vertices nearer to each other than [`NEAR`] times the mesh's size, in a grid of cells twice as wide.
+/// Finds vertices that are nearer to an earlier one than [`NEAR`] times the mesh's size: counts pairs, in crowded
+/// places not all of them. Finds none in a mesh without size.
 fn split_vertices(mesh: &Mesh) -> FoundPlaces {
     let mut found = FoundPlaces::default();
     let Some((low, high)) = mesh.bounds() else { return found };

@@ -124,8 +124,9 @@ const MOST_TRIANGLES_OF_PARTS: usize = 65_536;
 /// The most parts, the largest, that are tested as occluders of other parts.
 const MOST_HOLDERS: usize = 8;
 
-/// Returns, for each triangle of a mesh, whether its component lies wholly in the umbra of another component; empty
-/// where none does.
+/// Returns, for each triangle of a mesh, whether its connected component lies wholly in the umbra of another, convex
+/// component; empty where none does. Only the largest convex components are tried, and very large meshes are not
+/// examined.
 pub fn in_umbra_of_parts(
     world: &[DVec3],
     triangles: &[[u32; 3]],
@@ -165,7 +166,7 @@ pub fn in_umbra_of_parts(
     (0..triangles.len()).map(|index| in_umbra[connectivity.component_of(index)]).collect()
 }
 
-/// Returns a part's own vertices, and its triangles as indices into them.
+/// Returns the vertices that a part uses, in their order and each once, and its triangles as indices into them.
 fn alone(world: &[DVec3], part: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut used: Vec<u32> = part.iter().flatten().copied().collect();
     used.sort_unstable();

@@ -54,7 +54,7 @@ pub enum FarEnd {
     Caps,
 }
 
-/// Carries a caster's vertices away from a light.
+/// Carries the vertices of one caster away from one light, by a chosen extrusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extruder {
     light: DVec4,
@@ -86,7 +86,7 @@ impl Extruder {
         self.light.w == 0.0 && self.extrusion == Extrusion::Infinite
     }
 
-    /// Returns the homogeneous position of a vertex's far copy.
+    /// Returns the homogeneous world position of the far copy of a vertex: w 0 with infinite extrusion, else 1.
     pub fn carry(&self, position: DVec3) -> DVec4 {
         let light = self.light.truncate();
         match self.extrusion {
@@ -102,7 +102,7 @@ impl Extruder {
         }
     }
 
-    /// Returns how a vertex shader carries vertices relative to `origin`, in single precision.
+    /// Returns the values by which a vertex shader carries vertices that are relative to `origin`, in single precision.
     ///
     /// # Panics
     /// If it carries onto a plane, [`Extrusion::Clamped`].
@@ -138,7 +138,7 @@ pub struct VolumeParts {
     pub dark_cap: DarkCap,
 }
 
-/// The triangles that close a volume's far end.
+/// How the triangles that close a volume's far end are drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum DarkCap {
     /// No triangles: the sides meet in one point.
@@ -163,7 +163,7 @@ impl VolumeParts {
         }
     }
 
-    /// Returns how many triangles a volume with both caps has.
+    /// Returns how many triangles a volume with both caps has: sides, grazing sides, light caps and the dark cap.
     pub fn triangles(&self) -> usize {
         let light_caps = self.light_cap.len() + self.light_cap_flipped.len();
         let dark_cap = match &self.dark_cap {
@@ -259,7 +259,8 @@ struct CapIndices<'a> {
 }
 
 impl<'a> CapIndices<'a> {
-    /// Splits off the slices that triangles with these signs fill, and leaves the rest in `self`.
+    /// Splits off the front of both slices, as long as triangles with these signs need it (positive: towards, negative:
+    /// away, 0: neither), and leaves the rest in `self`.
     fn split_off(&mut self, signs: &[i8]) -> CapIndices<'a> {
         let towards = signs.iter().filter(|sign| **sign > 0).count();
         let away = signs.iter().filter(|sign| **sign < 0).count();
@@ -285,7 +286,8 @@ impl<'a> CapIndices<'a> {
         }
     }
 
-    /// Writes triangles that all have the same facing.
+    /// Writes triangles that all have the facing `sign` to the front of its slice and advances that; writes nothing for
+    /// 0.
     fn push(&mut self, triangles: &[[u32; 3]], sign: i8) {
         let space = match sign {
             1 => &mut self.towards,
@@ -296,7 +298,8 @@ impl<'a> CapIndices<'a> {
     }
 }
 
-/// Splits the first `count` elements off `space` and returns them.
+/// Splits the first `count` elements off `space`, which becomes the rest, and returns them. Panics where there are
+/// fewer.
 fn front<'a>(space: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
     let (taken, rest) = std::mem::take(space).split_at_mut(count);
     *space = rest;
@@ -324,7 +327,8 @@ fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVert
     }
 }
 
-/// Writes the fan's triangles. Each runs along a side's far edge in the opposite direction to the side.
+/// Writes the fan's triangles, as many for each silhouette edge as its multiplicity says. Each runs along its side's
+/// far edge, opposite to the side, and to the apex.
 fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: FarVertices) {
     let mut space = out.iter_mut();
     for &SilhouetteEdge { edge, multiplicity } in silhouette {

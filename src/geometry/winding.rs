@@ -18,7 +18,9 @@ pub struct Crossing {
     pub direction: i32,
 }
 
-/// Returns the triangles that the line through `point` parallel to the coordinate `axis` (0, 1, 2) crosses.
+/// Returns the triangles that the line (both ways) through `point` parallel to the coordinate `axis` (0, 1, 2) crosses,
+/// in the mesh's order. Exact, and consistent at shared edges and corners: each is crossed in one triangle only.
+/// Edge-on triangles are never crossed.
 pub fn crossings(world: &[DVec3], triangles: &[[u32; 3]], point: DVec3, axis: usize) -> Vec<Crossing> {
     let flat = |p: DVec3| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
     let at = flat(point);
@@ -35,15 +37,15 @@ pub fn crossings(world: &[DVec3], triangles: &[[u32; 3]], point: DVec3, axis: us
     triangles.iter().enumerate().filter_map(crosses).collect()
 }
 
-/// Returns on which side of the line from `a` to `b` the point lies; where it is on the line, as if it lay a little
-/// beside it. Zero only where `a` equals `b`.
+/// Returns on which side of the line from `a` to `b` the point lies: positive to the left. On the line it counts as
+/// moved a little aside, always the same way, so that it is zero only where `a` equals `b`.
 fn side(a: DVec2, b: DVec2, point: DVec2) -> Sign {
     // The side of (x + e, y + e²) is that of (x, y) + e (a.y − b.y) + e² (b.x − a.x).
     side_of_line([a, b], point).or_else(|| Sign::between(b.y, a.y)).or_else(|| Sign::between(a.x, b.x))
 }
 
-/// Returns how often closed `triangles` wind around `point`: 0 outside, 1 inside a body that is wound outwards. `None`
-/// where the point may be on the surface.
+/// Returns how often closed `triangles` wind around `point`, exactly: 0 outside, 1 inside a body that is wound
+/// outwards, −1 inside one wound inwards. `None` where the point may be on the surface.
 pub fn winding_number(world: &[DVec3], triangles: &[[u32; 3]], point: DVec3) -> Option<i32> {
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
     // On the surface: in the plane of a triangle in whose bounds it lies.

@@ -17,7 +17,7 @@ pub struct LabelsAndPicture {
     pub picture: Arc<Image>,
 }
 
-/// Returns the light whose label mask a pass writes; `None` where it writes none.
+/// Returns the light whose label mask is the pass's colour target; `None` where its target is another or it has none.
 pub(super) fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
     match plan.attachment(pass.color.as_ref()?.attachment).role {
         AttachmentRole::Labels(light) => Some(light),
@@ -34,7 +34,8 @@ pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
     plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != TargetChange::Unchanged)
 }
 
-/// Returns the label mask of each light, read back from the GPU; `None` for a light without one.
+/// Returns the label mask of each light, read back from the GPU after the passes have run; `None` for a light whose
+/// mask no pass writes.
 pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
     let plan = prepared.plan;
     let mut storage = SnapshotStorage { memory: SnapshotMemory::Mapped, budget: prepared.budget };
@@ -49,7 +50,8 @@ pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, Gpu
     Ok(labels)
 }
 
-/// Returns the finished picture, read back from the GPU.
+/// Returns the finished picture (sRGB), read back from the GPU after the passes have run; all zero where no pass draws
+/// into it.
 pub(super) fn picture(prepared: &Prepared) -> Result<Arc<Image>, GpuError> {
     let (plan, format) = (prepared.plan, PixelFormat::Rgba8Srgb);
     let left = match last_of_picture(plan) {

@@ -15,7 +15,8 @@ impl MemoryBudget {
         MemoryBudget { most, used: 0 }
     }
 
-    /// Takes this many bytes more, or fails where the budget is spent.
+    /// Adds this many bytes to those in use; fails where the sum exceeds the budget. They count as used also after a
+    /// failure.
     pub fn take(&mut self, bytes: u64) -> Result<(), GpuError> {
         self.used = self.used.saturating_add(bytes);
         if self.used <= self.most {

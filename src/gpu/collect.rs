@@ -52,7 +52,8 @@ pub enum SnapshotMemory {
 }
 
 impl Collector {
-    /// Makes a collector that has collected no pass. `from_cache` says for each pass whether it will not run.
+    /// Returns a collector that has collected no pass: all images are zero, as wgpu clears new textures. `from_cache`
+    /// says for each pass whether it will not run, as its result is cached.
     pub fn new(plan: &FramePlan, from_cache: Vec<bool>, storage: SnapshotStorage) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
@@ -68,7 +69,8 @@ impl Collector {
         }
     }
 
-    /// Collects the snapshots of the pass `index`, whose copies are mapped.
+    /// Appends the step of pass `index` with its snapshot, read from the copies, which must be mapped. Passes must come
+    /// in order; an image that a pass left as it was is shared with the step before.
     pub fn take_in(&mut self, prepared: &Prepared, index: usize) -> Result<(), GpuError> {
         let plan = prepared.plan;
         let pass = &plan.passes[index];
@@ -130,8 +132,8 @@ impl Collector {
         Ok(())
     }
 
-    /// Returns the output after the last pass. `times` has the GPU time of each pass in milliseconds, `None` where it
-    /// was not measured.
+    /// Returns the output after the last pass, with the GPU time of each pass in milliseconds as in `times`; `None` for
+    /// a pass whose image the CPU makes.
     pub fn finish(self, plan: &FramePlan, times: Vec<Option<f64>>) -> ExecutorOutput {
         let mut output = self.output;
         for ((step, pass), ms) in output.steps.iter_mut().zip(&plan.passes).zip(times) {
@@ -154,7 +156,8 @@ fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
     plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()
 }
 
-/// Returns the image that a pass's change leaves in an aspect; `None` where the pass does not change it.
+/// Returns the image that a pass leaves in an aspect: uniform after a mere clear, else its copy from the GPU. `None`
+/// where the pass does not change the aspect, or no copy was made.
 pub(super) fn after(
     change: &TargetChange,
     staged: &Option<StagingCopy>,
@@ -169,7 +172,8 @@ pub(super) fn after(
 }
 
 impl SnapshotStorage {
-    /// Replaces the `known` image by the image after a pass; where that is `None`, the image before stays.
+    /// Replaces the `known` image by the image after a pass, and takes the bytes of new memory from the budget; an
+    /// equal image is not replaced. Where `after` is `None`, the image before stays.
     pub fn keep(&mut self, known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) -> Result<(), GpuError> {
         match (known, after) {
             (_, None) => {}
@@ -182,8 +186,8 @@ impl SnapshotStorage {
         Ok(())
     }
 
-    /// Replaces an aspect's `current` image by the `next` one, and returns the aspect of this step. A clear to the
-    /// value already there counts as no change.
+    /// Replaces an aspect's `current` image by the `next` one, and returns the aspect of this step. It counts as
+    /// unchanged where `next` is `None` or every texel is equal, even if a pass cleared or drew it.
     fn step_aspect(&mut self, current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Result<Aspect, GpuError> {
         let changed = match next {
             Some(next) => self.move_on(current, next)?,
@@ -192,7 +196,8 @@ impl SnapshotStorage {
         Ok(Aspect { image: current.clone(), unchanged: !changed })
     }
 
-    /// Replaces the `current` image by the next one, and returns whether they differ; an equal image is dropped.
+    /// Replaces the `current` image by the next one where any texel differs, and returns whether it did. Takes the
+    /// bytes of new memory from the budget, and shares equal rows where images are stored so.
     fn move_on(&mut self, current: &mut Arc<Image>, next: Arc<Image>) -> Result<bool, GpuError> {
         let is_another = next != *current;
         if is_another {
@@ -205,7 +210,7 @@ impl SnapshotStorage {
     }
 }
 
-/// Returns the step of a pass with its snapshot; the GPU time is filled in when the frame is finished.
+/// Returns the step of a pass with its snapshot and draws, without GPU time and without states after draws.
 fn step(pass: &Pass, snapshot: Snapshot) -> Step {
     let summary = |draw: &Draw| DrawSummary {
         name: draw.name.clone(),

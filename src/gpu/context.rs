@@ -29,7 +29,8 @@ pub struct GpuContext {
 }
 
 impl GpuContext {
-    /// Opens the first adapter whose name contains `wanted` in any case, or the fastest kind.
+    /// Opens the adapter of the fastest kind (discrete first, CPU last) among those with the required features whose
+    /// name contains `wanted`, in any case; the first of equal ones. Fails where there is none.
     pub fn new(wanted: Option<&str>) -> Result<GpuContext, GpuError> {
         let instance = instance(wgpu::InstanceDescriptor {
             backends: BACKENDS,
@@ -70,7 +71,8 @@ impl GpuContext {
         Ok(GpuContext { info, adapter, device, queue, timestamp_period })
     }
 
-    /// Runs `work` and returns as an error whatever errors the driver reported meanwhile.
+    /// Runs `work` and returns the first error that the driver reported meanwhile, in place of its result; otherwise
+    /// that result.
     pub(super) fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let filters = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
@@ -84,7 +86,7 @@ impl GpuContext {
         }
     }
 
-    /// Waits until all submitted work is done.
+    /// Blocks until all submitted work is done and the mappings that were asked for are there.
     pub(super) fn wait(&self) -> Result<(), GpuError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| GpuError::Driver(error.to_string()))?;
         Ok(())
@@ -109,7 +111,8 @@ impl GpuContext {
     }
 }
 
-/// wgpu's own; or one that hands every call on to it, where the tests of that ask for it.
+/// Returns wgpu's own instance; in builds with `record`, and with the environment variable of its tests set, one that
+/// hands every call on to it.
 fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
     #[cfg(feature = "record")]
     if std::env::var_os("STENCILSCOPE_TEST_WRAPPED").is_some() {

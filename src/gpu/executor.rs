@@ -50,7 +50,7 @@ enum RunMode {
 }
 
 impl Executor {
-    /// Makes an executor that runs plans on this GPU, with empty caches.
+    /// Returns an executor that runs plans on this GPU, with empty caches and the default budget of memory.
     pub fn new(context: GpuContext) -> Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
@@ -83,7 +83,8 @@ impl Executor {
         self.log = LogCache::default();
     }
 
-    /// Checks a plan, uploads its buffers and makes its pipelines, so that it can be run, also several times.
+    /// Checks a plan, uploads its buffers and makes its pipelines, so that it can be run, also several times. May open
+    /// another device for features that it needs; what earlier plans uploaded is used again.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let budget = MemoryBudget::of(self.most_bytes);
@@ -96,8 +97,8 @@ impl Executor {
         prepared
     }
 
-    /// Prepares a plan that is run once and then replaced by others: its shadow maps are dropped with it, and cached
-    /// maps of the plan before stay cached.
+    /// Prepares a plan that is run once: what it uploads is cached as usual, but its shadow maps are not, and those
+    /// cached before stay cached.
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         // First, as it may open another device, which has no maps.
         self.check(plan)?;
@@ -107,8 +108,8 @@ impl Executor {
         prepared
     }
 
-    /// Prepares a plan between frames that are timed: nothing that it uploads is cached for the next one, and what is
-    /// cached stays.
+    /// Prepares a plan between frames that are timed: it uses nothing that is cached but pipelines, and nothing that it
+    /// uploads is cached.
     pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
         let budget = MemoryBudget::of(self.most_bytes);
@@ -116,7 +117,8 @@ impl Executor {
         context.guarded(|| Prepared::new(context, pipelines, &mut PlanResources::default(), plan, budget))
     }
 
-    /// Fails where the plan breaks a rule or the GPU can't run it, and opens a device with the features that it needs.
+    /// Fails where the plan breaks a rule of the lint or the GPU can't run it; opens another device where this one
+    /// lacks a feature that it needs.
     fn check(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         match lint::check(plan).into_iter().next() {
             Some(error) => Err(GpuError::Plan(error)),
@@ -124,8 +126,8 @@ impl Executor {
         }
     }
 
-    /// Opens another device where this one lacks a feature that the plan needs. Plans already prepared stay on their
-    /// own device.
+    /// Opens another device, and empties the caches, where this one lacks a feature that the plan needs; else does
+    /// nothing. Plans already prepared stay on their own device.
     pub(super) fn provide(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
         let needed = features::needed(plan);
         if !self.context.device.features().contains(needed) {
@@ -153,8 +155,8 @@ impl Executor {
         Ok(took)
     }
 
-    /// Runs the timed passes and returns the sum of their GPU times in milliseconds; `None` on adapters without
-    /// timestamps.
+    /// Runs the timed passes and returns the sum of their GPU times in milliseconds, without passes whose image the CPU
+    /// makes; `None` where passes can't be timed.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
         let notes = context.guarded(|| Ok(FrameQueries::of_times(prepared, RunMode::Frame)))?;
@@ -216,7 +218,7 @@ impl Executor {
 }
 
 impl FrameQueries {
-    /// Makes the timestamp queries of the passes that a mode runs.
+    /// Returns timestamp queries for the passes that a mode runs and whose result is not cached, and no other queries.
     fn of_times(prepared: &Prepared, mode: RunMode) -> FrameQueries {
         let runs = |pass: &Pass| mode.runs(pass) && !prepared.is_cached(pass);
         FrameQueries {
@@ -242,7 +244,8 @@ impl RunMode {
     }
 }
 
-/// Returns the copies that a mode makes after each of these passes.
+/// Returns the buffers of the copies that a mode makes after each of these passes, in order; passes that it does not
+/// copy are left out.
 fn staged<'a>(
     prepared: &'a Prepared,
     mode: RunMode,
@@ -253,7 +256,8 @@ fn staged<'a>(
     Ok(copied.map(|index| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
 }
 
-/// Uploads the images that passes draw from the CPU, for these passes before they run.
+/// Uploads, before they run, the images of those of these passes that the mode runs and whose image the CPU makes. Each
+/// is computed anew.
 fn upload_images(prepared: &Prepared, mode: RunMode, passes: Range<usize>) {
     for (pass, targets) in prepared.plan.passes[passes.clone()].iter().zip(&prepared.passes[passes]) {
         if let (Some(image), Some(texture), true) = (&pass.image, &targets.image_target, mode.runs(pass)) {
@@ -270,15 +274,16 @@ fn all_passes(prepared: &Prepared) -> Range<usize> {
     0..prepared.plan.passes.len()
 }
 
-/// Submits all passes of a mode and waits for them. Shadow maps count as cached only after a frame without errors.
+/// Submits all passes of a mode and waits for them; on success marks the cached shadow maps as drawn, so that later
+/// frames use them.
 fn run(prepared: &Prepared, mode: RunMode, notes: &FrameQueries) -> Result<(), GpuError> {
     prepared.context.guarded(|| submit(prepared, mode, notes, all_passes(prepared)))?;
     prepared.set_drawn();
     Ok(())
 }
 
-/// Runs all passes of a capture in parts of [`PART_BYTES`] copied bytes: each part's copies that show no change are
-/// dropped before the next part's are made.
+/// Runs all passes of a capture in parts of about [`PART_BYTES`] copied bytes, and returns their snapshots: copies that
+/// show no change are dropped before the next part's are made.
 fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotMemory) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
@@ -301,7 +306,8 @@ fn run_in_parts(prepared: &mut Prepared, notes: &FrameQueries, memory: SnapshotM
     Ok(collector)
 }
 
-/// Returns the index of the first pass after the part that begins with the pass `start`.
+/// Returns the index of the first pass after the part that begins with pass `start`: the part ends with the pass whose
+/// copies bring it to [`PART_BYTES`], else with the last.
 fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
     let passes = all_passes(prepared).end;
     let mut bytes = 0;
@@ -314,7 +320,8 @@ fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
     Ok(passes)
 }
 
-/// Records some passes in one command buffer and submits it; the queries are resolved after the last pass of the plan.
+/// Uploads images, records those of these passes that the mode runs in one command buffer with the copies after them,
+/// submits it and waits. Queries are resolved only with the last pass of the plan.
 fn submit(prepared: &Prepared, mode: RunMode, notes: &FrameQueries, passes: Range<usize>) -> Result<(), GpuError> {
     upload_images(prepared, mode, passes.clone());
     let is_last = passes.end == prepared.plan.passes.len();

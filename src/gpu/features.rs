@@ -41,7 +41,8 @@ pub(super) fn names(open: Features) -> Vec<&'static str> {
     ON_DEMAND.iter().filter(|one| open.contains(one.feature)).map(|one| one.name).collect()
 }
 
-/// Fails where an adapter does not offer all of the `needed` features.
+/// Fails where an adapter does not offer all of the `needed` optional features; the error names the first that is
+/// missing and what to use instead.
 pub(super) fn check(needed: Features, offered: Features) -> Result<(), GpuError> {
     match ON_DEMAND.iter().find(|one| needed.contains(one.feature) && !offered.contains(one.feature)) {
         Some(OptionalFeature { name, instead, .. }) => Err(GpuError::MissingFeature { name, instead }),

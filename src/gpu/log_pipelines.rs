@@ -42,6 +42,7 @@ pub struct LogCorner {
 }
 
 impl LogCache {
+    /// Returns the bind group layout of the buffer that a fragment log is written to, made by the first call.
     pub fn layout(&mut self, device: &Device) -> &BindGroupLayout {
         self.layout.get_or_insert_with(|| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -60,6 +61,8 @@ impl LogCache {
         })
     }
 
+    /// Returns a depth texture of this format and size whose content is not used; a new one replaces the cached one
+    /// where format or size differ.
     pub fn target(&mut self, device: &Device, format: TextureFormat, size: [u32; 2]) -> &Texture {
         let cached =
             self.target.take().filter(|cached| cached.format() == format && [cached.width(), cached.height()] == size);
@@ -77,6 +80,8 @@ impl LogCache {
         }))
     }
 
+    /// Returns the pipeline that logs the fragments of draws with this key, made on first use. `view` is the layout of
+    /// bind group 0; it is only used then.
     pub fn pipeline(&mut self, device: &Device, view: &BindGroupLayout, key: &LogKey) -> RenderPipeline {
         if let Some(pipeline) = self.pipelines.get(key) {
             return pipeline.clone();

@@ -64,6 +64,7 @@ const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array!
 const EXTRUDED_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
 
 impl Pipelines {
+    /// Makes the bind group layouts and samplers; no pipeline is made yet.
     pub fn new(device: &Device) -> Pipelines {
         let smooth_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("smooth"),
@@ -97,7 +98,7 @@ impl Pipelines {
         self.starts.entry(format).or_insert_with(|| super::start::pipeline(device, format)).clone()
     }
 
-    /// Returns the pipeline of a key, made on first use.
+    /// Returns the pipeline of a key, made on first use. Where too many are cached, all are dropped first.
     pub fn get(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
         if let Some(pipeline) = self.pipelines.get(key) {
             return pipeline.clone();

@@ -141,12 +141,13 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Returns whether what this pass draws is cached for the next frame.
+    /// Returns whether one of the pass's targets is a texture that is cached between frames (a shadow map or texture).
     pub(super) fn may_cache(&self, pass: &Pass) -> bool {
         pass.targets().any(|id| self.cached_maps[id.0].is_some())
     }
 
-    /// Returns whether what this pass would draw is cached from an earlier frame, so that it need not run.
+    /// Returns whether a target of this pass is cached and was drawn by an earlier frame, so that the pass need not
+    /// run.
     pub(super) fn is_cached(&self, pass: &Pass) -> bool {
         let is_drawn = |id: AttachmentId| self.cached_maps[id.0].as_ref().is_some_and(|map| map.is_drawn());
         pass.targets().any(is_drawn)
@@ -157,7 +158,8 @@ impl<'a> Prepared<'a> {
         self.cached_maps.iter().flatten().for_each(|map| map.set_drawn());
     }
 
-    /// Returns the depth-stencil layer that a pass draws into; `None` where it has none.
+    /// Returns the depth-stencil layer that a pass draws into, for writing recorded content to it before the pass;
+    /// `None` where it has none.
     pub(super) fn start_target(&self, index: usize) -> Option<start::StartTarget<'_>> {
         let target = self.plan.passes[index].depth_stencil.as_ref()?;
         Some(start::StartTarget {
@@ -169,7 +171,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Returns the buffers that a pass's snapshot is copied to; they are made by the first call.
+    /// Returns the buffers that a pass's snapshot is copied to; made by the first call, and the same ones after it.
     pub(super) fn staged(&self, index: usize) -> Result<&StagedPass, GpuError> {
         let cell = &self.staged[index];
         if let Some(staged) = cell.get() {
@@ -184,7 +186,8 @@ impl<'a> Prepared<'a> {
         self.staged[index].take();
     }
 
-    /// Returns how many bytes the snapshots of all timed passes copy.
+    /// Returns how many bytes the snapshots of all timed passes copy, rows' padding included; aspects that a pass does
+    /// not draw to are not copied.
     pub fn snapshot_bytes(&self) -> u64 {
         let bytes = |[color, depth, stencil]: [Option<AspectCopy>; 3]| {
             let copied = color.into_iter().chain(depth).chain(stencil);
@@ -193,7 +196,8 @@ impl<'a> Prepared<'a> {
         self.plan.passes.iter().filter(|pass| pass.timed).map(|pass| bytes(copied(self.plan, pass))).sum()
     }
 
-    /// Returns whether there is memory for the snapshots of all timed passes at once.
+    /// Returns whether the memory budget has enough left for the snapshots of all timed passes at once; takes nothing
+    /// from it.
     pub fn holds_all_snapshots(&self) -> bool {
         let mut budget = self.budget;
         budget.take(self.snapshot_bytes()).is_ok()
@@ -213,7 +217,8 @@ struct PassPreparer<'a> {
 }
 
 impl PassPreparer<'_> {
-    /// Makes what the GPU needs to run a pass whose first draw has the index `first_draw` among all draws of the plan.
+    /// Makes views, pipelines and bind groups of a pass whose first draw has the index `first_draw` among all draws of
+    /// the plan. A pass without a target gets no draws.
     fn pass(&mut self, pass: &Pass, first_draw: usize) -> Result<PreparedPass, GpuError> {
         let plan = self.plan;
         let target = pass.depth_stencil.as_ref();
@@ -266,8 +271,8 @@ impl PassPreparer<'_> {
         Ok(PreparedDraw { shader, pipelines, index, vertices, indices, shading })
     }
 
-    /// Makes the bind group of the surface that a vertex-pulling program reads, with the surface's picture where the
-    /// draw shows one.
+    /// Makes the bind group of the surface that a vertex-pulling program reads; with UVs, picture and sampler where the
+    /// draw has a texture and the surface has UVs.
     fn surface_group(
         &mut self,
         draw: &Draw,
@@ -299,7 +304,8 @@ impl PassPreparer<'_> {
         Ok(device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries }))
     }
 
-    /// Makes the bind group of the light that a lighting or labelling program reads.
+    /// Makes the bind group of a light for a lighting or labelling draw: its constants, and the map, textures, count or
+    /// labels that the draw's program reads; without a texture where it reads none.
     fn light_group(&self, draw: &Draw, light: LightId) -> BindGroup {
         let (device, layouts) = (&self.context.device, &self.pipelines.layouts);
         let light = &self.plan.lights[light.0];
@@ -327,8 +333,8 @@ impl PassPreparer<'_> {
     }
 }
 
-/// Fails where an attachment is too large for the device, and takes the bytes of attachments and images from the
-/// budget.
+/// Fails where an attachment or a texture's picture is larger on a side than the device allows; takes the bytes of all
+/// of them from the budget, and fails where that is spent.
 fn check_size(device: &Device, plan: &FramePlan, budget: &mut MemoryBudget) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;
@@ -357,7 +363,8 @@ fn check_size(device: &Device, plan: &FramePlan, budget: &mut MemoryBudget) -> R
     budget.take(bytes)
 }
 
-/// Returns the descriptor that an attachment's texture is created from.
+/// Returns the descriptor of an attachment's texture, with the usages that its role needs; it can be copied into only
+/// for labels and where a recorded pass has content to begin with.
 fn described(plan: &FramePlan, id: AttachmentId) -> wgpu::TextureDescriptor<'_> {
     let attachment = plan.attachment(id);
     let other = match attachment.role {
@@ -438,7 +445,8 @@ impl AspectCopy {
     }
 }
 
-/// Returns what is copied after a pass, for colour, depth and stencil; `None` for an aspect that it does not draw to.
+/// Returns what is copied after a pass for colour, depth and stencil; `None` for an aspect that it does not draw to (a
+/// mere clear is not copied).
 fn copied(plan: &FramePlan, pass: &Pass) -> [Option<AspectCopy>; 3] {
     let copied = |target: Option<(AttachmentId, u32)>, change: TargetChange, aspect| {
         let (attachment, layer) = target.filter(|_| change == TargetChange::Drawn)?;

@@ -77,8 +77,8 @@ pub(super) struct PassTimestamps {
 }
 
 impl PassTimestamps {
-    /// Makes the timestamp queries of the passes that run; `None` where the adapter has none, or there are too many
-    /// passes.
+    /// Makes two timestamp queries for each pass for which `runs` is true; `None` where the adapter has none, no pass
+    /// runs, or there are too many passes.
     pub fn new(context: &GpuContext, plan: &FramePlan, runs: impl Fn(&Pass) -> bool) -> Option<PassTimestamps> {
         context.timestamp_period?;
         let mut next_slot = 0..;
@@ -89,6 +89,7 @@ impl PassTimestamps {
         Some(PassTimestamps { slots, queries })
     }
 
+    /// Returns where a pass writes the timestamps of its beginning and end; `None` for a pass that does not run.
     pub fn of_pass(&self, index: usize) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.slots[index].map(|slot| wgpu::RenderPassTimestampWrites {
             query_set: &self.queries.set,
@@ -135,7 +136,8 @@ impl DrawSamples {
         &self.queries.set
     }
 
-    /// Returns the index of a draw's query; `None` where it has none.
+    /// Returns the index of the query of a draw (of the pass `pass`, both by index); `None` where its samples are not
+    /// counted.
     pub fn slot(&self, pass: usize, draw: usize) -> Option<u32> {
         self.slots[pass][draw]
     }

@@ -23,7 +23,8 @@ pub(super) enum TargetChange {
     Drawn,
 }
 
-/// Returns how a pass changes its colour target.
+/// Returns whether a pass leaves its colour target unchanged, uniform (cleared and not drawn to; with the texel as
+/// stored) or drawn to. Unchanged without a colour target.
 pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> TargetChange {
     let Some(target) = &pass.color else { return TargetChange::Unchanged };
     let is_drawn = pass.image.is_some() || pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
@@ -36,7 +37,8 @@ pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> TargetChange {
     change(is_drawn, target.clear.map(texel))
 }
 
-/// Returns how a pass changes the depth aspect of its target.
+/// Returns whether a pass leaves its depth unchanged, uniform (a clear alone) or drawn to: by a draw that writes depth,
+/// or recorded content.
 pub(super) fn depth_change(pass: &Pass) -> TargetChange {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_depth);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.depth_write);
@@ -44,7 +46,8 @@ pub(super) fn depth_change(pass: &Pass) -> TargetChange {
     change(is_drawn, clear.map(|depth| depth.to_le_bytes().to_vec()))
 }
 
-/// Returns how a pass changes the stencil aspect of its target.
+/// Returns whether a pass leaves its stencil unchanged, uniform (a clear alone) or drawn to: by a draw that may write
+/// it, or recorded content.
 pub(super) fn stencil_change(pass: &Pass) -> TargetChange {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.writes_stencil());
@@ -64,7 +67,8 @@ fn change(is_drawn: bool, clear: Option<Vec<u8>>) -> TargetChange {
     }
 }
 
-/// Encodes a linear value from 0 to 1 as an sRGB byte (IEC 61966-2-1), as the GPU does when it clears.
+/// Encodes a linear value as an sRGB byte (IEC 61966-2-1), rounded, as the GPU does when it clears; clamps to 0 and
+/// 255.
 fn srgb_byte(linear: f64) -> u8 {
     let encoded = if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
@@ -82,6 +86,8 @@ pub(super) struct StagingCopy {
 }
 
 impl StagingCopy {
+    /// Makes a buffer for copies of one layer and aspect of a texture. Fails where the device allows no buffer of that
+    /// size. Nothing is copied yet.
     pub fn new(device: &Device, texture: &Texture, layer: u32, aspect: TextureAspect) -> Result<StagingCopy, GpuError> {
         let format = format_of(texture, aspect);
         let (row_stride, size) = (row_stride(texture, format), StagingCopy::bytes_of(texture, aspect));
@@ -106,7 +112,8 @@ impl StagingCopy {
         self.buffer.size()
     }
 
-    /// Records the copy from the texture to the buffer.
+    /// Records the copy of the whole layer from the texture to the buffer; it happens when the encoder's commands are
+    /// submitted.
     pub fn record(&self, encoder: &mut CommandEncoder) {
         let source = wgpu::TexelCopyTextureInfo {
             texture: &self.texture,
@@ -143,7 +150,8 @@ impl StagingCopy {
     }
 }
 
-/// Returns the format of a copy of a texture's aspect.
+/// Returns the format of a copied aspect of a texture; depth (`Depth32F`) for every texture format that is not one of
+/// the program's colours, counts or labels.
 fn format_of(texture: &Texture, aspect: TextureAspect) -> PixelFormat {
     match (texture.format(), aspect) {
         (wgpu::TextureFormat::Rgba8UnormSrgb, _) => PixelFormat::Rgba8Srgb,
@@ -154,7 +162,7 @@ fn format_of(texture: &Texture, aspect: TextureAspect) -> PixelFormat {
     }
 }
 
-/// Returns the bytes from one row of a copy to the next.
+/// Returns the bytes from one row of a copy to the next, padded to wgpu's row alignment.
 fn row_stride(texture: &Texture, format: PixelFormat) -> usize {
     (texture.width() as usize * format.texel_bytes()).next_multiple_of(ROW_ALIGNMENT)
 }

@@ -25,7 +25,8 @@ pub(super) enum ShaderInputs {
 }
 
 impl ShaderKey {
-    /// Returns the key of the shader that a draw needs.
+    /// Returns the key of the shader that a draw needs: its program, and the form of its inputs (extruded, retained for
+    /// recorded programs, textured or plain; the first of these that applies).
     pub fn of(draw: &Draw, mesh: &DrawMesh) -> ShaderKey {
         let form = match (&mesh.extruded, &mesh.retained, draw.constants.texture) {
             (Some(_), ..) => ShaderInputs::Extruded,

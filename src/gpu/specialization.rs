@@ -26,7 +26,8 @@ pub(super) struct Specialization {
 }
 
 impl Specialization {
-    /// Returns the specialization of a draw under the light of its pass.
+    /// Returns the specialization of a draw under the light of its pass: only what the draw's program can use is set,
+    /// the rest is the default.
     pub fn of(draw: &Draw, light: Option<&PlanLight>, wraps_diffuse: bool) -> Specialization {
         let material = &draw.constants.material;
         let has_checks = material.checks != 0.0;
@@ -52,7 +53,8 @@ impl Specialization {
         }
     }
 
-    /// Returns the pipeline-overridable constants of a program's shader, each with its name in WGSL.
+    /// Returns the pipeline-overridable constants that a program's shader has, by their names in WGSL, each 0 or 1;
+    /// empty for a program that has none.
     pub fn constants(self, program: Program) -> Vec<(&'static str, f64)> {
         let Specialization { has_checks, has_gloss, is_gouraud, fades, wraps, is_depth_clamped } = self;
         let of_surface = [

@@ -18,7 +18,8 @@ pub(super) struct StartTarget<'a> {
     pub pipeline: Option<&'a RenderPipeline>,
 }
 
-/// Records the commands that write the content to the target.
+/// Records the commands that write recorded content to a pass's target: stencil where both have it, depth where the
+/// content has it and there is a pipeline.
 pub(super) fn record(encoder: &mut CommandEncoder, target: &StartTarget, content: &StartContent) {
     let StartTarget { device, texture, layer, view, pipeline } = *target;
     if let Some(stencil) = content.stencil.as_ref().filter(|_| texture.format().has_stencil_aspect()) {
@@ -48,7 +49,7 @@ fn copy_stencil(encoder: &mut CommandEncoder, device: &Device, stencil: &Blob<u8
     encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, target, size);
 }
 
-/// Makes the pipeline that writes depths from a texture to a target of this format.
+/// Makes the pipeline that replaces the depths of a target of this format by those of a texture; the stencil stays.
 pub(super) fn pipeline(device: &Device, format: TextureFormat) -> RenderPipeline {
     let source = wgpu::ShaderSource::Wgsl(shaders::START.into());
     let module = &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("start"), source });

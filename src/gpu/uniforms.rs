@@ -91,7 +91,8 @@ impl UniformArray {
         UniformArray { buffer, stride: stride as u32, size: size as u64 }
     }
 
-    /// Returns the resource to bind: one struct of the buffer, chosen by a dynamic offset.
+    /// Returns the resource to bind: a window of one struct's size at the buffer's start, which a dynamic offset moves
+    /// to another struct.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         let size = std::num::NonZeroU64::new(self.size);
         wgpu::BindingResource::Buffer(BufferBinding { buffer: &self.buffer, offset: 0, size })
@@ -119,7 +120,7 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
     UniformArray::new(device, "views", &plan.views.iter().map(view).collect::<Vec<_>>(), BufferUsages::UNIFORM)
 }
 
-/// Uploads the constants of all draws of all passes, in order.
+/// Uploads the constants of all draws of the plan, a struct for each, in the order of passes and draws.
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
     let of_pass = |pass: &Pass| {
         let map = pass.light.and_then(|light| plan.lights[light.0].map.as_ref());

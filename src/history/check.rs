@@ -100,7 +100,8 @@ impl fmt::Display for Disagreement {
 }
 
 impl PixelHistory {
-    /// Returns every contradiction between this history and the GPU; empty where they agree.
+    /// Returns every contradiction between this history and the GPU: numbers of fragments, order and chain of events,
+    /// and captured values. Empty where they agree; a pixel without captured values counts as a contradiction.
     pub fn disagreements(&self) -> Vec<Disagreement> {
         let mut found = self.contradictions.clone();
         let is_fragment = |outcome: FragmentOutcome| {
@@ -143,7 +144,8 @@ impl PixelHistory {
     }
 }
 
-/// Returns an event's position in the API's order: pass, stage of the pass, draw, triangle.
+/// Returns a sort key of an event in the API's order: pass, then stored content, clears of depth, stencil and count,
+/// then triangles by draw and index.
 fn place(event: &PixelEvent) -> (usize, u8, usize, u32) {
     match &event.kind {
         PixelEventKind::Put => (event.pass, 0, 0, 0),

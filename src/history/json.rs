@@ -55,7 +55,8 @@ struct PixelEventEntry {
 }
 
 impl PixelDocument {
-    /// Makes the document of a history that took this many milliseconds to compute.
+    /// Makes the document of a history, with its events, final values, disagreements and, for each light, why it does
+    /// or does not arrive. `milliseconds` is how long the history took to compute.
     pub fn new(history: &PixelHistory, milliseconds: f64) -> PixelDocument {
         let stored = |depth, stencil| StoredEntry { stencil: history.has_stencil.then_some(stencil), depth };
         let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();

@@ -70,7 +70,7 @@ pub struct PixelHistory {
     pub contradictions: Vec<Disagreement>,
 }
 
-/// The values that a pixel's depth, stencil and count buffers store.
+/// The values that the depth, stencil and count buffers store at one pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelValues {
     /// The value in the depth buffer.
@@ -199,7 +199,8 @@ pub enum TestResult {
 }
 
 impl TestResult {
-    /// Returns whether it let the fragment through; `None` where it was not done.
+    /// Returns whether the test let the fragment through (also where it is off or always passes); `None` where it was
+    /// not done.
     pub fn passed(self) -> Option<bool> {
         match self {
             TestResult::Passed | TestResult::Always => Some(true),
@@ -225,7 +226,7 @@ impl FragmentOutcome {
 }
 
 impl PixelEvent {
-    /// Returns the event's triangle; `None` for a clear.
+    /// Returns the event's triangle; `None` for a clear, and for content that was set from outside.
     pub fn triangle(&self) -> Option<&TriangleEvent> {
         match &self.kind {
             PixelEventKind::Triangle(triangle) => Some(triangle),
@@ -253,7 +254,8 @@ impl PixelEvent {
         }
     }
 
-    /// Returns whether it changed a value of the pixel, or reached its colour: faces of shadow volumes have none.
+    /// Returns whether the event changed the pixel's depth, stencil or count, or is a triangle other than a volume's
+    /// face that passed all tests, and so reached the colour.
     pub fn does_something(&self) -> bool {
         let has_passed = self.triangle().is_some_and(|one| one.outcome.passed());
         self.before != self.after || (has_passed && !self.is_of_volume())
@@ -267,7 +269,7 @@ impl PixelEvent {
         }
     }
 
-    /// Returns whether it is a face of a shadow volume.
+    /// Returns whether the event is a triangle of a shadow volume (side or cap), whatever became of it.
     pub fn is_of_volume(&self) -> bool {
         self.triangle().is_some_and(|one| one.part.is_of_volume())
     }
@@ -285,7 +287,8 @@ fn step_of(operation: StencilOperation) -> Option<i32> {
 }
 
 impl PixelHistory {
-    /// Returns the value that a light's count was cleared to last; 0 where it was not cleared.
+    /// Returns the value that a light's count (stencil or float) was last cleared to at this pixel; 0 where none of the
+    /// light's passes cleared it.
     pub(crate) fn cleared_to(&self, light: usize) -> i32 {
         let clears = self.events.iter().rev().filter(|event| event.light == Some(light));
         let mut cleared = clears.filter_map(|event| match event.kind {
@@ -321,8 +324,9 @@ impl PixelHistory {
         last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
     }
 
-    /// Returns on which side of the visible surface a light's volume faces count here. `None` where no face here shows
-    /// it: what was clipped or culled counts nowhere.
+    /// Returns on which side of the visible surface a light's volume faces count at this pixel; as needed where they
+    /// count on both. Where faces were tested but none counted, the side where they are not. `None` where no face was
+    /// tested: what was clipped or culled counts nowhere.
     pub fn counted_side(&self, light: usize) -> Option<CountedSide> {
         let is_behind = |event: &PixelEvent| {
             let depth = event.triangle()?.depth;
@@ -350,7 +354,8 @@ impl PixelHistory {
     }
 }
 
-/// Returns the values that the GPU stored at a pixel after each pass of the picture.
+/// Returns the values that the GPU stored at a pixel after each pass that has a snapshot of the picture; passes into
+/// maps are left out. The count is there only after the last pass that adds to it.
 fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<CapturedAfter> {
     let frame = |index: usize| match &capture.steps.get(index)?.snapshot {
         Snapshot::Frame(frame) => Some((index, frame)),

@@ -88,7 +88,8 @@ impl HistoryReplay<'_> {
         self.values = after;
     }
 
-    /// Adds the events that a pass begins with: content set from outside, and clears.
+    /// Appends the events that a pass begins with, and changes the pixel's current values accordingly: content set from
+    /// outside (not that of the frame's own start), then clears of depth, stencil and a float count.
     fn clear(&mut self, index: usize, pass: &Pass) {
         // The frame's own start is no event.
         if let Some(start) = start_content(pass).filter(|_| first_with_depth(self.plan) != Some(index)) {
@@ -143,8 +144,9 @@ impl HistoryReplay<'_> {
         self.push(one.pass, triangle(draw, one, VisibleFace { is_front, depth }, outcome), after);
     }
 
-    /// Checks what geometry says of a triangle against whether the GPU made a fragment of it; adds the event of a
-    /// culled or clipped one.
+    /// Compares what geometry says of a triangle with whether the GPU made a fragment of it: appends the event of a
+    /// culled or clipped triangle, or a contradiction where they disagree. Does nothing for a triangle that surely
+    /// covers the pixel and has a fragment, or is doubtful.
     fn compare(&mut self, pass: &Pass, one: &Covering, has_fragment: bool) {
         let draw = &pass.draws[one.draw];
         let (face, outcome) = match (one.coverage, has_fragment) {
@@ -162,7 +164,8 @@ impl HistoryReplay<'_> {
     }
 }
 
-/// Returns how far computed depths may be from those stored in another program's frame; 0 for our own.
+/// Returns how far computed depths may be from those stored in another program's frame, by its depth format; 0 for our
+/// own frames.
 fn rounding(plan: &FramePlan) -> f32 {
     let first = first_with_depth(plan).map(|index| &plan.passes[index]).filter(|pass| pass.recorded.is_some());
     let target = first.and_then(|pass| Some(plan.attachment(pass.depth_stencil.as_ref()?.attachment)));
@@ -175,7 +178,8 @@ fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> PixelValues {
     first.map_or(NEW, |start| values_of(start, plan, pixel, NEW))
 }
 
-/// Returns the index of the first pass that uses the picture's depth.
+/// Returns the index of the first pass into the picture that has a depth-stencil attachment; `None` where there is
+/// none.
 fn first_with_depth(plan: &FramePlan) -> Option<usize> {
     plan.passes.iter().position(|pass| plan.is_of_picture(pass) && pass.depth_stencil.is_some())
 }
@@ -184,7 +188,8 @@ fn start_content(pass: &Pass) -> Option<&StartContent> {
     pass.recorded.as_ref()?.start.as_ref()
 }
 
-/// Returns a pixel's values in some content, and those of `values` where it has no depth or stencil.
+/// Returns the depth and stencil that `start` sets at a pixel; those of `values` where it sets none. The count is
+/// always that of `values`.
 fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: PixelValues) -> PixelValues {
     let index = y as usize * plan.size[0] as usize + x as usize;
     let depth = start.depth.as_ref().and_then(|depth| depth.data().get(index).copied());
@@ -201,8 +206,8 @@ pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     }
 }
 
-/// Returns for each light the stencil bits that its volumes' draws write, whether or not they cover this pixel; `None`
-/// for a light without such draws.
+/// Returns for each light the stencil bits that its first volume draw may write, whether or not it covers this pixel;
+/// `None` for a light without volume draws.
 pub(crate) fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     let counts = |light: usize| {
         let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
@@ -212,7 +217,8 @@ pub(crate) fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     (0..plan.lights.len()).map(counts).collect()
 }
 
-/// Returns how many clears of depth, stencil and float counts a plan contains in passes of the picture.
+/// Returns how many events without a triangle every pixel's history has: clears of depth, stencil and float counts in
+/// passes of the picture, and content set before such a pass, other than the first with depth.
 fn clears(plan: &FramePlan) -> u32 {
     let of_pass = |pass: &Pass| {
         let target = pass.depth_stencil.as_ref();
@@ -246,7 +252,8 @@ fn triangle(draw: &Draw, one: &Covering, face: VisibleFace, outcome: FragmentOut
     }))
 }
 
-/// Returns what the shader of a draw that adds light reads to find how much arrives; `None` for other draws.
+/// Returns what the shader of a draw that adds light reads to find how much arrives; for surfaces of another program
+/// [`Visibility::Everywhere`], as that is not known; `None` for other draws.
 pub(crate) fn asks(draw: &Draw) -> Option<Visibility> {
     match draw.program {
         Program::Light(visibility) => Some(visibility),
@@ -265,7 +272,8 @@ fn test_of(passed: Option<bool>, function: CompareFunction) -> TestResult {
     }
 }
 
-/// Returns what a fragment of a draw into a float count adds; a back face subtracts.
+/// Returns what a fragment of a draw adds to a float count: the draw's constant, negative for the back faces of
+/// volumes; 0 for a draw that writes no colour or does not count.
 pub(crate) fn count_of(draw: &Draw, is_front: bool) -> f32 {
     match (draw.raster.color, draw.program) {
         (ColorWrite::None, _) => 0.0,

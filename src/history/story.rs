@@ -28,7 +28,8 @@ impl PixelHistory {
         self.story_with(curve, "")
     }
 
-    /// Returns the history as lines of text, with `reasons` (each ended by a newline) after those that events give.
+    /// Returns the history as lines of text: the result, why each light does or does not arrive, then `reasons` (each
+    /// ended by a newline), then every event by pass. Ends with a warning for each disagreement with the GPU.
     pub fn story_with(&self, curve: &DepthCurve, reasons: &str) -> String {
         let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
@@ -56,7 +57,8 @@ impl PixelHistory {
         text
     }
 
-    /// Describes the values that the pixel ends with, and whether the GPU stored the same.
+    /// Returns words for the pixel's final depth (with its distance) and stencil, and for whether the GPU stored the
+    /// same; `not captured` where nothing was captured there.
     fn result(&self, curve: &DepthCurve) -> String {
         let PixelValues { depth, stencil, .. } = self.computed;
         let surface = match curve.distance(depth) {
@@ -110,7 +112,8 @@ impl PixelHistory {
         }
     }
 
-    /// Returns an event as a line of text.
+    /// Returns an event as a line of text without a newline: for a triangle its part and object, number (from 1), side,
+    /// distance, and what became of it.
     pub fn line(&self, event: &PixelEvent, curve: &DepthCurve) -> String {
         match &event.kind {
             PixelEventKind::Put => format!(
@@ -140,7 +143,8 @@ impl PixelHistory {
         }
     }
 
-    /// Returns words for where a volume's face lies: in front of, on, or behind the visible surface.
+    /// Returns words, ended by a comma, for where a face lies relative to the depth stored before it: in front of, on,
+    /// or behind the surface.
     fn place(&self, event: &PixelEvent, one: &TriangleEvent) -> &'static str {
         let [face, surface] =
             [one.depth, event.before.depth].map(|depth| if self.is_reversed { -depth } else { depth });
@@ -189,7 +193,8 @@ impl PixelHistory {
     }
 }
 
-/// Returns the part and the object of a triangle: `side of torus 2`.
+/// Returns words for the part and the object of a triangle: `side of torus 2`; the draw's name for a surface, or where
+/// no caster is known.
 fn triangle_name(one: &TriangleEvent) -> String {
     match one.part {
         DrawPart::Surface => one.draw_name.clone(),

@@ -67,7 +67,8 @@ pub struct TestedCount {
 }
 
 impl Verdict {
-    /// Returns the verdict for a light at pixel `at` (column, row) from the capture alone.
+    /// Returns the verdict for a light at pixel `at` (column, row) from the capture alone, without a history. Without a
+    /// mask there, its label is `None`; a byte that is no label counts as in shadow.
     pub fn of(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
         let captured = capture.lights.get(light);
         let label = captured.and_then(|light| light.shadow.as_ref()?.byte_at(at));
@@ -96,7 +97,9 @@ impl Verdict {
         Verdict { light, label, count, evidence }
     }
 
-    /// Returns the verdict with the evidence of the pixel's history, where that says more.
+    /// Returns the verdict with what the pixel's history says as its evidence. Unchanged where the history has nothing
+    /// to say about the light, the mask contradicts the tested count, a shadow map decides, or the surface faces away
+    /// or is background.
     pub fn with_history(mut self, history: &PixelHistory) -> Verdict {
         let Some(why) = history.why(self.light) else { return self };
         let is_dark = self.label == Some(Shadow);
@@ -116,8 +119,8 @@ impl Verdict {
         self
     }
 
-    /// Returns the verdict with a sentence on what a shadow map stores, if `light` is the verdict's light and a shadow
-    /// map decides it.
+    /// Returns the verdict with `sentence` as its evidence, if `light` is the verdict's light and its evidence so far
+    /// is only that a shadow map decides; otherwise unchanged, and `sentence` is not called.
     pub fn with_texels(mut self, light: usize, sentence: impl FnOnce() -> String) -> Verdict {
         if self.light == light && self.evidence == VerdictEvidence::Decision(DecidedBy::Map) {
             self.evidence = VerdictEvidence::Texels(sentence());
@@ -125,7 +128,8 @@ impl Verdict {
         self
     }
 
-    /// Returns the label in a sentence, with the count that decided it.
+    /// Returns a sentence with the label, for a lit or dark pixel also with the count that decided it, where there is
+    /// one. Without a label it says that no light was asked.
     pub fn title(&self) -> String {
         let name = numbers::light(self.light);
         let title = match self.label {
@@ -199,7 +203,8 @@ impl TestedCount {
         is_dark == self.count.is_zero()
     }
 
-    /// Returns whether the view ray left more volumes than it entered, so that the count is below 0.
+    /// Returns whether the count is below 0: a negative float, or a stencil byte above 127. Never for counts by
+    /// inversion or in fewer than eight bits.
     pub fn is_negative(&self) -> bool {
         match self.count {
             VolumeCount::Stencil(count) => !self.inverts && self.bits == CountBits::EIGHT && count > 127,
@@ -221,7 +226,8 @@ impl TestedCount {
         (is_dark && self.is_negative()) || self.reads_as_zero().is_some()
     }
 
-    /// Returns a sentence on why a light pass that tests this count adds the light or not.
+    /// Returns a sentence on why a light pass that tests this count adds the light or not; one that says so where the
+    /// label (`is_dark`: in shadow) contradicts the count.
     fn reason(&self, is_dark: bool) -> String {
         let TestedCount { count, bits, .. } = self;
         let side = self.side.preposition();

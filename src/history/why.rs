@@ -99,8 +99,8 @@ pub enum LightPassResult {
 }
 
 impl PixelHistory {
-    /// Returns what decided whether a light is added at this pixel; `None` where the technique leaves no events that
-    /// show it.
+    /// Returns what decided whether a light is added at this pixel: the count of its volumes, else flattened shadows.
+    /// `None` where the light has no volume draws and no flattened triangle covers the pixel, as with shadow maps.
     pub fn why(&self, light: usize) -> Option<LightDecision> {
         let of_light = |event: &&PixelEvent| event.light == Some(light) && event.target != FrameTarget::Labels;
         let events = || self.events.iter().filter(of_light);
@@ -153,7 +153,8 @@ impl PixelHistory {
         }
     }
 
-    /// Returns a light's count as its light pass tests it.
+    /// Returns a light's count as its light pass tests it: in a float where any pass cleared a float count here, else
+    /// the stencil's byte.
     pub(super) fn counted_at(&self, light: usize) -> VolumeCount {
         let in_float = self.events.iter().any(|event| event.kind == PixelEventKind::ClearCount);
         let values = self.tested_count(light);
@@ -279,7 +280,7 @@ impl fmt::Display for CountedFaces {
 }
 
 impl VolumeCount {
-    /// Returns whether the light pass takes it for lit.
+    /// Returns whether the stored count is exactly 0, which the light pass takes for lit.
     pub fn is_zero(self) -> bool {
         matches!(self, VolumeCount::Stencil(0)) || self == VolumeCount::Float(0.0)
     }

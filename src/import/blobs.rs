@@ -9,7 +9,7 @@ use flate2::read::ZlibDecoder;
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Budget of bytes that may be read or computed in all.
+/// The budget of bytes that importing a frame may read or compute in all; beyond it the import fails.
 pub const MOST_BYTES: u64 = 8 << 30;
 /// Bytes of pieces that are cached for the next picture.
 const MOST_RECENT: u64 = 256 << 20;
@@ -21,7 +21,7 @@ trait BlobSource: Read + Seek {}
 
 impl<T: Read + Seek> BlobSource for T {}
 
-/// The file, and where each byte string is in it.
+/// The file `data.bin` with the table of its byte strings, and what is left of the budget of bytes.
 pub struct BlobFile {
     file: Box<dyn BlobSource>,
     table: Vec<RenderDocBlob>,
@@ -34,7 +34,8 @@ pub struct BlobFile {
 }
 
 impl BlobFile {
-    /// Checks the table, and returns the file with it.
+    /// Checks that all byte strings of the table lie in the file and all pieces exist, and returns them with the file
+    /// and the full budget. Nothing is decompressed.
     pub fn new(file: impl Read + Seek + 'static, table: Vec<RenderDocBlob>) -> Result<Self, ImportError> {
         let broken = |what: String| ImportError::Folder(format!("data.bin: {what}"));
         let mut file = Box::new(file);
@@ -60,7 +61,7 @@ impl BlobFile {
         Ok(Self { file, table, lengths, left: MOST_BYTES, recent: BTreeMap::new(), recent_bytes: 0 })
     }
 
-    /// Takes `bytes` from the budget.
+    /// Takes `bytes` from the budget; takes nothing where fewer are left.
     ///
     /// # Errors
     /// The budget has fewer left.
@@ -80,7 +81,8 @@ impl BlobFile {
         self.lengths.get(index).copied().ok_or_else(|| none_of(index))
     }
 
-    /// Reads and decompresses the blob of this index.
+    /// Reads and decompresses the byte string of this index, its pieces joined, and takes its length from the budget
+    /// each time, also for pieces that are cached.
     pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         self.reserve(self.length(index)?)?;
         let Some(RenderDocBlob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };
@@ -97,7 +99,8 @@ impl BlobFile {
         Ok(bytes)
     }
 
-    /// Caches a piece for the next picture, if it is small enough.
+    /// Caches a decompressed piece for the next picture. One that is too large is not cached; where the cache is full,
+    /// it is emptied first.
     fn keep(&mut self, piece: usize, bytes: Vec<u8>) {
         if bytes.len() > LARGEST_PIECE {
             return;
@@ -110,7 +113,8 @@ impl BlobFile {
         self.recent.insert(piece, bytes);
     }
 
-    /// Reads and decompresses the byte string of a number.
+    /// Reads and decompresses the stored byte string of this index. Fails where there is none, it consists of pieces,
+    /// or its length is not the stated one.
     fn unpacked(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         let Some(RenderDocBlob::Stored([at, packed, length])) = self.table.get(index) else {
             return Err(none_of(index));

@@ -29,7 +29,7 @@ use stage::{DrawTarget, FollowedTargets};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The technique's name in plans and captures of other programs.
+/// The technique's name in plans and captures of other programs' frames.
 pub const RECORDED: &str = "recorded";
 
 /// The attachment of the picture's depth and stencil; those of depth maps follow.
@@ -40,7 +40,7 @@ fn map_attachment(map: usize) -> AttachmentId {
     AttachmentId(DEPTH_STENCIL.0 + 1 + map)
 }
 
-/// Another program's frame in the form of our own.
+/// Another program's frame as a plan and a capture, like our own frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvertedFrame {
     /// The draws.
@@ -53,7 +53,8 @@ pub struct ConvertedFrame {
     pub lights: Vec<Option<FoundLight>>,
 }
 
-/// Converts a recorded frame to a plan and a capture with the name `name`.
+/// Converts a recorded frame to a plan and a capture, whose scene is called `name`. Draws that can't be followed are
+/// left out with the reason.
 pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportError> {
     let stage = FollowedTargets::of(frame)?;
     let mut making = PassBuilder::new(frame, &stage);
@@ -167,7 +168,8 @@ fn faces(frame: &RawFrame, stage: &FollowedTargets, making: &PassBuilder, map: u
     (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(|| clear.clone())).collect()
 }
 
-/// Returns a light of which only is known what decides where its shadow is.
+/// Returns a light of another program's plan without position or colour: only what decides its shadow is known, from
+/// its map (`faces` more than 0) or from the stencil operations of its draws.
 fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
     let of_light = plan.passes.iter().filter(|pass| pass.light == Some(light));
     let draws = of_light.flat_map(|pass: &Pass| &pass.draws);

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// The version of the format that the script writes.
+/// The version of the document's format that the script for RenderDoc writes; others are refused.
 pub const FORMAT: u32 = 1;
 
 /// The whole document that the script writes of a frame.

@@ -23,7 +23,8 @@ pub struct DrawGeometry {
     pub dropped: usize,
 }
 
-/// Reads the vertices and triangles of all instances of a draw, one after the other.
+/// Reads the vertices and triangles of all instances of a draw, one after the other, with indices into the joined
+/// vertices. Triangles with a corner that refers to no vertex are left out, and those corners counted.
 pub fn read(instances: &[RenderDocInstance], blobs: &mut BlobFile) -> Result<DrawGeometry, ImportError> {
     let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
     let mut all =
@@ -71,7 +72,8 @@ fn topology(name: &str) -> RawTopology {
     }
 }
 
-/// Returns the first four floats of every `stride` bytes.
+/// Returns the first four little-endian floats of every `stride` bytes; a last vertex too short for them is left out.
+/// Fails where the stride is less than 16 or no multiple of 4.
 fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
     let stride = usize::try_from(stride).ok().filter(|stride| *stride >= POSITION && stride % 4 == 0);
     let stride = stride.ok_or_else(|| ImportError::Folder("vertices lie closer than a position is long".to_owned()))?;
@@ -83,8 +85,8 @@ fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
     Ok(bytes.chunks(stride).filter(|vertex| vertex.len() >= POSITION).map(position).collect())
 }
 
-/// Returns the corners in order, as indices of the instance's vertices; `None` where the primitive restarts. One that
-/// refers to no vertex is `u32::MAX`.
+/// Returns an instance's corners in order, as indices of its vertices with the base vertex added; `None` where the
+/// primitive restarts, `u32::MAX` where none can be meant. Without indices all vertices in order.
 fn corners(instance: &RenderDocInstance, vertices: u32, blobs: &mut BlobFile) -> Result<Vec<Option<u32>>, ImportError> {
     let Some(indices) = instance.indices else { return Ok((0..vertices).map(Some).collect()) };
     let bytes = blobs.read(indices)?;

@@ -6,7 +6,8 @@ use crate::plan::words::spelled;
 use std::fmt::Write;
 use wgpu::StencilOperation;
 
-/// Returns a line for each event: its number, what it does, how many triangles, its states, and its targets.
+/// Returns a heading with totals, then a line for each event (number, what it does, triangles, states, targets), then
+/// what could not be read.
 pub fn list(frame: &RawFrame) -> String {
     let program = frame.program.as_ref().map_or_else(String::new, |program| format!("{program}, "));
     let RawFrame { adapter, recorder, events, .. } = frame;
@@ -86,7 +87,7 @@ fn states(draw: &RawDraw) -> String {
     words.join("; ")
 }
 
-/// Returns the test and operations of a face; a mask only where it excludes a bit.
+/// Returns a stencil face as text: its test and reference, masks other than 0xff, and operations other than keep.
 fn face(RawStencilFace { face, masks }: &RawStencilFace) -> String {
     let mut text = format!("{} {}", spelled(face.compare, '-'), masks.reference);
     let masks = [("compares", masks.read), ("writes", masks.write)];

@@ -14,7 +14,8 @@ pub struct TexelLayout {
     pub depth_above_stencil: bool,
 }
 
-/// Returns the texel format that RenderDoc names so.
+/// Returns the texel format of RenderDoc's name for it; [`RawFormat::Other`] with the name where pictures of it are not
+/// read.
 pub fn format(name: &str) -> RawFormat {
     match name {
         "D16" | "D16_UNORM" => RawFormat::D16,
@@ -35,7 +36,7 @@ pub fn format(name: &str) -> RawFormat {
     }
 }
 
-/// Returns the bytes of a texel; `None` where the format is not read.
+/// Returns the bytes of a texel as RenderDoc hands it out; `None` where pictures of the format are not read.
 pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     match format {
         RawFormat::S8 => Some(1),
@@ -47,7 +48,8 @@ pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     }
 }
 
-/// Returns the pictures in the bytes of a target of that size; empty where the format is not read.
+/// Decodes the bytes of a target of this size, top row first: depth as floats, stencil as bytes, colour as RGBA bytes
+/// (floats encoded as sRGB). Aspects that the format lacks are absent, all of them where the format is not read.
 pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayout) -> RawContents {
     let Some(texel) = texel_bytes(format) else { return RawContents::default() };
     let rows = bytes.chunks_exact((size[0] as usize * texel).max(1));
@@ -116,7 +118,8 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: TexelLayou
     }
 }
 
-/// Shares with `last` the rows that are equal there, and returns the bytes of the rest.
+/// Replaces in `contents` pictures, or rows of them, that are equal in `last` by those, and returns how many bytes of
+/// memory the pictures then have of their own.
 pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
     let one = |new: &mut Option<Arc<Image>>, last: &Option<Arc<Image>>| {
         let Some(image) = new else { return 0 };
@@ -140,7 +143,8 @@ pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
         + one(&mut contents.color, &last.color)
 }
 
-/// Converts integers to the floats that a GPU reads them as: correctly rounded, so that no two are equal.
+/// Converts integer depths to the bytes of floats from 0 to 1, correctly rounded as a GPU reads them; `format` decides
+/// which integer is 1.
 fn depths(format: &RawFormat, bits: impl Iterator<Item = u32>) -> Vec<u8> {
     let largest = format.largest_depth().unwrap_or(u32::MAX) as f32;
     quads(bits.map(|depth| (depth as f32 / largest).to_le_bytes()))
@@ -150,7 +154,8 @@ fn quads(texels: impl Iterator<Item = [u8; 4]>) -> Vec<u8> {
     texels.collect::<Vec<_>>().into_flattened()
 }
 
-/// Returns the value of a float with five bits of exponent and `mantissa` bits after it.
+/// Converts a small float: five bits of exponent above `mantissa` bits, and the sign above these, if there is one.
+/// Infinity and NaN are kept.
 fn float(bits: u16, mantissa: u32) -> f32 {
     let fraction = f32::from(bits & ((1 << mantissa) - 1)) / (1 << mantissa) as f32;
     let exponent = i32::from(bits >> mantissa & 0x1f);
@@ -163,7 +168,8 @@ fn float(bits: u16, mantissa: u32) -> f32 {
     if bits >> mantissa & 0x20 == 0 { value } else { -value }
 }
 
-/// Converts linear colour to bytes of sRGB; NaN is black.
+/// Converts linear colour to RGBA bytes: sRGB for the colour, alpha linear; values are clamped to 0 to 1, NaN becomes
+/// 0.
 fn shown(color: [f32; 3], alpha: f32) -> [u8; 4] {
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
     let encoded = |value: f32| {

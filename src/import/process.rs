@@ -65,7 +65,8 @@ pub struct ReaderProcess {
 }
 
 impl ReaderProcess {
-    /// Starts `python SCRIPT FOLDER ARGUMENTS…`.
+    /// Starts `python SCRIPT FOLDER ARGUMENTS…`, where SCRIPT is a file with the text `script` in a new temporary
+    /// FOLDER, which is removed with the process. Returns at once; the limits apply in [`ReaderProcess::finish`].
     pub fn start(
         python: &str,
         script: &str,
@@ -110,7 +111,7 @@ impl ReaderProcess {
         self.folder.path()
     }
 
-    /// Waits for the result; the process has then ended, and all that it has started.
+    /// Waits for the script's result and shows its progress; ends the process, and all that it started, in any case.
     ///
     /// # Errors
     /// Why there is none.
@@ -155,7 +156,8 @@ impl ReaderProcess {
         }
     }
 
-    /// Returns the last line on standard error, waiting for its end or for a short time.
+    /// Returns the last line on standard error, after waiting for its end, but at most two seconds; empty where there
+    /// was none.
     fn last(&self) -> String {
         const PATIENCE: Duration = Duration::from_secs(2);
         // Nothing is sent: this waits for the disconnection or the timeout.
@@ -163,7 +165,8 @@ impl ReaderProcess {
         self.last.lock().map(|last| last.clone()).unwrap_or_default()
     }
 
-    /// Ends the process, and returns the signal that ended it, which is ours where nothing else had.
+    /// Kills the process with all that it has started, and returns the signal that ended it, which is ours where
+    /// nothing else had. `None` where it exited by itself, or this was called before.
     fn end(&mut self) -> Option<i32> {
         // Once the child is waited for, its number may be that of another process.
         if std::mem::replace(&mut self.has_ended, true) {
@@ -190,7 +193,8 @@ impl Drop for ReaderProcess {
     }
 }
 
-/// Calls `take` with each line, truncated where it is too long, until it returns false.
+/// Calls `take` with each line without its newline, cut where it is too long, until it returns false or the input ends.
+/// A last line without a newline counts; bytes that are no UTF-8 are replaced.
 fn each_line(mut input: impl Read, mut take: impl FnMut(String) -> bool) {
     let (mut buffer, mut line) = ([0; 4096], Vec::new());
     loop {
@@ -224,7 +228,8 @@ fn keep(last: &Mutex<String>, line: String) -> bool {
     true
 }
 
-/// Shows progress: steps done, and how many there are.
+/// Shows progress from a line `DONE ALL`: starts anew where ALL is not the one before, then advances to DONE. `[shown,
+/// of]` stores what is shown; a line of another form is ignored.
 fn show(numbers: &str, [shown, of]: &mut [usize; 2], progress: &Progress) {
     let mut numbers = numbers.split(' ').map(str::parse::<usize>);
     let (Some(Ok(done)), Some(Ok(all))) = (numbers.next(), numbers.next()) else { return };
@@ -238,7 +243,8 @@ fn show(numbers: &str, [shown, of]: &mut [usize; 2], progress: &Progress) {
     }
 }
 
-/// Returns the bytes that a process has in memory, where the system reports them.
+/// Returns the bytes that a process has in memory, as Linux reports them; `None` on other systems, or where it has
+/// ended.
 fn memory(process: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

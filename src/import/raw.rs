@@ -95,7 +95,7 @@ pub enum RawFormat {
 }
 
 impl RawFormat {
-    /// Returns the largest depth where depth is stored as an integer: 2^bits − 1.
+    /// Returns the integer that stands for depth 1 (2^bits − 1); `None` where depth is a float, or there is none.
     pub fn largest_depth(&self) -> Option<u32> {
         match self {
             RawFormat::D16 => Some(0xffff),
@@ -140,7 +140,7 @@ pub struct RawContents {
 }
 
 impl RawContents {
-    /// Returns these pictures, with those that are missing taken from `other`.
+    /// Returns these pictures, each that is missing taken from `other`.
     #[must_use]
     pub fn or(self, other: RawContents) -> RawContents {
         let RawContents { depth, stencil, color } = other;

@@ -27,13 +27,13 @@ const MOST_EVENTS: usize = 100_000;
 /// Limit on the textures of a frame.
 const MOST_TEXTURES: usize = 100_000;
 
-/// Reads and checks the frame that a recording wrote into this folder.
+/// Reads and checks the frame that a recording wrote into this folder, from `frame.json` and `data.bin`.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
     let open = |name: &str| open_plain(&folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
     read_from(open("frame.json")?, open("data.bin")?)
 }
 
-/// Reads a frame from the folder's two files.
+/// Reads and checks a frame from its document (JSON) and its data (compressed byte strings).
 pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Result<RawFrame, ImportError> {
     let document = self::document(document)?;
     let api =
@@ -140,7 +140,8 @@ impl DocumentReader {
         self.textures[target.texture].size.map(|side| (side >> target.mip).max(1))
     }
 
-    /// Returns the pictures of a target that are in a byte string.
+    /// Returns the pictures of a target from the byte string `blob`; none where that is `None` or the format is not
+    /// read. What can't be read is added to the limits; a wrong length is an error. Pictures read before are shared.
     fn contents(&mut self, target: RawTarget, blob: Option<usize>) -> Result<RawContents, ImportError> {
         let texture = &self.textures[target.texture];
         let name = &texture.name;
@@ -257,7 +258,8 @@ impl DocumentReader {
         })
     }
 
-    /// Returns the effects of the fragment shader; a draw without one has none.
+    /// Returns the effects of the fragment shader: it may discard too where alpha to coverage is on. A draw without a
+    /// shader has no effect, whatever `alpha_to_coverage` says.
     fn fragment(
         &mut self,
         shader: Option<&document::RenderDocShader>,

@@ -50,7 +50,8 @@ impl RecordingRequest {
     }
 }
 
-/// Reads the frame of a RenderDoc capture file by running RenderDoc's Python module.
+/// Reads the frame of a RenderDoc capture file by running RenderDoc's Python module in a process of its own. The file
+/// is checked first: a folder, pipe or missing file is an error.
 pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> Result<RawFrame, ImportError> {
     // RenderDoc has one error for all of these.
     let reason = match std::fs::metadata(file) {
@@ -70,7 +71,8 @@ pub fn import(file: &Path, options: &RenderDocOptions, progress: &Progress) -> R
     read(run.folder())
 }
 
-/// Runs a program until it has shown a frame, ends it, and reads that frame.
+/// Runs a program under RenderDoc until it has shown the frame, ends it, copies the capture file where that is asked
+/// for, and reads its frame with the program's name.
 pub fn record(
     recording: &RecordingRequest,
     options: &RenderDocOptions,
@@ -93,7 +95,8 @@ pub fn record(
     Ok(RawFrame { program: Some(recording.program().to_owned()), ..frame })
 }
 
-/// Returns the error for the end of a process that imported a file.
+/// Returns the error that explains why the process that imported `file` gave no result: by the kind that the script
+/// reported, else by how it ended.
 fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> ImportError {
     let file = file.to_owned();
     let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
@@ -109,7 +112,8 @@ fn import_error(ended: ProcessEnd, file: &Path, options: &RenderDocOptions) -> I
     }
 }
 
-/// Returns the error for the end of a process that recorded a program.
+/// Returns the error that explains why the process that recorded a program gave no result: by the kind that the script
+/// reported, else by how it ended.
 fn record_error(ended: ProcessEnd, recording: &RecordingRequest, options: &RenderDocOptions) -> ImportError {
     let Some([kind, words]) = said(&ended) else {
         return match ended {

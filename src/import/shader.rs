@@ -5,7 +5,8 @@
 use super::raw::RawFragment;
 use crate::plan::ShaderEffect;
 
-/// Returns what the shader may do. `encoding` is RenderDoc's name of its language.
+/// Returns whether a fragment shader may discard or write depth. `encoding` is RenderDoc's name of its language: GLSL
+/// and SPIR-V are read, any other is unknown.
 pub fn read(encoding: &str, bytes: &[u8]) -> RawFragment {
     let [discards, depth] = match encoding {
         "GLSL" => glsl(&String::from_utf8_lossy(bytes)),
@@ -19,7 +20,8 @@ const fn may(does: bool) -> ShaderEffect {
     if does { ShaderEffect::Yes } else { ShaderEffect::No }
 }
 
-/// Finds effects in the words of GLSL outside comments.
+/// Returns whether a GLSL shader may discard (`discard`, `gl_SampleMask`) and may write depth (`gl_FragDepth`): whether
+/// these words occur outside comments.
 fn glsl(text: &str) -> [ShaderEffect; 2] {
     let code = without_comments(text);
     let has = |word: &str| code.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|found| found == word);
@@ -40,7 +42,8 @@ fn without_comments(text: &str) -> String {
     code
 }
 
-/// Finds effects in the instructions of SPIR-V, by the numbers of its specification.
+/// Returns whether a SPIR-V shader may discard and may write depth, by its instructions; both unknown where the words
+/// are no whole SPIR-V module.
 fn spirv(bytes: &[u8]) -> [ShaderEffect; 2] {
     const MAGIC: u32 = 0x0723_0203;
     const HEADER: usize = 5;

@@ -35,12 +35,12 @@ pub const SHIPPED: &[ShippedFrame] = &[
 ];
 
 impl ShippedFrame {
-    /// Returns the built-in recorded frame of that name.
+    /// Returns the built-in recorded frame of exactly this name; `None` where there is none.
     pub fn named(name: &str) -> Option<&'static ShippedFrame> {
         SHIPPED.iter().find(|shipped| shipped.name == name)
     }
 
-    /// Reads the built-in frame's recording and converts it.
+    /// Reads the built-in recording and converts it to a frame with this name; nothing is cached.
     pub fn open(&self) -> Result<WholeFrame, ImportError> {
         let frame = read_from(self.document, Cursor::new(self.data))?;
         let ConvertedFrame { plan, capture, scene, .. } = convert(&frame, self.name)?;

@@ -108,7 +108,8 @@ fn blend(blend: &RenderDocBlend) -> RawBlend {
     }
 }
 
-/// Returns a blend equation in wgpu's terms; `None` where wgpu has no equivalent.
+/// Returns a blend equation in wgpu's terms (factors one for minimum and maximum, which ignore them); `None` where wgpu
+/// has no equivalent.
 fn equation(RenderDocBlendEquation { source, target, operation }: &RenderDocBlendEquation) -> Option<BlendComponent> {
     let operation = match operation.as_str() {
         "Add" => BlendOperation::Add,

@@ -24,7 +24,8 @@ fn of_run(topology: RawTopology, run: &[Option<u32>]) -> Vec<[u32; 3]> {
     }
 }
 
-/// Every second triangle has its first two corners swapped, so that all have the same winding.
+/// Returns the triangles of a strip, corners less two. Every second one has its first two corners swapped, so that all
+/// have the same winding.
 fn strip(run: &[u32]) -> Vec<[u32; 3]> {
     let triangle = |(at, three): (usize, &[u32])| match at % 2 {
         0 => [three[0], three[1], three[2]],

@@ -6,7 +6,7 @@ use crate::stress::Entrant;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A request that needs files, windows or the GPU.
+/// A request of the panels that needs files, windows or the GPU, carried out by the owner of the inspector.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Open a built-in scene by name, or a scene file, model or capture folder by path.
@@ -128,7 +128,7 @@ impl Overlay {
 }
 
 named_enum! {
-    /// What is exported, in the order of the menu.
+    /// What can be exported, in the order of the menu.
     pub enum ExportKind(
         /// The explanation in the menu.
         explanation

@@ -49,7 +49,7 @@ use shell::{help, keys, messages, status_bar, top_bar, walk};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// All panels and what they remember.
+/// All panels with their state: draws a window's contents, and returns as actions what has to be done outside.
 #[derive(Debug)]
 pub struct Inspector {
     /// What the panels look at, and what is selected in it.
@@ -70,7 +70,7 @@ impl Default for Inspector {
 }
 
 impl Inspector {
-    /// With nothing open; `scenes` are the built-in ones that its dialog offers.
+    /// Creates the panels with nothing open; `scenes` are the built-in scenes that the open dialog offers.
     pub fn new(scenes: Vec<SceneEntry>) -> Inspector {
         Inspector {
             model: Model::default(),
@@ -84,12 +84,13 @@ impl Inspector {
         }
     }
 
-    /// Offers these frames of other programs too.
+    /// Sets the frames of other programs that the open dialog offers besides the scenes, in place of earlier ones.
     pub fn offer_frames(&mut self, frames: Vec<SceneEntry>) {
         self.open_dialog.frames = frames;
     }
 
-    /// Draws everything and returns what the user wishes.
+    /// Draws all panels for one frame, handles keys, dropped files, animation and playing, and returns the actions that
+    /// the user asked for and the questions that have to be answered.
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
         self.style(ui);
         let mut actions = Vec::new();
@@ -125,7 +126,7 @@ impl Inspector {
         actions
     }
 
-    /// Theme and sizes, where they are not as they are to be.
+    /// Applies the inspector's style in the first frame, and the chosen theme whenever egui's is another.
     fn style(&mut self, ui: &mut egui::Ui) {
         if !self.styled {
             theme::apply(ui.ctx());
@@ -137,7 +138,8 @@ impl Inspector {
         }
     }
 
-    /// What was wanted in this frame and is not known is asked for.
+    /// Adds, as actions, the questions that this frame's panels want and whose answers are not known: also truth,
+    /// states after draws, test results and history where the picture needs them.
     fn ask(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let model = &mut self.model;
         model.want_truth();
@@ -160,7 +162,8 @@ impl Inspector {
         }
     }
 
-    /// Takes in what is known of a question without being asked.
+    /// Stores the answer to a question that was not asked through an action, or the reason why there is none, and adds
+    /// an answer to the shown frame where it belongs there.
     pub fn take_in<Q: Question>(&mut self, question: Q, result: Result<Arc<Q::Answer>, String>) {
         let is_known = result.is_ok();
         self.model.answers.take_in(question, result);
@@ -174,30 +177,31 @@ impl Inspector {
         self.open_scene(scene, draft, None);
     }
 
-    /// Another scene is open, to be run as `draft` says; `source` opens it again: a built-in name or a path.
+    /// Shows that another scene is open, to be run as `draft` says; nothing is run. `source` opens it again: a built-in
+    /// name or a path, `None` where it can't be.
     pub fn open_scene(&mut self, scene: &Scene, draft: RunRequest, source: Option<String>) {
         self.model.set_scene(Some((scene, draft)), source);
         self.panels.follow(&self.model);
     }
 
-    /// Returns how the open scene is to be run now.
+    /// Returns how the open scene is to be run next; `None` where no scene is open, as with a capture folder.
     pub fn draft(&self) -> Option<Box<RunRequest>> {
         self.model.scene.as_ref().map(|scene| Box::new(scene.draft.clone()))
     }
 
-    /// What was run for the capture that is shown.
+    /// Sets the plan that was run for the shown capture, so that questions that need the plan can be asked.
     pub fn set_plan(&mut self, plan: Arc<FramePlan>) {
         self.model.frame.plan = Some(plan);
         self.model.answers.know_plan();
     }
 
-    /// Returns what is to be remembered until the window is opened again.
+    /// Returns the settings to store until the window is opened again: theme, recent sources and layout.
     pub fn remembered(&self) -> StoredSettings {
         let layout = self.dock.layout();
         StoredSettings { theme: self.model.theme, recent: self.model.recent.clone(), layout }
     }
 
-    /// Looks as it did when this was remembered.
+    /// Restores stored settings: theme, recent sources, and the layout where one is stored.
     pub fn recall(&mut self, remembered: StoredSettings) {
         self.model.theme = remembered.theme;
         self.model.recent = remembered.recent;
@@ -206,14 +210,16 @@ impl Inspector {
         }
     }
 
-    /// Shows the same frame made with another technique beside the picture, under a divider.
+    /// Compares the shown picture with that of the same frame rendered with another technique, under a divider;
+    /// replaces a comparison that is shown.
     pub fn compare_with(&mut self, technique: Technique) {
         let compare =
             Comparison { with: ComparedWith::Technique(technique), ..Comparison::new(self.model.selection.step) };
         self.model.modes.compare = Some(compare);
     }
 
-    /// Runs the open scene like this; what has to be done for it.
+    /// Replaces the open scene's draft and returns the actions that run it; none where no scene is open, or the draft
+    /// can't be run (the reason is then shown).
     pub fn rerun(&mut self, draft: RunRequest) -> Vec<Action> {
         let mut actions = Vec::new();
         self.model.replace_draft(draft, &mut actions);
@@ -225,7 +231,7 @@ impl Inspector {
         tour::stops_of(technique)
     }
 
-    /// Goes to a stop of the tour of a technique; what has to be done for it.
+    /// Goes to the stop of this index in the tour of a technique; returns the actions that it needs.
     pub fn go_to_stop(&mut self, technique: Technique, stop: usize) -> Vec<Action> {
         let mut actions = Vec::new();
         self.tours.go_to_stop_of(&mut self.model, technique, stop, &mut actions);
@@ -237,21 +243,22 @@ impl Inspector {
         export::data(&mut self.panels.picture, &mut self.model, kind)
     }
 
-    /// The place of an export was chosen.
+    /// Sets the path in the export dialog; does nothing where that dialog is not open.
     pub fn set_export_path(&mut self, path: String) {
         if let Some(dialog) = &mut self.export_dialog {
             dialog.path = path;
         }
     }
 
-    /// There is something at the place of an export: it is replaced only where that is wished.
+    /// Shows in the export dialog that something exists at `path`, and asks whether to replace it; does nothing where
+    /// the dialog is not open.
     pub fn ask_to_replace(&mut self, path: String) {
         if let Some(dialog) = &mut self.export_dialog {
             dialog.taken = Some(path);
         }
     }
 
-    /// An export is on its way: what it is and where it goes need not be asked any more.
+    /// Closes the export dialog, as an export has begun.
     pub fn begin_export(&mut self) {
         self.export_dialog = None;
         if matches!(self.model.dialog, Some(DialogKind::Export(_))) {
@@ -259,7 +266,8 @@ impl Inspector {
         }
     }
 
-    /// Reports that an export is done, or why it failed and what would help.
+    /// Shows how an export ended: what was written, and closes its dialog; or why it failed and what would help, in the
+    /// dialog if it is open, otherwise as an error.
     pub fn end_export(&mut self, result: Result<String, String>) {
         match (result, &mut self.export_dialog) {
             (Ok(done), _) => {
@@ -280,46 +288,51 @@ impl Inspector {
         self.panels.follow(&self.model);
     }
 
-    /// Shows a capture; the selected step and pixel stay where they mean the same.
+    /// Shows a capture of a new frame; the selected step and pixel stay where they mean the same. Frees what is cached
+    /// for pictures that are no longer used.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.model.set_capture(capture);
         self.panels.follow(&self.model);
         self.model.textures.forget_unused();
     }
 
-    /// Returns the index of the selected event in the history of the picked pixel.
+    /// Returns the index of the event of the selected triangle in the history of the picked pixel; `None` where the
+    /// history is not known, or no triangle that is in it is selected.
     pub fn selected_event(&self) -> Option<usize> {
         let history = self.model.history_of_frame()?;
         self.model.selected_in(&history)
     }
 
-    /// Makes shadows of the open scene as `choice` says; what has to be done for it.
+    /// Sets the technique and settings of the open scene, and returns the actions that run it; none where no scene is
+    /// open.
     pub fn choose(&mut self, choice: Choice) -> Vec<Action> {
         let mut actions = Vec::new();
         self.model.choose(choice, &mut actions);
         actions
     }
 
-    /// What is being done, in a few words; `None` when nothing is.
+    /// Sets what is being done, in a few words; `None` when nothing is, and then a run that failed is no longer waited
+    /// for.
     pub fn set_job(&mut self, job: Option<String>) {
         // Nothing is done: what failed is not waited for.
         self.model.activity.is_waiting &= job.is_some();
         self.model.activity.job = job;
     }
 
-    /// Reports that a scene could not be opened, or its frame not be made, until one can be. A tour that waits for it
-    /// reports it too.
+    /// Shows why a scene could not be opened or its frame not be captured, until one succeeds or the message is
+    /// dismissed. A tour that waits for it shows it too.
     pub fn push_failure(&mut self, error: String) {
         self.tours.note_error(&error);
         self.model.push_failure(error);
     }
 
-    /// Selects a draw of a step; the whole step if it has fewer.
+    /// Selects a draw of a step, by their indices; the whole step where it has no such draw, and the last step where
+    /// there is no such step.
     pub fn select_draw(&mut self, step: usize, draw: usize) {
         self.model.select(CapturePoint { step, draw: Some(draw) });
     }
 
-    /// Returns the pictures that are shown; none where nothing is drawn yet.
+    /// Returns the images of the picture that is shown (several for a map of several faces); empty where none is shown.
     pub fn shown_images(&self) -> Vec<Arc<Image>> {
         let shown = |capture: &Arc<Capture>| self.model.shown(capture);
         self.model.frame.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
@@ -337,20 +350,22 @@ impl Inspector {
         self.panels.shadow_map.readers(&self.model)?.depth_of(pixel)
     }
 
-    /// Returns the kind of picture that is shown.
+    /// Returns the kind of picture that is shown; `None` where there is no capture, or it has no picture at the shown
+    /// point.
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.model.frame.capture.as_ref()?;
         self.model.shown(capture).map(|shown| shown.kind)
     }
 
-    /// Shows texels in a size, `center` (in texels) in the middle.
+    /// Sets the size in which texels are shown, and the point of the picture, in texels, that is in the middle of the
+    /// panel.
     pub fn set_zoom(&mut self, zoom: TexelZoom, center: [f64; 2]) {
         self.model.view.zoom = zoom;
         self.model.view.center = center;
     }
 }
 
-/// A dropped file is opened; of several the last one, as only one scene is open at a time.
+/// Adds an action that opens the file dropped onto the window in this frame; of several, only the last.
 fn take_dropped_files(ctx: &egui::Context, actions: &mut Vec<Action>) {
     let dropped = ctx.input(|input| input.raw.dropped_files.last().map(|file| file.path().display().to_string()));
     actions.extend(dropped.map(Action::Open));

@@ -5,7 +5,7 @@ use crate::inspector::action::PanelKind;
 use crate::reading::picture_view::PictureKind;
 use crate::technique::Technique;
 
-/// What a stop does to the panels.
+/// One thing that a stop of a tour does to scene, technique or panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TourMove {
     /// Opens a built-in scene, if another one is open.
@@ -44,7 +44,7 @@ pub struct TourStop {
 }
 
 impl TourStop {
-    /// Returns the technique that is used at this stop.
+    /// Returns the technique that is used at this stop: the first that its moves name, otherwise that of `tour`.
     pub fn technique(&self, tour: &Tour) -> Technique {
         let own =
             self.go.iter().find_map(|go| if let TourMove::Technique(technique) = go { Some(*technique) } else { None });
@@ -70,7 +70,7 @@ const fn stop(title: &'static str, text: &'static str, go: &'static [TourMove]) 
     TourStop { title, text, go }
 }
 
-/// Returns the tour of a technique, with its index.
+/// Returns the index and the tour of a technique; `None` where it has none.
 pub fn tour_of(technique: Technique) -> Option<(usize, &'static Tour)> {
     TOURS.iter().enumerate().find(|(_, tour)| tour.technique == technique)
 }

@@ -12,13 +12,13 @@ pub struct AxisBox {
 }
 
 impl AxisBox {
-    /// Returns the smallest box that contains all points.
+    /// Returns the smallest box that contains all points; without points the empty box, with `low` +∞ and `high` −∞.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> AxisBox {
         let none = AxisBox { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.into_iter().fold(none, |all, point| AxisBox { low: all.low.min(point), high: all.high.max(point) })
     }
 
-    /// Returns whether a point is in it, or on its border.
+    /// Returns whether a point is in the box or on its border.
     pub fn holds(&self, point: DVec3) -> bool {
         self.low.cmple(point).all() && self.high.cmpge(point).all()
     }
@@ -29,24 +29,24 @@ impl AxisBox {
         AxisBox { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
-    /// Returns the smallest box that contains both.
+    /// Returns the smallest box that contains both; an empty box adds nothing.
     #[must_use]
     pub fn joined(self, other: AxisBox) -> AxisBox {
         let [this, other] = [self, other].map(|one| if one.is_empty() { AxisBox::around([]) } else { one });
         AxisBox { low: this.low.min(other.low), high: this.high.max(other.high) }
     }
 
-    /// Returns whether it contains no point.
+    /// Returns whether the box contains no point: `low` exceeds `high` on some axis, or one is NaN.
     pub fn is_empty(&self) -> bool {
         !self.low.cmple(self.high).all()
     }
 
-    /// Returns its length from corner to corner; infinite around no point.
+    /// Returns the length of the box's diagonal; infinite for the box around no points.
     pub fn diagonal(&self) -> f64 {
         (self.high - self.low).length()
     }
 
-    /// Returns its eight corners.
+    /// Returns the eight corners; bits 0, 1 and 2 of an index say whether x, y and z are the high ones.
     pub fn corners(&self) -> [DVec3; 8] {
         [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
             let of = |axis: usize| if corner >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] };

@@ -69,7 +69,7 @@ impl DepthMapping {
         self == DepthMapping::ReversedInfinite
     }
 
-    /// Returns whether it has a far plane.
+    /// Returns whether the mapping has a far plane (clipped at or clamped to).
     pub fn is_finite(self) -> bool {
         matches!(self, DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp)
     }
@@ -84,7 +84,8 @@ impl DepthMapping {
         if self.is_reversed() { 0.0 } else { 1.0 }
     }
 
-    /// Returns the curve of a perspective camera. `far` is used by finite mappings, `epsilon` by the one of that name.
+    /// Returns the depth curve of a perspective camera, near plane at `near` metres. `far` (metres) is used by the
+    /// finite mappings alone, `epsilon` by the one of that name alone.
     pub fn curve(self, near: f64, far: f64, epsilon: f64) -> DepthCurve {
         let offset = match self {
             DepthMapping::ReversedInfinite => 0.0,
@@ -118,7 +119,7 @@ impl DepthCurve {
         self.is_linear && !self.mapping.is_finite()
     }
 
-    /// Returns the formula as text: `0 + 0.05 / distance`.
+    /// Returns the curve's formula as text: `0 + 0.05 / distance`, or with `*` where depth is linear in distance.
     pub fn formula(&self) -> String {
         let times = if self.is_linear { "*" } else { "/" };
         format!("{} + {} {times} distance", self.offset, self.scale)
@@ -131,7 +132,8 @@ impl DepthCurve {
             .then(|| if self.is_linear { above / self.scale } else { self.scale / above })
     }
 
-    /// Returns the depth of a distance, before it is rounded.
+    /// Returns the depth of a distance along the view's axis, in `f64`: neither rounded to the buffer's format nor
+    /// clamped to 0 to 1.
     pub fn depth(&self, distance: f64) -> f64 {
         self.offset + if self.is_linear { self.scale * distance } else { self.scale / distance }
     }

@@ -9,7 +9,7 @@
 use glam::{DVec2, DVec3, DVec4};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-/// The sign of an exactly decided quantity.
+/// The exact sign of a quantity, such as on which side of a plane a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sign {
     /// Less than zero: behind.
@@ -21,7 +21,7 @@ pub enum Sign {
 }
 
 impl Sign {
-    /// −1, 0 or 1.
+    /// Returns −1, 0 or 1.
     pub fn value(self) -> i32 {
         match self {
             Sign::Negative => -1,
@@ -30,13 +30,13 @@ impl Sign {
         }
     }
 
-    /// Returns this sign, or another one where it is zero.
+    /// Returns this sign; if it is zero, the one that `other` returns, which is only called then.
     #[must_use]
     pub fn or_else(self, other: impl FnOnce() -> Sign) -> Sign {
         if self == Sign::Zero { other() } else { self }
     }
 
-    /// Returns the sign of `to − from`, however close they are.
+    /// Returns the exact sign of `to − from`: positive where `to` is greater. Zero where one is NaN.
     pub fn between(from: f64, to: f64) -> Sign {
         if to > from {
             Sign::Positive
@@ -130,7 +130,7 @@ impl Expansion {
     }
 }
 
-/// Returns the rounded sum and its rounding error (Knuth).
+/// Returns the rounded sum of two numbers and its rounding error (Knuth): both results together are the exact sum.
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
@@ -138,7 +138,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_part) + (b - b_part))
 }
 
-/// Returns the rounded product and its rounding error.
+/// Returns the rounded product of two numbers and its rounding error: both results together are the exact product.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))

@@ -12,7 +12,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Returns the plane through a point with a normal of any length but 0.
+    /// Returns the plane through a point with this normal, which is normalised here and must not be zero.
     pub fn through(point: DVec3, normal: DVec3) -> Plane {
         let normal = normal.normalize();
         Plane { normal, offset: -normal.dot(point) }

@@ -34,7 +34,7 @@ impl ArrayWord {
     }
 }
 
-/// The layout of an array's elements.
+/// The word type, size and row length of an array's elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ArrayLayout {
     /// The number type of an array's elements.
@@ -48,7 +48,7 @@ pub struct ArrayLayout {
 /// Index of an array in the page's list of arrays.
 pub type ArrayIndex = usize;
 
-/// The binary arrays of a page, each stored once.
+/// The binary arrays of a page; the same bytes with the same layout are stored once.
 #[derive(Debug, Default)]
 pub struct PageArrays {
     entries: Vec<PageArray>,
@@ -69,7 +69,8 @@ pub struct PageArray {
 }
 
 impl PageArrays {
-    /// Adds little-endian bytes, unless the same array is there already; returns its index.
+    /// Adds an array of little-endian bytes, and returns its index; that of an earlier one where the same bytes were
+    /// added with the same layout.
     pub fn add(&mut self, layout: ArrayLayout, bytes: &[u8]) -> ArrayIndex {
         let key = (layout, bytes.len(), FixedState::with_seed(0).hash_one(bytes));
         if let Some(index) = self.known.get(&key) {
@@ -102,7 +103,9 @@ fn words(word: ArrayWord, bytes: &[u8]) -> Vec<u32> {
     }
 }
 
-/// Returns the difference of each word from its prediction by its neighbours; those outside the array are zero.
+/// Returns the difference of each word from its prediction (left plus up minus up-left neighbour of the same lane, with
+/// zero for neighbours outside the array), folded so that small differences of either sign are small numbers: 0, −1, 1,
+/// −2 become 0, 1, 2, 3.
 fn residuals(words: &[u32], ArrayLayout { word, lanes, width }: ArrayLayout) -> Vec<u32> {
     let row = if width == 0 { words.len().max(1) } else { width * lanes };
     let at = |index: usize, left: usize, up: usize| {
@@ -125,7 +128,8 @@ fn residuals(words: &[u32], ArrayLayout { word, lanes, width }: ArrayLayout) -> 
     (0..words.len()).map(residual).collect()
 }
 
-/// Returns the first bytes of the first lane's words, the second ones, and so on, then those of the next lane.
+/// Returns the words' bytes sorted by lane and place: the first (lowest) byte of each of the first lane's words, then
+/// their second bytes, and so on, then those of the next lane.
 fn planes(words: &[u32], ArrayLayout { word, lanes, .. }: ArrayLayout) -> Vec<u8> {
     let plane =
         |lane: usize, byte: usize| words.iter().skip(lane).step_by(lanes).map(move |word| word.to_le_bytes()[byte]);

@@ -10,7 +10,7 @@ use glam::Mat4;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A mesh as the passes of the picture show it.
+/// A mesh that passes of the picture draw: its triangles, and its corners as each view shows them.
 #[derive(Debug, Serialize)]
 pub struct PageMesh {
     /// Three indices of corners for each triangle.
@@ -19,7 +19,8 @@ pub struct PageMesh {
     corners: BTreeMap<usize, ArrayIndex>,
 }
 
-/// Returns the meshes of a plan, in its order; `None` where no pass of the picture shows one.
+/// Returns the meshes of a plan, in its order; `None` for a mesh that no pass of the picture draws. Corners are added
+/// to `arrays` in the clip space of each view that shows them.
 pub fn meshes(plan: &FramePlan, arrays: &mut PageArrays) -> Vec<Option<PageMesh>> {
     let mut shown: BTreeMap<usize, BTreeSet<(ViewId, bool)>> = BTreeMap::new();
     for pass in plan.passes.iter().filter(|pass| plan.is_of_picture(pass)) {

@@ -116,7 +116,8 @@ struct PagePalette {
     linear: Vec<u8>,
 }
 
-/// Returns the page's JSON document of a frame: its plan, its passes, and its arrays.
+/// Returns the page's JSON document of a frame: its plan, passes, meshes, lights, colours, and the arrays of its
+/// pictures.
 pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<String> {
     let mut arrays = PageArrays::default();
     let document = PageDocument {

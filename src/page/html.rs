@@ -24,10 +24,10 @@ macro_rules! asset {
 
 /// The page's HTML, with a `{{place}}` for everything that is inserted.
 pub const TEMPLATE: &str = include_str!("../../assets/page/page.html");
-/// The style sheet.
+/// The page's style sheet.
 pub const STYLE: &str = include_str!("../../assets/page/style.css");
 
-/// Returns the modules, each after those that it imports.
+/// Returns the page's JavaScript modules, each after those that it imports.
 pub fn modules() -> Vec<PageAsset> {
     vec![
         asset!("arrays.js"),
@@ -49,7 +49,8 @@ pub fn modules() -> Vec<PageAsset> {
     ]
 }
 
-/// Returns the page with a title and a document.
+/// Returns the page with this title and document of JSON, with script and style inserted and allowed by their hashes.
+/// The title is escaped, and so is each `<` of the document.
 pub fn page(title: &str, document: &str) -> String {
     let script = script();
     filled(TEMPLATE, |place| match place {
@@ -64,7 +65,8 @@ pub fn page(title: &str, document: &str) -> String {
     })
 }
 
-/// Returns the page's JavaScript modules joined into one script.
+/// Returns the page's JavaScript modules joined into one script, in the order of [`modules`], without lines that begin
+/// with `import ` and without the words `export ` at the start of lines.
 pub fn script() -> String {
     let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
     let of_module = |module: &PageAsset| {
@@ -73,7 +75,8 @@ pub fn script() -> String {
     modules().iter().map(of_module).collect()
 }
 
-/// Returns a template with each `{{place}}` replaced; inserted text is not searched for places.
+/// Returns a template with each `{{place}}` replaced by `content` of its name; inserted text is not searched for
+/// places. Where the end `}}` is missing, all of the rest is the name.
 fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
     let mut text = String::new();
     let mut rest = template;

@@ -41,13 +41,14 @@ pub enum PageError {
     },
 }
 
-/// Returns a frame as one self-contained HTML text.
+/// Returns a frame as one self-contained HTML text, titled with its scene and technique.
 pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
     let title = format!("{}, {}", capture.scene, capture.technique);
     Ok(html::page(&title, &document::json(capture, plan)?))
 }
 
-/// Writes a frame as one self-contained HTML file to `path`, and returns its size in bytes.
+/// Writes a frame as one self-contained HTML file to `path`, replacing a file there once all is written, and returns
+/// its size in bytes.
 pub fn write(capture: &Capture, plan: &Arc<FramePlan>, path: &Path) -> Result<u64, PageError> {
     let text = html(capture, plan)?;
     let failed = |source| PageError::Write { path: path.display().to_string(), source };

@@ -134,7 +134,8 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDr
     }
 }
 
-/// Returns which triangles of a draw are in the dark cap.
+/// Adds a byte for each triangle of a draw, 1 where it is in the dark cap and otherwise 0, and returns the array's
+/// index.
 fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut PageArrays) -> ArrayIndex {
     let mesh = &plan.meshes[draw.mesh.0];
     let corners = mesh.indices.data().as_chunks::<3>().0;

@@ -8,7 +8,7 @@ use crate::technique::MapSettings;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// The texels of a map that pixels read.
+/// For each pixel, the texels of a light's map that it reads, and the depths that they are compared with.
 #[derive(Debug, Serialize)]
 pub struct PageReads {
     /// For each pixel the face, column and row of the texel in the middle of those that it reads, each plus 1; zeros
@@ -23,7 +23,8 @@ pub struct PageReads {
     filter: u32,
 }
 
-/// Returns what pixels read of a light's map; `None` where no map decides, or it is not known how it is read.
+/// Adds, for each pixel, row by row, what it reads of a light's shadow map. `None` for another program's frame, or
+/// where no shadow map decides this light, or it is not known how it is read.
 pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut PageArrays) -> Option<PageReads> {
     if capture.origin.is_some() || capture.decided_by(light) != DecidedBy::Map {
         return None;
@@ -54,7 +55,8 @@ pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mu
     })
 }
 
-/// Returns the depth at the middle of compared texels, and how much it grows from texel to texel; zeros without texels.
+/// Returns the depth that is compared at the middle of `filter` × `filter` texels, given row by row, and how much it
+/// grows from one column and one row to the next; zeros where there are no texels.
 fn on_plane(compared: &[(MapTexel, f64)], filter: usize) -> (f32, [f32; 2]) {
     let middle = filter / 2 * (filter + 1);
     let Some((_, depth)) = compared.get(middle) else { return (0.0, [0.0; 2]) };

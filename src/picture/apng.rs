@@ -10,7 +10,7 @@ use std::io::Write;
 /// The most that a channel of a rounded picture differs from the original.
 pub const ROUNDED_BY: u8 = 1;
 
-/// How exactly colours are stored.
+/// How exactly the colours of an animation are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColorDepth {
     /// To the bit.
@@ -20,7 +20,8 @@ pub enum ColorDepth {
 }
 
 impl ColorDepth {
-    /// Returns the colour that is stored.
+    /// Returns the colour that is stored for `color`: the same, or each channel rounded to the nearest multiple of a
+    /// step, which 0 and 255 are.
     pub fn reduced(self, color: Rgb) -> Rgb {
         let step = u16::from(2 * ROUNDED_BY + 1);
         match self {
@@ -32,7 +33,8 @@ impl ColorDepth {
         }
     }
 
-    /// Returns the PNG filter that suits: rounded surfaces are runs of one colour already.
+    /// Returns the PNG filter that compresses pictures of this colour depth best: none for rounded ones, as their
+    /// surfaces are runs of one colour already.
     fn filter(self) -> png::Filter {
         match self {
             ColorDepth::Exact => png::Filter::Adaptive,
@@ -41,7 +43,7 @@ impl ColorDepth {
     }
 }
 
-/// Format of an animation.
+/// Size, number, duration and colours of an animation's pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnimationFormat {
     /// Width and height of every picture.
@@ -54,7 +56,7 @@ pub struct AnimationFormat {
     pub colors: ColorDepth,
 }
 
-/// Why a picture can't be added.
+/// Why a picture can't be added to an animation, or it can't be begun or ended.
 #[derive(Debug, thiserror::Error)]
 pub enum AnimationError {
     /// It has another size than the animation.
@@ -70,7 +72,7 @@ pub enum AnimationError {
     Png(#[from] png::EncodingError),
 }
 
-/// An animated PNG that is being written.
+/// An animated PNG that is being written; each picture after the first stores only the rectangle that changed.
 pub struct AnimatedPng<W: Write> {
     writer: png::Writer<W>,
     format: AnimationFormat,
@@ -79,7 +81,8 @@ pub struct AnimatedPng<W: Write> {
 }
 
 impl<W: Write> AnimatedPng<W> {
-    /// Begins an animation.
+    /// Begins an animation that is repeated for ever. An error where the format has no pictures or no pixels, or `out`
+    /// fails.
     pub fn new(out: W, format: AnimationFormat) -> Result<AnimatedPng<W>, AnimationError> {
         let mut encoder = png::Encoder::new(out, format.size[0], format.size[1]);
         encoder.set_color(png::ColorType::Rgb);
@@ -92,7 +95,8 @@ impl<W: Write> AnimatedPng<W> {
         Ok(AnimatedPng { writer: encoder.write_header()?, format, shown: None })
     }
 
-    /// Adds the next picture.
+    /// Adds the next picture, of which only the rectangle that differs from the one before is written (one pixel where
+    /// nothing does). An error where its size is not the format's, or there are more pictures than the format says.
     pub fn add(&mut self, picture: &Picture) -> Result<(), AnimationError> {
         let (expected, found) = (self.format.size, picture.size());
         if expected != found {
@@ -142,7 +146,7 @@ fn changed(one: &Picture, other: &Picture) -> Option<[u32; 4]> {
     bounds
 }
 
-/// Returns the pixels of these columns and rows.
+/// Returns the pixels of the columns and rows `[left, top, right, bottom]`, ends included, row by row.
 fn part(picture: &Picture, [left, top, right, bottom]: [u32; 4]) -> Vec<Rgb> {
     let rows = picture.pixels.chunks_exact(picture.size[0] as usize);
     let rows = rows.skip(top as usize).take((bottom - top + 1) as usize);

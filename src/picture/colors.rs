@@ -5,24 +5,24 @@
 use crate::numbers;
 use std::sync::LazyLock;
 
-/// A colour in sRGB.
+/// A colour in sRGB: red, green and blue bytes.
 pub type Rgb = [u8; 3];
 
-/// A stencil count of 0; also where nothing is drawn.
+/// The colour of a stencil count of 0; also where nothing is drawn or compared.
 pub const NOTHING: Rgb = [0x14, 0x17, 0x1d];
-/// Labels by value: lit, in shadow, background, faces away.
+/// The colours of labels by value: lit, in shadow, background, faces away.
 pub const LABELS: [Rgb; 4] = [[0xf2, 0xd1, 0x6b], [0x46, 0x55, 0x7d], NOTHING, [0x7b, 0x82, 0x90]];
-/// Truth and technique agree.
+/// The colour where truth and technique agree.
 pub const AGREES: Rgb = [0x2a, 0x2f, 0x3a];
-/// Lit in truth, in shadow in the picture.
+/// The colour of a pixel that is lit in truth and in shadow in the picture.
 pub const FALSE_SHADOW: Rgb = [0xe6, 0x9f, 0x00];
-/// In shadow in truth, lit in the picture.
+/// The colour of a pixel that is in shadow in truth and lit in the picture.
 pub const MISSING_SHADOW: Rgb = [0xcc, 0x79, 0xa7];
-/// The picture shows another surface, or none.
+/// The colour of a pixel that shows another surface than the truth, or none.
 pub const WRONG_SURFACE: Rgb = [0x56, 0xb4, 0xe9];
-/// A difference that is excused, at an edge.
+/// The colour of a difference at an edge, which is excused.
 pub const EDGE_BAND: Rgb = [0x7b, 0x82, 0x90];
-/// Background of pictures side by side.
+/// The colour of the background of pictures side by side.
 pub const BACKGROUND: Rgb = [0x14, 0x16, 0x1b];
 
 /// Colours of counts 1 to 7.
@@ -110,7 +110,7 @@ pub fn near_far(place: f32) -> Rgb {
     [(238.0 - 196.0 * place.clamp(0.0, 1.0)) as u8; 3]
 }
 
-/// Returns a colour between one (0) and another (1), in sRGB.
+/// Returns a colour between `from` (share 0) and `to` (share 1), linear in the sRGB bytes and rounded.
 pub fn between(from: Rgb, to: Rgb, share: f32) -> Rgb {
     std::array::from_fn(|channel| {
         let [from, to] = [from, to].map(|color| f32::from(color[channel]));

@@ -28,7 +28,7 @@ const DIGITS: [[u8; 5]; 10] = [
 const DIGIT_WIDTH: u32 = 4;
 const DIGIT_HEIGHT: u32 = 5;
 
-/// Opaque pixels, row by row.
+/// A picture of opaque sRGB pixels, row by row from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picture {
     size: [u32; 2],
@@ -46,12 +46,12 @@ impl Picture {
         self.size
     }
 
-    /// Returns one pixel; `None` outside.
+    /// Returns the pixel at a column and row; `None` outside the picture.
     pub fn at(&self, [x, y]: [u32; 2]) -> Option<Rgb> {
         (x < self.size[0]).then(|| self.pixels.get(self.index([x, y])).copied()).flatten()
     }
 
-    /// Paints one pixel; nothing outside.
+    /// Sets the pixel at a column and row; does nothing outside the picture.
     pub fn set(&mut self, at: [u32; 2], color: Rgb) {
         let index = self.index(at);
         if at[0] < self.size[0]
@@ -61,15 +61,16 @@ impl Picture {
         }
     }
 
-    /// Paints another picture with its top left corner at a place; pixels outside are left out.
+    /// Copies another picture into this one with its top left corner at a column and row; pixels that would lie outside
+    /// are left out.
     pub fn paste(&mut self, other: &Picture, [left, top]: [u32; 2]) {
         for (row, y) in other.pixels.chunks_exact(other.size[0].max(1) as usize).zip(top..) {
             row.iter().zip(left..).for_each(|(color, x)| self.set([x, y], *color));
         }
     }
 
-    /// Returns the picture as large as fits into `most`: made smaller by averaging, or enlarged so that a pixel becomes
-    /// a square.
+    /// Returns the picture as large as it fits into `most` with its proportions: enlarged by the largest whole number
+    /// of times, each pixel a square, or, where it is larger, made smaller by averaging, at least one pixel each way.
     pub fn fitted(&self, most: [u32; 2]) -> Picture {
         let [width, height] = self.size.map(|side| side.max(1));
         let times = (most[0] / width).min(most[1] / height);
@@ -99,7 +100,7 @@ impl Picture {
         })
     }
 
-    /// Returns a picture with the colour `color` at each pixel.
+    /// Returns a picture whose pixel at each column and row has the colour that `color` returns for it.
     pub fn drawn(size: [u32; 2], color: impl Fn([u32; 2]) -> Rgb) -> Picture {
         let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
         Picture { size, pixels: places.map(color).collect() }
@@ -120,7 +121,8 @@ impl Picture {
         }
     }
 
-    /// Writes a number with its top left corner at a place; a dot of it is `dot` × `dot` pixels.
+    /// Writes a number with the top left corner of its ground, in the colour `paper`, at a column and row; each dot of
+    /// a digit is `dot` × `dot` pixels. What lies outside the picture is left out.
     pub fn number(&mut self, [left, top]: [u32; 2], number: usize, dot: u32, ink: Rgb, paper: Rgb) {
         self.paste(&Picture::filled(Picture::number_size(number, dot), paper), [left, top]);
         let square = Picture::filled([dot, dot], ink);
@@ -135,7 +137,7 @@ impl Picture {
         }
     }
 
-    /// Returns the width and height that a number takes, pixels.
+    /// Returns the width and height, in pixels, that a number takes with its border, which is one dot wide.
     pub fn number_size(number: usize, dot: u32) -> [u32; 2] {
         let digits = number.to_string().len() as u32;
         [(digits * DIGIT_WIDTH + 1) * dot, (DIGIT_HEIGHT + 2) * dot]

@@ -41,7 +41,7 @@ fn tree(svg: &str) -> Result<Tree, SvgError> {
     Ok(Tree::from_str(svg, &options)?)
 }
 
-/// Renders an SVG with `scale` pixels a point. Where it draws nothing the picture is black.
+/// Renders an SVG with `scale` pixels a point, its size rounded up. Where it draws nothing the picture is black.
 pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
     let tree = tree(svg)?;
     let size = [tree.size().width(), tree.size().height()].map(|side| (side * scale).ceil());
@@ -61,7 +61,8 @@ pub fn width(svg: &str) -> Result<f32, SvgError> {
     Ok(tree(svg)?.root().abs_bounding_box().width())
 }
 
-/// Returns text as XML: markup escaped, characters that XML does not allow replaced.
+/// Returns text for XML content and attributes in double quotes: `&`, `<`, `>` and `"` escaped, and characters that XML
+/// does not allow replaced by U+FFFD; apostrophes, tabs and line ends stay.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

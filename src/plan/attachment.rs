@@ -63,7 +63,8 @@ impl Attachment {
         16.0 / self.depth_steps().unwrap_or(0xff_ffff) as f32
     }
 
-    /// Rounds a depth to the nearest that the format can store.
+    /// Rounds a depth to the nearest that the format can store, half to even; unchanged where the format stores floats.
+    /// Does not clamp to 0 to 1.
     pub fn stored_depth(&self, depth: f32) -> f32 {
         match self.depth_steps() {
             Some(steps) => (depth * steps as f32).round_ties_even() / steps as f32,

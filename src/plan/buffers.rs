@@ -57,7 +57,8 @@ impl DrawMesh {
         (self.indices.len() / 3) as u32
     }
 
-    /// Returns hash and size in bytes of each of its arrays on the GPU.
+    /// Returns hash and size in bytes of each of the mesh's arrays on the GPU; for an extruded mesh the corners that
+    /// its vertex shader reads, not the vertices that it computes.
     pub(super) fn blobs(&self) -> Vec<(u64, u64)> {
         fn entry<T: bytemuck::Pod>(blob: &Blob<T>) -> (u64, u64) {
             (blob.hash(), (blob.len() * size_of::<T>()) as u64)
@@ -95,7 +96,7 @@ pub struct PlanTexture {
 }
 
 impl PlanTexture {
-    /// Returns how many bytes all its mip levels take.
+    /// Returns how many bytes all mip levels take on the GPU, at four bytes a texel.
     pub fn bytes(&self) -> u64 {
         let half = |side: u32, level: u32| u64::from((side >> level).max(1));
         let [width, height] = self.picture.size();

@@ -50,7 +50,7 @@ impl FramePlan {
 }
 
 impl Pass {
-    /// Returns the attachments that the pass draws into.
+    /// Returns the attachments that the pass draws into: colour first, then depth-stencil, each if it has one.
     pub(crate) fn targets(&self) -> impl Iterator<Item = AttachmentId> {
         let color = self.color.iter().map(|target| target.attachment);
         color.chain(self.depth_stencil.iter().map(|target| target.attachment))

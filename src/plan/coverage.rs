@@ -94,14 +94,15 @@ impl FramePlan {
         !color.chain(depth).any(is_map)
     }
 
-    /// Returns whether a pass draws into a light's float count.
+    /// Returns whether the colour target of a pass is a light's float count; false without a colour target.
     pub fn counts_in_float(&self, pass: &Pass) -> bool {
         let role = pass.color.as_ref().map(|target| self.attachment(target.attachment).role);
         matches!(role, Some(super::AttachmentRole::Count(_)))
     }
 
-    /// Returns every triangle of every pass of the picture that covers the centre of `pixel` or comes within a pixel of
-    /// it, in the order in which the GPU draws them.
+    /// Returns every triangle that covers the centre of `pixel` or comes within a pixel of it, in the order in which
+    /// the GPU draws them. Looks at all passes of the picture (not of maps) whose scissor contains the pixel; culled
+    /// and clipped triangles are listed as such.
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
         let mut search =
             CoverageSearch { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
@@ -237,8 +238,8 @@ impl PixelSquare {
         PixelSquare { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
     }
 
-    /// Computes four bits for each vertex: whether it is right of, left of, above or below the square; set only where
-    /// `f32` decides that with certainty.
+    /// Replaces `sieve` by four bits for each vertex: whether it is certainly (in `f32`, past a margin) right of, left
+    /// of, above or below the square. A bit that is not set says nothing.
     fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]], sieve: &mut Vec<u8>) {
         let clip = clip_from_relative.as_dmat4();
         let reach = self.half_pixel * (2.0 * DOUBT);

@@ -89,7 +89,8 @@ impl DecidedBy {
         matches!(self, DecidedBy::FloatCount { .. })
     }
 
-    /// Returns on which side of the surface shadow volumes are counted; `None` where none are.
+    /// Returns on which side of the surface shadow volumes are counted, in the stencil or in floats; `None` where no
+    /// count decides.
     pub fn counted_side(self) -> Option<CountedSide> {
         match self {
             DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side } => Some(side),

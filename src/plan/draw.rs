@@ -33,8 +33,8 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// Returns which part the triangle with these vertex indices is: the draw's part, or for caps that a vertex shader
-    /// extrudes, light cap or dark cap.
+    /// Returns which part of the caster or its volume the triangle with these vertex indices is: the draw's part; for
+    /// `Caps` that a vertex shader extrudes, dark cap where the first corner is carried, else light cap.
     pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> DrawPart {
         match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
             (DrawPart::Caps, Some([true, ..])) => DrawPart::DarkCap,
@@ -43,7 +43,8 @@ impl Draw {
         }
     }
 
-    /// Makes a draw of a mesh's first `triangles` triangles by position only, as into the stencil.
+    /// Returns a draw of a mesh's first `triangles` triangles by position only, as into the stencil: without caster and
+    /// base vertex, fronts facing outwards.
     pub fn of_positions(
         name: impl Into<String>,
         part: DrawPart,
@@ -95,12 +96,12 @@ named_enum! {
 }
 
 impl DrawPart {
-    /// Returns whether it is a part of a shadow volume.
+    /// Returns whether the part belongs to a shadow volume: a side or a cap.
     pub fn is_of_volume(self) -> bool {
         matches!(self, DrawPart::Side | DrawPart::LightCap | DrawPart::DarkCap | DrawPart::Caps)
     }
 
-    /// Returns whether this part is `part`, or contains it.
+    /// Returns whether this part is `part`, or is `Caps` and `part` is one of the two caps. Not the other way round.
     pub fn includes(self, part: DrawPart) -> bool {
         self == part || (self == DrawPart::Caps && matches!(part, DrawPart::LightCap | DrawPart::DarkCap))
     }

@@ -39,14 +39,14 @@ impl LeftOut {
         LeftOut::made(decision, Some(name), None, of.into(), because.into())
     }
 
-    /// Records that a pass did not run, since its result is cached from the frame before.
+    /// Returns an entry that says that a pass did not run, since its result is cached from the frame before.
     pub fn cached(pass: &Pass) -> LeftOut {
         let of = pass.light.map_or_else(|| "the frame".to_owned(), LightId::name);
         LeftOut::named(Decision::Cached, &pass.name, of, "nothing that makes it has changed since")
     }
 
-    /// Records that `count` triangles are left out of a light's pass, as they face away from the light or, if it has a
-    /// range, lie beyond that.
+    /// Returns an entry that says that `count` triangles are left out of a light's pass, as they face away from the
+    /// light or, if it has a range, lie beyond that.
     pub fn unlit(count: u64, light: LightId, has_range: bool) -> LeftOut {
         let of = format!("the pass of {}", light.name());
         let mut left_out = LeftOut::counted(Decision::UnlitTriangles, count, of, "it adds nothing to them");

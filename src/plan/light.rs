@@ -57,7 +57,7 @@ pub struct PlanMap {
 }
 
 impl PlanMap {
-    /// The most faces that a light in a shader has space for.
+    /// The most faces or layers that a light's map can have: as many as its shader constants have space for.
     pub const MOST_FACES: usize = 64;
 }
 

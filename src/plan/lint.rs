@@ -17,7 +17,7 @@ pub struct LintError {
     pub problem: String,
 }
 
-/// Checks a plan before it runs; returns every broken rule, in the order of passes.
+/// Checks a plan before it runs; returns every broken rule, in the order of passes; empty where the plan is right.
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
     let in_range = |mesh: &DrawMesh| {
         let vertex_count = mesh.vertices.len();
@@ -108,7 +108,8 @@ fn recorded_problem(plan: &FramePlan, pass: &Pass, recorded: &RecordedPass) -> O
     }
 }
 
-/// Returns whether the mesh has every vertex that the draw's indices refer to, with its base vertex added.
+/// Returns whether the mesh has every vertex that the draw's indices refer to with its base vertex added. Always true
+/// for base vertex 0, for which the indices are checked alone; else false where the mesh lacks the draw's triangles.
 fn base_fits(mesh: &DrawMesh, draw: &Draw) -> bool {
     let corners = draw.triangles.start as usize * 3..draw.triangles.end as usize * 3;
     let count = mesh.vertices.len();

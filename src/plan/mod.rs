@@ -121,7 +121,7 @@ impl FramePlan {
         &self.attachments[id.0]
     }
 
-    /// Returns how many triangles the frame submits, without mask passes.
+    /// Returns how many triangles the draws of the frame submit, culled ones included; mask passes don't count.
     pub fn triangles(&self) -> u64 {
         let draws = self.timed_passes().flat_map(|pass| &pass.draws);
         draws.map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()

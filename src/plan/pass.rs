@@ -36,7 +36,7 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Returns whether a pixel lies within the pass's scissor rectangle.
+    /// Returns whether a pixel lies within the pass's scissor rectangle; always true without one.
     pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
         let holds = |[left, top, columns, rows]: [u32; 4]| {
             (left..left.saturating_add(columns)).contains(&x) && (top..top.saturating_add(rows)).contains(&y)
@@ -50,7 +50,8 @@ impl Pass {
         self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
     }
 
-    /// Returns the viewport of its draws in a target of `size` texels.
+    /// Returns the viewport of the pass's draws: the whole target of `size` texels for our own passes, the recorded
+    /// viewport for another program's.
     pub fn viewport(&self, size: [u32; 2]) -> Viewport {
         self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
     }

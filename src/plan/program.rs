@@ -64,14 +64,15 @@ impl Visibility {
         Visibility::Projected,
     ];
 
-    /// Returns whether it reads the light's map.
+    /// Returns whether the shader reads the light's map: depths, receivers' textures or silhouettes.
     pub fn reads_map(self) -> bool {
         matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
     }
 }
 
 impl Program {
-    /// Returns all programs, for compiling their shaders; another program's shader only once.
+    /// Returns each program once, in every form of its visibility, for compiling all shaders. Of the recorded programs,
+    /// which share a shader, only one.
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
@@ -100,7 +101,8 @@ impl Program {
         matches!(self, Program::Position | Program::Flat)
     }
 
-    /// Returns what the shader reads to find how much light arrives; `None` for programs that do not light.
+    /// Returns what the shader reads to find how much light arrives, for programs that light, label or show light
+    /// passing through; `None` for the others.
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),

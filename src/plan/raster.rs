@@ -90,7 +90,8 @@ impl RasterState {
         self.with_faces(face, face, reference)
     }
 
-    /// Returns this state with these stencil tests of front and back faces, and all mask bits set.
+    /// Returns this state with these stencil tests of front and back faces, one reference, and all bits of both masks
+    /// set; other masks of back faces are dropped.
     #[must_use]
     pub fn with_faces(mut self, front: StencilFace, back: StencilFace, reference: u8) -> RasterState {
         self.stencil = wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
@@ -99,14 +100,16 @@ impl RasterState {
         self
     }
 
-    /// Returns this state with stencil read and write masks of `mask`.
+    /// Returns this state with both the read and the write mask of the stencil set to `mask`. Masks of back faces that
+    /// differ ([`RasterState::back`]) stay.
     #[must_use]
     pub fn writing(mut self, mask: u8) -> RasterState {
         (self.stencil.read_mask, self.stencil.write_mask) = (mask.into(), mask.into());
         self
     }
 
-    /// Returns this state for depth where greater is farther: comparisons and biases are reversed.
+    /// Returns this state, meant for reversed depth, for depth where greater is farther: less and greater are
+    /// exchanged, and the signs of all biases. Applied twice it is as before.
     #[must_use]
     pub fn for_standard_depth(mut self) -> RasterState {
         self.depth_compare = match self.depth_compare {
@@ -122,15 +125,16 @@ impl RasterState {
         self
     }
 
-    /// Returns the stencil test of front or back faces, with its reference and masks.
+    /// Returns the stencil test of front or back faces with its reference and masks: those of both faces, unless back
+    /// faces have their own.
     pub fn face(&self, is_front: bool) -> (&StencilFace, FaceMasks) {
         let wgpu::StencilState { front, back, read_mask, write_mask } = &self.stencil;
         let shared = FaceMasks { reference: self.stencil_reference, read: *read_mask as u8, write: *write_mask as u8 };
         if is_front { (front, shared) } else { (back, self.back.unwrap_or(shared)) }
     }
 
-    /// Returns states that together do the same and need no [`RasterState::back`]: this one, or one for each face that
-    /// is not culled.
+    /// Returns states that together do the same and need no [`RasterState::back`]: this one where there is none, else
+    /// one for each face that is not culled, which culls the other.
     pub fn by_face(&self) -> Vec<RasterState> {
         let Some(back) = self.back else {
             return vec![RasterState { back: None, ..self.clone() }];
@@ -144,7 +148,8 @@ impl RasterState {
         shown.map(|(face, state)| RasterState { cull: Some(other(face)), ..state }).collect()
     }
 
-    /// Returns whether a fragment that fails a test changes nothing.
+    /// Returns whether a fragment that fails the stencil or the depth test leaves the stencil as it is, for both faces
+    /// (a write mask of 0 counts).
     pub fn acts_only_where_it_passes(&self) -> bool {
         let keeps = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write == 0 || [face.fail_op, face.depth_fail_op] == [StencilOperation::Keep; 2]
@@ -152,7 +157,8 @@ impl RasterState {
         keeps(self.face(true)) && keeps(self.face(false))
     }
 
-    /// Returns whether a draw with this state may change the stencil.
+    /// Returns whether a draw with this state may change the stencil: a face has a write mask and an operation other
+    /// than keep. Culled faces count too.
     pub fn writes_stencil(&self) -> bool {
         let writes = |(face, masks): (&StencilFace, FaceMasks)| {
             masks.write != 0

@@ -31,7 +31,8 @@ impl Viewport {
         Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
     }
 
-    /// Converts a clip-space depth to the depth that is stored.
+    /// Converts a depth from 0 to 1 in normalized device coordinates to the depth that is stored, by the viewport's
+    /// depth range. Does not clamp.
     pub fn stored(&self, depth: f64) -> f64 {
         let [near, far] = self.depth.map(f64::from);
         near + (far - near) * depth

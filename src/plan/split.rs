@@ -10,7 +10,8 @@ impl FramePlan {
         self.split_where(|_| true)
     }
 
-    /// Returns the plan of the frame up to and including pass `index`, with only that pass split at its draws.
+    /// Returns the plan of the frame up to and including pass `index`, with that pass split into one for each of its
+    /// draws (the first clears, the others load) and caching of maps off. Passes after it are left out.
     pub fn split_pass_at_draws(&self, index: usize) -> FramePlan {
         let mut plan = self.split_where(|pass| pass == index);
         let parts = self.passes.get(index).map_or(0, |pass| pass.draws.len().max(1));

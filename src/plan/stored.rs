@@ -25,7 +25,8 @@ impl FramePlan {
         }
     }
 
-    /// Returns the number of layers of an attachment's texture, at least one.
+    /// Returns the number of layers of an attachment's texture: of a light's map only the faces that are drawn (at
+    /// least one), else as many as the attachment has.
     ///
     /// # Panics
     /// If the id is of another plan.
@@ -40,7 +41,8 @@ impl FramePlan {
         width * height * u64::from(self.stored_layers(id))
     }
 
-    /// Returns how many bytes all texels of an attachment take.
+    /// Returns how many bytes all stored texels of an attachment take; five a texel for depth with stencil. Faces of
+    /// maps that are not drawn take none.
     pub(crate) fn attachment_bytes(&self, id: AttachmentId) -> u64 {
         let Attachment { format, .. } = self.attachment(id);
         // Depth32FloatStencil8 has no fixed size; drivers use four bytes and one.

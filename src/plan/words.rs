@@ -35,7 +35,8 @@ pub fn lines(raster: &RasterState, api: RasterApi) -> Vec<String> {
     }
 }
 
-/// Describes what a fragment of a draw does, in a sentence for each of depth, stencil and colour.
+/// Describes what a fragment of a draw does, in a sentence each for depth, stencil (two where the faces differ, none
+/// where it is off) and colour.
 pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
     let mut said = Vec::new();
     if pass.depth_stencil.is_some() {

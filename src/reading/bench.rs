@@ -84,7 +84,8 @@ impl TestBench {
     }
 }
 
-/// Describes a fragment's outcome in words, from the state before the tests and the tests' result.
+/// Describes how a fragment was tested: its face and depth, the stencil test with the masked values, the depth test
+/// where it took place, the stencil operation with the values before and after, and the depth where it changed.
 fn words(state: &RasterState, fragment: IncomingFragment, before: DepthStencil, outcome: &TestOutcome) -> String {
     let (face, masks) = state.face(fragment.front_facing);
     let side = if fragment.front_facing { "front" } else { "back" };
@@ -117,7 +118,7 @@ fn sign(compare: CompareFunction) -> Option<&'static str> {
     COMPARES.iter().find(|(one, ..)| *one == compare).map(|(_, _, sign)| *sign).filter(|sign| !sign.is_empty())
 }
 
-/// Returns a compare function's name, such as `less-equal`.
+/// Returns a compare function's name, such as `less-equal`; empty for one that is not in the list of all.
 pub fn name(compare: CompareFunction) -> &'static str {
     COMPARES.iter().find(|(one, ..)| *one == compare).map_or("", |(_, name, _)| name)
 }

@@ -30,7 +30,8 @@ impl CapturePoint {
         self.draw.map_or_else(|| step.clone(), |draw| format!("draw {} of {step}", draw + 1))
     }
 
-    /// Returns whether the capture has the state at this point; that of some draws is not captured.
+    /// Returns whether the capture has the state at this point: always for a step as a whole and for its last (or no)
+    /// draw, otherwise where the state after the draw was captured.
     pub fn is_known(self, capture: &Capture) -> bool {
         let Some(index) = self.draw else { return true };
         let draws = draws(capture, self.step);
@@ -42,7 +43,8 @@ impl CapturePoint {
         draws(capture, self.step).get(self.draw?)?.after.as_ref()
     }
 
-    /// Returns colour, depth and stencil after the draw, or after the step where the draw's are not known.
+    /// Returns colour, depth and stencil after the draw, or, where the draw's are not known or it draws a map, after
+    /// the step; `None` where the step has none yet.
     pub fn frame(self, capture: &Capture) -> Option<&FrameSnapshot> {
         match self.state(capture).map(|state| &state.snapshot) {
             Some(Snapshot::Frame(frame)) => Some(frame),
@@ -69,7 +71,7 @@ impl CapturePoint {
     }
 
     /// Returns the layer of a light's map that the draw draws into: index of the light, index of the layer, and its
-    /// texels after the draw; `None` for other draws.
+    /// texels after the draw; `None` where it draws into no map, or its state is not known.
     pub fn layer(self, capture: &Capture) -> Option<(usize, usize, &Arc<Image>)> {
         let state = self.state(capture)?;
         match &state.snapshot {
@@ -78,7 +80,8 @@ impl CapturePoint {
         }
     }
 
-    /// Returns the point one draw later; `None` at the end.
+    /// Returns the point one draw later in the frame: the next draw of the step, or the first of the next numbered step
+    /// (the step itself where it has none); `None` at the end. From a step as a whole, it goes on with the next step.
     pub fn next(self, capture: &Capture) -> Option<CapturePoint> {
         let following = self.draw.map(|draw| draw + 1).filter(|draw| *draw < draws(capture, self.step).len());
         let in_step = following.map(|draw| CapturePoint { draw: Some(draw), ..self });
@@ -88,7 +91,8 @@ impl CapturePoint {
         })
     }
 
-    /// Returns the point one draw earlier; `None` at the start.
+    /// Returns the point one draw earlier in the frame: the draw before, or the last of the numbered step before (the
+    /// step itself where it has none); `None` at the start. A step as a whole counts as its last draw.
     pub fn previous(self, capture: &Capture) -> Option<CapturePoint> {
         let last = |step: usize| draws(capture, step).len().checked_sub(1);
         match self.draw.or_else(|| last(self.step)).and_then(|draw| draw.checked_sub(1)) {

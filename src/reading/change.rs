@@ -50,7 +50,7 @@ pub enum ChangedTexels {
     Colors,
 }
 
-/// A small cache of differences between pictures, computed on first use.
+/// A small cache of differences between pictures, computed on first use and found again by the images' addresses.
 #[derive(Debug, Default)]
 pub struct ChangeCache {
     changes: Vec<([Arc<Image>; 2], DepthMeasure, Option<StepChange>)>,
@@ -76,7 +76,7 @@ impl ChangeCache {
         change
     }
 
-    /// Returns a colour picture in dim greys, to be drawn under a change.
+    /// Returns a colour picture in dim greys, to be drawn under a change; cached.
     pub fn ground(&mut self, colors: &Arc<Image>) -> Arc<Image> {
         if let Some((_, ground)) = self.grounds.iter().find(|(of, _)| Arc::ptr_eq(of, colors)) {
             return ground.clone();
@@ -86,7 +86,8 @@ impl ChangeCache {
         ground
     }
 
-    /// Returns how many texels of two pictures differ; `None` where they can't be compared.
+    /// Returns how many texels of two pictures differ; `None` where they have different sizes or formats, so that they
+    /// can't be compared; cached.
     pub fn differing(&mut self, pair: [&Arc<Image>; 2]) -> Option<u64> {
         if let Some((_, texels)) = self.differing.iter().find(|(of, _)| is_pair(of, pair)) {
             return *texels;

@@ -151,7 +151,8 @@ struct CameraMatrices {
 }
 
 impl PixelCoordinates {
-    /// Returns the coordinates of a pixel, by the depth that it has at the end of the frame; without vertices.
+    /// Returns the coordinates of the surface at a pixel's centre, by the depth that it has at the end of the frame;
+    /// none of a point where the pixel shows no surface. `vertices` is empty.
     pub fn of(capture: &Capture, pixel: [u32; 2]) -> PixelCoordinates {
         let matrices = CameraMatrices::of(capture);
         let last = (0..capture.steps.len()).rev().find_map(|step| capture.frame_at(step));
@@ -188,7 +189,8 @@ fn corners(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Optio
 }
 
 impl VertexPlaces {
-    /// Returns the coordinates of vertices of a scene's objects, each asked for as `OBJECT:INDEX`.
+    /// Returns the coordinates of vertices of a scene's objects in the capture's camera, each asked for as
+    /// `OBJECT:INDEX` (counted from 0), in the order asked for. Of objects of one name, the first is meant.
     ///
     /// # Errors
     /// The first vertex that does not exist.
@@ -216,7 +218,7 @@ impl VertexPlaces {
         })
     }
 
-    /// Returns the lines that `pixel --vertex` prints.
+    /// Returns the lines that `pixel --vertex` prints: the camera, each vertex, and the matrices.
     pub fn text(&self) -> String {
         let vertices: String = self.vertices.iter().map(VertexCoordinates::text).collect();
         self.camera.text() + &vertices + &chain_text(&self.chain)
@@ -229,8 +231,8 @@ impl VertexCoordinates {
         format!("vertex {} of {}", self.index, self.object)
     }
 
-    /// Returns the name and the coordinates of each space, with so many significant digits, and then the planes of the
-    /// view that the vertex lies beyond.
+    /// Returns name and coordinates of the vertex in each space, with `digits` significant digits, and last whether it
+    /// is in view or which planes it lies beyond. NDC and window say why they are missing where w is not positive.
     pub fn rows(&self, digits: u32) -> [(&'static str, String); 6] {
         let divided = |values: Option<[f64; 3]>| match values {
             Some(values) => vector(&values, digits),
@@ -404,7 +406,8 @@ pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
     row.map(|value| format!("{:>width$}", number(value, digits))).concat()
 }
 
-/// Returns a number with so many significant digits, and without a sign where it rounds to 0.
+/// Returns a number with `shown` significant digits, without zeros at the end and without a sign where it rounds to 0;
+/// at most `shown` + 3 decimals.
 fn number(value: f64, shown: u32) -> String {
     let digits = if value == 0.0 || !value.is_finite() { 0.0 } else { value.abs().log10().floor() };
     let decimals = (f64::from(shown) - 1.0 - digits).clamp(0.0, f64::from(shown) + 3.0) as usize;

@@ -4,7 +4,7 @@ use crate::capture::{Capture, FrameTarget, Image, Snapshot};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Number of texels for each count, rounded to an integer.
+/// The number of texels for each count, which is rounded to an integer; counts without texels are not there.
 pub type Tally = BTreeMap<i64, u64>;
 
 /// Returns the value that an eight-bit stencil would store for a float count: the count modulo 256.
@@ -12,7 +12,8 @@ pub fn in_eight_bits(count: f32) -> u8 {
     (count.round() as i64).rem_euclid(256) as u8
 }
 
-/// Returns how many texels of a picture of float counts have each count.
+/// Returns how many texels of a picture of float counts have each count, rounded to whole numbers; counts that no texel
+/// has are not there.
 pub fn tally(image: &Image) -> Tally {
     let mut tally = Tally::new();
     // Neighbouring texels mostly agree, so the map is looked up once for a run of them.

@@ -44,7 +44,8 @@ pub struct DepthScale {
 }
 
 impl DepthMeasure {
-    /// Returns the measure of the camera's depth buffer.
+    /// Returns the measure that converts the camera's stored depths to metres along the view axis (or to the capture's
+    /// own unit), for a perspective or a parallel camera.
     pub fn of_camera(capture: &Capture) -> DepthMeasure {
         let DepthCurve { mapping, offset, scale, is_linear, .. } = capture.depth;
         let clear = mapping.clear_depth();
@@ -97,15 +98,16 @@ impl DepthMeasure {
         }
     }
 
-    /// Returns the distance from a stored `f32` depth to the next one that can be stored, in metres (raw depth: in
-    /// depth); `None` where nothing was drawn.
+    /// Returns the distance from a stored `f32` depth to the next larger one that can be stored, in metres (raw depth:
+    /// in depth), as a positive number; `None` where nothing was drawn.
     pub fn step_at(self, depth: f32) -> Option<f64> {
         // Towards 0 floats are finer, so the coarser neighbour is the one above.
         self.between(f64::from(depth), f64::from(depth.next_up()), depth)
     }
 
-    /// Returns the same for a fixed-point buffer of `bits` bits, 31 at most, which stores `floor((2^bits − 1) ·
-    /// depth)`.
+    /// Returns the distance from a stored depth to the next one of a fixed-point buffer of `bits` bits, 31 at most,
+    /// which stores `floor((2^bits − 1) · depth)`, in metres (raw depth: in depth); from the last step, to the one
+    /// before. `None` where nothing was drawn.
     pub fn fixed_step_at(self, depth: f32, bits: u32) -> Option<f64> {
         let steps = f64::from((1_u32 << bits) - 1);
         let stored = (f64::from(depth) * steps).floor();

@@ -42,7 +42,9 @@ pub struct ExplainContext<'a> {
     pub map: Option<&'a MapDecision>,
 }
 
-/// Returns the formulas of a step with their values, the most important first.
+/// Returns the formulas of a step with their values, the most important first; empty where the capture has no step of
+/// this index. What the step draws decides which: a map, volumes, flattened casters, receivers, labels, a light, or
+/// else how depth is stored.
 pub fn facts(known: &ExplainContext) -> Vec<ExplainFact> {
     let Some(step) = known.capture.steps.get(known.step) else { return Vec::new() };
     let has = |part: DrawPart| step.draws.iter().any(|draw| draw.part == part);
@@ -74,7 +76,8 @@ fn fact(formula: &str, here: Vec<String>) -> ExplainFact {
     ExplainFact { formula: formula.to_owned(), here }
 }
 
-/// Explains how depth is stored: `offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
+/// Explains how depth is stored: `offset + scale / distance`, or of a parallel camera `offset + scale · distance`, with
+/// the picked pixel's numbers, or a hint to pick one.
 fn depth(known: &ExplainContext) -> ExplainFact {
     let curve = known.capture.depth;
     // With fewer digits the sum would differ from what is stored.
@@ -187,7 +190,8 @@ fn has_volumes(step: &Step) -> bool {
     step.draws.iter().any(|draw| draw.part.is_of_volume())
 }
 
-/// Returns lines about the counts in the whole picture after a step, in the stencil or in floats.
+/// Returns lines about the counts in the whole picture after a step: how many pixels have one other than 0, and the
+/// highest. Empty where there is no stencil, and for float counts before the light's last counting pass.
 fn counted(known: &ExplainContext, light: Option<usize>) -> Vec<String> {
     let of_light = light.and_then(|light| known.capture.lights.get(light));
     let in_floats = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
@@ -324,7 +328,8 @@ fn light(known: &ExplainContext, step: &Step) -> ExplainFact {
     fact(&formula, here)
 }
 
-/// Returns words for the bits in which a count is stored; empty where these are all eight.
+/// Returns words for the bits of the stencil in which a count is stored, beginning with a comma; empty where these are
+/// all eight.
 fn in_bits(settings: &VolumeSettings) -> String {
     match CountBits::of_mask(settings.mask().into()) {
         CountBits::EIGHT => String::new(),

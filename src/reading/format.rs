@@ -12,7 +12,8 @@ pub fn light_title(index: usize) -> String {
     format!("Light {}", index + 1)
 }
 
-/// Returns milliseconds as text, or a dash where they were not measured (`None`).
+/// Returns milliseconds as text: two decimals below 0.095, one below 100, none above; a dash for `None`, which was not
+/// measured.
 pub fn milliseconds(value: Option<f64>) -> String {
     match value {
         None => "–".to_owned(),
@@ -22,7 +23,7 @@ pub fn milliseconds(value: Option<f64>) -> String {
     }
 }
 
-/// Returns a size in memory as text: `7.1 MB`.
+/// Returns a size as text in decimal units, with one decimal from 1 000 bytes on: `999 B`, `7.1 MB`.
 pub fn bytes(value: u64) -> String {
     match value {
         0..1_000 => format!("{value} B"),

@@ -21,7 +21,7 @@ const SEES_BACK: u32 = 1 << 31;
 /// their distance from the eye.
 const SAME_SURFACE: f64 = 0.01;
 
-/// The interpolated inputs of the fragment shader at a pixel.
+/// What the fragment shader gets for a surface at a pixel's centre, as computed here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentInputs {
     /// Whether they are of a triangle that the plan draws; otherwise `normal`, `reads` and `layer` are guesses.
@@ -38,7 +38,8 @@ pub struct FragmentInputs {
     pub layer: Option<u32>,
 }
 
-/// The fragment shader's inputs at every pixel of the final picture.
+/// The fragment shader's inputs at every pixel of the final picture, computed from depths and, where there is a plan,
+/// its triangles.
 #[derive(Debug)]
 pub struct SurfaceFragments {
     surface: PixelUnprojection,
@@ -60,7 +61,8 @@ impl SurfaceFragments {
         self.drawn.is_some()
     }
 
-    /// Returns the fragment at a pixel (column, row); `None` where the pixel shows no surface.
+    /// Returns the fragment at a pixel (column, row); `None` where the pixel shows no surface. Where no drawn triangle
+    /// is known there, position and plane are computed from depths ([`FragmentInputs::is_drawn`] is false).
     pub fn at(&self, at: [u32; 2]) -> Option<FragmentInputs> {
         let world = self.surface.at(at, self.depth.depth_at(at)?)?;
         let most = SAME_SURFACE * world.distance(self.surface.eye);
@@ -80,7 +82,7 @@ impl SurfaceFragments {
     }
 
     /// Returns where the view rays through a pixel's four corners hit a fragment's plane, world space, in order round
-    /// it; `None` where one of them does not.
+    /// it from the upper left; `None` where one does not hit it in front of the eye.
     pub fn corners(&self, [x, y]: [u32; 2], fragment: &FragmentInputs) -> Option<[DVec3; 4]> {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
@@ -182,7 +184,8 @@ impl DrawnTriangles {
     }
 }
 
-/// Returns the triangles with normals that the camera's passes draw, each once.
+/// Returns the triangles with normals that the camera's shading and label passes draw, each once, with whether a shader
+/// reads the map or textures of `light` for it, and its layer.
 fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
     const DRAWN: u8 = 1;
     const READS: u8 = 2;
@@ -262,14 +265,14 @@ impl PixelUnprojection {
         }
     }
 
-    /// Returns the world position of a surface with this stored depth at the centre of a pixel; `None` where the depth
-    /// is at infinity or nothing was drawn.
+    /// Returns the world position of a surface with this stored depth at the centre of a pixel (column, row); `None`
+    /// where the depth is at infinity or nothing was drawn.
     pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
         let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
         Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
     }
 
-    /// Returns the view ray through a position in pixels.
+    /// Returns the view ray, relative to the eye, through a position in pixels from the upper left.
     fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         let [width, height] = self.size;
         self.rays.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))

@@ -52,7 +52,8 @@ pub enum EventOutcome {
 }
 
 impl HistoryCells {
-    /// Returns the cells for an event of a pixel's history.
+    /// Returns the cells for an event of a pixel's history: a clear, other content that was written, or a triangle's
+    /// fragment.
     pub fn of(history: &PixelHistory, event: &PixelEvent, capture: &Capture) -> HistoryCells {
         let (change, has_changed) = change(history, event, &capture.depth);
         let number = steps::number(capture, event.pass);
@@ -82,7 +83,7 @@ impl HistoryCells {
         cells
     }
 
-    /// Returns the row as text, for tooltips and screen readers.
+    /// Returns the row as text, for tooltips and screen readers; what is empty is left out.
     pub fn name(&self) -> String {
         let mut name = format!("{}: {}", self.pass, self.what);
         let mut add = |separator: &str, text: &str| {
@@ -111,8 +112,8 @@ pub fn line(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> S
     history.line(event, curve).replace('→', "to")
 }
 
-/// Returns the part of a triangle and the object it belongs to, in words: `dark cap` and `torus 2`; the object is empty
-/// where the part is the object itself.
+/// Returns the part of a triangle and the object it belongs to, in words: `dark cap` and `torus 2`. For a surface, and
+/// a volume of another program, the first is the draw's name and the object is empty.
 pub fn named(one: &TriangleEvent) -> (String, String) {
     let caster = || one.caster.clone().unwrap_or_else(|| one.draw_name.clone());
     match one.part {
@@ -142,7 +143,8 @@ fn outcome(outcome: FragmentOutcome) -> EventOutcome {
     }
 }
 
-/// Returns the sign for a test's result: ✓, ✗, or a word where no test took place.
+/// Returns the sign for a test's result: ✓ passed, ✗ failed, `always` where it can't fail, `-` where it was not
+/// reached.
 pub fn sign(test: TestResult) -> &'static str {
     match test {
         TestResult::Passed => "✓",
@@ -170,13 +172,14 @@ pub fn signed(value: u8) -> String {
     numbers::signed(value).split(' ').next().unwrap_or_default().to_owned()
 }
 
-/// Returns a float count with the same sign that stencil values have.
+/// Returns a float count, negative ones with a minus sign (`−1.5`), others without a sign.
 fn float(value: f32) -> String {
     if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
 }
 
-/// Returns the event's change of the pixel as text, such as `0 → +1`, and whether anything changed. Shows the count,
-/// else the depth, else the unchanged stencil.
+/// Returns the event's change of the pixel as text, such as `0 → 1`, and whether anything changed. For a clear its
+/// value; for a triangle the stencil, else the float count, else the distance, whichever changed first in this order,
+/// else the unchanged stencil (empty where there is none).
 fn change(history: &PixelHistory, event: &PixelEvent, curve: &DepthCurve) -> (String, bool) {
     let PixelValues { depth, stencil, count } = event.before;
     let after = event.after;

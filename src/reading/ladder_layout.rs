@@ -10,7 +10,7 @@ use crate::history::Ladder;
 use crate::plan::CountedSide;
 use std::ops::Range;
 
-/// Distance between two neighbouring marks of the ladder, in points.
+/// The usual distance between two neighbouring marks of the ladder, in points.
 pub const LINE: f32 = 20.0;
 const LEAST_LINE: f32 = 14.0;
 /// The least height of a ladder, in points, where its panel has the space.
@@ -128,8 +128,8 @@ pub fn stretches(ladder: &Ladder, placed: &[PlacedMark]) -> Vec<CountStretch> {
     stretches
 }
 
-/// Returns all marks in order of distance; where there are more than `most` rungs, only `ends` of them at either side
-/// of what matters, the rest folded.
+/// Returns all marks in order of distance. Of more than `most` rungs, only `ends` of them on either side of eye, near
+/// plane, surface, selected rung and last rung, and those in `open`, are listed; the rest is folded.
 fn marks(
     ladder: &Ladder,
     near: f64,

@@ -27,7 +27,7 @@ named_enum! {
     }
 }
 
-/// The names of one layer of a light's map.
+/// The names of one layer of a light's map, and why it is empty if no pass drew it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapLayer {
     /// Short name: `−x`, `floor, flat piece 1`.
@@ -56,7 +56,7 @@ impl MapContent {
     }
 }
 
-/// Returns the layers of a light's map, in order; empty where there is none.
+/// Returns the names of the layers of a light's map, in order; empty where the light has no map or does not exist.
 pub fn layers(capture: &Capture, light: usize) -> Vec<MapLayer> {
     let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
     let count = map.map_or(0, |map| map.faces.len());

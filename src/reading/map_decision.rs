@@ -41,7 +41,8 @@ pub struct MapDecision {
 }
 
 impl MapDecision {
-    /// Computes how the map of the light with this index decides a pixel; `None` where the pixel reads no texel.
+    /// Computes how the depth map of the light with this index decides a pixel: each texel of its filter compared again
+    /// here; notes where the GPU's label says otherwise. `None` where there is no map or the pixel reads no texel.
     pub fn of(capture: &Capture, readers: &MapReaders, light: usize, pixel: [u32; 2]) -> Option<MapDecision> {
         let map = capture.lights.get(light)?.map.as_ref()?;
         let clear = capture.depth.mapping.clear_depth();
@@ -73,7 +74,8 @@ impl MapDecision {
         self.compared.iter().filter(|one| one.is_lit).count()
     }
 
-    /// Returns a depth as text, followed by its distance from the light in metres where that is known.
+    /// Returns a stored depth as text, followed in parentheses by its distance from the light in metres where that is
+    /// known.
     pub fn depth_words(&self, depth: f32) -> String {
         let metres = self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
         metres.map_or_else(|| format::depth(depth), |metres| format!("{} ({metres})", format::depth(depth)))
@@ -90,7 +92,8 @@ impl MapDecision {
         if self.face.is_empty() { format!("{x}, {y}") } else { format!("{x}, {y} of face {}", self.face) }
     }
 
-    /// Returns the result of the comparison in a few words.
+    /// Returns the result of the comparison in a few words: of one texel, what is stored and whether it is lit; of
+    /// several, how many are lit; or that it is too close to be computed again where the GPU says otherwise.
     pub fn outcome(&self) -> String {
         let all = self.compared.len();
         match (all, self.lit()) {
@@ -102,7 +105,9 @@ impl MapDecision {
         }
     }
 
-    /// Returns a sentence that explains why the pixel is dark or lit.
+    /// Returns a sentence that explains why the map makes the pixel dark or lit: what the middle texel stores, the
+    /// surface's own distance or depth, and what follows; or that it is too close to be computed again where the GPU
+    /// says otherwise.
     pub fn sentence(&self) -> String {
         let place = self.place_words();
         let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// `arriving_by_map.wgsl`.
 const BORDER: f64 = 1.0001;
 
-/// A texel of a light's map: its face, column and row.
+/// A texel of a light's map: its face, column and row, counted from the upper left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapTexel {
     /// Index of the face.
@@ -55,7 +55,8 @@ impl MapReaders {
         self.fragments.are_drawn()
     }
 
-    /// Returns the texel that a pixel (column, row) reads, with a filter the middle one; `None` where it reads none.
+    /// Returns the texel that a pixel (column, row) reads, with a filter the middle one, kept inside the map; `None`
+    /// where it reads none or lies outside the picture.
     pub fn texel_of(&self, [x, y]: [u32; 2]) -> Option<MapTexel> {
         let index = (y as usize).checked_mul(self.size[0] as usize)? + x as usize;
         let [face, column, row] = (*self.first.get(index).filter(|_| x < self.size[0])?)?;
@@ -67,7 +68,7 @@ impl MapReaders {
         Some(MapTexel { face: face as usize, at })
     }
 
-    /// Returns the pixels that read a texel, filters included.
+    /// Returns the pixels (column, row) that read a texel, also those whose filter includes it, in reading order.
     pub fn of_texel(&self, texel: MapTexel) -> Vec<[u32; 2]> {
         let reads = |first: [i16; 3]| {
             let is_in = |first: i16, at: u32, side: u32| {
@@ -85,15 +86,17 @@ impl MapReaders {
         found.map(|(index, _)| place(index)).collect()
     }
 
-    /// Returns the pixel's depth in the map, with which texels are compared; `None` where it reads none.
+    /// Returns the depth of the pixel's surface in the map (normalised device z), with which texels are compared;
+    /// `None` where it reads none.
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
         let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
         let (_, clip) = self.lookup.place(&fragment)?;
         Some(clip.z / clip.w)
     }
 
-    /// Returns the texels that a pixel is compared with, row by row, each with the depth of the pixel's surface there;
-    /// empty where it reads none.
+    /// Returns the texels that a pixel is compared with, row by row, each with the depth of the pixel's surface there
+    /// (on its plane, where the bias is by plane); beyond the map's border, the border's texel again. Empty where it
+    /// reads none.
     pub fn compared(&self, pixel: [u32; 2]) -> Vec<(MapTexel, f64)> {
         let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
         let found = found.and_then(|fragment| Some((fragment, self.lookup.place(&fragment)?)));
@@ -178,7 +181,8 @@ struct MapProjection {
 }
 
 impl MapProjection {
-    /// Returns the projection of a light's shadow map; `None` where it has none.
+    /// Returns the projection of a light's shadow map with its filter and bias; `None` where it has no map, or one of
+    /// colours instead of depths.
     fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapProjection> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
@@ -196,8 +200,8 @@ impl MapProjection {
         })
     }
 
-    /// Returns the face that sees a world position, and its clip-space position in that face; `None` where no face
-    /// does.
+    /// Returns the face that sees a world position, and the clip-space position in that face; where two do, one that is
+    /// drawn. `None` where no face does: the position is behind the light or outside.
     fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
         let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
         let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
@@ -207,15 +211,15 @@ impl MapProjection {
         drawn.or_else(|| clips().find(|(_, clip)| is_in(clip)))
     }
 
-    /// Returns the face that a fragment reads, and the clip-space position at which it is looked up: with normal
-    /// offset. The face is chosen before the offset.
+    /// Returns the face that a fragment reads, and the clip-space position at which it is looked up, moved by the
+    /// normal offset; the face is chosen before that. `None` where no face sees it.
     fn place(&self, fragment: &FragmentInputs) -> Option<(usize, DVec4)> {
         let (face, _) = self.seen(fragment.world)?;
         Some((face, self.matrices[face] * (fragment.world + self.push(face, fragment)?).extend(1.0)))
     }
 
-    /// Returns the normal offset of a fragment for a lookup in a face, a vector in metres: texels times the sine of the
-    /// light's angle.
+    /// Returns the normal offset of a fragment for a lookup in a face, a world-space vector in metres: so many texels,
+    /// times the sine of the angle between normal and light. `None` where the face does not see the fragment.
     fn push(&self, face: usize, fragment: &FragmentInputs) -> Option<DVec3> {
         if self.bias_normal == 0.0 {
             return Some(DVec3::ZERO);
@@ -226,7 +230,8 @@ impl MapProjection {
         Some(fragment.normal * (self.bias_normal * self.width(face, fragment.world)? * sine))
     }
 
-    /// Returns the width of a face's texel at a world position, metres.
+    /// Returns the width of a face's texel at a world position, metres, as it lies across the light's view; `None`
+    /// behind the light.
     fn width(&self, face: usize, world: DVec3) -> Option<f64> {
         let matrix = self.matrices.get(face)?;
         let distance = (*matrix * world.extend(1.0)).w;
@@ -234,14 +239,14 @@ impl MapProjection {
         (distance > 0.0 && focal > 0.0).then(|| 2.0 * distance / (focal * f64::from(self.size[0])))
     }
 
-    /// Converts a clip-space position to texels of the face.
+    /// Converts a clip-space position to texels of the face, from its upper left corner; the result may lie outside.
     fn texel(&self, clip: DVec4) -> DVec2 {
         let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
         (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size
     }
 
-    /// Returns how depth changes along x and y of a face (normalized device coordinates) on a plane with this normal;
-    /// zero where the light sees the plane edge-on.
+    /// Returns how depth changes along x and y of a face (normalized device coordinates) on a plane through `clip` with
+    /// the world normal `plane`; zero where the light sees the plane edge-on.
     fn slope(&self, face: usize, clip: DVec4, plane: DVec3) -> DVec2 {
         let along = |direction: DVec3| {
             let moved = self.matrices[face] * direction.extend(0.0);
@@ -256,13 +261,15 @@ impl MapProjection {
         DVec2::new(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / area
     }
 
-    /// Returns face, column and row of the first texel that a fragment reads.
+    /// Returns face, column and row of the first texel (upper left of the filter, which may lie outside the map) that a
+    /// fragment reads; `None` where no face sees it.
     fn first(&self, fragment: &FragmentInputs) -> Option<[i16; 3]> {
         let (face, clip) = self.place(fragment)?;
         Some(self.first_at(face, clip))
     }
 
-    /// Returns face, column and row of the first texel that a point reads without normal offset.
+    /// Returns face, column and row of the first texel that a world position reads without normal offset; `None` where
+    /// no face sees it.
     fn first_of(&self, world: DVec3) -> Option<[i16; 3]> {
         self.seen(world).map(|(face, clip)| self.first_at(face, clip))
     }

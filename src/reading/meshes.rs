@@ -14,7 +14,8 @@ pub struct ObjectMesh {
     pub topology: Arc<Topology>,
 }
 
-/// Returns a line for each texture on an object: its name, its size, and how it is mapped.
+/// Returns a line for each texture on an object: its name, its size, and how it is mapped; the same line once where
+/// groups in sequence have it. Empty without textures.
 pub fn pictures(object: &Object) -> Vec<String> {
     let line = |texture: &MaterialTexture| {
         let [width, height] = texture.picture.size();
@@ -34,7 +35,8 @@ pub fn is_whole(topology: &Topology) -> bool {
     findings(topology).is_empty()
 }
 
-/// Returns the mesh's defects with their counts as text, after `closed` where the mesh is closed.
+/// Returns the mesh's defects with their counts as text, separated by commas, after `closed` where the mesh is closed;
+/// empty where it is neither closed nor has defects.
 pub fn line(topology: &Topology) -> String {
     let mut parts: Vec<String> = findings(topology).into_iter().map(|(text, _)| text).collect();
     if topology.is_closed() {
@@ -57,7 +59,8 @@ pub fn effects(topology: &Topology) -> String {
     paragraphs.join("\n\n")
 }
 
-/// Returns each defect of a mesh as text with its count, and its effect on techniques.
+/// Returns each kind of defect that a mesh has, as text with its count, and its effect on techniques; empty where it
+/// has none.
 fn findings(topology: &Topology) -> Vec<(String, &'static str)> {
     let edges = |count: usize, kind: &str| format::counted(count as u64, &format!("{kind} edge"));
     let all = [

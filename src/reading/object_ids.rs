@@ -18,7 +18,8 @@ pub struct ObjectIds {
 }
 
 impl ObjectIds {
-    /// Rasterises the objects of `anatomy` on the CPU as the camera of `capture` sees them.
+    /// Draws the visible objects of `anatomy` on the CPU as the camera of `capture` sees them, and returns where
+    /// receivers are, with their outlines, and a pixel in the middle of each object.
     pub fn new(anatomy: &Anatomy, capture: &Capture) -> ObjectIds {
         let ids = draw(anatomy, capture);
         let [width, height] = capture.size.map(|side| side as usize);
@@ -42,7 +43,8 @@ impl ObjectIds {
     }
 }
 
-/// Returns for each pixel the index of the nearest visible object plus 1; 0 where there is none.
+/// Returns for each pixel, row by row, the index of the nearest visible object plus 1; 0 where there is none. Of two at
+/// the same depth, the first one stays.
 fn draw(anatomy: &Anatomy, capture: &Capture) -> Vec<u32> {
     let size = capture.size.map(|side| side as usize);
     let projector = Projector::new(capture);
@@ -88,7 +90,8 @@ pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut add: im
     }
 }
 
-/// Returns, for each object, the pixel of it that is nearest to the mean of its pixels.
+/// Returns, for each object, the pixel of it that is nearest to the mean of its pixels; `None` where no pixel shows it.
+/// `ids` are object indices plus 1, row by row.
 fn middles(ids: &[u32], width: usize, objects: usize) -> Vec<Option<[u32; 2]>> {
     let mut sums = vec![(DVec2::ZERO, 0.0_f64); objects];
     let place = |index: usize| DVec2::new((index % width) as f64, (index / width) as f64);

@@ -15,7 +15,7 @@ pub struct TestOutcomes {
 }
 
 impl TestOutcomes {
-    /// Computes the outcomes at every pixel from a step's test counts.
+    /// Returns a step's test counts with the outcome of each pixel as a picture, and how many pixels have each outcome.
     pub fn new(tests: StepTests) -> TestOutcomes {
         let outcomes = Arc::new(tests.outcomes());
         let histogram = outcomes.histogram();

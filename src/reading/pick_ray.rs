@@ -16,7 +16,7 @@ pub fn ray_at(capture: &Capture, at: [f64; 2]) -> Ray {
     capture.camera.rays(width / height).through(place)
 }
 
-/// Returns the world position of the surface at a pixel at the end of the frame; `None` where there is none.
+/// Returns the world position of the surface at a pixel's centre at the end of the frame; `None` where there is none.
 pub fn surface(capture: &Capture, at: [u32; 2]) -> Option<DVec3> {
     let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
     let distance = capture.depth.distance(frame.depth.image.depth_at(at)?)?;
@@ -29,7 +29,8 @@ fn in_view(capture: &Capture, world: glam::DVec4) -> DVec3 {
     camera.world_from_view().transpose() * (world.truncate() - camera.eye * world.w)
 }
 
-/// Returns the unit direction in the picture (right, down) towards a point that is outside it or behind the camera.
+/// Returns the unit direction in the picture (right, down) from its middle towards a homogeneous world-space point that
+/// is outside it or behind the camera; downwards for a point right ahead or behind.
 pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
     let view = in_view(capture, world);
     // For a point right behind the eye any direction is as good.
@@ -37,8 +38,8 @@ pub fn way_to(capture: &Capture, world: glam::DVec4) -> [f64; 2] {
     way.to_array()
 }
 
-/// Returns where a homogeneous world-space point is in the picture, in pixels; `None` where it is not in front of the
-/// eye.
+/// Returns where a homogeneous world-space point is in the picture, in pixels from the upper left, also outside of it;
+/// `None` where it is not in front of the eye.
 pub fn texel_of(capture: &Capture, world: glam::DVec4) -> Option<[f64; 2]> {
     let camera = &capture.camera;
     let [width, height] = capture.size.map(f64::from);

@@ -43,7 +43,8 @@ named_enum! {
 }
 
 impl PictureKind {
-    /// Returns the text on its button, and the button's explanation, for this capture.
+    /// Returns the text on the kind's button, and the button's explanation; a map's depend on what the capture's maps
+    /// store.
     pub fn label(self, capture: &Capture) -> [&'static str; 2] {
         match self {
             PictureKind::Map => {
@@ -59,7 +60,7 @@ impl PictureKind {
         matches!(self, PictureKind::Count | PictureKind::Map)
     }
 
-    /// Returns a sentence on why a step has no picture of this kind.
+    /// Returns a sentence on why a step has no picture of this kind; call it only where that is so.
     pub fn why_missing(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Stencil if !has_stencil(capture) => "This frame has no stencil buffer",
@@ -107,7 +108,7 @@ pub enum DepthMode {
     Raw,
 }
 
-/// The state of the picture panel: what the user chose to see, and how.
+/// What the user chose to see in a picture panel, and how: kind, light, layer, zoom and range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureView {
     /// The chosen kind; `None` follows what each step writes.
@@ -170,7 +171,8 @@ pub struct ShownPicture {
 }
 
 impl PictureView {
-    /// Chooses the kind of picture to show.
+    /// Chooses the kind of picture to show. A kind that needs the truth remembers the one before, which is shown
+    /// meanwhile; another kind resets the range of depths, and one without truth drops an older truth.
     pub fn choose(&mut self, kind: PictureKind) {
         if kind.needs_truth() && !self.wants_truth() {
             self.kind_before_truth = self.kind;
@@ -198,7 +200,8 @@ impl PictureView {
         self.kind.is_some_and(PictureKind::needs_truth)
     }
 
-    /// Selects the light of a step, and the layer of the map that the step draws.
+    /// Selects the light of a step (the one so far stays where it has none), and the layer of the map that the step
+    /// draws, if the map has several; for other steps, all layers, unless the map is the chosen kind.
     pub fn follow(&mut self, capture: &Capture, step: usize) {
         match capture.steps.get(step).map(|step| &step.snapshot) {
             Some(Snapshot::Map { light, face }) => {
@@ -219,15 +222,16 @@ impl PictureView {
         }
     }
 
-    /// Returns the picture to show at a point of the frame: of the chosen kind, or of the one that stands in for it.
-    /// `None` where there is no picture.
+    /// Returns the picture to show at a point of the frame: of the chosen kind, or of the one that stands in for it
+    /// ([`PictureView::kind_at`]); `None` where there is no picture.
     pub fn shown(&self, capture: &Capture, at: impl Into<CapturePoint>) -> Option<ShownPicture> {
         let at = at.into();
         self.shown_as(capture, at, self.kind_at(capture, at)?)
     }
 
-    /// Returns the kind of picture that is shown at a point of the frame: the chosen one; else stencil for count and
-    /// the reverse, as a frame counts in one of them; else what the step writes.
+    /// Returns the kind of picture that is shown at a point of the frame: the chosen one (while the truth is not known,
+    /// the one before it); else stencil for count and the reverse; else what the step writes; else the first that
+    /// exists and needs no truth. `None` where none exists.
     pub fn kind_at(&self, capture: &Capture, at: CapturePoint) -> Option<PictureKind> {
         let kinds = available(capture, at);
         let lacks_truth = self.wants_truth() && self.truth_to_show(capture).is_none();
@@ -244,7 +248,8 @@ impl PictureView {
         wishes.find(can_show).or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))
     }
 
-    /// Returns the picture of this kind at a point of the frame; `None` where it does not exist.
+    /// Returns the picture of this kind at a point of the frame, for the chosen light and layer, or the first light
+    /// that has one; `None` where it does not exist.
     pub fn shown_as(&self, capture: &Capture, at: CapturePoint, kind: PictureKind) -> Option<ShownPicture> {
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words(capture));
@@ -297,7 +302,8 @@ impl PictureView {
         })
     }
 
-    /// Returns the index of the light whose truth is shown, and that truth: of this frame, else of the previous one.
+    /// Returns the index of the light whose truth is shown, and that truth: the chosen light's, else the first that is
+    /// known; of this frame, else of the previous one. `None` where none is known.
     pub fn truth_to_show<'a>(&'a self, capture: &'a Capture) -> Option<(usize, &'a CapturedTruth)> {
         if has_truth(capture) {
             let light = self.light_with(capture, |light| light.truth.is_some())?;
@@ -312,7 +318,8 @@ impl PictureView {
         linear.filter(|_| self.depth_mode == DepthMode::Linear).unwrap_or(DepthMeasure::Raw)
     }
 
-    /// Returns the index of the chosen light if `has` is true for it, else of the first light for which it is.
+    /// Returns the index of the chosen light if `has` is true for it, else of the first light for which it is; `None`
+    /// where it is true for none.
     pub fn light_with(&self, capture: &Capture, has: impl Fn(&CapturedLight) -> bool) -> Option<usize> {
         let chosen = capture.lights.get(self.light).filter(|light| has(light));
         chosen.map_or_else(|| capture.lights.iter().position(&has), |_| Some(self.light))
@@ -320,7 +327,8 @@ impl PictureView {
 }
 
 impl PictureView {
-    /// Returns the picture of the chosen layer of a light's map, or of all layers.
+    /// Returns the picture of the chosen layer of a light's map, or of all layers, with a layer as it was after the
+    /// draw where that is known; `None` where no light has a map.
     fn shown_map(&self, capture: &Capture, at: CapturePoint) -> Option<ShownPicture> {
         let light = self.light_with(capture, |light| light.map.is_some())?;
         let map = capture.lights.get(light)?.map.as_ref()?;
@@ -373,7 +381,8 @@ pub fn has_truth(capture: &Capture) -> bool {
     capture.lights.iter().any(|light| light.truth.is_some())
 }
 
-/// Returns the kind of picture that a step writes; where it changes several, colour before stencil before depth.
+/// Returns the kind of picture that a step writes; where it changes several, colour before stencil before depth, and
+/// colour where it changes none. `None` where there is no such step.
 pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     let frame = match &capture.steps.get(step)?.snapshot {
         Snapshot::Map { .. } => return Some(PictureKind::Map),
@@ -391,7 +400,8 @@ pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     })
 }
 
-/// Returns the kinds of picture that exist at a point of the frame, or can be asked for, in the order of their buttons.
+/// Returns the kinds of picture that exist at a point of the frame, or can be asked for (truth, errors and overdraw),
+/// in the order of their buttons.
 pub fn available(capture: &Capture, at: impl Into<CapturePoint>) -> Vec<PictureKind> {
     let at = at.into();
     let frame = at.frame(capture);

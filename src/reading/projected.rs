@@ -57,8 +57,8 @@ impl Projector {
         }
     }
 
-    /// Returns the visible part of the segment between two homogeneous world positions, in pixels; `None` where none is
-    /// visible.
+    /// Returns the visible part of the segment between two homogeneous world positions, in pixels, clipped at the near
+    /// plane and a margin around the picture; `None` where none is visible.
     pub fn segment(&self, ends: [DVec4; 2]) -> Option<[DVec2; 2]> {
         let [mut from, mut to] = ends.map(|end| self.clip_from_world * end);
         for plane in self.planes {
@@ -115,8 +115,8 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     seen.into_iter().map(|(at, _)| at).collect()
 }
 
-/// Returns the near plane in clip space, positive inside. Where depth is clamped, it is w = 0, except in a parallel
-/// projection.
+/// Returns the near plane in clip space, positive inside, for the capture's depth mapping. Where depth is clamped, it
+/// is w = 0, except in a parallel projection.
 pub fn near_plane(capture: &Capture) -> DVec4 {
     match (capture.depth.mapping.clamps() && !capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
         (true, _) => DVec4::W,
@@ -125,7 +125,8 @@ pub fn near_plane(capture: &Capture) -> DVec4 {
     }
 }
 
-/// Clips a polygon to the positive side of a plane through the origin.
+/// Clips a convex polygon in clip space to the positive side of a plane through the origin; corners on the plane stay.
+/// Empty where nothing is left.
 pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
     let mut clipped = Vec::with_capacity(polygon.len() + 1);
     for (index, &corner) in polygon.iter().enumerate() {

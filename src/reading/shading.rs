@@ -101,8 +101,8 @@ struct ShadingTerms {
 }
 
 impl SurfaceShading {
-    /// Computes the shading of the surface that a pixel's history ends with; `None` where it shows none, or another
-    /// program drew the frame.
+    /// Computes the shading of the surface that a pixel's history ends with; `None` where it shows none, its triangle
+    /// or normals are not in the plan, or another program drew the frame.
     pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<SurfaceShading> {
         if capture.origin.is_some() {
             return None;
@@ -242,9 +242,9 @@ impl LightTerms {
     }
 }
 
-/// Returns the view position that highlights use (homogeneous, relative to the eye point), the draw, and the index of
-/// the triangle in its mesh that a pixel shows: the last one that passed its tests in the ambient pass, where all
-/// surfaces are drawn first.
+/// Returns the view position that highlights use (homogeneous, relative to the eye), the draw, and the index of the
+/// triangle in its mesh that a pixel shows: the last one that passed its tests in the ambient pass, where all surfaces
+/// are drawn first. `None` where none did.
 pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.outcome.passed())?;
@@ -256,7 +256,7 @@ pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(D
 }
 
 /// Returns the unit normals of a triangle's corners, towards the side that the eye sees. `first` is 3 × the triangle's
-/// index; `sides` has its side flags.
+/// index; `sides` has its side flags. `None` where the surface has no such triangle.
 fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]> {
     const SEES_BACK: u32 = 1 << 31;
     let sign = if sides & SEES_BACK == 0 { 1.0 } else { -1.0 };
@@ -264,7 +264,8 @@ fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]
     Some([0, 1, 2].map(|corner| wide(all[corner]).truncate() * sign))
 }
 
-/// Returns the barycentric weights of a triangle's corners at a point of its plane.
+/// Returns the barycentric weights of a triangle's corners a, b, c at a point of its plane; not finite for a triangle
+/// without area.
 fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     let across = (b - a).cross(c - a);
     let area = across.length_squared();
@@ -292,7 +293,8 @@ fn terms(at: ShadingPoint, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bo
     }
 }
 
-/// Interpolates the light of the corners (Gouraud shading); keeps `cosine`.
+/// Interpolates the light of the corners (Gouraud shading): falloff, and diffuse light and highlight weighted by it;
+/// both are 0 where the falloff is. `cosine` is returned as it is.
 fn mix(corners: [ShadingTerms; 3], weights: [f64; 3], cosine: f64) -> ShadingTerms {
     let sum = |of: fn(&ShadingTerms) -> f64| {
         corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>()
@@ -356,7 +358,8 @@ fn texture(
     })
 }
 
-/// Returns the factor of a checkered surface's colour at a point: 1, or [`DARK_CHECK`] on dark checks.
+/// Returns the factor of a surface's colour at a point relative to the eye: [`DARK_CHECK`] on the dark squares of a
+/// checkered surface, along world X and Z, otherwise 1.
 fn checks(draw: &Draw, relative: DVec3) -> f64 {
     let side = f64::from(draw.constants.material.checks);
     if side == 0.0 {
@@ -371,7 +374,8 @@ fn wide(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
 }
 
-/// Returns a number with at most four decimals as text.
+/// Returns a number with at most four decimals as text, without zeros at the end, and without a sign where it rounds to
+/// 0.
 pub fn digits(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -29,7 +29,8 @@ pub fn number(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).position(|step| step == index).map(|place| place + 1)
 }
 
-/// Returns the index of the step with this number; of the last step where there are fewer, of the first for 0.
+/// Returns the index of the step with this number, counted from 1; of the last numbered step where there are fewer, of
+/// the first for 0, and 0 for a capture without steps.
 pub fn of_number(capture: &Capture, number: usize) -> usize {
     let last = numbered(capture).next_back();
     numbered(capture).nth(number.saturating_sub(1)).or(last).unwrap_or(0)
@@ -45,7 +46,8 @@ pub fn previous(capture: &Capture, index: usize) -> Option<usize> {
     numbered(capture).rfind(|step| *step < index)
 }
 
-/// Returns a step in words: `step 2`, `the mask of light 1`.
+/// Returns a step in words: `step 2`, or, for a mask, which has no number, `the mask of light 1`. An index without a
+/// step is named as if it had that number.
 pub fn words(capture: &Capture, index: usize) -> String {
     match (number(capture, index), capture.steps.get(index)) {
         (Some(number), _) => format!("step {number}"),
@@ -57,7 +59,8 @@ pub fn words(capture: &Capture, index: usize) -> String {
     }
 }
 
-/// Returns the title of a step's row: `2 · volumes`, `mask`.
+/// Returns the title of a step's row: `2 · volumes`, or only its name, `mask`, where it has no number; empty for an
+/// index without a step.
 pub fn title(capture: &Capture, index: usize) -> String {
     let name = capture.steps.get(index).map_or("", |step| step.name.as_str());
     number(capture, index).map_or_else(|| name.to_owned(), |number| format!("{number} · {name}"))

@@ -103,7 +103,8 @@ struct ShareTexel {
 }
 
 impl TexelReaders {
-    /// Finds the texels that pixels read at the end of the frame of `plan`.
+    /// Finds the texels that pixels read of each light's map at the end of the frame of `plan`; none for another
+    /// program's frame, and for lights that no map decides.
     pub fn new(capture: &Capture, plan: &Arc<FramePlan>) -> TexelReaders {
         let reader = |light: usize| match capture.decided_by(light) {
             _ if capture.origin.is_some() => None,
@@ -119,7 +120,7 @@ impl TexelReaders {
         }
     }
 
-    /// Returns for each light the texels that a pixel read; `None` where it read none.
+    /// Returns for each light, in order, the texels that a pixel read, and what follows; `None` where it read none.
     pub fn at(&self, capture: &Capture, pixel: [u32; 2]) -> Vec<Option<TexelsRead>> {
         let of_light = |(light, reader): (usize, &TexelReader)| match reader {
             TexelReader::Map(readers) => {

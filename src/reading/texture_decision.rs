@@ -23,7 +23,7 @@ pub struct TexelShare {
     pub share: f64,
 }
 
-/// What is read of one texture or silhouette.
+/// The texels that are read of one texture or silhouette, and what they let through.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerRead {
     /// Index of the texture among the light's textures.
@@ -36,7 +36,7 @@ pub struct LayerRead {
     pub lets_through: [f64; 4],
 }
 
-/// How a light's textures decide a pixel.
+/// How a light's receiver textures or caster silhouettes decide a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextureDecision {
     /// Index of the light.
@@ -52,8 +52,9 @@ pub struct TextureDecision {
 }
 
 impl TextureDecision {
-    /// Returns how a light's textures decide a pixel; `None` where it looks up no texture, or its own layer is not
-    /// known.
+    /// Returns how a light's textures decide a pixel; `None` for depth maps, other programs' frames, and pixels that
+    /// look up no texture or whose triangle is not known. A receiver without a texture has no layers, and then all
+    /// light arrives.
     pub fn of(
         capture: &Capture,
         fragments: &SurfaceFragments,
@@ -97,13 +98,15 @@ impl TextureDecision {
         Some(TextureDecision { light, content, layers, lets_through, gpu_says })
     }
 
-    /// Returns whether at least half of the light arrives: its label is lit.
+    /// Returns whether at least half of the light arrives (by alpha), so that the label computed here is lit.
     pub fn is_lit(&self) -> bool {
         self.lets_through[3] >= BLOCKED_BELOW
     }
 }
 
-/// Returns the texels of a layer that a fragment reads; `None` where it is not looked up there.
+/// Returns the texels of a layer that a fragment reads by bilinear filtering, each once, with a weight above 0, row by
+/// row; beyond the border its texels repeat. `None` where a silhouette is not looked up: behind the light or outside,
+/// unless the settings project there.
 fn texels(
     map: &CapturedMap,
     layer: usize,

@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 use std::sync::Arc;
 
-/// The picture that represents what a step or a draw wrote.
+/// The one picture that represents what a step or a draw wrote.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WrittenAspects {
     /// Its texels after the step or draw.
@@ -70,7 +70,8 @@ impl WrittenAspects {
         }
     }
 
-    /// Returns what a draw wrote; `None` where it changed nothing, or the state after it is not known.
+    /// Returns what a draw wrote: its map layer, counts or labels, or the first of colour, stencil and depth that it
+    /// changed; `None` where it changed nothing, or the state after it is not known.
     pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<WrittenAspects> {
         let after = capture.steps.get(step)?.draws.get(draw)?.after.as_ref()?;
         let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
@@ -84,7 +85,8 @@ impl WrittenAspects {
         }
     }
 
-    /// Returns the picture of a layer of a light's map; the two indices are the light's and the layer's.
+    /// Returns the picture of a layer of a light's map, as light that is let through or as depths; the two indices are
+    /// the light's and the layer's.
     fn layer(capture: &Capture, [light, face]: [usize; 2], image: &Arc<Image>) -> WrittenAspects {
         let content = match image.format() {
             PixelFormat::Rgba8 => TexelContent::LetThrough,
@@ -106,7 +108,8 @@ impl WrittenAspects {
         }
     }
 
-    /// Returns the texels in display colours; depths use the picture's whole range.
+    /// Returns the texels in display colours, one pixel for each; depths from near (light) to far (dark) over the
+    /// image's own range.
     pub fn picture(&self) -> Picture {
         let image = &self.image;
         let in_color = |color: &dyn Fn([u32; 2]) -> Option<Rgb>| {

@@ -12,7 +12,8 @@ use crate::wrap::PipelineSource;
 use crate::wrap::command::{DrawCommand, PassCommand};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// Returns the pipeline that logs retained fragments.
+/// Returns the probe of a pipeline: a copy that logs the fragments that its shader retains, whatever the depth test
+/// says.
 ///
 /// # Errors
 /// Why there is none, in words.

@@ -48,7 +48,8 @@ pub(super) struct ProbeStage {
 }
 
 impl ProbeStage {
-    /// Returns a stage of the program's, with another module.
+    /// Returns a shader stage with the program's constants but another module and entry point (`None`: the module's
+    /// only one).
     pub fn of(
         device: &wgpu::Device,
         stage: &ProgrammableStage,
@@ -134,7 +135,8 @@ impl Probe {
         Probe { pipeline, bindings: parts.bindings, group: parts.group, is_automatic }
     }
 
-    /// Sets the pipeline, and those of the program's states for which `is_wanted` is true.
+    /// Sets the probe's pipeline and the states that it needs of the program's pass: index and vertex buffers,
+    /// immediates and the bind groups below its own; of other states those for which `is_wanted` is true.
     pub fn set(
         &self,
         device: &wgpu::Device,
@@ -166,7 +168,7 @@ impl Probe {
         }
     }
 
-    /// Binds the bind group with the probe's log buffers.
+    /// Binds the log buffers as the probe's own bind group, from binding 0 on.
     pub fn bind(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, log: &[wgpu::BindingResource<'_>]) {
         let log =
             (0..).zip(log).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() });
@@ -187,7 +189,7 @@ fn layout_of(buffer: &VertexBufferSource) -> wgpu::VertexBufferLayout<'_> {
 /// Format of the target, whose content is discarded.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Creates a colour target for passes that only write a log; nobody reads it.
+/// Creates a colour target of this size for passes that only write a log; its content is never used.
 pub(super) fn target(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
     let target = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("stencilscope probe"),
@@ -222,7 +224,7 @@ pub struct ProbeGpu<'a> {
 }
 
 impl ProbeGpu<'_> {
-    /// Submits an encoder's commands; `None` where wgpu refuses them.
+    /// Finishes an encoder and submits its commands; `None` where wgpu reports an error. Does not wait for the GPU.
     pub fn does(self, encoder: wgpu::CommandEncoder) -> Option<()> {
         accepted(self.device, || {
             self.queue.submit([encoder.finish()]);
@@ -234,7 +236,7 @@ impl ProbeGpu<'_> {
 const FILTERS: [wgpu::ErrorFilter; 3] =
     [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
 
-/// Returns the result of some work, or `None` where wgpu refuses it.
+/// Runs some work and returns its result; `None` where wgpu reported an error meanwhile, which is dropped.
 pub(super) fn accepted<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Option<T> {
     let scopes = FILTERS.map(|filter| device.push_error_scope(filter));
     let made = work();

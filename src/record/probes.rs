@@ -56,27 +56,31 @@ impl ProbePipelines {
     }
 }
 
-/// Returns whether two pipelines have the same vertices.
+/// Returns whether a probe of vertices for one pipeline serves the other: same vertex shader, buffers, topology and
+/// layout.
 fn have_same_vertices(one: &PipelineSource, other: &PipelineSource) -> bool {
     let of = |of: &PipelineSource| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
     let layout = |of: &PipelineSource| of.layout.as_ref().map(|layout| (layout.groups.clone(), layout.immediate_size));
     of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && layout(one) == layout(other)
 }
 
-/// Returns whether two pipelines have the same fragments, before any test.
+/// Returns whether a probe of fragments for one pipeline serves the other: same vertices, fragment shader, primitive
+/// state, samples and depth bias. Depth and stencil tests may differ.
 fn have_same_fragments(one: &PipelineSource, other: &PipelineSource) -> bool {
     let bias = |of: &PipelineSource| of.depth_stencil.as_ref().map(|state| state.bias);
     let of = |of: &PipelineSource| (of.primitive, of.multisample, bias(of));
     have_same_vertices(one, other) && of(one) == of(other) && one.fragment == other.fragment
 }
 
-/// Runs work of our own: its errors are not reported to the program.
+/// Runs work of our own on the program's device: an error that wgpu reports becomes the result, and does not reach the
+/// program.
 fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, &'static str>) -> Result<T, &'static str> {
     accepted(device, work).unwrap_or(Err("wgpu refuses to draw it once more"))
 }
 
 impl Probes {
-    /// Returns the clip-space positions of a draw's vertices.
+    /// Runs a draw's vertex shader once more and returns the clip-space positions of its vertices with the triangles,
+    /// one instance after the other. Takes its corners from the budget.
     ///
     /// # Errors
     /// Why that can't be found, in words.
@@ -134,7 +138,7 @@ impl Probes {
     }
 }
 
-/// Splits a draw into one for each instance.
+/// Splits a direct draw into one for each of its instances; an indirect one gives none.
 fn single(draw: &DrawCommand) -> Vec<DrawCommand> {
     let one = |instance: u32| match draw.clone() {
         DrawCommand::Vertices { vertices, .. } => DrawCommand::Vertices { vertices, instances: instance..instance + 1 },

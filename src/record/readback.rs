@@ -3,7 +3,8 @@
 use crate::import::{RawContents, RawFormat, pictures};
 use wgpu::TextureFormat as Format;
 
-/// Reads the bytes of a part of a buffer that can be copied from; `None` if it can't, or the device fails.
+/// Reads `size` bytes at `offset` of a buffer and waits for them; `None` where the buffer can't be copied from, is too
+/// short, or the device fails.
 pub fn buffer(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -41,7 +42,8 @@ fn mapped(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Option<Vec<u8>> {
     Some(buffer.get_mapped_range(..).ok()?.to_vec())
 }
 
-/// Returns the format of a raw frame that a texture's format corresponds to.
+/// Returns the format of raw frames that corresponds to a texture's format; [`RawFormat::Other`] with its name where
+/// pictures of it are not read.
 pub fn format(format: Format) -> RawFormat {
     match format {
         Format::Depth16Unorm => RawFormat::D16,
@@ -69,7 +71,8 @@ pub struct TextureSubresource<'a> {
     pub layer: u32,
 }
 
-/// Reads the pictures of some subresources: all of them are copied before any is waited for.
+/// Reads the pictures of some subresources, in order: all are copied before any is waited for. Aspects that can't be
+/// copied are absent.
 pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[TextureSubresource<'_>]) -> Vec<RawContents> {
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let copies: Vec<Vec<AspectReadback>> = parts
@@ -87,7 +90,8 @@ pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[TextureSubr
     copies.into_iter().map(read).collect()
 }
 
-/// Starts copies of a subresource: depth, stencil or colour, each as far as it can be read.
+/// Calls `copy` for each aspect of a subresource that can be copied (depth other than of 24 bits, stencil, or colour)
+/// with its raw format, and returns the copies that it started.
 fn aspects(
     part: &TextureSubresource<'_>,
     mut copy: impl FnMut(wgpu::TextureAspect, RawFormat) -> Option<AspectReadback>,

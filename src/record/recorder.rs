@@ -38,7 +38,8 @@ impl FrameRequest {
         FrameRequest { folder, frames, is_series: true, begun: 0 }
     }
 
-    /// Parses `DIR`, `DIR:N` or `DIR:A..B`.
+    /// Parses `DIR` (its first frame, 0), `DIR:N` (one frame) or `DIR:A..B` (a series, B excluded). What is of neither
+    /// form is a folder's name as a whole.
     fn of(text: &str) -> FrameRequest {
         let parted = text.rsplit_once(':');
         let one = || {
@@ -53,7 +54,8 @@ impl FrameRequest {
         one().or_else(series).unwrap_or_else(|| FrameRequest::one(text.into(), 0))
     }
 
-    /// Counts a frame that begins; returns the folder that it is recorded to, if it is.
+    /// Counts a frame that begins, and returns the folder that it is recorded to: the requested one, `frame-NNNN` in it
+    /// for a series; `None` where this frame is not requested.
     fn next(&mut self) -> Option<PathBuf> {
         let number = self.begun;
         self.begun = number.saturating_add(1);
@@ -66,7 +68,8 @@ impl FrameRequest {
     }
 }
 
-/// Returns the environment's request, which the first device takes that encodes something.
+/// Returns the request in the environment variable, once: `None` for every later call, and where it is not set or
+/// empty.
 fn of_environment() -> Option<FrameRequest> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let text = std::env::var(super::VARIABLE).ok().filter(|text| !text.is_empty())?;
@@ -92,7 +95,7 @@ impl fmt::Display for RecordingCost {
     }
 }
 
-/// A frame that was recorded, and where it was written.
+/// A frame that was recorded, the folder that it was written to, and what that cost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedFrame {
     /// The frame in the form of our own: plan, pictures, scene and lights as far as they were found.
@@ -170,7 +173,8 @@ struct ReplayTurns {
 }
 
 impl ReplayTurns {
-    /// Waits for a turn; `None` in a callback.
+    /// Waits until no other thread is replaying, and returns the lock; `None` where this thread holds it already, as in
+    /// a callback.
     fn turn(&self) -> Option<ReplayTurn<'_>> {
         let thread = std::thread::current().id();
         if *lock(&self.player) == Some(thread) {
@@ -198,7 +202,8 @@ impl Drop for ReplayTurn<'_> {
 pub struct ClosureFrame<'a>(&'a Recorder);
 
 impl ClosureFrame<'_> {
-    /// Ends the frame, converts it and writes its folder.
+    /// Ends the closure's frame, converts it and writes its folder; [`RecordError::Busy`] where it is no longer the one
+    /// that is recorded.
     pub fn end(self, shared: &SharedDevice) -> Result<RecordedFrame, RecordError> {
         let running = self.0.take(|running| running.end == RecordingEnd::Closure).ok_or(RecordError::Busy)?;
         running.write(shared, &mut RecordingTools::default())
@@ -240,7 +245,8 @@ impl Recorder {
         Ok(())
     }
 
-    /// Requests each frame that begins from now on.
+    /// Requests each frame that begins from now on, in folders `frame-NNNN` within `folder`, as a new series. Fails
+    /// where another request is pending or a frame is being recorded.
     pub fn start_series(&self, shared: &SharedDevice, folder: PathBuf) -> Result<(), RecordError> {
         self.ask(shared, |series| {
             *series = FrameSeries { number: series.number + 1, ..FrameSeries::default() };
@@ -257,7 +263,8 @@ impl Recorder {
         std::mem::replace(&mut asked.series, FrameSeries { number, ..FrameSeries::default() }).recorded
     }
 
-    /// Called where a frame begins: starts recording it if it was requested.
+    /// Called where a frame begins: counts it, and starts recording it if it was requested, by a call or by the
+    /// environment. Does nothing while a frame is being recorded.
     fn begin_if_wished(&self) {
         let Some(mut turn) = self.stage.turn() else { return };
         if turn.running.is_some() {
@@ -283,7 +290,8 @@ impl Recorder {
         self.is_recording.store(true, Ordering::Release);
     }
 
-    /// Begins a frame that a closure draws.
+    /// Begins to record a frame that a closure draws, to `folder`, which must not exist yet or be empty. Fails while
+    /// another frame is recorded, and in a callback of wgpu's.
     pub fn begin(&self, folder: PathBuf) -> Result<ClosureFrame<'_>, RecordError> {
         let mut turn = self.stage.turn().ok_or(RecordError::Busy)?;
         if turn.running.is_some() {
@@ -294,7 +302,8 @@ impl Recorder {
         Ok(ClosureFrame(self))
     }
 
-    /// Takes the frame that is recorded, if `ends` is true for it.
+    /// Takes the frame that is being recorded, if `ends` is true for it; otherwise, or in a callback, `None` and
+    /// recording goes on.
     fn take(&self, ends: impl FnOnce(&RunningRecording) -> bool) -> Option<RunningRecording> {
         let mut turn = self.stage.turn()?;
         let running = turn.running.take_if(|running| ends(running));
@@ -305,7 +314,8 @@ impl Recorder {
         running
     }
 
-    /// Called where a frame ends, recorded or not, if it has drawn.
+    /// Called where a frame ends: writes the recorded one, if it has drawn and is not a closure's, and prints what it
+    /// cost or why it failed. A frame that can't be written to disk ends its series.
     fn frame_ends(&self, shared: &SharedDevice) {
         // A submission that draws nothing, such as an upload, is no frame.
         let running = self.take(|running| running.end != RecordingEnd::Closure && running.replay.has_drawn());
@@ -335,7 +345,8 @@ impl Recorder {
 }
 
 impl RecordingTools {
-    /// Computes each draw again, and records where the result differs.
+    /// Runs the recorded frame's plan again on the adapter of the same name, and stores in its capture how each draw's
+    /// result differs. The session is opened once for a series.
     fn hold_against_itself(
         &mut self,
         of: &mut ConvertedFrame,

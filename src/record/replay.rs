@@ -53,7 +53,8 @@ impl FrameReplay {
         self.draws > 0
     }
 
-    /// Runs the recorded commands of encoders, in order, with probes around each draw.
+    /// Runs the recorded commands of encoders, in order, split so that each draw's result can be read. Commands that
+    /// were not recorded, or that wgpu refuses so, are submitted whole; that is noted as a limit.
     pub fn submit(
         &mut self,
         device: &wgpu::Device,
@@ -89,7 +90,8 @@ impl FrameReplay {
         }
     }
 
-    /// Runs commands; `None` where wgpu refuses a part: the commands after it are not run.
+    /// Runs the commands of one encoder and adds their events; a render pass is split. `None` where wgpu refuses a
+    /// part: the commands after it are not run.
     fn play(&mut self, gpu: ProbeGpu<'_>, commands: Vec<EncoderCommand>) -> Option<()> {
         let mut pending = new_encoder(gpu.device);
         let depth = self.groups.len();
@@ -113,7 +115,8 @@ impl FrameReplay {
         gpu.does(pending)
     }
 
-    /// Runs a pass in as many parts as it has draws, where it can be split.
+    /// Runs a render pass in as many parts as it has draws, and adds an event with the content after each; a pass with
+    /// queries or transient targets runs whole, which is noted as a limit. `None` where wgpu refuses it.
     fn pass(&mut self, gpu: ProbeGpu<'_>, whole: &EncoderCommand) -> Option<()> {
         let EncoderCommand::RenderPass(targets, commands) = whole else { return Some(()) };
         let into = self.targets(gpu, targets);
@@ -209,8 +212,8 @@ impl FrameReplay {
         target
     }
 
-    /// Reads the content of targets, each of which has occurred before; unchanged rows share the memory of the content
-    /// before.
+    /// Reads the content of those of the targets that have occurred before, in order, and stores it as their last
+    /// known; unchanged rows share memory with the content before. Depths that can't be copied are noted as a limit.
     fn read(&mut self, gpu: ProbeGpu<'_>, targets: &[RawTarget]) -> Vec<RawContents> {
         let part =
             |RawTarget { mip, layer, .. }: RawTarget, texture| readback::TextureSubresource { texture, mip, layer };
@@ -237,7 +240,7 @@ impl FrameReplay {
         self.events.push(RawEvent { id, name, groups, kind, color_targets, depth_target, after });
     }
 
-    /// Adds an event with the contents that its targets have after it.
+    /// Adds an event with the content that its depth target and its first colour target have now.
     fn after(&mut self, gpu: ProbeGpu<'_>, name: String, kind: RawKind, into: &PassTarget) {
         self.event(name, kind, into);
         let targets: Vec<RawTarget> = into.depth.into_iter().chain(into.colors.first().copied()).collect();
@@ -320,7 +323,8 @@ fn clips(described: &PipelineSource) -> bool {
     stage.source.module().is_some_and(|module| rewrite::clips(&module, stage.entry_point.as_deref()))
 }
 
-/// Names what a pipeline does that is not followed.
+/// Returns sentences about what a pipeline does that is not followed: a sample mask that leaves samples out,
+/// conservative rasterisation. Empty where it does neither.
 fn unlike(described: &PipelineSource) -> Vec<&'static str> {
     let all = if described.multisample.count >= 64 { u64::MAX } else { (1 << described.multisample.count) - 1 };
     let masks = described.multisample.mask & all != all;
@@ -334,7 +338,7 @@ fn unlike(described: &PipelineSource) -> Vec<&'static str> {
 
 const UNKNOWN: RawFragment = RawFragment { may_discard: ShaderEffect::Unknown, writes_depth: ShaderEffect::Unknown };
 
-/// Returns the state of a draw without a pipeline, which wgpu refuses.
+/// Returns the state of a draw without a pipeline, which wgpu refuses: both faces culled, so that it draws nothing.
 fn no_shape() -> crate::import::RawShape {
     crate::import::RawShape {
         cull: crate::import::RawCull::Both,
@@ -347,7 +351,8 @@ fn no_shape() -> crate::import::RawShape {
     }
 }
 
-/// Returns the effects of a pipeline's fragment shader.
+/// Returns whether a pipeline's fragment shader may discard (alpha to coverage counts) or write depth: neither without
+/// one; both unknown where it can't be read; discarding unknown where it writes a sample mask.
 fn fragment(described: &PipelineSource) -> RawFragment {
     let Some(stage) = &described.fragment else {
         return RawFragment { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };

@@ -21,14 +21,14 @@ use naga::{
 };
 use std::collections::BTreeSet;
 
-/// Bytes of the log before its records: the count, padded.
+/// Bytes at the start of a log, before its records: the count of records, padded.
 pub const HEAD: u64 = 16;
 /// Bytes of a record of a vertex: a position, the vertex, the instance, padding.
 pub const RECORD: u64 = 32;
 /// Bytes of a record of a fragment: column and row of its pixel in one word, its triangle.
 pub const FRAGMENT_RECORD: u64 = 8;
 
-/// A module with an entry point that writes a log.
+/// A shader module with one entry point, rewritten so that it also writes a log.
 #[derive(Debug)]
 pub struct LoggingModule {
     pub module: Module,
@@ -37,7 +37,8 @@ pub struct LoggingModule {
     pub bindings: BTreeSet<(u32, u32)>,
 }
 
-/// Rewrites the vertex entry point of that name, or the only one, with a log as binding 0 of a group of its own.
+/// Rewrites a module's vertex entry point of that name, or the first one, so that it also logs position, vertex and
+/// instance to binding 0 of `group`. Other entry points are removed.
 ///
 /// # Errors
 /// Why it can't be rewritten.
@@ -57,7 +58,7 @@ pub fn vertex_log(module: &Module, name: Option<&str>, group: u32) -> Result<Log
     rewritten.ok_or("its vertex shader can't be rewritten")
 }
 
-/// Returns group and binding of the resources that the vertex entry point of that name, or the only one, reads.
+/// Returns group and binding of the resources that a module's vertex entry point of that name, or the first one, uses.
 ///
 /// # Errors
 /// It must not run twice.
@@ -87,13 +88,14 @@ pub fn fragment_log(module: &Module, name: Option<&str>, group: u32) -> Result<L
     rewritten.ok_or("its fragment shader can't be rewritten")
 }
 
-/// Returns the entry point of a stage with that name, or the only one.
+/// Returns the entry point of a stage with that name, or the first of the stage where `name` is `None`; `None` where
+/// there is none.
 fn entry_of<'a>(module: &'a Module, stage: ShaderStage, name: Option<&str>) -> Option<&'a EntryPoint> {
     module.entry_points.iter().find(|entry| entry.stage == stage && name.is_none_or(|name| entry.name == name))
 }
 
-/// Returns a module with nothing but an entry point, whose function `rewrite` derives from the original; `None` where
-/// it can't, or the result is not valid.
+/// Returns a copy of a module whose only entry point is `entry` with the function that `rewrite` derives from its own;
+/// `None` where that fails or the result is not valid.
 fn logging(
     module: &Module,
     entry: &EntryPoint,
@@ -119,7 +121,8 @@ struct UsedBindings {
     writes: bool,
 }
 
-/// Returns the resources that an entry point reads and writes.
+/// Returns the bindings that an entry point uses, and whether it writes to any of them. Fails where the module is not
+/// valid.
 fn used(module: &Module, entry: &EntryPoint) -> Result<UsedBindings, &'static str> {
     let info = validated(module).map_err(|_| "its shader is not valid")?;
     let index = module.entry_points.iter().position(|one| one.name == entry.name && one.stage == entry.stage);
@@ -143,8 +146,8 @@ fn member(name: &str, ty: Handle<Type>, offset: u32) -> StructMember {
     StructMember { name: Some(name.to_owned()), ty, binding: None, offset }
 }
 
-/// Adds `fn note(…fields…)`: it appends a record of them while there is space, and counts on when there is none.
-/// `fields`: name, type, and offset in the record.
+/// Adds to the module a function with these fields (name, type, offset in the record) as arguments: it appends them as
+/// a record to the log at binding 0 of `group`, and counts on without storing where the log is full.
 fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], record_bytes: u32) -> Handle<Function> {
     let unsigned = add_type(module, TypeInner::Scalar(Scalar::U32));
     let counter = add_type(module, TypeInner::Atomic(Scalar::U32));
@@ -188,7 +191,7 @@ fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], reco
     module.functions.append(function, Span::UNDEFINED)
 }
 
-/// Adds a storage-buffer variable to a shader module.
+/// Appends a storage-buffer variable with this access, group and binding to a shader module.
 fn global(
     module: &mut Module,
     name: &str,
@@ -214,12 +217,12 @@ struct FunctionCode<'a> {
 }
 
 impl FunctionCode<'_> {
-    /// Adds an expression that needs no evaluation, such as a constant.
+    /// Appends an expression that needs no evaluation, such as a constant, to the function.
     fn plain(&mut self, expression: Expression) -> Handle<Expression> {
         self.expressions.append(expression, Span::UNDEFINED)
     }
 
-    /// Adds an expression that is evaluated at this point.
+    /// Appends an expression to the function, and to the end of its body the statement that evaluates it.
     fn emitted(&mut self, expression: Expression) -> Handle<Expression> {
         let before = self.expressions.len();
         let handle = self.plain(expression);
@@ -233,7 +236,7 @@ impl FunctionCode<'_> {
         (0..count as u32).map(|index| self.plain(Expression::FunctionArgument(index))).collect()
     }
 
-    /// Returns one of the arguments, or a member of one.
+    /// Returns the argument that `place` names, or its member, which is read here.
     fn given(&mut self, arguments: &[Handle<Expression>], place: BuiltinPlace) -> Handle<Expression> {
         match place {
             BuiltinPlace::Whole(index) => arguments[index as usize],
@@ -275,7 +278,8 @@ fn is_same(built_in: BuiltIn, wanted: BuiltIn) -> bool {
     std::mem::discriminant(&built_in) == std::mem::discriminant(&wanted)
 }
 
-/// Turns an entry point into a function that another can call.
+/// Appends to the module a copy of an entry point's function that another can call: its arguments and result have no
+/// bindings.
 fn inner(module: &mut Module, entry: &Function) -> Handle<Function> {
     let mut inner = entry.clone();
     inner.name = Some("stencilscope_inner".into());
@@ -284,7 +288,8 @@ fn inner(module: &mut Module, entry: &Function) -> Handle<Function> {
     module.functions.append(inner, Span::UNDEFINED)
 }
 
-/// Returns where a built-in value is an input: as the program has it, or as an added argument.
+/// Returns where the built-in value `wanted` is among the arguments, or a member of one; appends an argument with this
+/// name and type where it is not yet.
 fn input(
     module: &mut Module,
     arguments: &mut Vec<FunctionArgument>,
@@ -302,7 +307,8 @@ fn input(
     })
 }
 
-/// Returns a function in place of an entry point's, that calls it and logs the position; `None` where it returns none.
+/// Returns a function to replace a vertex entry point's: it calls the original, logs position, vertex and instance, and
+/// returns the original's result. `None` where the result has no position.
 fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>) -> Option<Function> {
     let result = entry.result.clone()?;
     let position = place(module, 0, result.ty, result.binding.as_ref(), BuiltIn::Position { invariant: false })?;
@@ -328,7 +334,8 @@ fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>
     Some(function)
 }
 
-/// Adds a variable that is set before each discard in a module's functions and in an entry point's.
+/// Adds a private boolean variable to the module that is set before each discard, in all of its functions and in
+/// `entry`; returns the variable.
 fn flag_discards(module: &mut Module, entry: &mut Function) -> Handle<GlobalVariable> {
     let ty = add_type(module, TypeInner::Scalar(Scalar::BOOL));
     let variable = GlobalVariable {
@@ -348,7 +355,7 @@ fn flag_discards(module: &mut Module, entry: &mut Function) -> Handle<GlobalVari
     flag
 }
 
-/// Inserts a statement before each discard of a block.
+/// Inserts a statement before each discard of a block and of the blocks within it.
 fn before_kills(block: &mut Block, statement: &Statement) {
     let mut changed = Block::with_capacity(block.len());
     for (mut one, span) in std::mem::take(block).span_into_iter() {
@@ -371,7 +378,8 @@ fn before_kills(block: &mut Block, statement: &Statement) {
     *block = changed;
 }
 
-/// Returns a function in place of an entry point's, that calls it and logs the fragment, if it was not discarded.
+/// Returns a function to replace a fragment entry point's: it calls the original and, where that did not discard, logs
+/// the pixel and the triangle. The module's functions are changed too, so that they flag discards.
 fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function>, group: u32) -> Function {
     let mut entry = entry.clone();
     let discarded = flag_discards(module, &mut entry);
@@ -427,7 +435,8 @@ pub struct FragmentEffects {
     pub writes_depth: bool,
 }
 
-/// Returns whether the vertex entry point of that name, or the only one, clips triangles by planes of its own.
+/// Returns whether the vertex entry point of that name, or the first one, writes clip distances; false where there is
+/// no such entry point.
 pub fn clips(module: &Module, name: Option<&str>) -> bool {
     let entry = entry_of(module, ShaderStage::Vertex, name);
     entry.is_some_and(|entry| output(module, entry, BuiltIn::ClipDistances).is_some())
@@ -438,7 +447,8 @@ fn output(module: &Module, entry: &EntryPoint, wanted: BuiltIn) -> Option<Builti
     place(module, 0, result.ty, result.binding.as_ref(), wanted)
 }
 
-/// Returns the effects of the fragment entry point of that name, or the only one; `None` where there is no such.
+/// Returns whether the fragment entry point of that name, or the first one, discards, writes a sample mask or writes
+/// depth; `None` where there is no such entry point.
 pub fn fragment(module: &Module, name: Option<&str>) -> Option<FragmentEffects> {
     let entry = entry_of(module, ShaderStage::Fragment, name)?;
     let has = |wanted| output(module, entry, wanted).is_some();
@@ -446,7 +456,8 @@ pub fn fragment(module: &Module, name: Option<&str>) -> Option<FragmentEffects> 
     Some(FragmentEffects { discards, masks: has(BuiltIn::SampleMask), writes_depth: has(BuiltIn::FragDepth) })
 }
 
-/// Returns whether a block, or a function that it calls, can discard the fragment.
+/// Returns whether a block, or a function that it calls, contains a discard. Functions in `seen` are not looked into
+/// again, and those that are get added to it.
 fn kills(module: &Module, block: &Block, seen: &mut BTreeSet<Handle<Function>>) -> bool {
     block.iter().any(|statement| match statement {
         Statement::Kill => true,

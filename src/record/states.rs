@@ -53,7 +53,8 @@ fn slot(command: &PassCommand) -> Option<StateSlot> {
 }
 
 impl PassState {
-    /// Records a command; returns whether it sets a state.
+    /// Stores the state that a command sets, in place of the one that it replaces; returns false for a command that
+    /// sets none. After a render bundle, forgets the states that don't outlast it.
     pub fn note(&mut self, command: &PassCommand) -> bool {
         match command {
             PassCommand::Unbound => self.commands.retain(|slot, _| slot.outlasts_bundles()),
@@ -74,7 +75,8 @@ impl PassState {
         true
     }
 
-    /// Clears immediates for a pipeline of another layout, which starts with zeros.
+    /// Zeroes the stored immediates where the next pipeline has another layout, and forgets those beyond its immediate
+    /// size; does nothing where the layout is the same.
     fn clear_immediates(&mut self, next: &Arc<PipelineSource>) {
         let is_same = self.pipeline().is_some_and(|current| match (&current.layout, &next.layout) {
             (Some(current), Some(next)) => current.real == next.real,
@@ -98,6 +100,7 @@ impl PassState {
         self.commands.values()
     }
 
+    /// Returns the description of the pipeline that was set last; `None` where none is set.
     pub fn pipeline(&self) -> Option<&Arc<PipelineSource>> {
         match self.commands.get(&StateSlot::Pipeline) {
             Some(PassCommand::Pipeline { described, .. }) => Some(described),
@@ -105,7 +108,7 @@ impl PassState {
         }
     }
 
-    /// Returns the index buffer, its format, and the offset where it begins.
+    /// Returns the index buffer, its format, and the byte offset where it begins; `None` where none is set.
     pub fn index_buffer(&self) -> Option<(&wgpu::Buffer, wgpu::IndexFormat, u64)> {
         match self.commands.get(&StateSlot::IndexBuffer) {
             Some(PassCommand::IndexBuffer { buffer, format, offset, .. }) => Some((buffer, *format, *offset)),
@@ -120,7 +123,8 @@ impl PassState {
         }
     }
 
-    /// Returns viewport and scissor in a target of that size.
+    /// Returns viewport and scissor as set so far in a target of this size; the whole target, and no scissor, where
+    /// none is set.
     pub fn view(&self, [width, height]: [u32; 2]) -> RawView {
         let (viewport, depth_range) = match self.commands.get(&StateSlot::Viewport) {
             Some(PassCommand::Viewport { area, depth }) => (*area, *depth),
@@ -133,7 +137,8 @@ impl PassState {
         RawView { viewport, depth_range, scissor, y_up: true, z_from_minus_w: false }
     }
 
-    /// Returns the stencil test, where it has an effect.
+    /// Returns the stencil tests of front and back faces with the reference set so far; `None` without a depth-stencil
+    /// state, or where the test is off.
     pub fn stencil(&self, pipeline: &PipelineSource) -> Option<[RawStencilFace; 2]> {
         let state = &pipeline.depth_stencil.as_ref()?.stencil;
         let masks =
@@ -142,7 +147,8 @@ impl PassState {
     }
 }
 
-/// Returns which triangles make fragments; `clip_planes`: the shader clips by planes of its own.
+/// Returns a pipeline's culling, winding, filling, bias and depth clipping in the form of imported frames.
+/// `clip_planes` says whether its shader clips by planes of its own.
 pub fn shape(pipeline: &PipelineSource, clip_planes: bool) -> RawShape {
     let primitive = &pipeline.primitive;
     let bias = pipeline.depth_stencil.as_ref().map(|state| state.bias).unwrap_or_default();
@@ -171,14 +177,15 @@ pub fn topology(pipeline: &PipelineSource) -> RawTopology {
     }
 }
 
-/// Returns a pipeline's depth test in the form of imported frames; `None` where it has none.
+/// Returns a pipeline's depth test in the form of imported frames; `None` where it has no depth aspect or no compare
+/// function.
 pub fn depth(pipeline: &PipelineSource) -> Option<RawDepth> {
     let state = pipeline.depth_stencil.as_ref().filter(|state| state.format.has_depth_aspect())?;
     let write = state.depth_write_enabled.unwrap_or(false);
     Some(RawDepth { compare: state.depth_compare?, write, bounds: false })
 }
 
-/// Returns how the first colour target is written.
+/// Returns how a pipeline writes its first colour target, in the form of imported frames; `None` where it has none.
 pub fn blend(pipeline: &PipelineSource) -> Option<RawBlend> {
     let target = pipeline.targets.first()?.as_ref()?;
     let write = [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];

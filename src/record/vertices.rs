@@ -11,7 +11,7 @@ use crate::wrap::command::DrawCommand;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Draws of more corners are not followed.
+/// The most corners, over all instances, that a draw may have to be followed.
 pub const MOST_CORNERS: u64 = 1 << 22;
 /// A draw's vertices and triangles, as `RawDraw` has them.
 #[derive(Debug, Default)]
@@ -21,7 +21,8 @@ pub struct ResolvedVertices {
     pub instances: Vec<Range<usize>>,
 }
 
-/// Returns the pipeline that logs positions of vertices.
+/// Returns the probe of a pipeline: a copy that logs the clip-space positions of its vertices and draws nothing. Fails
+/// with the reason in words.
 pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe, &'static str> {
     if !device.features().contains(wgpu::Features::VERTEX_WRITABLE_STORAGE) {
         return Err("vertex shaders can't write to storage on this GPU");
@@ -48,7 +49,8 @@ pub fn probe(device: &wgpu::Device, described: &PipelineSource) -> Result<Probe,
     Ok(Probe::new(device, described, parts))
 }
 
-/// Returns each vertex of each instance, with its position.
+/// Runs a direct draw with the probe and returns the position of each vertex of each instance. `corners` is the number
+/// of corners of one instance. Fails with the reason in words.
 pub fn log(
     probe: &Probe,
     gpu: ProbeGpu<'_>,
@@ -101,6 +103,8 @@ impl PositionLog {
 }
 
 impl ResolvedVertices {
+    /// Appends the vertices and triangles of each instance of a direct draw, positions taken from the log; vertices are
+    /// shared within an instance only. Fails where the log lacks one, and leaves then what was appended.
     pub fn add(
         &mut self,
         described: &PipelineSource,
@@ -131,7 +135,7 @@ impl ResolvedVertices {
     }
 }
 
-/// Returns the range of instances of a direct draw.
+/// Returns the range of instances of a direct draw; an empty range for another.
 pub fn instances(draw: &DrawCommand) -> Range<u32> {
     match draw {
         DrawCommand::Vertices { instances, .. } | DrawCommand::Indexed { instances, .. } => instances.clone(),
@@ -139,7 +143,8 @@ pub fn instances(draw: &DrawCommand) -> Range<u32> {
     }
 }
 
-/// Returns a draw whose numbers may be on the GPU as draws whose numbers are known, and of which none is empty.
+/// Returns a draw as direct draws, none of them empty: indirect parameters and counts are read back from the GPU, which
+/// is waited for. Fails for mesh shaders and buffers that can't be read.
 pub fn direct(gpu: ProbeGpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static str> {
     let words = |buffer: &wgpu::Buffer, offset: u64, count: u64| {
         let bytes = readback::buffer(gpu.device, gpu.queue, buffer, offset, 4 * count);
@@ -187,7 +192,8 @@ fn draws_some(draw: &DrawCommand) -> bool {
     }
 }
 
-/// Returns the vertices of a direct draw in the order drawn, `None` where a strip restarts.
+/// Returns the vertex indices of one instance of a direct draw in the order drawn, base vertex added; `None` where a
+/// strip restarts. Index buffers are read back from the GPU. Empty for a draw that is not direct.
 pub fn corners(
     gpu: ProbeGpu<'_>,
     state: &PassState,

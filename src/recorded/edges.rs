@@ -14,7 +14,8 @@ pub struct OpenEdges {
 }
 
 impl OpenEdges {
-    /// Finds the open edges of draws of a plan.
+    /// Finds the open edges of draws: those that their triangles, taken together, don't run along equally often both
+    /// ways. Vertices at bit-equal positions are one, and a triangle that is drawn again counts once.
     pub fn of<'a>(plan: &FramePlan, draws: impl Iterator<Item = &'a Draw>) -> OpenEdges {
         let mut seen: BTreeSet<[CornerBits; 3]> = BTreeSet::new();
         let mut sums: BTreeMap<[CornerBits; 2], i64> = BTreeMap::new();
@@ -48,7 +49,8 @@ impl OpenEdges {
         self.edges.len()
     }
 
-    /// Returns triangles that close them: for each connected run of edges a fan round its middle.
+    /// Returns triangles that close the edges: for each connected run of open edges a fan round the mean of their
+    /// starts, as often as each edge is open.
     pub fn caps(&self) -> Vec<[[f32; 4]; 3]> {
         let mut root: BTreeMap<CornerBits, CornerBits> = BTreeMap::new();
         fn find(root: &BTreeMap<CornerBits, CornerBits>, corner: CornerBits) -> CornerBits {

@@ -4,7 +4,8 @@ use super::space::neighbours;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
 
-/// Returns which places lie behind another as a light at `position` sees them, or at infinity.
+/// Returns for each place whether it is at infinity, or lies behind another on the same ray from a light at `position`
+/// (homogeneous), within tolerances. False for `None`.
 pub fn far_ends(places: &[Option<DVec4>], position: DVec4) -> Vec<bool> {
     /// Places are on one ray where their directions differ by no more than this, as a part of their length.
     const SAME: f64 = 1e-4;

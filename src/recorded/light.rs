@@ -41,7 +41,8 @@ struct EdgeLine {
     along: DVec3,
 }
 
-/// Finds a light's position; `None` where its volumes do not determine it.
+/// Finds the position of a light from the edges of its volumes, most of which must run away from one point or in one
+/// direction; `None` where too few agree.
 pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     let lines = thinned(lines(plan, light));
     let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
@@ -55,7 +56,8 @@ pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
     is_found.then_some(FoundLight { position, agree, of: lines.len() })
 }
 
-/// Returns edges that may run away from the light: towards infinity where some do, else all.
+/// Returns the edges of a light's volumes that may run away from it: those to infinity where there are any, else all
+/// finite edges, each once.
 fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
     let (mut infinite, mut finite) = (Vec::new(), BTreeMap::new());
     for pass in plan.passes.iter().filter(|pass| pass.light == Some(light) && plan.is_of_picture(pass)) {
@@ -83,13 +85,14 @@ fn lines(plan: &FramePlan, light: LightId) -> Vec<EdgeLine> {
     if infinite.is_empty() { finite.into_values().collect() } else { infinite }
 }
 
-/// Returns at most the limit of lines, evenly spaced in their list.
+/// Returns every n-th line, so that at most the limit is left; all where they are not more.
 fn thinned(lines: Vec<EdgeLine>) -> Vec<EdgeLine> {
     let step = lines.len().div_ceil(MOST_EDGES).max(1);
     lines.into_iter().step_by(step).collect()
 }
 
-/// Returns points where pairs of lines come nearest to each other, and the lines' directions.
+/// Returns homogeneous positions where the light may be: for pairs of lines (chosen the same in every run) the point
+/// where they come nearest to each other; for parallel ones their direction both ways. Empty for fewer than two lines.
 fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
     let count = lines.len();
     let mut found = Vec::new();
@@ -120,7 +123,8 @@ fn candidates(lines: &[EdgeLine]) -> Vec<DVec4> {
         .collect()
 }
 
-/// Returns the lines that point away from the light.
+/// Returns the lines that run along the line through the light at `position`, within the angle `reach` (radians, as a
+/// sine). From a directional light they must run away, from a point light either way.
 fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item = EdgeLine> + '_ {
     lines.iter().copied().filter(move |line| {
         let away = (line.from * position.w - position.truncate()).normalize_or_zero();
@@ -128,7 +132,8 @@ fn voters(lines: &[EdgeLine], position: DVec4, reach: f64) -> impl Iterator<Item
     })
 }
 
-/// Returns the point nearest to all lines, or their mean direction.
+/// Returns the point nearest to all lines where `position` is a point, else the direction opposite to their mean;
+/// `None` with too few lines for a point, or where it is not finite.
 fn fitted(lines: &[EdgeLine], position: DVec4) -> Option<DVec4> {
     if position.w == 0.0 {
         let towards = -lines.iter().map(|line| line.along).sum::<DVec3>();

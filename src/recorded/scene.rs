@@ -78,7 +78,7 @@ fn finite(places: &[Option<DVec4>]) -> Vec<DVec3> {
     places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
 }
 
-/// Returns draws of the picture for which `is_meant` is true, with their passes.
+/// Returns the draws in passes of the picture for which `is_meant` is true, with their passes, in the frame's order.
 fn draws(plan: &FramePlan, is_meant: impl Fn(&Draw) -> bool) -> Vec<(&Pass, &Draw)> {
     let picture = plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
     picture
@@ -111,8 +111,9 @@ fn built(triangles: Vec<[DVec3; 3]>) -> Option<Mesh> {
     builder.build().ok().filter(|mesh| !mesh.triangles().is_empty())
 }
 
-/// Returns the part of a volume that stops light where its caster is not visible: the cap at its near end, or where it
-/// has none, a fan over the near edges of its sides.
+/// Returns the part of a volume that stops light where its caster is not visible, as a mesh in view space: the
+/// triangles at its near end, or where it has none a fan over the near edges of its sides round their middle. `None`
+/// where that has no triangle.
 fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec4) -> Option<Mesh> {
     let far = far_ends(places, light);
     let is_near = |corner: u32| far.get((corner + draw.base_vertex) as usize) == Some(&false);
@@ -148,14 +149,16 @@ impl KnownCorners {
         }
     }
 
-    /// Returns the cell of a place: as large as equal places may be apart at its distance.
+    /// Returns the grid cell of a place. Cells grow with the distance from the origin, so that equal places, which are
+    /// rounded, lie in one cell or in neighbouring ones.
     fn cell(place: DVec3) -> [i64; 3] {
         // Steps that double with the distance, so that both of a pair take the same.
         let size = (place.length().max(f64::MIN_POSITIVE).log2().ceil()).exp2() * SAME_PLACE;
         (place / size).to_array().map(|value| value.round() as i64)
     }
 
-    /// Returns the object that has most of these corners, and how many.
+    /// Returns the object that has corners at most of these places, and at how many; the last of equal ones. `None`
+    /// where no place is a corner of any.
     fn most(&self, places: &[DVec3]) -> Option<(usize, usize)> {
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
         for place in places {

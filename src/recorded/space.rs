@@ -12,7 +12,7 @@ use glam::DVec4;
 /// Points of smaller h are at infinity: depths near the far end round.
 const INFINITE: f64 = 0.5;
 
-/// The transform from a pass's clip space to the eye's space.
+/// The conversion from a recorded pass's clip space to the view space of the frame's assumed eye.
 #[derive(Debug, Clone, Copy)]
 pub struct PassSpace {
     curve: DepthCurve,
@@ -26,8 +26,8 @@ impl PassSpace {
         PassSpace { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
     }
 
-    /// Returns a vertex as a homogeneous point of view space: w is 1, or 0 where it is a direction. `None` where it has
-    /// NaN.
+    /// Returns a clip-space vertex as a homogeneous point of view space: w is 1, or 0 where it is so far that only its
+    /// direction is known. `None` where it is not finite.
     pub fn place(&self, vertex: [f32; 4]) -> Option<DVec4> {
         let [x, y, z, w] = vertex.map(f64::from);
         let [left, top, width, height] = self.viewport.area.map(f64::from);
@@ -46,7 +46,8 @@ impl PassSpace {
         Some(if h.abs() > INFINITE { (place / h).truncate().extend(1.0) } else { place.truncate().extend(0.0) })
     }
 
-    /// Returns the vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`].
+    /// Returns the clip-space vertex of a homogeneous place of view space: the inverse of [`PassSpace::place`], in
+    /// single precision.
     pub fn clip(&self, place: DVec4) -> [f32; 4] {
         let [left, top, width, height] = self.viewport.area.map(f64::from);
         let [columns, rows] = self.size;
@@ -59,7 +60,8 @@ impl PassSpace {
         [x, y, z, w].map(|value| value as f32)
     }
 
-    /// Returns the vertices of a draw's mesh as places of view space.
+    /// Returns all vertices of a draw's mesh as places of view space, in order, also those that the draw does not use;
+    /// `None` for those that are not finite.
     pub fn places(&self, plan: &FramePlan, draw: &Draw) -> Vec<Option<DVec4>> {
         plan.meshes[draw.mesh.0].vertices.data().iter().map(|vertex| self.place(*vertex)).collect()
     }
@@ -70,7 +72,8 @@ pub fn neighbours([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
     (0..27).map(move |index| [x + index % 3 - 1, y + index / 3 % 3 - 1, z + index / 9 - 1])
 }
 
-/// Returns the triangles of a draw whose corners are numbers.
+/// Returns the triangles of a draw whose corners all have places: their vertex indices, without the base vertex, and
+/// the places, with it. Others are left out.
 pub(super) fn triangles<'a>(
     plan: &'a FramePlan,
     draw: &'a Draw,

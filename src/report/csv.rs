@@ -6,7 +6,8 @@ const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,fals
 wrong_surface,edge_band,wrong_fraction,wrong_color,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
 triangles,bytes,pareto,adapter,sweep,sweep_value";
 
-/// Returns a report as CSV: a heading line, then one line for each row, each ended by CR LF as RFC 4180 requires.
+/// Returns a report as CSV: a heading line, then one line for each row in the report's order, each ended by CR LF as
+/// RFC 4180 requires.
 pub fn csv(report: &Report) -> String {
     let lines = report.rows.iter().map(|row| line(row, &report.adapter.name));
     std::iter::once(COLUMNS.to_owned()).chain(lines).map(|line| line + "\r\n").collect()

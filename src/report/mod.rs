@@ -180,8 +180,8 @@ impl TryFrom<ReportDocument> for Report {
 }
 
 impl Report {
-    /// Returns a report of these rows, computing what follows from them: [`ReportRow::wrong_fraction`] and
-    /// [`ReportRow::pareto`].
+    /// Returns a report of these rows, computing what follows from them and replacing what they had:
+    /// [`ReportRow::wrong_fraction`] and [`ReportRow::pareto`]. It is not part of a run.
     pub fn new(adapter: AdapterInfo, rows: Vec<ReportRow>) -> Report {
         let mut report = Report { adapter, rows, part: None };
         for row in &mut report.rows {
@@ -191,7 +191,8 @@ impl Report {
         report
     }
 
-    /// Merges the reports of all parts of a run, each with its file's name.
+    /// Merges the reports of all parts of a run, each with its file's name, to one with the rows in the order of the
+    /// whole run. Fails where a part is missing, twice there, or of another run or machine.
     pub fn merged(parts: Vec<(String, Report)>) -> Result<Report, MergeError> {
         let adapter = parts.first().map(|(_, report)| report.adapter.clone()).ok_or(MergeError::Nothing)?;
         let part = |(name, Report { adapter, rows, part }): (String, Report)| ResultsFile {
@@ -217,12 +218,13 @@ impl Report {
         }
     }
 
-    /// Returns whether its rows are those of a sweep.
+    /// Returns whether any of the report's rows is of a sweep.
     pub fn is_swept(&self) -> bool {
         self.rows.iter().any(|row| row.sweep.is_some())
     }
 
-    /// Returns the indices of a scene's rows; of a sweep, they are sorted by technique and then by value.
+    /// Returns the indices of a scene's rows in the report's order; of a sweep, grouped by technique with its settings,
+    /// so that each one's values follow each other. Empty for an unknown scene.
     pub fn rows_of(&self, scene: &str) -> Vec<usize> {
         let mut rows: Vec<usize> = (0..self.rows.len()).filter(|index| self.rows[*index].scene == scene).collect();
         let names: Vec<String> = rows.iter().map(|index| self.rows[*index].name()).collect();
@@ -296,7 +298,7 @@ impl plot::Plot {
     }
 }
 
-/// Returns whether `one` is at least as fast and as right as `other`, and better in one of the two.
+/// Returns whether `one` is measured, at least as fast and at least as right as `other`, and better in one of the two.
 fn beats(one: &ReportRow, other: &ReportRow) -> bool {
     let (time, error) = (one.cost_ms(), one.wrong_fraction);
     let (other_time, other_error) = (other.cost_ms(), other.wrong_fraction);
@@ -329,7 +331,8 @@ impl ReportRow {
         self.problem().is_none()
     }
 
-    /// Returns why the row can't be ranked or drawn, in a few words; `None` where it can.
+    /// Returns why the row can't be ranked or drawn, in a few words: no pixel was compared, or error or time is
+    /// negative or no finite number. `None` where it can.
     pub fn problem(&self) -> Option<&'static str> {
         if self.error.compared == 0 {
             return Some("no pixel was compared");
@@ -355,7 +358,7 @@ impl ReportRow {
         format!("{}: {wrong}, {} ms", self.name(), numbers::milliseconds(self.frame_ms.median))
     }
 
-    /// Returns the row in a few lines, for a tooltip.
+    /// Returns the row's results in a few lines: wrong pixels by kind, wrong colours, times, triangles and memory.
     pub fn details(&self) -> String {
         let count = numbers::count;
         let times = self.frame_ms;

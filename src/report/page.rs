@@ -13,7 +13,8 @@ pub struct PageOrigin<'a> {
 }
 
 impl PageOrigin<'_> {
-    /// Returns the page's beginning: its title, the command, and the plot.
+    /// Returns the page's beginning in Markdown: title, command, and the plot with the description `of_plot`, if one is
+    /// named.
     pub(crate) fn opening(&self, title: &str, of_plot: &str) -> String {
         let plot = self.plot.map_or_else(String::new, |file| format!("![{of_plot}]({file})\n\n"));
         format!("# {title}\n\nWritten by\n\n```sh\n{}\n```\n\n{plot}", self.command)
@@ -31,7 +32,7 @@ geometry, pipelines and uploads. *MiB* is the memory of buffers and attachments.
 least as fast and at least as right (Pareto front).";
 
 impl Report {
-    /// Returns the report as a Markdown page: command, plot, tables, and how to read them.
+    /// Returns the report as a Markdown page: command, plot, machine, how to read it, and a table for each scene.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let adapter = &self.adapter;
         let of_plot = match self.is_swept() {

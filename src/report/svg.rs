@@ -95,7 +95,8 @@ fn mark([x, y]: [f64; 2], style: &TechniqueStyle, filled: bool) -> String {
     format!("{shape} fill=\"{fill}\" stroke=\"{color}\" stroke-width=\"1.3\" stroke-linejoin=\"round\"/>\n")
 }
 
-/// Returns a text as an SVG element; `halo` adds a white outline behind it that separates it from lines.
+/// Returns a text as an SVG element, centred vertically on its position; `halo` adds a white outline behind it that
+/// separates it from lines.
 fn text(words: &PlotText, halo: bool) -> String {
     let anchor = match words.anchor {
         TextAnchor::Start => "start",

@@ -42,7 +42,8 @@ fn width(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Returns a report as a table for the terminal: a block for each scene, numbers right-aligned, units in the heading.
+/// Returns a report as a table for the terminal: the adapter, a block for each scene with numbers right-aligned, and
+/// what the columns mean; `Nothing was measured.` without rows.
 pub fn text(report: &Report) -> String {
     if report.rows.is_empty() {
         return "Nothing was measured.\n".to_owned();
@@ -68,7 +69,7 @@ pub fn text(report: &Report) -> String {
             colour: pixels unlike those of the ray-traced picture, background included; frame: median, then fastest to slowest\n"
 }
 
-/// Returns the picture sizes that occur, as text: `1280×720`.
+/// Returns the picture sizes that occur, each once, in order of appearance, separated by commas: `1280×720, 640×480`.
 pub(super) fn sizes(sizes: impl Iterator<Item = [u32; 2]>) -> String {
     let mut names: Vec<String> = Vec::new();
     for [width, height] in sizes {
@@ -141,7 +142,8 @@ fn swept_text(row: &ReportRow) -> String {
     row.sweep.as_ref().map_or_else(String::new, |swept| swept.text.clone())
 }
 
-/// Returns the frames per second as text, in three digits.
+/// Returns the frames per second as text: one decimal below 100, none from there on; `-` where they are infinite or no
+/// number.
 fn fps(row: &ReportRow) -> String {
     match row.fps() {
         fps if !fps.is_finite() => "-".to_owned(),
@@ -150,7 +152,7 @@ fn fps(row: &ReportRow) -> String {
     }
 }
 
-/// Returns the text, truncated where it is too long for a column.
+/// Returns the text, cut to `longest` characters with `…` as the last of them where it is longer.
 fn shortened(text: &str, longest: usize) -> String {
     if width(text) <= longest {
         return text.to_owned();
@@ -184,7 +186,8 @@ fn milliseconds(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
 }
 
-/// Returns a report as Markdown tables: one, or with several scenes one for each, below its name.
+/// Returns a report as Markdown tables, each with a note on what bold means: one for each scene, below its name where
+/// there are several. Empty without rows.
 pub fn markdown(report: &Report) -> String {
     let scenes = report.scenes();
     let note = "\nBold: nothing else is both at least as fast and at least as right (Pareto front).\n";
@@ -195,7 +198,8 @@ pub fn markdown(report: &Report) -> String {
     blocks.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the Markdown table of one scene.
+/// Returns the Markdown table of one scene: rows on the Pareto front in bold, and of a sweep with columns for value and
+/// frames per second.
 pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
     let decimals = decimals(&report.rows);
     let swept = swept_name(&report.rows);

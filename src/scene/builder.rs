@@ -38,7 +38,8 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Returns a builder of a scene of that name, without objects.
+    /// Returns a builder of a scene of that name, without objects, with the default ambient light. Unless set, camera
+    /// and light are placed to fit the objects.
     pub fn new(name: impl Into<String>) -> SceneBuilder {
         SceneBuilder {
             name: name.into(),
@@ -81,7 +82,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds an object. Where another has its name already, it gets a number.
+    /// Adds an object at the end. Where another has its name already, it gets that name with a number.
     #[must_use]
     pub fn object(mut self, mut object: Object) -> SceneBuilder {
         object.name = self.names.take_like(&object.name);
@@ -95,7 +96,8 @@ impl SceneBuilder {
         objects.into_iter().fold(self, SceneBuilder::object)
     }
 
-    /// Returns the scene, at time 0.
+    /// Returns the scene, at time 0. Without a camera or lights of its own, it gets a camera that sees all objects, and
+    /// one point light above in front.
     pub fn build(self) -> Scene {
         let SceneBuilder { name, ambient, camera, lights, objects, .. } = self;
         let points: Vec<DVec3> = match (&camera, &lights) {

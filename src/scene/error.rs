@@ -58,7 +58,7 @@ impl FileProblem {
         FileProblem::File("has no triangle with three different corners: export its surface".to_owned())
     }
 
-    /// Returns the error for this file.
+    /// Returns the problem as the error for this file.
     pub fn of(self, file: &Path) -> SceneError {
         let file = file.to_owned();
         match self {
@@ -69,7 +69,8 @@ impl FileProblem {
 }
 
 impl SceneError {
-    /// Returns the error for this file, in place of the name that a part of a scene has.
+    /// Returns a read error for this file, in place of the name that a part of a scene has; other errors are returned
+    /// as they are.
     #[must_use]
     pub(super) fn in_file(self, file: &Path) -> SceneError {
         match self {

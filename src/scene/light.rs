@@ -39,7 +39,8 @@ impl Light {
         Light { position, color: [1.0; 3], intensity: 1.0, is_on: true, range: None, motion: Motion::default() }
     }
 
-    /// Returns whether `w = 0`: it shines from one direction everywhere.
+    /// Returns whether the light is directional (`w = 0`): it shines from one direction everywhere. Otherwise it is a
+    /// point light.
     pub fn is_directional(&self) -> bool {
         self.position.w == 0.0
     }

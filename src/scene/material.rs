@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Where lighting is computed.
+/// With which normals, and where, lighting is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Shading {
     /// One normal for each triangle.
@@ -15,10 +15,10 @@ pub enum Shading {
 }
 
 impl Shading {
-    /// All three, in order.
+    /// All three kinds of shading, in order.
     pub const ALL: [Shading; 3] = [Shading::Flat, Shading::Gouraud, Shading::Phong];
 
-    /// Returns its name in scene files and settings.
+    /// Returns the shading's name in scene files and settings.
     pub const fn name(self) -> &'static str {
         match self {
             Shading::Flat => "flat",
@@ -51,7 +51,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// Returns a dull surface with one normal for each triangle.
+    /// Returns the default material, dull and flat-shaded, in linear RGB `color`.
     pub fn matte(color: [f32; 3]) -> Material {
         Material { color, ..Material::default() }
     }

@@ -86,25 +86,26 @@ impl Mesh {
         &self.triangles
     }
 
-    /// Returns the object-space normals of each triangle's corners, not necessarily of unit length, where the file gave
-    /// them.
+    /// Returns the object-space normals of each triangle's corners, not necessarily of unit length; `None` where the
+    /// mesh was built without.
     pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
         self.corner_normals.as_deref()
     }
 
-    /// Returns the texture coordinates of each triangle's corners, where the file has them: 0, 0 is the picture's lower
-    /// left corner, 1, 1 its upper right.
+    /// Returns, for each triangle, the texture coordinates of its corners, or `None` where it has none: 0, 0 is the
+    /// picture's lower left corner, 1, 1 its upper right. `None` where no triangle has any.
     pub fn corner_uvs(&self) -> Option<&[Option<[Vec2; 3]>]> {
         self.corner_uvs.as_deref()
     }
 
-    /// Returns whether every one of these triangles has texture coordinates.
+    /// Returns whether every one of these triangles, by range, has texture coordinates; false where the range goes
+    /// beyond the mesh.
     pub fn has_uvs(&self, triangles: &Range<usize>) -> bool {
         let of_these = self.corner_uvs.as_ref().and_then(|uvs| uvs.get(triangles.clone()));
         of_these.is_some_and(|uvs| uvs.iter().all(Option::is_some))
     }
 
-    /// Returns what its file asks for and is not supported.
+    /// Returns what the mesh's file asks for and is not supported; empty for a mesh that is not from a file.
     pub fn not_taken(&self) -> &[Unsupported] {
         &self.not_taken
     }
@@ -114,7 +115,7 @@ impl Mesh {
         Mesh { not_taken, ..self }
     }
 
-    /// Returns its groups: at least one, unless the mesh has no triangle.
+    /// Returns the mesh's groups, in order of their triangles: at least one, unless the mesh has no triangle.
     pub fn groups(&self) -> &[MeshGroup] {
         &self.groups
     }
@@ -136,8 +137,8 @@ impl Mesh {
         self.normals_hash
     }
 
-    /// Returns the same mesh with bit-identical positions as one vertex each. Every mesh is so already except those of
-    /// [`MeshBuilder::build_unwelded`].
+    /// Returns the same mesh with bit-identical positions joined to one vertex each, and without triangles that two
+    /// equal corners then have. Every mesh is so already except those of [`MeshBuilder::build_unwelded`].
     pub fn welded(&self) -> Result<Mesh, MeshError> {
         let builder = MeshBuilder {
             positions: self.positions.clone(),

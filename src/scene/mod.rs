@@ -77,7 +77,7 @@ impl Scene {
         self.clone().advanced(seconds)
     }
 
-    /// Returns what [`Scene::at`] does, without a copy.
+    /// Returns the scene `seconds` after its start, as [`Scene::at`] does, without a copy.
     pub fn advanced(mut self, seconds: f64) -> Scene {
         for object in &mut self.objects {
             object.pose = object.motion.apply(&object.pose, seconds);
@@ -88,7 +88,7 @@ impl Scene {
         self
     }
 
-    /// Returns whether anything moves.
+    /// Returns whether any object or light of the scene moves; the camera never does.
     pub fn is_animated(&self) -> bool {
         let objects = self.objects.iter().map(|object| &object.motion);
         let lights = self.lights.iter().map(|light| &light.motion);

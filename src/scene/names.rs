@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-/// The names of a scene's objects, which are unique.
+/// The names of a scene's objects that are taken, each once.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ObjectNames {
     /// For each name, the number to try next where it is wanted again.
@@ -10,7 +10,7 @@ pub struct ObjectNames {
 }
 
 impl ObjectNames {
-    /// Takes a name; `false` where it is taken already.
+    /// Takes a name and returns true; `false`, and nothing changes, where it is taken already.
     pub fn take(&mut self, name: &str) -> bool {
         let is_free = !self.taken.contains_key(name);
         if is_free {
@@ -19,7 +19,7 @@ impl ObjectNames {
         is_free
     }
 
-    /// Takes the name, with a number appended where it is taken.
+    /// Takes and returns the name; where it is taken, with the first free number appended, from 2: `box 2`.
     pub fn take_like(&mut self, wanted: &str) -> String {
         if self.take(wanted) {
             return wanted.to_owned();

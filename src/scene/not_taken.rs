@@ -19,7 +19,8 @@ pub(super) struct UnsupportedList {
 }
 
 impl UnsupportedList {
-    /// Adds something that is not supported.
+    /// Adds something that is not supported, once; beyond a number of different ones, only a last entry that says that
+    /// there is more.
     pub fn refuse(&mut self, what: impl Into<String>, because: impl Into<String>) {
         let refused = Unsupported { what: what.into(), because: because.into() };
         let count = self.named.len();

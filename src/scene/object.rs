@@ -50,21 +50,23 @@ impl Object {
         Object::new(name, mesh.into(), Material::default())
     }
 
-    /// Moves the object to a position.
+    /// Sets the object's position, in place of the one before, and returns it.
     #[must_use]
     pub fn at(mut self, translate: impl Into<DVec3>) -> Object {
         self.pose.translate = translate.into();
         self
     }
 
-    /// Rotates the object about the fixed x, then y, then z axis.
+    /// Sets the object's rotation about the fixed x, then y, then z axis, in degrees, in place of the one before, and
+    /// returns it.
     #[must_use]
     pub fn rotated(mut self, rotate_degrees: impl Into<DVec3>) -> Object {
         self.pose.rotate_degrees = rotate_degrees.into();
         self
     }
 
-    /// Scales the object; negative factors mirror, and none may be zero.
+    /// Sets the object's scale, in place of the one before, and returns it; negative factors mirror, and none may be
+    /// zero, which is not checked here.
     #[must_use]
     pub fn scaled(mut self, scale: impl Into<DVec3>) -> Object {
         self.pose.scale = scale.into();
@@ -77,12 +79,14 @@ impl Object {
         Object { visible: false, ..self }
     }
 
-    /// Returns the texture of a group of its mesh: its own material's, or the object's where it has none.
+    /// Returns the texture of a group of the object's mesh: of the group's own material where it has one, otherwise the
+    /// object's; `None` where that has none.
     pub fn texture_of<'a>(&'a self, group: &'a MeshGroup) -> Option<&'a MaterialTexture> {
         if group.material.is_some() { group.texture.as_ref() } else { self.texture.as_ref() }
     }
 
-    /// Returns the welded vertices in world space. All users of a vertex get the same rounding.
+    /// Returns the mesh's vertices in world space, at the pose as it is, in the mesh's order. All users of a vertex get
+    /// the same rounding.
     pub fn world_positions(&self) -> Vec<DVec3> {
         if self.pose == Pose::default() {
             return self.mesh.positions().to_vec();
@@ -109,7 +113,7 @@ impl Default for Pose {
     }
 }
 
-/// A pose as a key: each number's bits.
+/// A pose as a key: the bits of the numbers of translation, rotation and scale.
 pub type PoseBits = [[u64; 3]; 3];
 
 impl Pose {
@@ -132,12 +136,12 @@ impl Pose {
         }
     }
 
-    /// Returns the matrix of this pose.
+    /// Returns the matrix of this pose: scale first, then rotation, then translation.
     pub fn world_from_object(&self) -> DMat4 {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
     }
 
-    /// Returns the pose of a scale, a rotation and a translation.
+    /// Returns the pose of a scale, a rotation and a translation, applied in this order.
     pub(super) fn of(scale: DVec3, rotation: DQuat, translate: DVec3) -> Pose {
         // About fixed x, then y, then z is the same as about moving z, then y, then x.
         let (z, y, x) = rotation.to_euler(EulerRot::ZYX);
@@ -172,7 +176,7 @@ pub struct Motion {
     pub swing: Option<Swing>,
 }
 
-/// A circle about an axis.
+/// A motion on a circle about an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orbit {
     /// A point of the axis, world units.
@@ -198,14 +202,14 @@ pub struct Swing {
 }
 
 impl Motion {
-    /// Returns whether it neither spins nor orbits nor swings.
+    /// Returns whether the motion moves nothing: no spin, no orbit with a speed, no swing with an angle.
     pub fn is_still(&self) -> bool {
         self.spin_degrees_per_second == DVec3::ZERO
             && self.orbit.is_none_or(|orbit| orbit.degrees_per_second == 0.0)
             && self.swing.is_none_or(|swing| swing.degrees == 0.0)
     }
 
-    /// Returns the pose `seconds` later.
+    /// Returns the pose `seconds` later: spun and moved along the orbit, then swung.
     pub fn apply(&self, pose: &Pose, seconds: f64) -> Pose {
         let translate = self.orbit.map_or(pose.translate, |orbit| orbit.point_at(pose.translate, seconds));
         let rotate_degrees = pose.rotate_degrees + self.spin_degrees_per_second * seconds;
@@ -216,7 +220,8 @@ impl Motion {
         }
     }
 
-    /// Returns the homogeneous light position `seconds` later; a direction rotates about the axis.
+    /// Returns a homogeneous light position `seconds` later, by orbit and swing; a spin does nothing. The direction of
+    /// a directional light only rotates about the axes.
     pub fn apply_to_light(&self, position: DVec4, seconds: f64) -> DVec4 {
         let orbited = self.orbit.map_or(position, |orbit| orbit.light_at(position, seconds));
         let Some((pivot, turn)) = self.turn_of_swing(seconds) else { return orbited };
@@ -226,7 +231,8 @@ impl Motion {
         (pivot + turn * (orbited.truncate() - pivot)).extend(orbited.w)
     }
 
-    /// Returns pivot and rotation; `None` at rest, so that what does not move has exactly the same bits.
+    /// Returns pivot and rotation of the swing after `seconds`; `None` without a swing, or where it is at rest, so that
+    /// what does not move has exactly the same bits.
     fn turn_of_swing(&self, seconds: f64) -> Option<(DVec3, DQuat)> {
         let swing = self.swing?;
         let degrees = swing.degrees * (TAU * seconds / swing.period_seconds).sin();

@@ -23,7 +23,7 @@ const MOST_SIDE: u32 = 8192;
 /// The most texels of all pictures of a model or a scene file.
 const MOST_TEXELS: u64 = 1 << 27;
 
-/// A picture for textures of surfaces.
+/// A picture for textures of surfaces, with its mip levels, computed on first use.
 pub struct TextureImage {
     name: String,
     size: [u32; 2],
@@ -32,7 +32,7 @@ pub struct TextureImage {
     levels: OnceLock<Vec<MipLevel>>,
 }
 
-/// A mip level of a picture.
+/// A mip level of a picture, above level 0.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MipLevel {
     /// Width and height in texels.
@@ -41,7 +41,7 @@ pub struct MipLevel {
     pub texels: Vec<[u8; 4]>,
 }
 
-/// A texture on a surface, repeated without end unless it is clamped.
+/// A texture on a surface: its picture, how it is mapped, and whether it repeats without end or is clamped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialTexture {
     /// Its texels.
@@ -91,7 +91,8 @@ impl PartialEq for TextureImage {
 }
 
 impl TextureImage {
-    /// Returns a picture of these sRGB texels; `None` where their number does not match the size, or is zero.
+    /// Returns a picture of these sRGB texels, row by row from the top, with alpha; `None` where their number does not
+    /// match the size, or a side is 0 or more than 8192.
     pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[u8; 4]>) -> Option<TextureImage> {
         let is_sized = size.iter().all(|side| (1..=MOST_SIDE).contains(side))
             && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]);
@@ -106,7 +107,7 @@ impl TextureImage {
         TextureImage::load_within(path, MOST_TEXELS)
     }
 
-    /// Reads a PNG or a JPEG of at most `most` texels.
+    /// Reads a PNG or a JPEG of at most `most` texels; its name is the file's.
     pub fn load_within(path: &Path, most: u64) -> Result<TextureImage, ImageError> {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         TextureImage::decode(name, &read_plain(path, MOST_FILE)?, most)
@@ -121,7 +122,7 @@ impl TextureImage {
         TextureImage::new(name, size, texels).ok_or_else(|| ImageError::Broken("texels are missing".to_owned()))
     }
 
-    /// The most texels of the pictures of one frame together.
+    /// The most texels that the pictures of one frame may have together.
     pub const MOST_TOGETHER: u64 = MOST_TEXELS;
 
     /// Returns the same picture under another name.
@@ -130,7 +131,7 @@ impl TextureImage {
         TextureImage { name: name.into(), ..self }
     }
 
-    /// Returns the name of its file, as it is shown.
+    /// Returns the picture's name: that of its file, or the one that it was given.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -150,17 +151,18 @@ impl TextureImage {
         self.hash
     }
 
-    /// Returns whether it has an alpha other than 1, which is not used.
+    /// Returns whether any texel has an alpha other than 1; alpha is not used.
     pub fn has_alpha(&self) -> bool {
         self.texels.iter().any(|texel| texel[3] != u8::MAX)
     }
 
-    /// Returns the number of its mip levels, level 0 included.
+    /// Returns the number of the picture's mip levels, level 0 included, down to one texel.
     pub fn level_count(&self) -> u32 {
         self.size[0].max(self.size[1]).ilog2() + 1
     }
 
-    /// Returns its mip levels from 1 on, from half its size down to one texel.
+    /// Returns the picture's mip levels from level 1 on (index 0), each half the size of the one before, down to one
+    /// texel; empty for a picture of one texel. Computed on first use.
     pub fn levels(&self) -> &[MipLevel] {
         self.levels.get_or_init(|| {
             let mut levels: Vec<MipLevel> = Vec::new();
@@ -174,7 +176,7 @@ impl TextureImage {
         })
     }
 
-    /// Returns the size and texels of a mip level; those of the last for a larger index.
+    /// Returns the size and texels of a mip level, 0 is the picture itself; of the last level for a larger index.
     fn level(&self, index: u32) -> ([u32; 2], &[[u8; 4]]) {
         match index.min(self.level_count() - 1).checked_sub(1).map(|above| &self.levels()[above as usize]) {
             None => (self.size, &self.texels),
@@ -192,7 +194,8 @@ impl TextureImage {
         [0, 1, 2].map(|channel| near[channel] * (1.0 - share) + far[channel] * share)
     }
 
-    /// Returns column and row of the texel of level 0 that a place lies in.
+    /// Returns column and row, from the upper left, of the texel of level 0 in which texture coordinates lie (0, 0 is
+    /// the lower left); beyond the picture it repeats, or is clamped to the edge.
     pub fn texel_at(&self, [u, v]: [f64; 2], clamps: bool) -> [u32; 2] {
         let [width, height] = self.size.map(i64::from);
         let inside = |at: f64, count: i64| wrapped((at * count as f64).floor() as i64, count, clamps) as u32;
@@ -204,7 +207,8 @@ impl TextureImage {
         self.linear_at([0.5; 2], f64::from(self.level_count()), false)
     }
 
-    /// Returns the four nearest texels of a mip level, mixed.
+    /// Returns linear RGB of the four nearest texels of a mip level, mixed bilinearly, at texture coordinates whose
+    /// origin is the lower left; beyond the picture it repeats, or is clamped.
     fn smooth_at(&self, [u, v]: [f64; 2], level: u32, clamps: bool) -> [f64; 3] {
         let ([width, height], texels) = self.level(level);
         let [x, y] = [u * f64::from(width) - 0.5, (1.0 - v) * f64::from(height) - 0.5];
@@ -241,7 +245,8 @@ impl Default for ImageLoader {
 }
 
 impl ImageLoader {
-    /// Returns the picture in a file.
+    /// Returns the picture in a file, which is read and counted against the budget of texels once; one that was found
+    /// broken is not read again.
     pub fn load(&mut self, path: &Path) -> Result<Arc<TextureImage>, ImageError> {
         if let Some(known) = self.known.get(path) {
             return Ok(Arc::clone(known));
@@ -293,7 +298,8 @@ impl ImageLoader {
     }
 }
 
-/// Returns the column or row in the picture for one that is beyond it.
+/// Returns the column or row inside the picture, of `count`, for one that may be beyond it: the nearest where it
+/// clamps, otherwise as if the picture repeated.
 fn wrapped(at: i64, count: i64, clamps: bool) -> i64 {
     if clamps { at.clamp(0, count - 1) } else { at.rem_euclid(count) }
 }
@@ -383,7 +389,8 @@ fn jpeg(_: &[u8], _: u64) -> Result<DecodedImage, ImageError> {
     Err(ImageError::Jpeg)
 }
 
-/// Converts grey, grey and alpha, RGB or RGBA to RGBA.
+/// Converts texels of `samples` bytes (grey, grey and alpha, RGB or RGBA) to RGBA, opaque where there is no alpha; an
+/// incomplete last texel is dropped.
 fn with_alpha(data: &[u8], samples: usize) -> Vec<[u8; 4]> {
     let texel = |of: &[u8]| match *of {
         [grey] => [grey, grey, grey, u8::MAX],
@@ -395,7 +402,7 @@ fn with_alpha(data: &[u8], samples: usize) -> Vec<[u8; 4]> {
     data.chunks_exact(samples.max(1)).map(texel).collect()
 }
 
-/// Returns a decoder's message, short and without line ends.
+/// Returns a decoder's message in one line, at most 100 characters, without a full stop at the end.
 fn in_a_line(text: &str) -> String {
     const MOST: usize = 100;
     let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

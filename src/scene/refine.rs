@@ -99,7 +99,8 @@ impl Refinement {
         beside.push(triangle);
     }
 
-    /// Halves the longest edge; `false` where none is left.
+    /// Halves the longest edge that waits, and with it its triangles, and returns true; also true where that edge no
+    /// longer exists or can't be halved. `false` where no edge waits.
     fn split_longest(&mut self) -> bool {
         let Some(WaitingEdge { edge: [u, v], .. }) = self.waiting.pop() else { return false };
         let Some(beside) = self.beside.remove(&[u, v]) else { return true };

@@ -19,7 +19,7 @@ pub fn cuboid(size: [f64; 3]) -> Result<Mesh, MeshError> {
     cuboid_builder(size).build()
 }
 
-/// Returns a box around the origin seen from inside: a room.
+/// Returns a box of width, height and depth around the origin whose triangles face inwards: a room.
 pub fn room(size: [f64; 3]) -> Result<Mesh, MeshError> {
     let mut builder = cuboid_builder(size);
     builder.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
@@ -57,7 +57,7 @@ pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
     triangles(&positions, &[[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]])
 }
 
-/// Returns a closed upright cylinder around the origin.
+/// Returns a closed upright cylinder around the origin, from −`height`/2 to `height`/2, with `around` segments.
 pub fn cylinder(radius: f64, height: f64, around: u32) -> Result<Mesh, MeshError> {
     let half = height / 2.0;
     let profile = [[0.0, -half], [radius, -half], [radius, half], [0.0, half]].map(DVec2::from_array);
@@ -91,8 +91,8 @@ pub fn parallelogram(corner: DVec3, edges: [DVec3; 2]) -> Result<Mesh, MeshError
     builder.build()
 }
 
-/// Closed solid stairs: from the origin `steps` up and along x, each `rise` high and `run` deep, and
-/// `width` wide with the origin's z in the middle.
+/// Returns closed solid stairs: from the origin `steps` up and along x, each `rise` high and `run` deep, and `width`
+/// wide with the origin's z in the middle.
 pub fn stairs(steps: u32, rise: f64, run: f64, width: f64) -> Result<Mesh, MeshError> {
     let tread = |step: u32, x: u32| [f64::from(x) * run, f64::from(step + 1) * rise];
     let treads = (0..steps).flat_map(|step| [tread(step, step), tread(step, step + 1)]);
@@ -148,8 +148,8 @@ pub fn plate(
     builder.build()
 }
 
-/// Returns a tube around a path in a plane of constant z, with its radius at each point; both ends are open. `around`
-/// segments, of which the first faces +z.
+/// Returns a tube around a path in a plane of constant z, with its radius at each point; both ends are open. It has
+/// `around` segments, of which the first faces +z; the path needs two points at least.
 pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     for (index, (point, radius)) in path.iter().enumerate() {
@@ -170,7 +170,8 @@ pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
     builder.build()
 }
 
-/// Returns several meshes as one, each moved by an offset. Bit-equal vertices are joined.
+/// Returns several meshes as one, each moved by an offset. Bit-equal vertices are joined; normals, texture coordinates
+/// and groups are dropped.
 pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<Mesh, MeshError> {
     let mut builder = MeshBuilder::default();
     for (mesh, offset) in parts {
@@ -181,7 +182,7 @@ pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<
     builder.build()
 }
 
-/// Returns a mesh of points and triangles as given.
+/// Returns a mesh of these points and triangles, as indices into the points; without normals.
 pub fn triangles(points: &[[f64; 3]], indices: &[[u32; 3]]) -> Result<Mesh, MeshError> {
     let positions = points.iter().map(|point| DVec3::from_array(*point)).collect();
     MeshBuilder { positions, triangles: indices.to_vec(), ..MeshBuilder::default() }.build()

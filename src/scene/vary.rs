@@ -11,7 +11,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Distance of the first copy of a caster from the centre, in extents of all casters; the fourth is twice as far.
 const SPREAD: f64 = 0.35;
 
-/// Why a scene can't be varied.
+/// Why a scene can't have another number of lights, casters or triangles.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VaryError {
     /// It has none of the things that should be more, named in words.
@@ -38,8 +38,8 @@ impl Scene {
         SceneBounds::of(&points).unwrap_or_default()
     }
 
-    /// Returns the scene with `count` lights: the first ones; further ones are these in turn, rotated about the
-    /// casters' vertical axis.
+    /// Returns the scene with exactly `count` lights: the first ones; further ones are copies of these in turn, rotated
+    /// about the vertical axis through the casters' middle.
     pub fn with_lights(&self, count: usize) -> Result<Scene, VaryError> {
         if self.lights.is_empty() {
             return Err(VaryError::None("light"));
@@ -58,8 +58,8 @@ impl Scene {
         Ok(Scene { lights: (0..count).map(light).collect(), ..self.clone() })
     }
 
-    /// Returns the scene with `count` casters: the first ones; further ones are copies of these in turn, on a spiral
-    /// around them. Objects that cast no shadow stay.
+    /// Returns the scene with exactly `count` casters: the first ones; further ones are copies of these in turn, with a
+    /// number in their names, on a spiral around them. Objects that cast no shadow stay.
     pub fn with_casters(&self, count: usize) -> Result<Scene, VaryError> {
         let casters: Vec<&Object> = self.casters().collect();
         if casters.is_empty() {
@@ -84,7 +84,8 @@ impl Scene {
         Ok(Scene { objects, ..self.clone() })
     }
 
-    /// Returns the scene with casters of at least `count` triangles together, of the same shapes, each in proportion.
+    /// Returns the scene with casters of at least `count` triangles together, of the same shapes, each mesh refined in
+    /// proportion. An error where they have more already.
     pub fn with_triangles(&self, count: usize) -> Result<Scene, VaryError> {
         let has: usize = self.casters().map(|object| object.mesh.triangles().len()).sum();
         match has {

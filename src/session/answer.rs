@@ -19,7 +19,7 @@ const TIMED_FRAMES: usize = 5;
 /// as much again for its snapshots.
 const MOST_OF_A_TRIAL: u64 = 128 << 20;
 
-/// A frame that was run. It never changes.
+/// A frame that was run or recorded, with its plan and source. It never changes.
 #[derive(Debug, Clone)]
 pub struct RunFrame {
     /// The captured attachments.
@@ -66,13 +66,14 @@ impl RunFrame {
         self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoLights)
     }
 
-    /// Returns the scene that it was planned from, and the request.
+    /// Returns the scene that the frame was planned from, and the request; an error for another program's frame, which
+    /// has none.
     pub fn made(&self) -> Result<(&Scene, &CaptureRequest), SessionError> {
         let request = self.source.as_ref().and_then(|source| source.request.as_ref()).ok_or(SessionError::NoScene)?;
         Ok((self.scene()?, request))
     }
 
-    /// Returns what a capture folder of it stores.
+    /// Returns what a capture folder of the frame stores: the capture, the plan and, where it is known, the scene.
     pub fn contents(&self) -> FolderContents<'_> {
         let scene = self.source.as_ref().map(|source| &source.scene);
         FolderContents { capture: &self.capture, plan: Some(&self.plan), scene }

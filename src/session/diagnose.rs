@@ -112,7 +112,8 @@ impl Session {
         })
     }
 
-    /// Returns the frame with a fix applied, and its plan: to show before and after.
+    /// Renders the frame with the fault and then the fix applied, and returns its capture and plan: to show before and
+    /// after.
     pub fn capture_fixed(
         &mut self,
         scene: &Scene,
@@ -124,7 +125,8 @@ impl Session {
         Ok((self.capture_plan(&scene, &plan)?, plan))
     }
 
-    /// Plans with the fault first, then the fix: what is wrong stays wrong unless the fix changes it.
+    /// Plans the frame with the fault first, then the fix: what is wrong stays wrong unless the fix changes it. Returns
+    /// the changed scene and choice too.
     pub(super) fn plan_fixed(
         &mut self,
         scene: &Scene,
@@ -146,7 +148,8 @@ impl Session {
         Ok((given, choice, plan))
     }
 
-    /// Returns which triangles of each object cast, by light.
+    /// Returns which triangles of each object cast under this choice: a list for each light, with an entry for each
+    /// object.
     fn casting(&mut self, scene: &Scene, choice: &Choice) -> Vec<Vec<Casters>> {
         let worlds: Vec<_> = scene.objects.iter().map(Object::world_positions).collect();
         let mut of_light = |light: &Light| {
@@ -169,7 +172,7 @@ impl Session {
     }
 
     /// Returns sample pixels of a region: the surface seen there, the casters between it and the light, and the pixel's
-    /// history where the technique has one.
+    /// history where the technique counts volumes or draws flattened casters.
     fn case<'r>(&mut self, facts: &FrameFacts, region: &'r ConnectedRegion) -> Result<RegionSamples<'r>, SessionError> {
         let light = region.light;
         let has_events = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
@@ -207,7 +210,7 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
     if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(darkening) }
 }
 
-/// Returns all wrong regions, the largest first; regions that are merely too dark come last.
+/// Returns all regions of wrong pixels, of all lights, the largest first; regions that are merely too dark come last.
 fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
     let mut found = Vec::new();
@@ -230,7 +233,8 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
     found
 }
 
-/// Returns what one wrong pixel reveals by itself.
+/// Returns what one wrong pixel reveals by itself: its kind, receiver, and as far as rays and maps show them its caster
+/// and a cause. Pixels with the same key are joined to regions.
 fn key_of(facts: &FrameFacts, light: usize, kind: RegionKind, pixel: [u32; 2]) -> RegionKey {
     let seen = facts.tracer.seen_at(pixel.map(|n| f64::from(n) + 0.5));
     let receiver = seen.map(|seen| seen.place.object);
@@ -279,7 +283,8 @@ fn described(facts: &FrameFacts, case: &RegionSamples, causes: Vec<CauseFound>, 
     }
 }
 
-/// Computes what the truth would be with each flag set.
+/// Traces, for each flag that an object has not set (receives, casts, visible), what the truth would be with it set,
+/// and returns the flags that would change it. At most a few are tried.
 fn flags(scene: &Scene, traced: &TracedScene, progress: &Progress) -> Result<Vec<FlagFound>, SessionError> {
     let mut found = Vec::new();
     let mut asked = 0;

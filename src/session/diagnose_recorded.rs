@@ -118,7 +118,8 @@ impl Session {
         Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
     }
 
-    /// Runs a recorded plan again from its first pass on, and returns what it leaves.
+    /// Runs a recorded plan again from its first pass on, and returns the capture with the steps that this leaves in
+    /// place of the stored ones.
     fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare_once(plan)?;
         let output = self.executor.capture(prepared, SnapshotMemory::Shared, false)?;

@@ -14,7 +14,7 @@ use crate::plan::FramePlan;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// After which steps stencil and depth are copied back.
+/// After which parts of a frame its attachments are copied back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SnapshotInterval {
     /// After every pass.
@@ -25,12 +25,14 @@ pub enum SnapshotInterval {
 }
 
 impl Session {
-    /// Runs a frame with a snapshot after each of its draws.
+    /// Runs a frame with a snapshot after each of its draws, and returns it with one step for each pass, whose draws
+    /// have their states.
     pub(super) fn run_by_draw(&mut self, plan: &FramePlan, bracket: bool) -> Result<ExecutorOutput, SessionError> {
         Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
     }
 
-    /// Returns the states after the draws of a step of `capture`, which is the capture of `plan`.
+    /// Runs the frame and returns the states after the draws of one step of `capture`, which is the capture of `plan`;
+    /// images equal to known ones are shared.
     pub fn step_draws(&mut self, plan: &FramePlan, capture: &Capture, step: usize) -> Result<StepDraws, SessionError> {
         if step >= capture.steps.len() {
             return Err(SessionError::NoSuchStep { step, steps: capture.steps.len() });
@@ -56,7 +58,8 @@ impl Session {
     }
 }
 
-/// Returns all images of the frame around a step: draws may have left some of them as they were.
+/// Returns the images of the frame before and after a step, and those of the lights' masks, counts and maps: draws may
+/// have left some of them as they were.
 fn known_images(capture: &Capture, step: usize) -> Vec<Arc<Image>> {
     let before = step.checked_sub(1).and_then(|before| capture.frame_at(before)).cloned().map(Snapshot::Frame);
     let snapshots = before.iter().chain([&capture.steps[step].snapshot]);
@@ -107,7 +110,7 @@ impl OwnTarget {
     }
 }
 
-/// Returns colour, depth and stencil, as far as a snapshot has them.
+/// Returns colour, depth and stencil of a snapshot; `None` for the stencil that it lacks, and for all three of a map.
 fn frame_aspects(snapshot: &mut Snapshot) -> [Option<&mut Aspect>; 3] {
     match snapshot {
         Snapshot::Frame(frame) => [Some(&mut frame.color), Some(&mut frame.depth), frame.stencil.as_mut()],
@@ -123,14 +126,15 @@ struct RunningState {
 }
 
 impl RunningState {
-    /// wgpu clears new textures to zero.
+    /// Returns the state before the first pass: all zeros, as wgpu clears new textures.
     fn new(size: [u32; 2]) -> RunningState {
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, size, &vec![0; format.texel_bytes()]));
         let frame = [PixelFormat::Rgba8Srgb, PixelFormat::Depth32F, PixelFormat::U8].map(zero);
         RunningState { frame, own: BTreeMap::new() }
     }
 
-    /// Advances by one part; aspects that it did not change are shared.
+    /// Advances by one part of a pass: takes over the aspects that it changed, and sets those that it did not change in
+    /// `snapshot` to the shared images.
     fn go_on(&mut self, snapshot: &mut Snapshot) {
         for (now, aspect) in self.frame.iter_mut().zip(frame_aspects(snapshot)) {
             match aspect {
@@ -141,7 +145,8 @@ impl RunningState {
         }
     }
 
-    /// Advances a pass's own target by one part.
+    /// Advances a pass's own target (a map layer, counts or labels) by one part; returns its content, shared and marked
+    /// unchanged where it equals the one before.
     fn go_on_with(&mut self, target: OwnTarget, image: Arc<Image>) -> Aspect {
         match self.own.get(&target) {
             Some(now) if *now == image => Aspect { image: now.clone(), unchanged: true },
@@ -152,7 +157,8 @@ impl RunningState {
         }
     }
 
-    /// Ends a pass that began at `before`. An aspect that is again as it was then is that picture.
+    /// Ends a pass that began at `before`, and completes its snapshot: an aspect with the same content as then is that
+    /// image, and is marked unchanged.
     fn end(&mut self, before: &[Arc<Image>; 3], snapshot: &mut Snapshot) {
         for ((now, before), aspect) in self.frame.iter_mut().zip(before).zip(frame_aspects(snapshot)) {
             if !Arc::ptr_eq(now, before) && now == before {
@@ -165,8 +171,8 @@ impl RunningState {
     }
 }
 
-/// Joins the parts of the passes that were split. `plan` is the frame before it was split; it may have more passes than
-/// were run.
+/// Joins the parts of the passes that were split at their draws to one step each, with the state after each draw.
+/// `plan` is the frame before it was split; it may have more passes than were run.
 fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: ExecutorOutput) -> ExecutorOutput {
     let mut now = RunningState::new(plan.size);
     let mut parts = output.steps.into_iter().zip(output.targets).peekable();

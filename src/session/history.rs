@@ -39,7 +39,7 @@ impl Session {
         Ok(self.timed_history(plan, capture, pixel)?.0)
     }
 
-    /// Times the histories of `count` pixels, spread evenly over the picture; at least one.
+    /// Times the histories of `count` pixels, spread evenly over the picture, after a first one, which is timed apart.
     pub fn history_cost(
         &mut self,
         scene: &Scene,
@@ -67,7 +67,8 @@ impl Session {
         Ok(cost)
     }
 
-    /// Returns a history with the times of geometry and of the log.
+    /// Returns the history of a pixel with the times of finding triangles and of the GPU's log; an error where the
+    /// pixel is outside the picture.
     fn timed_history(
         &mut self,
         plan: &FramePlan,

@@ -44,7 +44,8 @@ named_enum! {
 const DEGREES_PER_SECOND: f64 = 10.0;
 
 impl MovingPart {
-    /// Returns the scene as this movement has it some seconds after the start.
+    /// Returns the scene `seconds` after the start with only this part moved; light and eye are rotated about the
+    /// vertical axis through the camera's target at a constant speed.
     fn at(self, scene: &Scene, seconds: f64) -> Scene {
         let mut moved = scene.at(if self == MovingPart::Scene { seconds } else { 0.0 });
         let turn = DQuat::from_rotation_y((seconds * DEGREES_PER_SECOND).to_radians());
@@ -77,7 +78,7 @@ pub struct MotionFrames {
 }
 
 impl MotionFrames {
-    /// Returns the seconds of each frame that counts.
+    /// Returns the times, in seconds, of the frames that count: even steps after `from`, up to `to`.
     fn all(self) -> impl Iterator<Item = f64> {
         let MotionFrames { from, to, frames, .. } = self;
         (1..=frames).map(move |frame| from + (to - from) * frame as f64 / frames as f64)
@@ -303,8 +304,8 @@ impl Session {
         }))
     }
 
-    /// Returns the plans of the choices that stay set up for all of their frames: the smallest first, until
-    /// [`CACHED_BYTES`] are used.
+    /// Returns, for each choice, the plan that stays set up for all of its frames: the smallest ones, until
+    /// [`CACHED_BYTES`] are used; `None` for the others.
     fn prepared_frames(
         &mut self,
         scene: &Scene,

@@ -175,7 +175,8 @@ pub struct CaptureCost {
 }
 
 impl Session {
-    /// Opens the GPU whose name contains `adapter` (in any case), or the fastest kind there is.
+    /// Opens the GPU whose name contains `adapter` (in any case), or, with `None`, one of the fastest kind there is; an
+    /// error where there is none.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
         let context = GpuContext::new(adapter)?;
         Ok(Session {
@@ -218,15 +219,16 @@ impl Session {
         self.executor.features()
     }
 
-    /// Returns the frame as data, without running it; with `occlusion=queries` it runs once to find the draws that
-    /// show.
+    /// Returns the frame as data, without running it; but with `occlusion=queries` it runs once to find the draws that
+    /// show nothing, which are left out.
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = PlanRequest { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
         let plan = technique::plan(job)?;
         self.without_unseen(plan, &request.choice)
     }
 
-    /// Returns the plan without the draws that show nothing, where the settings ask for that: it runs once.
+    /// Returns the plan without the draws that show nothing, for which it runs once; unchanged where the settings do
+    /// not ask for that.
     fn without_unseen(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
         if !choice.common().asks_what_shows {
             return Ok(plan);
@@ -237,7 +239,7 @@ impl Session {
         Ok(plan.without_unseen(&samples))
     }
 
-    /// Returns the topology of each object's mesh, with the object's name.
+    /// Returns the name of each object with the topology of its mesh, in the scene's order; cached by mesh.
     pub fn topologies(&mut self, scene: &Scene) -> Vec<(String, Arc<Topology>)> {
         let one = |object: &Object| (object.name.clone(), self.topology(&object.mesh));
         scene.objects.iter().map(one).collect()
@@ -254,7 +256,7 @@ impl Session {
         Ok(self.capture_with_plan(scene, request)?.0)
     }
 
-    /// Renders a scene, and returns all that questions can be asked about.
+    /// Renders a scene, and returns capture, plan and source: all that questions can be asked about.
     pub fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
         let (capture, plan) = self.capture_with_plan(&scene, &request)?;
         let source = Some(Arc::new(FrameSource { scene, request: Some(request) }));
@@ -289,8 +291,8 @@ impl Session {
         Ok((self.assemble(scene, &plan, output, timing), plan))
     }
 
-    /// Runs a finished plan, such as a good one with one thing changed, and returns its capture. `scene` gives the
-    /// camera and lights of the capture.
+    /// Runs a finished plan, such as a good one with one thing changed, and returns its capture with a snapshot after
+    /// each pass, untimed. `scene` gives the camera and lights of the capture.
     pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare(plan)?;
         let output = self.executor.capture(prepared, SnapshotMemory::Mapped, false)?;

@@ -7,8 +7,9 @@ use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
 
 impl Session {
-    /// Computes each draw of another program's frame again, from what was stored before it, and records at how many
-    /// pixels the result differs from what was stored.
+    /// Computes each draw of another program's frame again, from what was stored before it, and returns the capture
+    /// with the number of pixels at which depth or stencil differ from what was stored. Draws without a stored state,
+    /// or beside the picture, are passed over.
     pub fn compared_with_rerun(
         &mut self,
         plan: &FramePlan,
@@ -36,7 +37,8 @@ impl Session {
         Ok(checked)
     }
 
-    /// Returns where a frame of one draw leaves something else than `after`.
+    /// Runs a frame of one draw, and returns at how many pixels stencil and depth are not `after` (depths beyond
+    /// rounding, and apart from these those within); `None` where it leaves no picture.
     fn differs(
         &mut self,
         alone: &FramePlan,
@@ -64,7 +66,8 @@ impl Session {
     }
 }
 
-/// Returns a frame of one draw, whose targets begin with what was stored before it.
+/// Returns a frame of one draw, whose depth and stencil begin with `before`; the first draw of a pass begins as the
+/// pass does.
 fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Option<&FrameSnapshot>) -> FramePlan {
     let mut pass = Pass { draws: vec![Draw { mesh: MeshId(0), ..draw.clone() }], light: None, ..pass.clone() };
     if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
@@ -92,7 +95,7 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, is_first: bool, before: Opt
     }
 }
 
-/// Returns the rows that are not the same bytes.
+/// Returns the pairs of rows that are not the same bytes; rows that only one image has are left out.
 fn unequal_rows<'a>(made: &'a Image, after: &'a Image) -> impl Iterator<Item = (&'a [u8], &'a [u8])> {
     made.rows().zip(after.rows()).filter(|(made, after)| made != after)
 }

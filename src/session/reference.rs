@@ -31,7 +31,8 @@ impl<'a> ReferencePictures<'a> {
         ReferencePictures { scene, traced, pictures: Vec::new() }
     }
 
-    /// Runs a choice's frame, untimed, and compares it with the truth.
+    /// Runs a choice's frame, untimed, and returns how its labels, summed over lights, and its colours differ from the
+    /// truth; lights without labels are not counted.
     pub fn judge(
         &mut self,
         executor: &mut Executor,
@@ -49,7 +50,8 @@ impl<'a> ReferencePictures<'a> {
         Ok(FrameError { labels: counts.into_iter().sum(), wrong_color })
     }
 
-    /// Returns the scene lit by the truth's labels, in the shading of `choice`.
+    /// Returns the scene lit by the truth's labels, in the shading of `choice`; cached for choices with the same
+    /// shading.
     fn picture(&mut self, executor: &mut Executor, choice: &Choice) -> Result<Arc<Image>, SessionError> {
         let choice = choice.truth_in_same_shading();
         if let Some((_, picture)) = self.pictures.iter().find(|(known, _)| *known == choice) {

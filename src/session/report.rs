@@ -43,7 +43,7 @@ pub fn report_rows(
     measured.iter().map(row).collect()
 }
 
-/// Returns the times of a frame of a moving scene, with its set-up.
+/// Returns the median times of a frame of a moving scene, with the share of its set-up; `None` where nothing moves.
 fn moving(one: &MeasuredTechnique) -> Option<MotionCost> {
     let ms = |all: &[Duration]| median_ms(all);
     let totals: Vec<Duration> = one.setups.iter().zip(&one.frames).map(|(setup, frame)| *setup + *frame).collect();
@@ -52,8 +52,8 @@ fn moving(one: &MeasuredTechnique) -> Option<MotionCost> {
     Some(MotionCost { setup_ms, total_ms, setup_share: all(&one.setups) / all(&totals) })
 }
 
-/// Returns what distinguishes a choice from others of its technique: its size, and other settings that differ between
-/// them where they are not the default.
+/// Returns what distinguishes a choice from others of its technique in `among`: its size, and its other settings that
+/// differ between them and are not the default, separated by commas; empty where nothing does.
 fn label(one: &Choice, among: &[Choice]) -> String {
     let technique = one.technique();
     let peers = among.iter().filter(|other| other.technique() == technique);

@@ -57,7 +57,8 @@ pub(super) fn scene_of(case: &StressCase, value: f64) -> Result<Scene, SessionEr
 }
 
 impl Session {
-    /// Runs values of a case with `fault` in them, judged like any others: shows whether it would be found.
+    /// Runs values of a case with `fault` in them, judged like any others: shows whether it would be found. Rows are in
+    /// order of values, then entrants; those that the case does not run are left out.
     pub fn stress_faulty(
         &mut self,
         case: &StressCase,
@@ -84,8 +85,8 @@ impl Session {
         Ok(rows)
     }
 
-    /// Returns the ray-traced truth, at `size` pixels, of the scene to which the case converges; `None` where it
-    /// converges to none.
+    /// Returns the ray-traced truth, at `size` pixels, of the scene to which the case converges, traced once; `None`
+    /// where the case converges to none.
     fn limit_of(&mut self, case: &StressCase, size: [u32; 2]) -> Result<Option<Arc<TracedScene>>, SessionError> {
         let Some(ExpectedTrend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
         let named = |source| SceneError::Mesh { name: format!("the limit of {}", case.name), source };
@@ -174,7 +175,8 @@ impl Session {
 }
 
 impl InjectedFault<'_> {
-    /// Returns the scene and choice that the technique is given in place of these.
+    /// Returns the scene and choice that the technique is given in place of these: with the fault's change; unchanged
+    /// for a fault in the plan, or none.
     pub(super) fn applied<'a>(self, scene: &'a Scene, choice: &Choice) -> (Cow<'a, Scene>, Choice) {
         let (mut scene, mut choice) = (Cow::Borrowed(scene), choice.clone());
         match self {

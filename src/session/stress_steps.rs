@@ -22,8 +22,9 @@ pub struct StressSteps {
 }
 
 impl StressSteps {
-    /// Returns the steps of all values of `cases`, with pictures of `size` pixels except for those that have a size of
-    /// their own; with `only`, no other techniques.
+    /// Returns the steps of all values of `cases` in order, with pictures of `size` pixels except for cases that have a
+    /// size of their own; of the techniques in `only`, or of all where that is empty. Rows that a case does not run are
+    /// left out.
     pub fn new(cases: &[&'static StressCase], only: &[Technique], size: [u32; 2]) -> StressSteps {
         let mut left = VecDeque::new();
         for (case_index, case) in cases.iter().enumerate() {
@@ -45,7 +46,8 @@ impl StressSteps {
         self
     }
 
-    /// Returns the steps of one shard of the run: each technique of each case, with all of its values, is in one shard.
+    /// Returns the steps of one shard of the run, with what it is a part of: each entrant of each case, with all of its
+    /// values, is in one shard.
     pub fn of(mut self, shard: Shard) -> (StressSteps, ShardPart) {
         let name = |StressStep { case, entrant, value, size: [width, height] }: &StressStep| {
             format!("{} · {entrant} · {value} · {width}×{height}", case.name)
@@ -97,7 +99,8 @@ impl Session {
         self.stress_rows(StressSteps::new(cases, only, size), progress)
     }
 
-    /// Computes the rows of `steps` that are not yet computed, and returns them in order.
+    /// Computes the rows of `steps` that are left, and returns them in order; an error, and no rows, where it is
+    /// cancelled.
     pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<StressRow>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());
@@ -109,7 +112,8 @@ impl Session {
         Err(SessionError::Cancelled)
     }
 
-    /// Computes the next row; `None` at the end. Other work of the session between two rows changes none of them.
+    /// Computes and returns the next row, and removes it from `steps`; `None` at the end. Other work of the session
+    /// between two rows changes none of them.
     pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<StressRow>, SessionError> {
         let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
         if steps.place.is_none_or(|[case, _]| case != place[0]) {

@@ -15,8 +15,8 @@ const RUNS: usize = 3;
 const LONG: Duration = Duration::from_millis(500);
 
 impl Session {
-    /// Runs every candidate on a scene, and returns the right ones first, of these the fastest. Those that can't draw
-    /// the scene are left out.
+    /// Runs every candidate on a scene, and returns all of them, those with the fewest wrong pixels first, of equal
+    /// ones the fastest. Those that can't draw the scene, or need too much memory, are left out.
     pub fn suited(
         &mut self,
         scene: &Scene,

@@ -71,8 +71,8 @@ impl FromStr for Sweep {
     }
 }
 
-/// Returns the values of `a,b,c`, each distinct, or steps from `a` to `b`: even ones where few whole numbers are
-/// between, else even ratios.
+/// Returns the values of `a,b,c`, or of `a..b` whole numbers from `a` to `b`: even steps where few are between, else
+/// even ratios; each distinct. `None` where a value can't be read, `b` is less than `a`, or they are too many.
 fn values_of(text: &str, read: impl Fn(&str) -> Option<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let mut values = match text.split_once("..") {
         None => text.split(',').map(|value| read(value.trim())).collect::<Option<Vec<_>>>()?,
@@ -123,7 +123,7 @@ pub struct SweepBlock {
 }
 
 impl Sweep {
-    /// Returns the name of what is varied, as the command line has it.
+    /// Returns the name of the swept quantity, as the command line has it.
     pub fn name(&self) -> &'static str {
         match self {
             Sweep::Size(_) => "size",
@@ -134,7 +134,8 @@ impl Sweep {
         }
     }
 
-    /// Returns a scene for each value. Over map sizes, techniques without maps are left out: nothing changes for them.
+    /// Returns a scene with its measurement for each value. Over map sizes, techniques without maps are left out, as
+    /// nothing changes for them; an error where none is left, or the scene can't be varied so.
     pub fn blocks(&self, scene: &Scene, what: &Measurement) -> Result<Vec<SweepBlock>, VaryError> {
         let swept = |value: f64, text: String| Some(SweepValue { name: self.name().to_owned(), value, text });
         let counted = |value: &usize| swept(*value as f64, numbers::count(*value as u64));
@@ -169,7 +170,8 @@ impl Sweep {
     }
 }
 
-/// Returns the choices that have maps, with maps of that size, each once.
+/// Returns the choices whose technique has a map size that may be `size`, with that size, each once; others are left
+/// out.
 fn with_map_size(choices: &[Choice], size: usize) -> Vec<Choice> {
     let mut sized: Vec<Choice> = Vec::new();
     for choice in choices {

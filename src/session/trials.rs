@@ -40,7 +40,8 @@ pub(super) struct TrialRuns<'a> {
 }
 
 impl Session {
-    /// Returns what a fix leaves wrong. Only its labels are captured, except for techniques that darken the picture.
+    /// Runs the frame with a fix, and returns which pixels are still wrong, at the picture's own size. Only labels are
+    /// captured, except for techniques that darken the picture, for which a larger picture is not tried.
     fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
         let (scene, _, plan) = self.plan_fixed(runs.scene, runs.request, runs.fault, fix)?;
         self.check_memory_budget(&plan)?;
@@ -120,7 +121,8 @@ impl Session {
         Ok(ranked(tried))
     }
 
-    /// Tries fixes together: where several causes are at work at once, their fixes prove something only so.
+    /// Tries fixes in pairs, and all together, for one region, and records in `tried` those that only together prove
+    /// their causes; where several causes are at work at once, their fixes prove something only so.
     fn try_together(
         &mut self,
         runs: &mut TrialRuns,
@@ -170,7 +172,7 @@ impl Session {
         Ok(())
     }
 
-    /// Returns what a fix leaves wrong, or why it can't be run. Each is run once for all regions.
+    /// Returns which pixels a fix leaves wrong, or, as text, why it can't be run. Each fix is run once for all regions.
     fn run_once(&mut self, runs: &mut TrialRuns, fix: &Fix) -> Result<Result<WrongPixels, String>, SessionError> {
         if runs.progress.is_cancelled() {
             return Err(SessionError::Cancelled);
@@ -187,7 +189,8 @@ impl Session {
         Ok(done)
     }
 
-    /// Returns the fix that leaves the least wrong in the whole frame.
+    /// Returns the fix that leaves the fewest wrong pixels in the whole frame, and the best one that stays with the
+    /// technique; `None` where none leaves fewer than before.
     pub(super) fn advice(
         &mut self,
         runs: &mut TrialRuns,
@@ -231,7 +234,8 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
     capture.lights.iter().map(|light| light.shadow.clone()).collect()
 }
 
-/// Compares labels with the truth; with the capture, also finds what was darkened in the picture.
+/// Compares labels with the truth, light by light; with the capture, pixels that agree but were darkened twice in the
+/// picture count as wrong too. Lights without labels are not compared.
 pub(super) fn judged(
     plan: &FramePlan,
     traced: &TracedScene,

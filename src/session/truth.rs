@@ -57,7 +57,8 @@ impl TruthKey {
 }
 
 impl Session {
-    /// Returns the ground truth of a capture of `scene`, and how the technique differs from it.
+    /// Returns the ground truth of a capture of `scene`, and how the technique differs from it, for each light (`None`
+    /// for one without a mask); also the signed counts of volumes where the technique counts in the stencil.
     pub fn truth(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<FrameTruth, SessionError> {
         let traced = self.traced_for(scene, capture, progress)?;
         let size = capture.size;
@@ -77,12 +78,12 @@ impl Session {
         Ok(FrameTruth { size, lights, counts: self.counts(scene, capture)? })
     }
 
-    /// Returns a capture of `scene` with its truth.
+    /// Returns a copy of the capture of `scene` with its truth added.
     pub fn judged(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<Capture, SessionError> {
         Ok(capture.with_truth(&self.truth(scene, capture, progress)?))
     }
 
-    /// Returns the truth of a scene, traced unless it is the last one traced.
+    /// Returns the truth of a scene at a size, traced unless it is the last one traced.
     pub(super) fn traced(
         &mut self,
         scene: &Scene,
@@ -92,8 +93,8 @@ impl Session {
         self.traced_to(scene, size, None, progress)
     }
 
-    /// Returns the truth that a capture is compared with: what lies beyond another program's far plane is not in its
-    /// picture.
+    /// Returns the truth that a capture is compared with, traced unless it is the last one traced. What lies beyond
+    /// another program's far plane is not in its picture, and so not in the truth.
     pub(super) fn traced_for(
         &mut self,
         scene: &Scene,
@@ -120,7 +121,8 @@ impl Session {
         Ok(self.keep_truth(key, tracer, truth))
     }
 
-    /// Traces on a thread of its own, while `between` is called at intervals.
+    /// Returns the truth of a scene, traced on a thread of its own while `between` is called at intervals; `between` is
+    /// not called where that truth is known already.
     pub(super) fn traced_between(
         &mut self,
         scene: &Scene,
@@ -157,7 +159,7 @@ impl Session {
     }
 }
 
-/// Measured times of tracing the truth of a scene.
+/// Measured times of tracing the truth of a scene, one of each kind for each run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruthCost {
     /// Sorting the scene's triangles as the eye and each light see them.
@@ -168,7 +170,7 @@ pub struct TruthCost {
     pub rays: u64,
 }
 
-/// Times the truth of a scene, after a warm-up; it takes no GPU.
+/// Times the truth of a scene `runs` times, after a warm-up; it takes no GPU.
 pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCost, SessionError> {
     let mut cost = TruthCost { sorting: Vec::new(), following: Vec::new(), rays: 0 };
     for run in 0..=runs {
@@ -186,7 +188,7 @@ pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCos
 }
 
 impl TracedScene {
-    /// Compares labels of a light with the truth.
+    /// Compares the labels of the light with this index with the truth, pixel by pixel.
     pub fn compare(&self, light: usize, labels: &Image) -> Accuracy {
         let rows: Vec<&[u8]> = labels.rows().collect();
         accuracy::compare(&self.tracer, &self.truth, light, &rows)

@@ -40,7 +40,8 @@ pub struct VolumeCost {
     pub hashing: Vec<Duration>,
 }
 
-/// Times each step `runs` times after a warm-up, each time for another light; it takes no GPU.
+/// Times each step of building shadow volumes `runs` times after a warm-up, each time for another light, the steps that
+/// need no light fewer times; it takes no GPU.
 pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
     let (world, triangles) = (mesh.positions(), mesh.triangles());
     let mut cost = VolumeCost { triangles: triangles.len(), ..VolumeCost::default() };
@@ -92,7 +93,8 @@ fn timed<T>(times: &mut Vec<Duration>, is_timed: bool, work: impl FnOnce() -> T)
     done
 }
 
-/// Returns point lights all round, no two from the same side.
+/// Returns the point light of run number `run` around the origin, at a multiple of `reach`; no two are on the same
+/// side.
 fn light(run: usize, reach: f64) -> DVec4 {
     // The golden angle about one axis, any other about the next.
     let turn = DQuat::from_rotation_y(2.399_963 * run as f64) * DQuat::from_rotation_x(0.9 * run as f64);

@@ -98,7 +98,7 @@ impl KnownFailure {
         KnownFailure { of, because, at: |_| true, symptom, must_show: true }
     }
 
-    /// Returns the same failure for another technique.
+    /// Returns the same failure (name, reason, symptom, values) for another technique.
     #[must_use]
     pub const fn of(self, of: Entrant) -> KnownFailure {
         KnownFailure { of, ..self }
@@ -139,7 +139,7 @@ impl KnownFailure {
         KnownFailure { symptom: FailureSymptom { most, ..self.symptom }, ..self }
     }
 
-    /// Returns the failure as one that may show and need not.
+    /// Returns the failure as one that may show but need not: the technique may be right as well.
     #[must_use]
     pub const fn perhaps(self) -> KnownFailure {
         KnownFailure { must_show: false, ..self }
@@ -150,7 +150,8 @@ impl KnownFailure {
     }
 }
 
-/// Returns the failure of texels along a shadow's edge, for techniques that are never promised to be right.
+/// Returns the symptom (aliasing) and the reason of the failure that texels along shadow edges may always cause; `None`
+/// for a technique that has no texels, or is not compared in stress cases.
 pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
     let ComparisonRole::Rival { texels, .. } = technique.description().standing else { return None };
     let (most, because) = texels?;

@@ -66,7 +66,7 @@ impl StressResults {
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
 
-    /// Reads what [`StressResults::to_json`] writes.
+    /// Reads what [`StressResults::to_json`] writes; the summary is not read but follows from the rows.
     pub fn from_json(text: &str) -> Result<StressResults, StressReadError> {
         let Document { schema, adapter, size, shard: part, rows, .. } = serde_json::from_str(text)?;
         if schema != SCHEMA {

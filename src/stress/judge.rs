@@ -49,7 +49,8 @@ pub struct StressResults {
 }
 
 impl StressResults {
-    /// Merges the results of all parts of a run, each with its file's name.
+    /// Merges the results of all parts of a run, each with its file's name, to those of the whole run in its order.
+    /// Fails where parts are missing, twice there, or of different runs or machines.
     pub fn merged(parts: Vec<(String, StressResults)>) -> Result<StressResults, MergeError> {
         let (adapter, size) = parts.first().map(|(_, of)| (of.adapter.clone(), of.size)).ok_or(MergeError::Nothing)?;
         let part = |(name, StressResults { adapter, rows, part, .. }): (String, StressResults)| ResultsFile {
@@ -62,7 +63,8 @@ impl StressResults {
         Ok(StressResults { adapter, size, rows, part: None })
     }
 
-    /// Returns one entry a case and technique, in the order of the rows.
+    /// Returns one entry for each case and technique (with its settings), in the order in which they first appear in
+    /// the rows.
     pub fn summary(&self) -> Vec<StressSummary> {
         summary(&self.rows)
     }
@@ -73,7 +75,8 @@ impl StressResults {
     }
 }
 
-/// Returns one entry a case and technique, in the order of the rows.
+/// Returns one entry for each case and technique (with its settings), in the order in which they first appear in the
+/// rows.
 pub fn summary(rows: &[StressRow]) -> Vec<StressSummary> {
     let mut groups: Vec<Vec<&StressRow>> = Vec::new();
     for row in rows {
@@ -87,7 +90,8 @@ pub fn summary(rows: &[StressRow]) -> Vec<StressSummary> {
 }
 
 impl StressSummary {
-    /// Returns the summary of one technique's rows in one case; there must be at least one row.
+    /// Returns the summary of one technique's rows in one case, in the order of values: where it first breaks, its
+    /// worst row, and whether all is as expected. There must be at least one row.
     fn new(rows: &[&StressRow]) -> StressSummary {
         let wrong = |row: &&&StressRow| row.error.wrong() > 0;
         let mut worst = rows[0];
@@ -142,7 +146,8 @@ impl StressRows {
         StressRows { summaries: summary(&rows), rows }
     }
 
-    /// Returns these rows followed by the `newer` ones; earlier rows of a case that was run again are dropped.
+    /// Returns these rows without those of cases that are in `newer`, followed by the `newer` ones; summaries are
+    /// computed anew.
     pub fn followed_by(&self, newer: &StressRows) -> StressRows {
         let is_again = |row: &&StressRow| newer.rows.iter().any(|new| new.case == row.case);
         StressRows::new(self.rows.iter().filter(|row| !is_again(row)).chain(&newer.rows).cloned().collect())

@@ -105,7 +105,7 @@ impl Entrant {
         Entrant { technique, settings }
     }
 
-    /// Returns the technique and settings as the session takes them.
+    /// Returns the technique with these settings, checked, and the defaults for all others.
     pub fn choice(&self) -> Result<Choice, ChoiceError> {
         let mut choice = Choice::new(self.technique);
         self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
@@ -120,7 +120,8 @@ impl fmt::Display for Entrant {
     }
 }
 
-/// Says why a technique is expected to be right where no failure of it is known.
+/// Returns the reason why a technique is expected to be right where no failure of it is known; for one that stress
+/// cases don't compare, why not.
 pub fn right_because(technique: Technique) -> &'static str {
     match technique.description().standing {
         ComparisonRole::Rival { right_because, .. } => right_because,
@@ -144,14 +145,15 @@ impl StressCase {
         self.values.iter().copied().filter(|value| self.is_light(*value)).collect()
     }
 
-    /// Returns the techniques that the case runs, in the order of the table.
+    /// Returns the techniques that the case runs: the usual ones with their defaults, without those in
+    /// [`StressCase::without`], then those of [`StressCase::also`].
     pub fn entrants(&self) -> Vec<Entrant> {
         let is_left_out = |technique: &Technique| self.without.iter().any(|(without, _)| without == technique);
         let usual = Technique::rivals().into_iter().filter(|technique| !is_left_out(technique)).map(Entrant::of);
         usual.chain(self.also.iter().copied()).collect()
     }
 
-    /// Returns the scene of a value.
+    /// Returns the case's scene at a value; the same one at every value where the case varies a setting.
     pub fn scene(&self, value: f64) -> Result<Scene, MeshError> {
         match self.drives {
             CaseNumber::Scene(scene) | CaseNumber::Motion(scene) => scene(value),
@@ -159,7 +161,8 @@ impl StressCase {
         }
     }
 
-    /// Returns a technique as this case runs it at a value.
+    /// Returns a technique as this case runs it at a value: where the case varies a setting that the technique has,
+    /// that setting has the value.
     pub fn choice(&self, entrant: &Entrant, value: f64) -> Result<Choice, ChoiceError> {
         let mut choice = entrant.choice()?;
         if let CaseNumber::Setting(key, _) = self.drives
@@ -180,14 +183,16 @@ impl StressCase {
         self.up_to.iter().all(|(other, last, _)| other != entrant || value <= *last)
     }
 
-    /// Returns the reason in one line why a technique is expected to fail, or to be right.
+    /// Returns the reason in one line why a technique fails in this case (that of its first known failure, at whatever
+    /// value, or of its texels), else why it is expected to be right.
     pub fn because(&self, entrant: &Entrant) -> &'static str {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant);
         let texels = || expect::texels(entrant.technique).map(|(_, because)| because);
         failure.map(|failure| failure.because).or_else(texels).unwrap_or(right_because(entrant.technique))
     }
 
-    /// Returns what is expected of a technique at a value.
+    /// Returns what is expected of a technique at a value: its first known failure that applies there; else, for a
+    /// technique with texels, that it may alias; else that it is right.
     pub fn expected_at(&self, entrant: &Entrant, value: f64) -> ExpectedResult {
         let failure = self.failures.iter().find(|failure| failure.of == *entrant && (failure.at)(value));
         match (failure, expect::texels(entrant.technique)) {
@@ -197,8 +202,8 @@ impl StressCase {
         }
     }
 
-    /// Returns what is expected of a technique at some value: the failure that must show, else the one that may, else
-    /// that it is right.
+    /// Returns what is expected of a technique over all values: the first failure that must show, else the first that
+    /// may, else that it is right.
     pub fn expected(&self, entrant: &Entrant) -> ExpectedResult {
         let at = || self.values.iter().map(|value| self.expected_at(entrant, *value));
         let must = at().find(|expected| matches!(expected, ExpectedResult::Fails(_)));

@@ -12,7 +12,8 @@ value each technique first has a wrong pixel, and what that failure is called. A
 reason that the case tells. *Other forms* are techniques with other settings.";
 
 impl StressResults {
-    /// Returns the results as a Markdown page: command, plot, tables, and how to read them.
+    /// Returns the results as a Markdown page: command, plot, machine, totals, how to read them, the table, and each
+    /// case's lesson.
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let opening = origin.opening("Driven to the extreme", "Share of wrong pixels against the number of each sweep");
         let [width, height] = self.size;

@@ -35,7 +35,8 @@ const MOST_MARKS: usize = 16;
 const MOST_VALUES: usize = 100;
 
 impl StressResults {
-    /// Returns the charts of all sweeps that were run.
+    /// Returns a plot with a chart for each sweep that was run and for each motion, two a line; cases with too few or
+    /// too many values are left out. Says so where there is none.
     pub fn to_plot(&self) -> Plot {
         let mut cases: Vec<&'static StressCase> =
             self.rows.iter().filter_map(|row| StressCase::named(row.case)).collect();
@@ -60,7 +61,8 @@ impl StressResults {
         plot
     }
 
-    /// Adds each technique's mark and name in a line at the y coordinate `y`, in points.
+    /// Adds each technique's mark and name, once and in the order of the rows, in one line at the y coordinate `y`,
+    /// points.
     fn legend(&self, plot: &mut Plot, y: f64) {
         let mut names: Vec<&str> = Vec::new();
         for row in &self.rows {

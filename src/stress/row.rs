@@ -73,7 +73,7 @@ impl LeastShares {
         LeastShares { shadow: 0.0, because, ..LeastShares::USUAL }
     }
 
-    /// Returns shares where there may be nothing to compare.
+    /// Returns shares where no pixel need be lit or in shadow, with the reason.
     pub const fn nothing(because: &'static str) -> LeastShares {
         LeastShares { lit: 0.0, shadow: 0.0, because }
     }
@@ -85,7 +85,8 @@ impl StressRow {
         self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
     }
 
-    /// Returns why this is not what was expected; `None` where it is.
+    /// Returns why this row is not what was expected; `None` where it is. Too little to see comes before all else. A
+    /// failure that must show and does not is a surprise; one that only may is not.
     pub fn surprise(&self) -> Option<UnexpectedResult> {
         if self.is_little_to_see() {
             return Some(UnexpectedResult::LittleToSee);
@@ -123,7 +124,8 @@ impl StressRow {
         }
     }
 
-    /// Returns the verdict on the row.
+    /// Returns the verdict on the row: unexpected where it has a surprise; fails as known where a failure must show or
+    /// any pixel is wrong; else holds.
     pub fn verdict(&self) -> StressVerdict {
         match (self.surprise(), self.expected, self.error.wrong()) {
             (Some(_), ..) => StressVerdict::Unexpected,
@@ -144,7 +146,7 @@ impl StressRow {
     }
 }
 
-/// Writes a parameter's value: short, and in powers of ten where it is far from 1.
+/// Returns a parameter's value as text, rounded to six digits: in powers of ten below 1e-3 and from 1e5 on, `0` for 0.
 pub fn value_text(value: f64) -> String {
     // Steps of a motion are sums of tenths: digits beyond six are their rounding.
     let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };

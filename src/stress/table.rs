@@ -75,7 +75,8 @@ impl StressResults {
     }
 }
 
-/// Returns the name of a case's parameter with its first and last value, as text.
+/// Returns a case's parameter with its first and last value: `metres 10 → 1000`; empty for an unknown case, or one of
+/// fewer than two values.
 fn range(case: &str) -> String {
     let Some(case) = StressCase::named(case) else { return String::new() };
     match case.values {
@@ -85,7 +86,8 @@ fn range(case: &str) -> String {
 }
 
 impl StressSummary {
-    /// Returns in words at which value the technique breaks, if it does.
+    /// Returns in words at which value the technique first has a wrong pixel, and first too many excused ones; `no
+    /// wrong pixel` where it has none.
     pub fn found_text(&self) -> String {
         let breaks = self.breaks_at.map(|at| format!("breaks at {}", value_text(at)));
         let blurred = self.blurred_at.filter(|at| self.breaks_at != Some(*at));
@@ -98,7 +100,8 @@ impl StressSummary {
         }
     }
 
-    /// Returns in words why the result is unexpected, or by which known failures the technique fails.
+    /// Returns the verdict in words, with the first surprise and its value, else with the known failures that have
+    /// shown.
     pub fn verdict_text(&self) -> String {
         let shown: Vec<&str> = self.shown.iter().map(|(_, name)| *name).collect();
         match (self.surprise, &shown[..]) {

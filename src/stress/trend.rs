@@ -55,7 +55,8 @@ fn converges(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     Some(TechniqueCourse { text, holds: !is_promised || (is_falling && first > 0 && last == 0) })
 }
 
-/// Checks that fewer pixels differ from the truth, excused or not: of maps finer than pixels all are excused.
+/// Returns the course of one technique's rows towards the truth: it holds where the number of pixels that differ,
+/// excused or not, does not rise (but for noise) and ends below a quarter of the first. `None` for fewer than two rows.
 fn falls(rows: &[&StressRow]) -> Option<TechniqueCourse> {
     let errors: Vec<(f64, u64)> =
         rows.iter().map(|row| (row.parameter.1, row.error.wrong() + row.error.edge_band)).collect();

@@ -138,7 +138,8 @@ impl AutoPolicy {
         AutoPolicy { light, position, view, near_clip, looked_at, outlines, boxes, occluders }
     }
 
-    /// Returns the index of an object whose umbra contains all of the object `index`; `None` where there is none.
+    /// Returns the index of the first other object that is convex and whose umbra contains all of the box around the
+    /// object `index`; `None` where there is none.
     fn umbra_caster(&self, index: usize) -> Option<usize> {
         let corners = self.boxes[index].corners();
         let holds = |occluder: &Option<ConvexOccluder>| {
@@ -147,7 +148,8 @@ impl AutoPolicy {
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
 
-    /// Returns points whose convex hull contains the volume of the caster `index` when it extends like this.
+    /// Returns points whose convex hull contains the volume of the caster `index` with this extrusion, relative to the
+    /// eye.
     fn hull(&self, frame: &FrameBuilder, index: usize, extrusion: Extrusion) -> VolumeHull {
         let outline = &self.outlines[index];
         VolumeHull::of(outline, &Extruder::new(outline, self.position, extrusion), frame.eye())
@@ -159,7 +161,8 @@ impl AutoPolicy {
         self.view.outside(&hull.points).map(|outside| beyond(outside, VIEW_PLANES[outside.plane]))
     }
 
-    /// Decides how the volume of the caster `index` is counted if it extends to infinity, or why it needs none.
+    /// Decides how the volume of the caster `index` is counted if it extends to infinity; no volume, with the reason,
+    /// where it can darken nothing, lies beyond the light's range or outside the view, or in another's umbra.
     fn without_end(&self, frame: &FrameBuilder, index: usize) -> VolumeDecision {
         let object = frame.placed[index].object;
         let allowed = |decision: Decision| frame.common.allows(decision);
@@ -229,8 +232,8 @@ impl AutoPolicy {
         }
     }
 
-    /// Ends one caster's volume at a plane; leaves the volume out where the caster lies beyond the plane, or the
-    /// shortened volume outside the view.
+    /// Changes `decided` so that the caster's volume ends at a plane; to no volume, with the reason, where the caster
+    /// lies beyond the plane or the shortened volume outside the view.
     fn end_at(&self, end: ClampedEnd, frame: &FrameBuilder, index: usize, decided: &mut VolumeDecision) {
         let name = &frame.placed[index].object.name;
         let (axis, at) = end.place();

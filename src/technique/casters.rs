@@ -41,7 +41,7 @@ pub fn darkens_nothing(frame: &FrameBuilder, index: usize, light: LightId) -> Op
     Some(LeftOut::new(Decision::Caster, &frame.placed[index].object.name, because))
 }
 
-/// Returns the triangles of the object `index` in world space.
+/// Returns the corners of all triangles of the object `index` in world space, in the mesh's order.
 pub fn world_triangles(frame: &FrameBuilder, index: usize) -> Vec<[DVec3; 3]> {
     let placed = &frame.placed[index];
     placed.object.mesh.triangles().iter().map(|corners| corners.map(|v| placed.world[v as usize])).collect()

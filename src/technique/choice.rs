@@ -63,7 +63,8 @@ impl Choice {
         Choice { technique, settings: settings.collect() }
     }
 
-    /// Checks the names and values of a request; settings that it does not name get their defaults.
+    /// Returns the choice that a request names, after checking the technique's name and each setting's name and value;
+    /// settings that it does not name get their defaults.
     pub fn parse(request: &TechniqueRequest) -> Result<Choice, ChoiceError> {
         let technique = Technique::from_name(&request.name).ok_or_else(|| {
             let names: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
@@ -76,7 +77,8 @@ impl Choice {
         Ok(choice)
     }
 
-    /// Sets the setting `key` to `value`, after checking both.
+    /// Sets the setting `key` to `value`. Fails, and changes nothing, where the technique has no such setting or it
+    /// does not accept the value.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
         let technique = self.technique.name();
         let specs = self.technique.settings();
@@ -99,7 +101,7 @@ impl Choice {
         self.technique
     }
 
-    /// Returns the value of every setting by its key.
+    /// Returns the value of every setting of the technique by its key, defaults included.
     pub fn settings(&self) -> &SettingMap {
         &self.settings
     }
@@ -123,14 +125,15 @@ impl Choice {
         }
     }
 
-    /// Returns the texels along each side of its shadow maps, receiver textures or silhouettes; `None` where the
-    /// technique has none.
+    /// Returns the setting `size`: texels along each side of the technique's shadow maps, receiver textures or
+    /// silhouettes; `None` where it has none.
     pub fn texels(&self) -> Option<u32> {
         let spec = self.technique.settings().iter().find(|spec| spec.key == settings::SIZE)?;
         spec.of(&self.settings).parse().ok()
     }
 
-    /// Returns the technique's name, followed by its texels a side if it has a map: `shadow-map 1024`.
+    /// Returns the technique's name, followed by its texels a side if it has maps or textures: `shadow-map 1024`. Other
+    /// settings are not named.
     pub fn short_name(&self) -> String {
         let technique = self.technique().name();
         self.texels().map_or_else(|| technique.to_owned(), |texels| format!("{technique} {texels}"))
@@ -155,7 +158,7 @@ impl Choice {
     }
 
     /// Returns why the setting `key` does nothing with the other settings as they are, in a sentence; `None` where it
-    /// has an effect.
+    /// has an effect or that is not known, as for a key that the technique lacks.
     pub fn without_effect(&self, key: &str) -> Option<&'static str> {
         let of_planar = || (self.technique == Technique::Planar).then(|| PlanarSettings::read(&self.settings));
         CommonSettings::without_effect(&self.settings, key)

@@ -108,7 +108,8 @@ pub enum StencilUse {
 }
 
 impl<'a> FrameBuilder<'a> {
-    /// Places objects and lights, and adds the attachments and the camera's view.
+    /// Checks the scene and begins a plan: places objects and lights, and adds the attachments, the camera's view and
+    /// the surfaces; no pass yet. A stencil is there where `stencil` asks for it.
     pub fn new(job: PlanRequest<'a>, stencil: StencilUse) -> Result<FrameBuilder<'a>, PlanError> {
         let scene = job.scene;
         job.cache.next_plan();
@@ -214,8 +215,8 @@ impl<'a> FrameBuilder<'a> {
         self.plan.left_out.push(LeftOut::new(decision, of, because));
     }
 
-    /// Returns by how many metres the object `index` lies beyond the light's range; `None` where it lies within, or the
-    /// light has no range.
+    /// Returns by how many metres the object `index` lies wholly beyond the light's range; `None` where some of it may
+    /// be within, or the light has no range or is directional.
     pub fn beyond_range(&self, light: LightId, index: usize) -> Option<f64> {
         let (place, range) = self.range_of(light)?;
         geometry::beyond_range(&self.placed[index].world, place, range, self.eye())

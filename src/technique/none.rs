@@ -19,7 +19,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     standing: ComparisonRole::Apart { because: "there is nothing to darken" },
 };
 
-/// Plans a frame in which every light reaches every surface that faces it.
+/// Plans a frame without shadows: every light reaches every surface that faces it and is within its range.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     frame.ambient_pass();

@@ -26,8 +26,8 @@ pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     }
 }
 
-/// Returns points whose convex hull contains an object's vertices: the vertices, or the corners of their box where they
-/// are many.
+/// Returns points whose convex hull contains an object's vertices: the vertices themselves, or the eight corners of
+/// their bounding box where they are many.
 pub fn outline(world: &[DVec3]) -> Cow<'_, [DVec3]> {
     if world.len() <= MOST_VERTICES_TO_LOOK_AT {
         return Cow::Borrowed(world);

@@ -35,7 +35,8 @@ impl Technique {
         self.description().summary
     }
 
-    /// Returns the techniques that make shadows on the GPU, in the order of stress tables.
+    /// Returns the techniques that stress cases compare, in the order of their tables; `none` and the ray-traced truth
+    /// are not among them.
     pub fn rivals() -> Vec<Technique> {
         let place = |technique: Technique| match technique.description().standing {
             ComparisonRole::Rival { place, .. } => Some((place, technique)),
@@ -48,7 +49,8 @@ impl Technique {
 }
 
 impl Choice {
-    /// Returns the choices that a report compares by default: every report row of every technique.
+    /// Returns the choices that a report compares by default: every report row of every technique, in teaching order;
+    /// techniques without rows are left out.
     pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
         let mut grid = Vec::new();
         for technique in Technique::ALL {

@@ -54,7 +54,8 @@ struct MarkedReceiver {
     mark: u8,
 }
 
-/// Plans a frame with planar shadows: casters flattened onto the planes of flat receivers.
+/// Plans a frame with planar shadows: casters flattened onto the planes of flat receivers. Receivers that are not flat
+/// get no shadow.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let options = PlanarSettings::read(job.choice.settings());
     let stencil = if options.marks { StencilUse::Always } else { StencilUse::ToLightOnce };
@@ -79,7 +80,8 @@ fn raster_of(options: &PlanarSettings, color: ColorWrite) -> RasterState {
     RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
 }
 
-/// Adds the passes that mark receivers with even stencil values and raise those in shadow by 1: odd means shadow.
+/// Adds the passes that mark receivers with even stencil values, raise those in shadow by 1, and add mask and light
+/// where the stencil is even: no pixel is darkened twice.
 fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     mark_pass(frame, marked, light);
     let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
@@ -101,8 +103,8 @@ fn counted_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.light_pass(light, purpose, &SurfaceDrawing::light_once_where_zero(1));
 }
 
-/// Adds the passes that light the scene and then blend shadows over it; limited to each receiver's marked pixels where
-/// `options.marks` is set.
+/// Adds the passes that light everything and then multiply shadows over it, once for each triangle, so that overlaps
+/// darken twice; limited to each receiver's marked pixels where `options.marks` is set. Adds the mask too.
 fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId, options: PlanarSettings) {
     let purpose = "Adds the light everywhere: shadows are blended over it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
@@ -129,8 +131,8 @@ fn blended_shadows(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: L
     frame.mask_pass_with(light, &[SurfaceDrawing::lit()], labels);
 }
 
-/// Returns the largest receivers that the eye sees from the light's side, each with a stencil mark; the others show no
-/// shadow of this light.
+/// Returns the receivers that the eye sees from the light's side, at most `MOST_RECEIVERS`, the largest first, each
+/// with an even stencil mark. The others show no shadow of this light, which is recorded in the plan.
 fn shown_receivers(
     frame: &mut FrameBuilder,
     all: &[FlatReceiver],
@@ -188,8 +190,8 @@ fn mark_pass(frame: &mut FrameBuilder, marked: &[MarkedReceiver], light: LightId
     }
 }
 
-/// Returns a draw for every caster flattened onto every receiver; `look` returns the program and the state for a
-/// receiver's mark.
+/// Returns a draw for every caster flattened onto every marked receiver, without those of which no part is flattened;
+/// records in the plan where none is left. `look` returns program and raster state for a receiver's mark.
 fn shadow_draws(
     frame: &mut FrameBuilder,
     marked: &[MarkedReceiver],
@@ -217,8 +219,8 @@ fn shadow_draws(
     draws
 }
 
-/// Returns the draw of one caster flattened onto one receiver; `None` where no part of the caster lies between plane
-/// and light.
+/// Returns the draw of one caster flattened onto one receiver, adding its mesh to the plan; `None` where nothing of the
+/// caster is flattened. The flattened triangles are cached where the options say so.
 fn shadow_draw(
     frame: &mut FrameBuilder,
     one: &MarkedReceiver,

@@ -45,7 +45,8 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// Plans a frame in which each flat receiver has a texture of the light that arrives on it.
+/// Plans a frame in which each flat receiver has a texture of the light that arrives on it; surfaces that are not flat,
+/// or not among the largest receivers, are lit without shadows.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
     let mut receivers = receivers::all(&mut frame);
@@ -72,7 +73,8 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Takes the frame's pieces and returns them with each receiver as a piece of its own, so that it reads its own layer.
+/// Takes the frame's pieces and returns them split, each receiver as a piece with a mesh and the layer of its own, so
+/// that it reads its own texture. Triangles of no receiver stay together, without a layer.
 fn split_at(frame: &mut FrameBuilder, receivers: &[FlatReceiver]) -> Vec<SurfacePiece> {
     let mut split = Vec::new();
     for piece in std::mem::take(&mut frame.pieces) {
@@ -145,8 +147,9 @@ fn clip_from_world(frame: &FrameBuilder, receiver: &FlatReceiver, light: DVec4) 
         .clip_from_world(light)
 }
 
-/// Returns the indices of a caster's triangles that are drawn into a receiver's texture: those that reach above the
-/// receiver's plane on the light's side.
+/// Returns the indices of a caster's triangles that are drawn into a receiver's texture: those with a corner above the
+/// receiver's plane on the light's side. Corners of the receiver itself count as on the plane. Empty where the object
+/// does not cast.
 fn caster_triangles(frame: &FrameBuilder, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
     let placed = &frame.placed[caster];
     let triangles = placed.object.mesh.triangles();

@@ -37,7 +37,8 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// Plans a frame with projective shadow textures: each caster's silhouette is projected over the scene.
+/// Plans a frame with projective shadow textures: each caster's silhouette is projected over the scene, in the light
+/// pass or in a pass of its own, as the settings say.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = TextureSettings::of_silhouettes(job.choice.settings());
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
@@ -68,7 +69,8 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-/// Adds passes that light the scene first, then multiply the picture by one silhouette after another.
+/// Adds passes that light everything first, then multiply the picture by one silhouette after another, and the mask
+/// pass. A multiplied pixel loses ambient and other lights' light too.
 fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_layers: &[usize]) {
     let purpose = "Adds the light everywhere: silhouettes darken it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
@@ -84,8 +86,8 @@ fn multi_pass(frame: &mut FrameBuilder, light: LightId, layers: &[usize], drawn_
     frame.mask_pass(light, &[SurfaceDrawing::lit_by(Visibility::Projected)]);
 }
 
-/// Returns the indices of casters that can darken another object under any light, at most [`PlanMap::MOST_FACES`] of
-/// them; records how many are left out.
+/// Returns the indices of casters that can darken another object under any light, the first [`PlanMap::MOST_FACES`] of
+/// them; records in the plan how many more there are.
 fn casting_objects(frame: &mut FrameBuilder) -> Vec<usize> {
     let casts = |index: &usize| {
         let object = frame.placed[*index].object;

@@ -60,7 +60,7 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
 /// no receiver may be lit twice, not even where two surfaces overlap in one plane.
 const LIT_ONCE: StencilUse = StencilUse::Always;
 
-/// Plans a frame whose shadows are ray-traced on the CPU.
+/// Plans a frame whose shadows are ray-traced on the CPU. Fails too where the scene can't be traced.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let (scene, size) = (job.scene, job.size);
     let frame = FrameBuilder::new(job, LIT_ONCE)?;
@@ -77,7 +77,8 @@ pub fn plan_of_labels(job: PlanRequest, labels: &[Vec<u8>]) -> Result<FramePlan,
     Ok(lit_by(frame, |light| Arc::new(KnownLabels(known(light)))))
 }
 
-/// Returns a plan that draws the surfaces and adds each light at the pixels that its labels call lit.
+/// Returns a plan that draws the surfaces in ambient light and adds each light at the pixels that its image of labels
+/// calls lit.
 fn lit_by(mut frame: FrameBuilder, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> FramePlan {
     frame.ambient_pass();
     for light in frame.light_ids() {

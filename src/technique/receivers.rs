@@ -19,7 +19,7 @@ pub struct FlatReceiver {
     pub name: String,
 }
 
-/// Returns every flat piece of drawn objects that receive, the largest first.
+/// Returns every flat piece of drawn objects that receive shadows, the largest by area first, named by object and rank.
 pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
     let mut all = Vec::new();
     for (index, placed) in frame.placed.iter().enumerate() {
@@ -38,8 +38,8 @@ pub fn all(frame: &mut FrameBuilder) -> Vec<FlatReceiver> {
 }
 
 impl FlatReceiver {
-    /// Returns whether the eye and the light are on the same side of this receiver. Otherwise it shows no shadow of
-    /// that light.
+    /// Returns whether the eye and the light are strictly on the same side of any of this receiver's triangles.
+    /// Otherwise it shows no shadow of that light.
     pub fn shows_lit_side(&self, frame: &FrameBuilder, light: LightId) -> bool {
         let (eye, light) = (frame.eye_position(), frame.light_position(light));
         let placed = &frame.placed[self.object];

@@ -73,7 +73,8 @@ pub(super) const DESCRIPTION: TechniqueDescription = TechniqueDescription {
     },
 };
 
-/// Plans a frame with shadow maps: one face for each light, or six of a cube map.
+/// Plans a frame with shadow maps: one fitted face for each light, or six of a cube map. A light under which no caster
+/// can darken anything gets no map and lights everything.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let settings = MapSettings::read(job.choice.settings());
     let mut frame = FrameBuilder::new(job, StencilUse::ToLightOnce)?;
@@ -149,7 +150,8 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     });
 }
 
-/// Returns the indices of casters that may darken a receiver; records the others as left out of the map.
+/// Returns the indices of casters that may darken a receiver, themselves included; records in the plan each other
+/// caster that has triangles.
 fn darkening_casters(frame: &mut FrameBuilder, light: LightId) -> Vec<usize> {
     let mut darkening = Vec::new();
     for index in 0..frame.placed.len() {
@@ -176,8 +178,8 @@ fn add_caster_mesh(frame: &mut FrameBuilder, index: usize, origin: DVec3) -> Mes
     frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
-/// Adds the view and the pass of one face of a map and returns the view; adds nothing and returns `None` where the face
-/// contains no caster and may be left out.
+/// Adds the view and the pass of one face of a map, with draws of the casters that show in it, and returns the view.
+/// Where none does and faces may be left out, records that and returns `None`.
 fn add_face(
     frame: &mut FrameBuilder,
     light: LightId,

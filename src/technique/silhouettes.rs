@@ -80,7 +80,8 @@ pub fn add_map(
     });
 }
 
-/// Returns the draws of some triangles (`of` has their indices) of a caster as a silhouette, one draw for each group.
+/// Returns draws of those of a caster's triangles whose indices are in `of`, as a silhouette without depth test: one
+/// for each group that has any, whose mesh is added to the plan.
 pub fn draws(frame: &mut FrameBuilder, caster: usize, of: &[u32]) -> Vec<Draw> {
     let placed = &frame.placed[caster];
     let (object, triangles) = (placed.object, placed.object.mesh.triangles());

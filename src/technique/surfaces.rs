@@ -6,8 +6,9 @@ use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use std::cell::LazyCell;
 
-/// Returns the mesh of an object's surface: positions relative to the eye, normals, sides and texture coordinates.
-/// `shading` overrides the materials'.
+/// Returns the mesh of an object's surface for shading: positions relative to the eye, and for each corner normals and
+/// texture coordinates (if any group has a texture). `shading`, if given, overrides the materials'. Vertex data is
+/// cached.
 pub fn draw_mesh(
     object: &Object,
     world: &[DVec3],
@@ -39,7 +40,8 @@ pub fn draw_mesh(
     }
 }
 
-/// Returns [`SurfaceData::uvs`]: texture coordinates of all corners; `None` where no group has a texture.
+/// Returns [`SurfaceData::uvs`]: texture coordinates of all corners, zero for groups without a texture or triangles
+/// without coordinates; by world x and −z where the texture has a side in metres. `None` where no group has a texture.
 fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
     let mesh = &object.mesh;
     mesh.groups().iter().find_map(|group| object.texture_of(group))?;
@@ -120,7 +122,8 @@ fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Returns for each vertex the sum of the area-weighted normals of its triangles.
+/// Returns for each vertex the sum of the normals in `face_normals` (area-weighted, one a triangle) of its triangles,
+/// not normalised; zero for a vertex without any.
 fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
     for (corners, normal) in mesh.triangles().iter().zip(face_normals) {
@@ -129,7 +132,8 @@ fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     sums
 }
 
-/// Returns a mesh of the triangles with these indices. It shares the surface's vertices, so that depths are bit-equal.
+/// Returns a mesh of the triangles with these indices, in this order. It shares all vertices of `mesh`, so that depths
+/// are bit-equal; extrusion and retained fragments are dropped.
 pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
     fn pick<T: bytemuck::Pod>(blob: &Blob<T>, triangles: &[u32], per_triangle: usize) -> Blob<T> {
         let of = |triangle: &u32| {

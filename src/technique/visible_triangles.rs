@@ -13,7 +13,8 @@ use glam::{DVec3, DVec4};
 /// A triangle that turns away from the eye by less than this (sine of the angle) may still be rasterised as facing it.
 const EDGE_ON: f64 = 1e-4;
 
-/// Leaves out of the frame's surfaces the triangles that can't show: out of view, or on the far side of a closed mesh.
+/// Replaces the frame's surface pieces by those with only the triangles that may show: not out of view, and not on the
+/// far side of a closed mesh. Pieces without any are dropped.
 pub fn leave_out_hidden(frame: &mut FrameBuilder) {
     let [width, height] = frame.job.size.map(f64::from);
     let view = ViewVolume::new(&frame.job.scene.camera, width / height);
@@ -82,7 +83,8 @@ fn shown(frame: &mut FrameBuilder, view: &ViewVolume, index: usize) -> ShownTria
     ShownTriangles::Triangles(shows)
 }
 
-/// Returns the piece with only the triangles for which `shows` returns true; `None` where there are none.
+/// Returns the piece with only the triangles for which `shows` returns true, as a new mesh in the plan; the piece
+/// itself where all do, `None` where none does.
 fn subset(frame: &mut FrameBuilder, piece: SurfacePiece, shows: impl Fn(u32) -> bool) -> Option<SurfacePiece> {
     let triangles: Vec<u32> = piece.triangles.clone().filter(|triangle| shows(*triangle)).collect();
     if triangles.len() == piece.triangles.len() {

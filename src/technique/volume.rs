@@ -131,7 +131,8 @@ pub trait VolumePolicy {
     fn forms(&self, frame: &FrameBuilder, casters: &[usize]) -> Vec<VolumeDecision>;
 
     /// Returns, for each triangle of a caster, whether another part of the caster contains it in its umbra, so that it
-    /// needs no volume (empty where none is), and the record of that for the plan.
+    /// needs no volume, and the plan's record of that. Unless a policy overrides this: empty and `None`, all are
+    /// needed.
     fn in_umbra_of_parts(&self, _frame: &mut FrameBuilder, _caster: usize) -> (Vec<bool>, Option<LeftOut>) {
         (Vec::new(), None)
     }
@@ -153,7 +154,7 @@ pub struct VolumeDecision {
 }
 
 impl VolumeDecision {
-    /// Returns the decision that a caster needs no volume, for this reason.
+    /// Returns the decision that a caster needs no volume, with the record that says why.
     pub fn nothing(left_out: LeftOut) -> VolumeDecision {
         VolumeDecision { form: None, left_out: vec![left_out] }
     }
@@ -194,7 +195,8 @@ impl VolumePolicy for UniformPolicy {
     }
 }
 
-/// Plans a frame with z-pass, z-fail or z-pass-plus shadow volumes.
+/// Plans a frame with shadow volumes that are all counted one way: z-pass, z-fail or z-pass-plus, as the choice's
+/// technique says. Fails too where its silhouette search would take minutes.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     let counting = CountingMode::of(job.choice.technique());
     let settings = VolumeSettings::read(job.choice.settings());
@@ -217,7 +219,8 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
     Ok(finish(frame, &settings, begin))
 }
 
-/// Refuses `silhouette = edge-list` for casters on which its quadratic search would take minutes.
+/// Fails for `silhouette = edge-list` where a casting object has so many triangles that the quadratic search would take
+/// minutes, unless a vertex shader extrudes volumes.
 fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
     let searches = settings.silhouette == SilhouetteBy::Search && !extruded::can_serve(settings, scene);
     let too_large = |triangles: usize| searches && triangles > MOST_TO_SEARCH;
@@ -259,7 +262,8 @@ pub fn finish<D: VolumePolicy>(
     frame.finish()
 }
 
-/// Finds the volumes of a light, then adds the passes that count them.
+/// Makes the volumes of a light and adds them to the plan: meshes, records, and the passes that count them, label and
+/// light.
 fn add_light(frame: &mut FrameBuilder, light: LightId, settings: &VolumeSettings, decides: &impl VolumePolicy) {
     let LightVolumes { volumes, meshes, left_out } = volumes_of(frame, light, settings, decides);
     frame.plan.meshes.extend(meshes);
@@ -275,7 +279,8 @@ struct LightVolumes {
     left_out: Vec<LeftOut>,
 }
 
-/// Returns every volume that a light needs, made with the frame's geometry cache; adds nothing to the plan.
+/// Returns every volume that a light needs, with its mesh and the records of what is left out; casters without
+/// triangles get none. Nothing is added to the plan, but geometry is cached.
 fn volumes_of(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -336,7 +341,8 @@ fn volumes_of(
     all
 }
 
-/// Adds the passes that count a light's volumes, then the mask and light passes that test the count.
+/// Adds the passes that count a light's volumes, then the mask and light passes that test the count. Counts in a float
+/// target where the settings say so, or 255 could be exceeded and the policy looks at that.
 fn write_passes(
     frame: &mut FrameBuilder,
     light: LightId,
@@ -387,7 +393,9 @@ fn write_passes(
     }
 }
 
-/// Adds the passes that count volumes in the stencil, then the mask and light passes that test it.
+/// Adds the passes that count volumes in the stencil, the first beginning at `begins_at`, then the mask and light
+/// passes that test it. Passes without draws are left out, unless the count begins elsewhere or `keeps_empty_pass` is
+/// true.
 fn count_in_stencil(
     frame: &mut FrameBuilder,
     counts: &CountingPurpose,
@@ -418,8 +426,8 @@ fn count_in_stencil(
     frame.light_pass(light, &purpose, &SurfaceDrawing::light_once_where_zero(mask));
 }
 
-/// Adds the pass that counts volumes in a float target, signed and not limited to 8 bits, then the mask and light
-/// passes that test it.
+/// Adds the pass that counts volumes in the light's float target, signed and without a limit, beginning at `begins_at`,
+/// then the mask and light passes that test it.
 fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at: u32, volumes: &[VolumePlan]) {
     let (light, step) = (counts.light, FaceSelection::BothFaces);
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(counts.options)).collect();
@@ -430,8 +438,9 @@ fn count_in_float(frame: &mut FrameBuilder, counts: &CountingPurpose, begins_at:
     frame.light_pass(light, purpose, &frame.light_by(Visibility::Count));
 }
 
-/// Returns the number that a light's count begins at, and the reason for the pass's text; `None` where there is nothing
-/// to explain.
+/// Returns the number that a light's count begins at, not masked to the stencil's bits, and the reason for the pass's
+/// text. It is the number of volumes around the eye where the settings ask for that; else the volumes' own sum, with
+/// `None` where the count's bits of it are 0.
 fn begin(
     frame: &FrameBuilder,
     light: LightId,
@@ -447,7 +456,8 @@ fn begin(
     (start, Some(in_bits(start)).filter(|in_bits| *in_bits != 0).map(CountStart::FarEnd))
 }
 
-/// Returns what a count of these volumes counts: bodies, surfaces or both; `None` if there are no volumes.
+/// Returns whether a count of these volumes counts bodies, surfaces or both; surfaces that darken nothing don't matter,
+/// unless all do. `None` if there are no volumes.
 fn what_counts(volumes: &[VolumePlan]) -> Option<CountOf> {
     let bodies = volumes.iter().filter(|volume| volume.is_body).count();
     let others = volumes.iter().filter(|volume| !volume.is_body && !volume.darkens_nothing).count();
@@ -468,7 +478,7 @@ fn counted_by(volumes: &[VolumePlan], usual: CountingMode) -> Option<CountingMod
 }
 
 /// Returns which triangles of a caster cast its shadow volume with this choice; all of them for a technique without
-/// volumes.
+/// volumes. By topology, only light-facing ones where these are proven to suffice for this light.
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
     let rule = choice.volumes().map_or(CasterRule::Always(Casters::All), |settings| settings.casters);
     match rule {
@@ -478,8 +488,8 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
     }
 }
 
-/// Returns which triangles of the object `index` cast, and for `casters = by-topology` the record for the plan of what
-/// was proven or not.
+/// Returns which triangles of the object `index` cast; for `casters = by-topology` also the plan's record of what was
+/// proven or why not (no record where a vertex shader extrudes and it was proven).
 fn casters_of(
     frame: &mut FrameBuilder,
     light: LightId,

@@ -45,7 +45,7 @@ use crate::technique::Choice;
 use glam::{DVec2, DVec3};
 use places::CameraProjection;
 
-/// A rendered scene, with assertions on its pixels.
+/// A scene that was rendered, with its capture, whose pixels can be asserted on.
 #[derive(Debug)]
 pub struct Rendered {
     session: Session,
@@ -114,7 +114,7 @@ impl Rendered {
         &self.plan
     }
 
-    /// Returns a pixel to assert on: column and row from the top left.
+    /// Returns a pixel to assert on, with its history computed: column and row from the top left.
     ///
     /// # Panics
     /// If it is outside the picture, or the GPU is lost.
@@ -193,7 +193,8 @@ impl Rendered {
         places::texel_of(&self.capture, light, point.into())
     }
 
-    /// Returns the first pixel, row by row, that has a label under a light.
+    /// Returns the first pixel (column, row), row by row from the top, that has this label under a light (index from
+    /// 0); `None` where there is none, or no such light or mask.
     pub fn first_labelled(&self, light: usize, label: PixelLabel) -> Option<[u32; 2]> {
         let labels = self.capture.lights.get(light)?.shadow.as_ref()?;
         let find = |(y, row): (u32, &[u8])| {

@@ -16,7 +16,7 @@ pub struct Pixel<'a> {
 }
 
 impl Pixel<'_> {
-    /// Returns the pixel's history: every event that tested or changed it.
+    /// Returns the pixel's history: every event that tested or changed it, and those that were culled or clipped there.
     pub fn history(&self) -> &PixelHistory {
         &self.history
     }
@@ -360,7 +360,8 @@ impl Pixel<'_> {
         }
     }
 
-    /// Asserts that nothing hides a point that falls into the pixel.
+    /// Asserts that no visible surface hides a world-space point that falls into the pixel, with a margin for a slanted
+    /// surface. Passes where the pixel shows no surface.
     #[track_caller]
     pub(super) fn reveals(&self, point: DVec3) {
         let view = CameraProjection::of(self.capture);
@@ -381,7 +382,8 @@ impl Pixel<'_> {
         }
     }
 
-    /// Returns the distance of the visible surface of a pixel, metres; `None` where there is none.
+    /// Returns the distance along the view axis of the visible surface at a pixel's centre, metres, from the depth at
+    /// the end of the frame; `None` where there is none.
     fn surface_distance(&self, pixel: [u32; 2]) -> Option<f64> {
         let last = self.capture.frame_at(self.capture.steps.len().saturating_sub(1))?;
         self.capture.depth.distance(last.depth.image.depth_at(pixel)?)
@@ -395,7 +397,7 @@ impl Pixel<'_> {
     }
 
     /// Returns the index of the first pass of the picture that has this name, and belongs to this light where one is
-    /// given.
+    /// given. Panics where there is none, or without a light where several lights have one.
     #[track_caller]
     fn pass_of(&self, name: &str, light: Option<usize>) -> usize {
         let is_meant = |step: &&Step| light.is_none() || step.light == light;
@@ -430,7 +432,7 @@ impl Pixel<'_> {
         }
     }
 
-    /// Panics with a message that says what happened to the pixel.
+    /// Panics with `what`, preceded by scene, technique and pixel and followed by the pixel's history as text.
     #[track_caller]
     fn fail(&self, what: &str) -> ! {
         panic!(

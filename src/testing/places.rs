@@ -21,7 +21,8 @@ pub struct ShadowMapTexel {
     pub gap: Option<f64>,
 }
 
-/// Returns the texel of a light's shadow map that a point of the world falls into.
+/// Returns the texel of a light's shadow map that a world-space point falls into, on the first face that contains it;
+/// `None` outside all faces, or where the light has no map of depths.
 pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<ShadowMapTexel> {
     let map = capture.lights.get(light)?.map.as_ref().filter(|map| !map.holds_colors())?;
     let in_light = map.light_from_world * point.extend(1.0);
@@ -42,7 +43,7 @@ pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<ShadowM
     map.clip_from_light.iter().enumerate().find_map(on_face)
 }
 
-/// The projection of a frame's camera.
+/// The projection of a frame's camera, from world space to pixels and back.
 pub struct CameraProjection {
     /// Width and height of the picture, in pixels.
     pub size: DVec2,
@@ -64,8 +65,8 @@ impl CameraProjection {
         }
     }
 
-    /// Returns where a point is in the picture, in pixels from its top left corner, and its distance along the view
-    /// axis, metres.
+    /// Returns where a world-space point is in the picture, in pixels from its top left corner (perhaps outside), and
+    /// its distance along the view axis, metres, negative behind the eye.
     pub fn pixel_and_distance(&self, point: DVec3) -> (DVec2, f64) {
         let in_view = self.view_from_world * (point - self.camera.eye);
         let distance = -in_view.z;
@@ -76,7 +77,8 @@ impl CameraProjection {
         ((at * DVec2::new(0.5, -0.5) + 0.5) * self.size, distance)
     }
 
-    /// Returns the point at this place of the picture, so far along the view axis.
+    /// Returns the world-space point at this place of the picture (pixels from the top left corner), `distance` metres
+    /// along the view axis.
     pub fn point(&self, at: DVec2, distance: f64) -> DVec3 {
         let at = (at / self.size - 0.5) * DVec2::new(2.0, -2.0);
         self.camera.eye + self.rays.through(at).at(distance)

@@ -92,7 +92,8 @@ impl Tracer {
         self.hit(light, seen.point, found)
     }
 
-    /// Returns the casting triangles between a light and any world position, the nearest to the position first.
+    /// Returns the casting triangles strictly between a light and any world position, the nearest to the position
+    /// first.
     ///
     /// # Panics
     /// If there is no such light.
@@ -138,7 +139,7 @@ impl Tracer {
         if position.w == 0.0 { f64::INFINITY } else { (position.truncate() - point).length() }
     }
 
-    /// Returns the unit direction from a world position to a light.
+    /// Returns the unit direction from a world position to a light; zero where the position is the light's own.
     ///
     /// # Panics
     /// If there is no such light.

@@ -38,6 +38,8 @@ pub struct PacketOrigin {
 }
 
 impl PacketOrigin {
+    /// Computes the rays' positions for tests in single precision; places of a packet that has fewer rays than it can
+    /// hold repeat the first.
     pub fn new(projection: &DirectionProjection, packet: &RayPacket) -> PacketOrigin {
         let points = packet.points();
         let base = packet.base(projection.origin());
@@ -59,7 +61,8 @@ impl PacketOrigin {
         PacketOrigin { places, span: span.max_element(), largest: f64::INFINITY, area: None }
     }
 
-    /// Scales positions so that they lie on a cube around the centre.
+    /// Scales positions so that their largest coordinate is 1 (they lie on a cube around the centre), and notes the
+    /// largest distance and, where all are on one face, the area that they cover.
     fn centered(
         projection: &DirectionProjection,
         mut places: [[Vec4; RayPacket::MOST / 4]; 3],
@@ -111,7 +114,8 @@ impl PacketOrigin {
 }
 
 impl TriangleEdges4 {
-    /// Computes the edge planes of up to four triangles; positions are subtracted in double precision.
+    /// Computes the edge planes of up to four triangles and their error bounds; positions are subtracted in double
+    /// precision, the rest is in single.
     pub fn new(projection: &DirectionProjection, triangles: &[[DVec3; 3]]) -> TriangleEdges4 {
         let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
         for (lane, &[a, b, c]) in triangles.iter().enumerate() {
@@ -158,7 +162,7 @@ impl Vec3x4 {
         ax * bx + ay * by + az * bz
     }
 
-    /// Returns the sums of absolute coordinates.
+    /// Returns for each of the four vectors the sum of its absolute coordinates.
     fn span(self) -> Vec4 {
         let [x, y, z] = self.0.map(Vec4::abs);
         x + y + z

@@ -86,7 +86,8 @@ impl DirectionProjection {
         DirectionProjection::Cube { center, middle: distance.max(reach) }
     }
 
-    /// Returns the projection for the rays of a light (homogeneous) onto what lies within `reach` of `middle`.
+    /// Returns the projection for the rays of a homogeneous light onto what lies within `reach` of `middle`: onto a
+    /// plane where the light is directional or very far, else that of a point.
     pub fn of_light(center: DVec4, middle: DVec3, reach: f64) -> DirectionProjection {
         let place = center.truncate();
         let distance = if center.w == 0.0 { f64::INFINITY } else { (place - middle).length() };
@@ -117,7 +118,8 @@ impl DirectionProjection {
         }
     }
 
-    /// Returns the rectangles that a packet of rays covers in the projection.
+    /// Returns for each face of the projection the rectangle that a packet of rays covers, with the largest depth;
+    /// `None` for a face that none of them meets.
     pub fn packet(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> FaceRects {
         let is_endless = lines.clone().any(|line| !matches!(line, OriginRay::To(_)));
         let open = |span: ProjectedBox| span.of_lines(is_endless);
@@ -178,7 +180,8 @@ impl DirectionProjection {
         }
     }
 
-    /// Returns the vector from the ray origin to a corner; where the origin is at infinity, one vector for all.
+    /// Returns the vector from the ray origin to a corner; where the origin is at infinity, the same vector, away from
+    /// it, for all corners.
     pub fn lever(&self, corner: DVec3) -> DVec3 {
         match self {
             DirectionProjection::Cube { center, .. } | DirectionProjection::Window { center, .. } => corner - center,
@@ -192,7 +195,8 @@ impl DirectionProjection {
         !matches!(self, DirectionProjection::Plane { .. })
     }
 
-    /// Returns the box of points or rays in a projection that is one plane.
+    /// Returns the box of points or rays in a projection that is one plane, padded for rounding; for a cube, the whole
+    /// of face 0.
     fn on_sheet(&self, lines: impl Iterator<Item = OriginRay> + Clone) -> ProjectedBox {
         match self {
             DirectionProjection::Cube { .. } => whole_face(0),
@@ -217,12 +221,14 @@ impl DirectionProjection {
         }
     }
 
-    /// Projects a point onto a face, with its depth.
+    /// Projects a point (relative to the ray origin) onto a face of the cube: the two coordinates across it, then its
+    /// depth.
     fn on_face(&self, face: usize, point: DVec3) -> DVec3 {
         self.projected(along_face(face, point))
     }
 
-    /// Returns the projected box of a triangle that is on this face alone.
+    /// Returns the projected box, padded for rounding, of a triangle (relative to the ray origin) that is on this face
+    /// alone.
     fn on_face_alone(&self, face: usize, corners: [DVec3; 3]) -> ProjectedBox {
         let corners = corners.map(|corner| along_face(face, corner));
         let [a, b, c] = corners.map(|corner| corner.truncate() * corner.z.recip());
@@ -231,15 +237,16 @@ impl DirectionProjection {
         padded(a.min(b).min(c).extend(nearest), a.max(b).max(c).extend(nearest), face, PADDING)
     }
 
-    /// Projects a point that is given in a face's own coordinates, the third along its axis.
+    /// Projects a point that is given in a face's own coordinates, the third along its axis: the first two over the
+    /// third, and a depth from 0 to 1. Unchanged for a projection that is no cube.
     fn projected(&self, point: DVec3) -> DVec3 {
         let DirectionProjection::Cube { middle, .. } = self else { return point };
         let place: DVec2 = point.truncate() / point.z;
         place.extend(point.z / (point.z + middle))
     }
 
-    /// Returns the projected box of the part of a triangle within the frustum of a face (Sutherland and Hodgman 1974);
-    /// `None` where there is none.
+    /// Returns the projected box of the part of a triangle (relative to the ray origin) within the frustum of a face,
+    /// which overlaps its neighbours a little (Sutherland and Hodgman 1974); `None` where there is none.
     fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<ProjectedBox> {
         let mut polygon: Vec<DVec3> = corners.iter().map(|corner| along_face(face, *corner)).collect();
         for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
@@ -294,7 +301,7 @@ impl ProjectedBox {
 }
 
 impl OriginRay {
-    /// Returns the ray's target relative to `center`, or its direction.
+    /// Returns the ray's target relative to `center`; its direction as it is where it has no target.
     pub fn from(self, center: DVec3) -> DVec3 {
         match self {
             OriginRay::To(point) | OriginRay::Through(point) => point - center,
@@ -303,13 +310,15 @@ impl OriginRay {
     }
 }
 
-/// Returns whether the direction to a corner lies within a face, and not on its border.
+/// Returns whether the direction to a corner (relative to the ray origin) lies within a face and not in the overlap
+/// along its border.
 fn is_within(face: usize, corner: DVec3) -> bool {
     let along = along_face(face, corner);
     along.x.abs().max(along.y.abs()) < along.z * (1.0 - OVERLAP)
 }
 
-/// Returns the index of the face that a direction points to: twice its largest axis, plus 1 where that is negative.
+/// Returns the index of the face that a direction points to: twice the axis of its largest coordinate (the first of
+/// equal ones), plus 1 where that is negative.
 fn face_of(direction: DVec3) -> usize {
     let size = direction.abs();
     let axis = if size.x >= size.y && size.x >= size.z {
@@ -322,7 +331,8 @@ fn face_of(direction: DVec3) -> usize {
     axis * 2 + usize::from(direction[axis] < 0.0)
 }
 
-/// Returns a point in a face's own coordinates: two across the face, the third along its axis.
+/// Returns a point in a face's own coordinates: the two across the face in cyclic order of the axes, the third along
+/// its axis, positive ahead.
 fn along_face(face: usize, point: DVec3) -> DVec3 {
     let rotated = match face / 2 {
         0 => point.yzx(),
@@ -337,13 +347,13 @@ fn whole_face(face: usize) -> ProjectedBox {
     ProjectedBox { low: center - DVec3::new(1.5, 1.5, 0.0), high: center + DVec3::new(1.5, 1.5, 1.0) }
 }
 
-/// Returns an `f32` that is just below a number or equal to it.
+/// Returns an `f32` that is less than the number, by about one or two steps: a safe lower bound.
 fn below(value: f64) -> f32 {
     let rounded = value as f32;
     rounded - (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
-/// Returns an `f32` that is just above a number or equal to it.
+/// Returns an `f32` that is greater than the number, by about one or two steps: a safe upper bound.
 fn above(value: f64) -> f32 {
     let rounded = value as f32;
     rounded + (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)

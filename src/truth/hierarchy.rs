@@ -35,7 +35,7 @@ pub struct ScaledPlane {
     pub offset: f64,
 }
 
-/// What a search for hits may leave out from now on.
+/// What a search for hits need not look for any more; set by its callback while it runs.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchLimit {
     /// Bits of the rays for which nothing more has to be found.
@@ -45,6 +45,7 @@ pub struct SearchLimit {
 }
 
 impl SearchLimit {
+    /// The limit of a search that leaves nothing out.
     pub const NOTHING: SearchLimit = SearchLimit { lines: 0, distance: f64::INFINITY };
 }
 
@@ -168,8 +169,8 @@ impl RayOriginHierarchy {
         }
     }
 
-    /// Returns a bit mask of those of `lines` that hit a triangle, in double precision, or exactly where that can't
-    /// decide.
+    /// Returns a bit mask of those rays, of the set bits of `lines`, that hit a triangle: in double precision, or
+    /// exactly where that can't decide.
     #[cold]
     fn hits_of(&self, corners: &[DVec3; 3], packet: &RayPacket, lines: u32) -> u32 {
         let edges = EdgePlanes::new(&self.projection, corners);
@@ -180,7 +181,8 @@ impl RayOriginHierarchy {
         set_bits(lines).filter(is_hit).fold(0, |hit, line| hit | 1 << line)
     }
 
-    /// Returns whether a ray passes all edges on the same side; `None` where rounding can't decide.
+    /// Returns whether a ray passes all edges of a triangle on the same side, decided exactly, so that of two triangles
+    /// at an edge it hits just one. False where the first edge points at the ray origin.
     fn is_hit(&self, corners: &[DVec3; 3], line: OriginRay) -> bool {
         let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
@@ -226,7 +228,8 @@ impl EdgePlanes {
         EdgePlanes { normals, offsets: [offset(0), offset(1), offset(2)], products, size }
     }
 
-    /// Does a line pass all edges on the same side? `None` where rounding leaves it open.
+    /// Returns whether a ray (to `place`, relative to the hierarchy's origin) passes all edges on the same side, in
+    /// double precision; `None` where rounding leaves it open.
     fn is_hit(&self, place: DVec3) -> Option<bool> {
         let rounding = ROUNDING * self.products * (place.abs().element_sum() + self.size);
         let value = |i: usize| self.normals[i].dot(place) + self.offsets[i];
@@ -303,7 +306,8 @@ pub(super) fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool
     (side != Sign::Zero).then_some((side, true))
 }
 
-/// Returns the box around the triangles that take part.
+/// Returns the lowest and highest corner of the box around the triangles for which `takes_part` (asked by index) is
+/// true; both zero where there is none.
 fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool + Sync) -> (DVec3, DVec3) {
     let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let part = |(part, corners): (usize, &[[DVec3; 3]])| {

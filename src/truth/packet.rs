@@ -20,6 +20,7 @@ impl RayPacket {
         RayPacket { kind, points: [DVec3::ZERO; RayPacket::MOST], len: 0 }
     }
 
+    /// Appends a ray by its point. Panics where the packet is full.
     pub fn push(&mut self, point: DVec3) {
         self.points[self.len] = point;
         self.len += 1;
@@ -33,7 +34,7 @@ impl RayPacket {
         &self.points[..self.len]
     }
 
-    /// Returns the ray with this index.
+    /// Returns the ray with this index, from 0 in the order in which rays were added.
     pub fn line(&self, index: usize) -> OriginRay {
         (self.kind)(self.points[index])
     }

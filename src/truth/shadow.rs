@@ -53,7 +53,9 @@ impl OccludingTriangle {
 }
 
 impl Tracer {
-    /// Writes the labels (lit, in shadow, background, facing away) of surfaces near each other, by one packet of rays.
+    /// Writes a label for each surface (`None` is background) into `labels`: faces away where the light is on the other
+    /// side or out of range; in shadow where a ray of one packet is blocked; else lit, always where the object does not
+    /// receive.
     pub(super) fn label_surfaces(&self, light: &LightRays, surfaces: &[Option<TracedSurface>], labels: &mut [u8]) {
         let mut packet = RayPacket::new(OriginRay::To);
         let mut lines = [0; RayPacket::MOST];
@@ -127,8 +129,8 @@ impl Tracer {
         !occluder.compared.1
     }
 
-    /// Returns the scaled height over a triangle's plane of a point so near that rounding matters; 0 where rounding
-    /// can't distinguish it from the plane.
+    /// Returns the height over a triangle's plane, scaled by twice its area, of a surface's point that is so near that
+    /// rounding matters; 0 where rounding can't distinguish it from the plane.
     fn height_near(&self, triangle: usize, surface: &TracedSurface) -> f64 {
         let [a, b, c] = self.world.triangles[triangle];
         let (ab, ac, offset) = (b - a, c - a, surface.point - a);
@@ -144,7 +146,7 @@ impl Tracer {
         self.most_rounding + 3.0 * POINT_ROUNDING * (surface.from + surface.offset.abs().element_sum())
     }
 
-    /// Returns how far rounding may move a surface's point along any axis.
+    /// Returns an upper bound of how far rounding may move a surface's point along any axis, metres.
     fn rounding(&self, surface: &TracedSurface) -> f64 {
         // The sum is rounded at the size of its larger part.
         let parts = surface.from + surface.offset.abs().max_element();

@@ -51,8 +51,8 @@ impl RectTree {
     /// Number of rectangles in a node.
     pub const WIDTH: usize = 4;
 
-    /// Builds the trees; also returns the order of rectangles in their leaves, as indices into `areas`. `None` fills a
-    /// leaf up.
+    /// Builds the trees; also returns the order of rectangles in their leaves, as indices into `areas`. `None` fills up
+    /// the last leaf of each class of sizes.
     pub fn new(areas: &[ProjectedRect]) -> (RectTree, Vec<Option<u32>>) {
         let keys = keys(areas);
         let classes = keys.chunk_by(|(one, _), (other, _)| class(*one) == class(*other));
@@ -76,7 +76,7 @@ impl RectTree {
         (tree, order)
     }
 
-    /// Adds the nodes above `count` nodes from `first` on, up to a root.
+    /// Appends the nodes above `count` nodes from `first` on, up to one root, and records that root.
     fn stack_up(&mut self, mut first: usize, mut count: usize) {
         while count > 1 {
             let next = self.nodes.len();
@@ -141,7 +141,7 @@ impl RectNode {
         ProjectedRect { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
     }
 
-    /// Returns a bit mask of the rectangles that overlap `area` and are not beyond its depth.
+    /// Returns a bit mask of the node's rectangles that overlap or touch `area` and are not deeper than its depth.
     fn hit(&self, area: &ProjectedRect) -> u32 {
         let along_x = self.low[0].cmple(Vec4::splat(area.high.x)) & self.high[0].cmpge(Vec4::splat(area.low.x));
         let along_y = self.low[1].cmple(Vec4::splat(area.high.y)) & self.high[1].cmpge(Vec4::splat(area.low.y));
@@ -175,7 +175,7 @@ fn class(key: u64) -> u64 {
     key >> (3 * CURVE_BITS)
 }
 
-/// Inserts two zeros before each bit, for interleaving.
+/// Inserts two zeros before each of the lowest 21 bits, for interleaving three numbers; higher bits are dropped.
 fn spread(bits: u64) -> u64 {
     let mut bits = bits & 0x1f_ffff;
     for (shift, mask) in [

@@ -17,6 +17,8 @@ pub struct PictureRays {
 }
 
 impl PictureRays {
+    /// Returns the view rays of a camera through a picture of `size` pixels; they begin at the near plane and have no
+    /// end, even if the camera has a far plane.
     pub fn new(camera: &Camera, size: [u32; 2]) -> PictureRays {
         let size = size.map(f64::from);
         PictureRays {

@@ -32,6 +32,8 @@ pub struct TracedTriangles {
 }
 
 impl TracedTriangles {
+    /// Collects the triangles of all objects of a scene in world space, object by object. Fails where a corner is too
+    /// far from the eye to be traced.
     pub fn new(scene: &Scene) -> Result<TracedTriangles, TruthError> {
         let bounds = [scene.camera.eye; 2];
         let mut world = TracedTriangles {
@@ -62,6 +64,7 @@ impl TracedTriangles {
         Ok(world)
     }
 
+    /// Returns the object, and the triangle in its mesh, that the triangle with this index in the list is.
     pub fn place(&self, index: usize) -> TriangleSource {
         let object = self.owners[index] as usize;
         TriangleSource { object, triangle: index - self.firsts[object] }
@@ -81,8 +84,8 @@ impl TracedTriangles {
         &self.objects[self.owners[index] as usize]
     }
 
-    /// Returns whether two triangles lie in one plane of one object: exactly, by their positions in object space, as
-    /// placing the object rounds.
+    /// Returns whether two triangles (by index) belong to one object and lie in one plane, decided exactly by their
+    /// positions in object space, as placing the object rounds.
     pub fn share_plane(&self, one: usize, other: usize) -> bool {
         let (one, other) = (self.place(one), self.place(other));
         if one.object != other.object {

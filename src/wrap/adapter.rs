@@ -19,7 +19,8 @@ pub struct Adapter {
 }
 
 impl Adapter {
-    /// Returns the limits asked for, with space for one bind group and two storage buffers of our own.
+    /// Returns the limits asked for, with one bind group and two storage buffers a stage more for our own use, as far
+    /// as the adapter has them; never less than asked for.
     fn with_margin(&self, asked: &wgpu::Limits) -> wgpu::Limits {
         let most = self.inner.limits();
         let more = |by: u32, asked: u32, most: u32| asked.max(most.min(asked.saturating_add(by)));

@@ -26,6 +26,8 @@ pub struct PipelineLayout {
 impl PipelineLayoutInterface for PipelineLayout {}
 
 impl PipelineLayout {
+    /// Creates the real pipeline layout from a descriptor with wrapped ones, and stores its real bind group layouts and
+    /// immediate size.
     pub fn new(device: &wgpu::Device, descriptor: &wgpu::PipelineLayoutDescriptor<'_>) -> PipelineLayout {
         let groups: Vec<Option<&wgpu::BindGroupLayout>> =
             descriptor.bind_group_layouts.iter().map(|layout| layout.map(WrappedObject::real)).collect();
@@ -80,7 +82,7 @@ pub enum BoundResource {
 type ArrayCheck = bool;
 
 impl BoundResource {
-    /// Returns what the program binds; `None` of a kind that wgpu has gained since.
+    /// Returns the real resources that an entry of the program's binds; `None` for a kind that wgpu has gained since.
     fn of(resource: &Resource<'_>) -> Option<BoundResource> {
         fn real<T: WrappedObject>(all: &[&T]) -> Vec<T::Object>
         where
@@ -143,7 +145,7 @@ impl<'a> Borrowed<'a> {
     }
 }
 
-/// Creates an unwrapped bind group of these resources.
+/// Creates a real bind group of these resources, each with its binding's number.
 pub fn real_group(
     device: &wgpu::Device,
     label: Option<&str>,
@@ -163,6 +165,8 @@ pub fn real_group(
 }
 
 impl BindGroup {
+    /// Creates the real bind group from a descriptor with wrapped objects, and stores its entries. Resources of unknown
+    /// kinds are left out, so that wgpu reports an error.
     pub fn new(device: &wgpu::Device, descriptor: &wgpu::BindGroupDescriptor<'_>) -> BindGroup {
         let entry = |entry: &wgpu::BindGroupEntry<'_>| Some((entry.binding, BoundResource::of(&entry.resource)?));
         let entries: Vec<(u32, BoundResource)> = descriptor.entries.iter().filter_map(entry).collect();

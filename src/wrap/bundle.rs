@@ -29,6 +29,7 @@ pub struct RenderBundleEncoder {
 }
 
 impl RenderBundleEncoder {
+    /// Returns an encoder that collects the commands of a render bundle; the real bundle is not begun yet.
     pub fn new(device: &wgpu::Device, asked: &wgpu::RenderBundleEncoderDescriptor<'_>) -> RenderBundleEncoder {
         RenderBundleEncoder {
             device: device.clone(),

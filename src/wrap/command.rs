@@ -47,7 +47,7 @@ pub enum EncoderCommand {
 }
 
 impl EncoderCommand {
-    /// Encodes the command on a wgpu encoder with the arguments of the original call.
+    /// Encodes the command, a pass whole, on a real encoder with the arguments of the original call.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
         match self {
             EncoderCommand::RenderPass(targets, commands) => {
@@ -79,7 +79,7 @@ impl fmt::Debug for EncoderCommand {
     }
 }
 
-/// A recorded call of a compute pass, as a closure that makes it again.
+/// A recorded call of a compute pass, as a closure that makes the call again on a real pass.
 pub struct ComputeCommand(pub Box<dyn Fn(&mut wgpu::ComputePass<'_>) + Send + Sync>);
 
 impl fmt::Debug for ComputeCommand {
@@ -97,6 +97,7 @@ pub struct TimestampWrites {
 }
 
 impl TimestampWrites {
+    /// Returns these timestamps in the form of wgpu's descriptor of compute passes.
     pub fn of_compute(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -106,7 +107,7 @@ impl TimestampWrites {
     }
 }
 
-/// The targets of a render pass.
+/// The targets and other arguments with which a render pass is begun, as real wgpu objects.
 #[derive(Debug, Clone)]
 pub struct PassTargets {
     pub label: Option<String>,
@@ -137,7 +138,7 @@ pub struct DepthStencilAttachment {
 }
 
 impl PassTargets {
-    /// Returns the targets that a descriptor of the program's names.
+    /// Returns the real targets, queries and label that the program's descriptor of a render pass names.
     pub fn of(descriptor: &wgpu::RenderPassDescriptor<'_>) -> PassTargets {
         let color = |color: &wgpu::RenderPassColorAttachment<'_>| {
             let (view, part) = view_of(color.view);
@@ -163,15 +164,15 @@ impl PassTargets {
         }
     }
 
-    /// Returns whether it has targets whose content is lost between passes.
+    /// Returns whether any target of the pass is transient: its content is lost between passes.
     pub fn are_transient(&self) -> bool {
         let colors = self.colors.iter().flatten().map(|color| &color.view);
         let mut all = colors.chain(self.depth_stencil.as_ref().map(|depth| &depth.view));
         all.any(|view| view.texture().usage().contains(wgpu::TextureUsages::TRANSIENT_ATTACHMENT))
     }
 
-    /// Begins the pass, or a part of it: what the first part loads or clears the next ones load, and all but the last
-    /// store what they leave.
+    /// Begins the pass, or a part of it: only the first part loads or clears as the program asked, later ones load; all
+    /// but the last store what they leave, and only the last resolves.
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -224,7 +225,7 @@ fn part_of<V: Copy>(ops: wgpu::Operations<V>, is_first: bool, is_last: bool) -> 
     }
 }
 
-/// A bind group with the resources that it binds.
+/// A real bind group with the resources that it binds.
 #[derive(Debug, Clone)]
 pub struct BoundGroup {
     pub real: wgpu::BindGroup,
@@ -288,12 +289,14 @@ impl PassCommand {
         PassCommand::Pipeline { real: pipeline.inner.clone(), described: pipeline.described.clone() }
     }
 
+    /// Returns the recorded call that sets, or with `None` unsets, the bind group `index`.
     pub fn bind_group(index: u32, group: Option<&BindGroup>, offsets: &[u32]) -> PassCommand {
         let bound = |group: &BindGroup| BoundGroup { real: group.inner.clone(), entries: group.entries.clone() };
         PassCommand::BindGroup { index, group: group.map(bound), offsets: offsets.to_vec() }
     }
 
-    /// Returns the commands one by one, with those of bundles, so that there is a state after each draw.
+    /// Returns the command itself; for a bundle the commands in it, with [`PassCommand::Unbound`] before and after
+    /// them, so that there is a state after each draw.
     pub fn one_by_one(&self) -> impl Iterator<Item = &PassCommand> {
         let (around, within) = match self {
             PassCommand::Bundle { commands, .. } => (Some(&PassCommand::Unbound), &**commands),
@@ -308,6 +311,8 @@ impl PassCommand {
         matches!(self, PassCommand::BeginOcclusion(_) | PassCommand::BeginStatistics(..))
     }
 
+    /// Encodes the call on a real render pass with the arguments of the original; a bundle as a whole, `Unbound` as
+    /// nothing.
     pub fn encode(&self, pass: &mut wgpu::RenderPass<'_>) {
         match self {
             PassCommand::Pipeline { real, .. } => pass.set_pipeline(real),
@@ -341,7 +346,7 @@ impl PassCommand {
         }
     }
 
-    /// Encodes it into a bundle; commands that bundles don't have never come here.
+    /// Encodes the call into a real bundle; does nothing for commands that bundles don't have, which never come here.
     pub fn encode_bundle<'a>(&'a self, bundle: &mut wgpu::RenderBundleEncoder<'a>) {
         match self {
             PassCommand::Pipeline { real, .. } => bundle.set_pipeline(real),
@@ -374,7 +379,8 @@ pub enum DrawCommand {
 }
 
 impl DrawCommand {
-    /// Returns wgpu's name of the call.
+    /// Returns the name of the wgpu method that was called, such as `draw_indexed`; for indirect mesh draws always
+    /// `draw_mesh_tasks_indirect`.
     pub fn name(&self) -> &'static str {
         match self {
             DrawCommand::Vertices { .. } => "draw",
@@ -390,6 +396,7 @@ impl DrawCommand {
         }
     }
 
+    /// Encodes the draw on a real render pass with the arguments of the original call.
     pub fn encode(&self, pass: &mut wgpu::RenderPass<'_>) {
         match self {
             DrawCommand::Vertices { vertices, instances } => pass.draw(vertices.clone(), instances.clone()),

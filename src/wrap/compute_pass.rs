@@ -23,6 +23,8 @@ struct ComputePassCommands {
 }
 
 impl ComputePass {
+    /// Begins a compute pass on the real encoder, if there is one, and begins to record its calls for `list`, if there
+    /// is one.
     pub fn begin(
         encoder: &mut Option<wgpu::CommandEncoder>,
         list: Option<&CommandList>,

@@ -19,6 +19,7 @@ pub struct CommandEncoder {
 }
 
 impl CommandEncoder {
+    /// Creates the real encoder, and a list for its calls if a frame is being recorded at this time.
     pub fn new(
         device: &wgpu::Device,
         descriptor: &wgpu::CommandEncoderDescriptor<'_>,
@@ -33,7 +34,8 @@ impl CommandEncoder {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Encodes a command, and stores it to be encoded again.
+    /// Encodes a command on the real encoder, if it is not finished, and appends it to the list where calls are
+    /// recorded.
     fn call(&self, command: impl Fn(&mut wgpu::CommandEncoder) + Send + Sync + 'static) {
         if let Some(encoder) = self.lock().as_mut() {
             command(encoder);
@@ -238,7 +240,7 @@ pub struct CommandBuffer {
 }
 
 impl CommandBuffer {
-    /// Takes the result for submission; it can be taken once.
+    /// Takes the encoder's finished commands for submission; `None` where they were taken before.
     pub fn take(&self) -> Option<FinishedCommands> {
         self.finished.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

@@ -113,13 +113,14 @@ fn module_of(module: &wgpu::ShaderModule) -> &ShaderModule {
     module.as_custom().expect(FOREIGN)
 }
 
-/// Returns an end of a copy with the real texture.
+/// Returns one end of a texture copy with the real texture in place of the wrapped one.
 fn copy_end<'a>(end: wgpu::TexelCopyTextureInfo<'a>) -> wgpu::TexelCopyTextureInfo<'a> {
     let wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect } = end;
     wgpu::TexelCopyTextureInfo { texture: texture.real(), mip_level, origin, aspect }
 }
 
-/// Returns a real view, and the subresource where it begins.
+/// Returns the real view of a wrapped one, and the mip level and layer where it begins. Panics for a view of another
+/// instance.
 pub(crate) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, ViewSubresource) {
     let texture::TextureView { inner, part } = view.as_custom().expect(FOREIGN);
     (inner.clone(), *part)

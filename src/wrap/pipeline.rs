@@ -100,6 +100,7 @@ impl PipelineSource {
 }
 
 impl RenderPipeline {
+    /// Creates the real render pipeline from a descriptor with wrapped objects, and stores what it was created from.
     pub fn new(device: &wgpu::Device, asked: &wgpu::RenderPipelineDescriptor<'_>) -> RenderPipeline {
         let fragment = asked.fragment.clone();
         let inner = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -112,7 +113,8 @@ impl RenderPipeline {
         RenderPipeline { inner, described: Arc::new(PipelineSource::of(asked)) }
     }
 
-    /// Creates a pipeline of mesh shaders: no device has their feature, and wgpu reports that.
+    /// Creates a pipeline of mesh shaders, which wgpu refuses, as no device has their feature; its description has no
+    /// shader that can be read.
     pub fn of_meshlets(device: &wgpu::Device, asked: &wgpu::MeshPipelineDescriptor<'_>) -> RenderPipeline {
         let fragment = asked.fragment.clone();
         let inner = device.create_mesh_pipeline(&wgpu::MeshPipelineDescriptor {
@@ -153,6 +155,7 @@ pub struct ComputePipeline {
 }
 
 impl ComputePipeline {
+    /// Creates the real compute pipeline from a descriptor with wrapped objects.
     pub fn new(device: &wgpu::Device, asked: &wgpu::ComputePipelineDescriptor<'_>) -> ComputePipeline {
         let inner = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             layout: asked.layout.map(WrappedObject::real),

@@ -16,6 +16,8 @@ pub struct RenderPass {
 }
 
 impl RenderPass {
+    /// Begins a render pass on the real encoder, if there is one, and begins to record its calls for `list`, if there
+    /// is one.
     pub fn begin(
         encoder: &mut Option<wgpu::CommandEncoder>,
         list: Option<&CommandList>,
@@ -25,7 +27,8 @@ impl RenderPass {
         RenderPass { inner, recorded: list.map(|list| (list.clone(), targets, Vec::new())) }
     }
 
-    /// Encodes a command, and stores it to be encoded again.
+    /// Makes a call on the real pass with `on`, if it is not ended, and appends the one that `command` returns where
+    /// calls are recorded.
     fn call(&mut self, command: impl FnOnce() -> PassCommand, on: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
         if let Some(pass) = &mut self.inner {
             on(pass);

@@ -32,6 +32,7 @@ impl PartialEq for ShaderSource {
 }
 
 impl ShaderSource {
+    /// Returns a copy of a shader's source if it is WGSL or a naga module; of any other language that it is unread.
     pub fn of(source: &wgpu::ShaderSource<'_>) -> ShaderSource {
         match source {
             wgpu::ShaderSource::Wgsl(text) => ShaderSource::Wgsl(Arc::from(&**text), Arc::default()),
@@ -41,7 +42,7 @@ impl ShaderSource {
         }
     }
 
-    /// Returns the module, if it can be parsed.
+    /// Returns the parsed module, parsing WGSL once; `None` where that fails or the source is in another language.
     pub fn module(&self) -> Option<Arc<naga::Module>> {
         match self {
             ShaderSource::Wgsl(text, read) => {

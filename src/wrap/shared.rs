@@ -50,6 +50,7 @@ pub struct SharedDevice {
 }
 
 impl SharedDevice {
+    /// Returns the shared part of a device, with a new recorder made by `recorder`, and not presented yet.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -71,7 +72,7 @@ impl SharedDevice {
         self.is_presented.store(true, Ordering::Relaxed);
     }
 
-    /// Returns whether a frame ends where it is presented.
+    /// Returns whether the program presents pictures, so that a frame ends there; otherwise it ends with a submission.
     pub fn is_presented(&self) -> bool {
         self.is_presented.load(Ordering::Relaxed)
     }
@@ -81,7 +82,8 @@ impl SharedDevice {
         self.submissions().add(index)
     }
 
-    /// Returns the real submission of the program's number.
+    /// Returns the real submission with the program's number; the oldest that is stored where it is stored no more,
+    /// which ends no earlier. `None` for a number that was not given out yet.
     pub fn submission(&self, number: u64) -> Option<wgpu::SubmissionIndex> {
         self.submissions().real(number)
     }

@@ -46,14 +46,14 @@ impl SurfaceInterface for Surface {
     }
 }
 
-/// A surface texture that the program presents, or drops.
+/// A surface's real picture, until the program presents or drops it.
 #[derive(Debug)]
 pub struct SurfaceOutput {
     inner: Mutex<Option<wgpu::SurfaceTexture>>,
 }
 
 impl SurfaceOutput {
-    /// Takes the real picture; it can be taken once.
+    /// Takes the real picture, to be presented or dropped; `None` where it was taken before.
     pub fn take(&self) -> Option<wgpu::SurfaceTexture> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

@@ -10,7 +10,8 @@ pub struct Texture {
     pub inner: wgpu::Texture,
 }
 
-/// Returns the usage that a texture is created with, so that what passes draw into it can be copied afterwards.
+/// Returns the usage that a texture is created with: as asked, and for a render target also as the source of copies,
+/// unless it is transient or multisampled.
 pub fn usage(asked: &wgpu::TextureDescriptor<'_>) -> wgpu::TextureUsages {
     use wgpu::TextureUsages as Usages;
     let is_target = asked.usage.contains(Usages::RENDER_ATTACHMENT);

@@ -18,13 +18,15 @@ pub(super) struct FilmRun {
 }
 
 impl WorkerState {
-    /// Sets the film that is being written; an incomplete one before it is deleted.
+    /// Replaces the film that is being written, `None` for none; an incomplete one before it is deleted. Also sets the
+    /// flag that the window reads.
     pub(super) fn set_film(&mut self, film: Option<FilmRun>) {
         self.film = film;
         self.is_filming.store(self.film.is_some(), Ordering::Release);
     }
 
-    /// Writes the next picture of the film that is asked for, and puts the question back while there are more.
+    /// Writes the next picture of the film that is asked for, and puts the question back while there are more; reports
+    /// the answer once the film is complete or has failed.
     pub(super) fn film_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let had_session = self.session.is_some();
         self.is_filming.store(true, Ordering::Release);
@@ -41,7 +43,9 @@ impl WorkerState {
         (self.notify)(News::Answered { ticket: asked.ticket, result });
     }
 
-    /// Returns the film once it is complete; `None` where more is to come. A film that fails is deleted.
+    /// Writes the film's next picture, and returns `None` while the film is not complete; returns the finished film in
+    /// the call after its last picture. A film of another question that is being written is dropped, and one that fails
+    /// is deleted.
     fn next_picture(&mut self, of: [u64; 2], asked: &PendingQuestion) -> Result<Option<Filmed>, String> {
         let before = self.film.take();
         let mut run = match (before, &asked.ask) {

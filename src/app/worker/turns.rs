@@ -28,7 +28,8 @@ pub(super) struct StressRun {
 }
 
 impl StressRun {
-    /// Begins all of the named cases, except those that would block the window.
+    /// Begins a run of the named stress cases, without the rows that take many seconds and gigabytes, which would block
+    /// the window; a name that is not known is left out.
     fn new(ticket: u64, cases: &[&'static str]) -> StressRun {
         let cases: Vec<&'static StressCase> = cases.iter().filter_map(|name| StressCase::named(name)).collect();
         let steps = StressSteps::new(&cases, &[], STRESS_SIZE).without_heavy();
@@ -37,7 +38,8 @@ impl StressRun {
 }
 
 impl WorkerState {
-    /// Runs the next row of the stress cases that are asked for, and puts the question back while there are more.
+    /// Runs the next row of the stress cases that are asked for, and puts the question back while there are more; rows
+    /// are reported case by case. At the end, or at an error, the run is dropped with what it cached.
     pub(super) fn stress_turn(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::StressOf(question) = &asked.ask else { return };
         let run = self.stress.take().filter(|run| run.ticket == asked.ticket);
@@ -67,7 +69,8 @@ impl WorkerState {
         inbox.queue.restore_waiting(Order::Answer { scene: of[0], frame: of[1], asked });
     }
 
-    /// Drops what was cached for the hundreds of scenes that were open.
+    /// Drops the stress run and all that the session cached for its scenes, gives freed memory back, and reports that
+    /// the worker is idle.
     pub(super) fn end_stress(&mut self) {
         self.stress = None;
         self.session.iter_mut().for_each(Session::forget);
@@ -75,7 +78,8 @@ impl WorkerState {
         (self.notify)(News::Idle);
     }
 
-    /// Measures the open scene as it was captured last. Questions about its frame are answered in between.
+    /// Measures every technique of the question on the open scene, and answers short questions about the shown frame in
+    /// between. An error where the question is about another scene; no answer where it was cancelled.
     pub(super) fn report(&mut self, of: [u64; 2], asked: PendingQuestion, inbox: &mut Inbox) {
         let Ask::ReportOf(question) = &asked.ask else { return };
         (self.notify)(News::Busy("measuring every technique".to_owned()));

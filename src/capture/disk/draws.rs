@@ -16,7 +16,8 @@ const COUNT: &str = "count";
 const MAP: &str = "map";
 const TEXTURES: &str = "textures";
 
-/// Writes the states after the draws of a step; `None` where not all are known.
+/// Writes the states after each draw of a step and returns their entries, in order. `None`, and nothing is written,
+/// where the step has no draws or a draw's state was not captured.
 pub(super) fn write(
     folder: &Path,
     stem: &str,
@@ -92,7 +93,8 @@ fn state_files(
 }
 
 impl FolderReader<'_> {
-    /// Reads the states after the draws of a step whose own state after it is `snapshot`.
+    /// Reads the states after the draws of a step and sets `after` of each of `draws`; `snapshot` is the state after
+    /// the whole step. Fails where entries and draws differ in number.
     pub(super) fn draw_states(
         &mut self,
         entries: &[DrawStateEntry],
@@ -140,7 +142,9 @@ impl FolderReader<'_> {
         Ok(DrawState { snapshot, target })
     }
 
-    /// Returns a face of a map after a draw: the light's map, or the content of its own file.
+    /// Returns a face of a light's map or textures after a draw: the light's own final face where the entry names it by
+    /// number, else the content of the entry's file. Fails where `face` is not the named one, or the file's format or
+    /// size is not the final face's.
     fn face(
         &mut self,
         files: &StateFiles,

@@ -101,7 +101,8 @@ struct StartEntry {
     stencil: Option<String>,
 }
 
-/// Writes a plan, and the arrays that it names, to a capture folder.
+/// Writes a plan as `frame.json`, and its meshes, textures and pictures as files beside it, to an existing capture
+/// folder. Equal arrays share one file.
 pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
     let mut written = BTreeMap::new();
     let mut entry =
@@ -167,7 +168,8 @@ struct ArrayWriter<'a> {
 }
 
 impl ArrayWriter<'_> {
-    /// Writes an array as numbers, `columns` of them a row, and returns the file's name.
+    /// Writes an array of numbers, `columns` to a row, and returns its file's name. An equal array of the same kind
+    /// that was written before is not written again: its file is named.
     fn blob<N: Element, T: bytemuck::Pod>(
         &mut self,
         kind: &'static str,
@@ -185,7 +187,8 @@ impl ArrayWriter<'_> {
     }
 }
 
-/// Reads the plan of a folder; `None` where it has none, as of schema 1.
+/// Reads the plan of a capture folder with its meshes, textures and pictures; `None` where the folder has no
+/// `frame.json`, as of schema 1. Fails where the plan can't be run or does not belong to `capture`.
 pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>, CaptureError> {
     let file = folder.join(FRAME);
     if !file.exists() {
@@ -240,7 +243,8 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     }
 }
 
-/// Returns the path of a plain name: a frame can't point out of its folder.
+/// Returns the path of a file inside the folder; an error where its name is not plain, so that a frame can't point out
+/// of its folder.
 fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> {
     match super::is_plain(file) {
         true => Ok(folder.join(file)),
@@ -270,7 +274,8 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Reads an array from a file of numbers, `columns` of them a row.
+    /// Reads an array whose rows have `columns` numbers. A file that was read before as the same type is not read
+    /// again: the two arrays share memory.
     fn blob<N: Element, T: bytemuck::Pod>(&mut self, file: &str, columns: u64) -> Result<Blob<T>, CaptureError> {
         if let Some(known) = self.blobs.get(file).and_then(|known| known.downcast_ref::<Blob<T>>()) {
             return Ok(known.clone());
@@ -281,8 +286,8 @@ impl ArrayReader<'_> {
         Ok(blob)
     }
 
-    /// Reads the fragments that a shader did not discard; they are searched by bisection, so that their order is
-    /// checked.
+    /// Reads the fragments that a shader retained (pairs of pixel and triangle). Fails where they are not sorted, as
+    /// they are searched by bisection.
     fn retained_fragments(&mut self, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
         let retained = self.blob::<u32, [u32; 2]>(file, 2)?;
         match retained.data().is_sorted() {
@@ -294,7 +299,8 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Reads a picture, under the name by which it was first asked for.
+    /// Reads a texture's picture and subtracts its texels from the budget `texels_left`; fails where it is larger than
+    /// that. A file that was read before is returned again, under the name that was given first.
     fn picture(&mut self, name: String, file: &str) -> Result<Arc<TextureImage>, CaptureError> {
         if let Some(known) = self.pictures.get(file) {
             return Ok(Arc::clone(known));
@@ -321,7 +327,8 @@ impl MakeImage for StoredImage {
     }
 }
 
-/// Returns what a plan states that can't be run, or that does not fit the capture; `None` where nothing.
+/// Returns why a plan can't be run or is not the frame of `capture`: other numbers of passes or lights, another size,
+/// indices or sizes out of range, or the first error that the plan's lint finds. `None` where nothing is wrong.
 fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
     let has_light = |light: LightId| light.0 < plan.lights.len();
     let has_attachment = |id: AttachmentId| id.0 < plan.attachments.len();

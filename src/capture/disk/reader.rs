@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads a capture folder with the frame's plan and scene.
+/// Reads a capture folder with the frame's plan and scene; each is `None` where the folder has no file for it.
 pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
     let capture = read(folder)?;
     let plan = frame::read(folder, &capture)?;
@@ -59,13 +59,14 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     }
 }
 
-/// Reads the plan's text; empty where there is none.
+/// Reads the text form of the plan from its file; returns an empty string where the folder has none.
 fn read_plan(folder: &Path) -> Result<String, CaptureError> {
     let file = folder.join(PLAN);
     if file.exists() { files::read_text(&file) } else { Ok(String::new()) }
 }
 
-/// Returns what a manifest states that no frame leaves behind; `None` where nothing.
+/// Returns what is impossible in a capture that was read: no passes, a light, map or face that is not there, depths
+/// that can't be read back, or a camera that can't see. `None` where nothing is wrong.
 fn inconsistency(capture: &Capture) -> Option<&'static str> {
     let light = |index: usize| capture.lights.get(index);
     let is_consistent = |step: &Step| match &step.snapshot {
@@ -132,7 +133,8 @@ impl FolderReader<'_> {
         Ok(image)
     }
 
-    /// Returns the path of a plain name: a manifest can't point out of its folder.
+    /// Returns the path of a file inside the folder; an error where its name is not plain, so that a manifest can't
+    /// point out of its folder.
     fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
         if !super::is_plain(file) {
             return Err(self.wrong(MANIFEST, "it names a file outside its folder"));

@@ -83,7 +83,8 @@ fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::Wrap256, evidence, vec![Fix::setting("counter", "float")], shown_by)
 }
 
-/// Looks for counts in fewer bits than the stencil has, which read a multiple of their modulus as 0.
+/// Looks for counts in fewer than eight stencil bits that are a multiple of their modulus other than 0 and read as 0,
+/// though no step was lost. `None` with eight bits, with inverting operations, or where no sample shows it.
 fn few_bits(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let settings = facts.volumes().filter(|settings| settings.operations != CountOperations::Inverting)?;
     let bits = CountBits::of_mask(settings.mask().into());

@@ -37,7 +37,9 @@ pub(crate) struct MapComparison {
     place: f64,
 }
 
-/// Compares a shadow map with the truth at a wrong surface point and returns the cause; `None` for other techniques.
+/// Compares a shadow map with the truth at a wrong surface point and returns the cause with its numbers;
+/// [`Cause::OutsideMap`] where no face contains the point. `None` for other techniques, or where the light reads no
+/// map.
 pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapComparison> {
     if facts.technique() != Technique::ShadowMap {
         return None;
@@ -60,7 +62,8 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
     texel_look(facts, light, kind, seen, map, face, device)
 }
 
-/// Returns the face that a point is on, and its normalized device coordinates there; `None` where no face contains it.
+/// Returns the first face of a map that a point (relative to the eye) is on, and its normalized device coordinates
+/// there; its depth is not checked. `None` where no face contains it.
 fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
     map.clip_from_relative.iter().enumerate().find_map(|(face, matrix)| {
         let clip = matrix.as_dmat4() * relative.extend(1.0);
@@ -69,7 +72,8 @@ fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
     })
 }
 
-/// Returns how far a point is from the middle of the nearest face, 1 at its border; infinite behind all of them.
+/// Returns how far a point (relative to the eye) is from the middle of the nearest face: the larger of x and y, where 1
+/// is the border. Infinite where it is behind all faces.
 fn farthest(map: &PlanMap, relative: DVec3) -> f64 {
     let off = map.clip_from_relative.iter().map(|matrix| {
         let clip = matrix.as_dmat4() * relative.extend(1.0);
@@ -148,7 +152,8 @@ fn texel_look(
     })
 }
 
-/// Returns the comparison at the first sample that shows a cause, and how many samples do.
+/// Returns the map comparison at the first sample whose cause is `cause`, and at how many samples it is; `None` where
+/// it is at none.
 fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapComparison, usize)> {
     case.shown(|sample| {
         let look = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
@@ -156,7 +161,7 @@ fn shown(facts: &FrameFacts, case: &RegionSamples, cause: Cause) -> Option<(MapC
     })
 }
 
-/// Returns a fix that sets constant and slope-scaled bias.
+/// Returns a fix that sets `bias-constant` and `bias-slope`.
 fn bias(constant: i32, slope: f64) -> Fix {
     let mut fix = Fix::setting("bias-slope", &format!("{slope}"));
     fix.settings.insert("bias-constant".to_owned(), constant.to_string());

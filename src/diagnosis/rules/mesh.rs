@@ -20,8 +20,8 @@ struct Suspect<'f> {
     shown_by: usize,
 }
 
-/// Returns the casters whose casting triangles (light-facing or away-facing only) do not give their shadow at the
-/// samples.
+/// Returns the casters whose light-facing triangles (or those facing away, as the setting says) do not give their
+/// shadow at the samples, with how many samples show it. Empty where all triangles cast, or casters go by topology.
 fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>> {
     let light = case.light();
     let way = match facts.volumes().map(|settings| settings.casters) {
@@ -65,8 +65,9 @@ fn suspects<'f>(facts: &'f FrameFacts, case: &RegionSamples) -> Vec<Suspect<'f>>
     found
 }
 
-/// Looks for a mesh defect as the cause: `measure` returns words for it and how often it occurs; `None` where a mesh
-/// does not have it.
+/// Looks for a mesh defect as the cause: `measure` returns words for it and how often it occurs, `None` where a mesh
+/// does not have it. Takes the first suspect caster that has it; the fix is `casters = all` (for split vertices,
+/// welding first).
 fn rule(
     facts: &FrameFacts,
     case: &RegionSamples,

@@ -26,7 +26,9 @@ const LARGER: [u32; 3] = [3, 5, 15];
 /// The largest side, in pixels, of a picture that every GPU can draw.
 const MOST_SIDE: u32 = 8192;
 
-/// Looks for errors of rounding to single precision. No fix can be run to prove them, so the numbers must.
+/// Looks for errors of rounding to single precision: light that grazes a surface and, only where volumes are counted,
+/// clipping at the picture's border and sides through a pixel's centre, in this order. There is no fix, so the numbers
+/// must convince.
 fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     // Only techniques that count volumes have sides that pass near a pixel, or faces that it can miss.
     let looks: &[CauseRule] =
@@ -35,7 +37,8 @@ fn f32_limit(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause>
 }
 
 /// Looks for light that grazes a surface: rounding positions then moves a shadow's edge by the rounding over the sine
-/// of the light's height, and farther the nearer the caster is to a point light.
+/// of the light's height, times a lever for casters near a point light. `None` for techniques other than volumes and
+/// planar shadows, or where the edge moves less than `PIXELS` pixels.
 fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let is_geometric = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
@@ -71,8 +74,8 @@ fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
 /// side's depth and the surface's.
 const ROUNDINGS: f64 = 4.0;
 
-/// Looks for a volume's side that crosses the surface at the very centre of a pixel, within rounding, so that it is
-/// counted or not by chance.
+/// Looks for a volume's side that passes the surface at a pixel's centre within rounding, so that it is counted or not
+/// by chance. `None` unless every sample shows it: a whole region has another cause.
 fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, at, pixels, rounding), shown_by) = case.shown(|sample| {
@@ -97,8 +100,8 @@ fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspe
     (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
 }
 
-/// Looks for long triangles that the GPU clips at the picture's border: positions are rounded by the length of what is
-/// clipped, so that pixels along the border miss faces.
+/// Looks for miscounted casters with edges so long that clipping at the picture's border is rounded by at least the
+/// pixel's distance from it. `None` unless every sample of the region shows it.
 fn cut_at_border(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     let ((name, length, away, at, moved), shown_by) = case.shown(|sample| {
@@ -198,8 +201,8 @@ fn nearest_side(facts: &FrameFacts, object: &Object, seen: DVec3, light: DVec4) 
     sides.map(|(_, side)| side).min_by(|a, b| a.metres.total_cmp(&b.metres))
 }
 
-/// Looks for casters whose edges are two pixels long or less: as corners snap to 1/256 of a pixel, the narrow sides
-/// tilt and cross surfaces beside their place.
+/// Looks for miscounted casters whose median edge is two pixels long or less: as corners snap to 1/256 of a pixel,
+/// narrow sides tilt. The fixes are larger pictures. `None` where no volumes are counted.
 fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
     if !facts.counts_volumes(light) {
@@ -220,7 +223,8 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     SuspectedCause::new(Cause::SubpixelEdges, evidence, fixes, shown_by)
 }
 
-/// Returns the median length of an object's edges in pixels, at the distance of its nearest corner.
+/// Returns the median of the first edges of an object's triangles in pixels, as at the depth of its nearest corner.
+/// `None` without triangles, or where a corner is at or behind the eye.
 fn usual_edge(facts: &FrameFacts, object: &Object) -> Option<f64> {
     let world = object.world_positions();
     let nearest = world.iter().map(|point| facts.tracer.depth_of(*point)).fold(f64::INFINITY, f64::min);

@@ -33,7 +33,8 @@ fn is_blend(pass: &Pass) -> bool {
     pass.draws.iter().any(|draw| draw.part == DrawPart::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
 }
 
-/// Returns the indices of the pixels that a light's blended shadows darkened more than one flattened triangle would.
+/// Returns the row-major indices, sorted, of the pixels that a blend pass of a light darkened by more than one
+/// flattened triangle would. Pixels that were dark before can't be judged and are left out.
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
     let mut found = BTreeSet::new();
     for (index, pass) in plan.passes.iter().enumerate() {
@@ -53,8 +54,8 @@ pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec
     found.into_iter().collect()
 }
 
-/// Returns the indices of pixels with less than the share `part` of their light left, where they were bright enough to
-/// tell.
+/// Returns the row-major indices of pixels whose brightest channel has, in linear light, less than `part` of its value
+/// before. Pixels whose brightest byte was below 40 are left out: eight bits can't tell there.
 fn darkened_below(before: &Aspect, after: &Aspect, part: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let width = before.image.size()[0] as usize;
@@ -93,7 +94,8 @@ fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::DoubleBlend, evidence, fixes, shown_by)
 }
 
-/// Returns the flattened triangles of a light over a sample, with their events.
+/// Returns the events at a sample, with their triangles, of a light's flattened shadows drawn into the picture; those
+/// of the pass that writes labels are left out.
 fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&PixelEvent, &TriangleEvent)> {
     let all = sample.history.iter().flat_map(|history| history.triangles());
     // The pass that writes labels draws the same triangles again.
@@ -110,7 +112,8 @@ fn plane_of(facts: &FrameFacts, one: &TriangleEvent) -> Option<Plane> {
     through(one.corners, facts.scene.camera.eye)
 }
 
-/// Returns the world-space plane through homogeneous corners that are relative to the eye.
+/// Returns the world-space plane, with unit normal, through three homogeneous corners that are relative to the eye.
+/// `None` where they span no plane or are not finite.
 fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
     let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
@@ -172,8 +175,9 @@ fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
     SuspectedCause::new(Cause::ZFighting, evidence, fixes, shown_by)
 }
 
-/// Returns the cause that a single pixel of unclipped planar shadows suggests: anti-shadow or false shadow, where a
-/// caster is on the light's line but not between light and surface.
+/// Returns the cause that a single pixel of planar shadows suggests: an anti-shadow where a caster on the light's line
+/// is beyond the light, else a false shadow where one is below the surface. `None` where neither is, or shadows are
+/// clipped.
 pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<Cause> {
     if !is_unclipped(facts) {
         return None;
@@ -189,8 +193,9 @@ pub(crate) fn hint(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
 /// Names of casters, each with a distance in metres.
 type CasterDistances = Vec<(String, f64)>;
 
-/// Returns the casters on the line from a light through a surface point: those beyond the light, and those below the
-/// surface, each with its distance.
+/// Returns the casters on the line from a light through a surface point: those beyond the light with their distance
+/// from it, and those below the surface (not in its plane) with their distance from the point, metres. Those between
+/// are left out.
 fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterDistances, CasterDistances) {
     let distance = facts.tracer.light_distance(light, seen.point);
     let plane =
@@ -210,9 +215,9 @@ fn on_the_line(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> (CasterD
     (beyond, below)
 }
 
-/// Returns a caster with a triangle that reaches past the light's height over the surface's plane and whose corners,
-/// flattened one by one, span the surface: its name, and how many metres the triangle reaches under and over that
-/// height.
+/// Returns the first caster with a triangle that reaches past a point light's height over the surface's plane and whose
+/// corners, flattened one by one, cover the point: its name, and how many metres it reaches under and over that height.
+/// `None` without one, or for a directional light.
 fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(String, f64, f64)> {
     let position = facts.tracer.light_position(light);
     if position.w == 0.0 {
@@ -247,7 +252,8 @@ fn spans_the_light(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Opti
     None
 }
 
-/// Returns whether a triangle of homogeneous corners, `w >= 0`, contains a point of its plane.
+/// Returns whether a triangle of homogeneous corners (`w >= 0`) in the plane with this normal contains `point`; its
+/// edges count, and either winding does.
 fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
     let from_point = corners.map(|corner| corner.truncate() - point * corner.w);
     let side = |from: usize, to: usize| normal.dot(from_point[from].cross(from_point[to]));
@@ -308,7 +314,8 @@ fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
     SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")], shown_by)
 }
 
-/// Returns how many flat pieces an object has, by the exact planes of its triangles; `None` for unknown objects.
+/// Returns how many connected flat pieces an object has, by the exact planes of its triangles; `None` where no object
+/// has this name.
 fn flat_pieces(facts: &FrameFacts, name: &str) -> Option<usize> {
     let (_, object) = facts.object(name)?;
     let mesh = &object.mesh;
@@ -317,7 +324,8 @@ fn flat_pieces(facts: &FrameFacts, name: &str) -> Option<usize> {
     Some(crate::geometry::planar::receivers(mesh.positions(), &world, mesh.triangles(), &edges).len())
 }
 
-/// Returns whether the plan draws shadows on the flat piece that a triangle lies in.
+/// Returns whether the plan draws a light's shadows on the flat piece that the visible triangle lies in: by the
+/// receiver marks of its object; where there are none, by the planes of the shadows drawn on it.
 fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let eye = facts.scene.camera.eye;
     let distance = (seen.point - eye).length();
@@ -349,7 +357,8 @@ fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     }
 }
 
-/// Returns whether the visible triangle is drawn with a receiver texture for a light.
+/// Returns whether a surface draw of this light that reads a receiver texture draws the visible triangle (the same
+/// object and corners, within rounding).
 fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
@@ -412,7 +421,8 @@ fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
     SuspectedCause::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }
 
-/// Returns fixes for coarse texels: twice the size, four times (at most `most`), and a technique without texels.
+/// Returns fixes for coarse texels, in order: setting `size` to twice, then four times `size` (at most `most`; those
+/// that are not larger are left out), then z-fail, which has no texels.
 pub(crate) fn larger(size: f64, most: f64) -> Vec<Fix> {
     let mut sizes = vec![size];
     for larger in [size * 2.0, size * 4.0].map(|larger| larger.min(most)) {

@@ -71,7 +71,8 @@ fn place_in_picture(facts: &FrameFacts, light: usize, caster: usize, seen: &Seen
     (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
 }
 
-/// Returns the index of a caster's layer in a light's silhouettes; `None` where it was not drawn.
+/// Returns the index of the layer that shows a caster (its index in the scene) in a light's silhouettes; `None` where
+/// it was not drawn.
 fn layer_of(facts: &FrameFacts, light: usize, caster: usize) -> Option<usize> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let name = &facts.scene.objects.get(caster)?.name;
@@ -82,8 +83,9 @@ fn is_outside(place: DVec2) -> bool {
     place.abs().max_element() > 1.0
 }
 
-/// Returns the index of the caster whose picture's edge texels, repeated beyond it, darken the surface point, and the
-/// point's place across the picture (1 at its edge).
+/// Returns the caster (index in the scene) whose picture's edge texels, repeated beyond the picture, darken the surface
+/// point, and the point's place across that picture (1 at its edge). Of several the nearest to its edge; `None` where
+/// there is none, or the map does not repeat its edge.
 fn smearing(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
     facts.plan.lights.get(light)?.map.as_ref().filter(|map| map.repeats_edge)?;
     let last_texel = 1.0 - 2.0 / facts.texels();
@@ -96,8 +98,8 @@ fn smearing(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<(usi
     places.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Returns whether the caster's silhouette covers a texel of its picture that is read at a place: the nearest, or one
-/// beside it.
+/// Returns whether the caster lies on the light's line through one of nine texels of its picture: the one at `place`
+/// (from −1 to 1 across) and its neighbours, kept inside the picture. False where the caster has no layer.
 fn is_covered(facts: &FrameFacts, light: usize, caster: usize, seen: &SeenSurface, place: DVec2) -> bool {
     let layer = layer_of(facts, light, caster);
     let Some((map, layer)) = facts.plan.lights.get(light).and_then(|light| light.map.as_ref()).zip(layer) else {

@@ -25,7 +25,8 @@ pub(crate) const RULES: &[CauseRule] = &[
     cap_fighting,
 ];
 
-/// Returns whether z-pass counting begins with the same number at all pixels.
+/// Returns whether counting begins with the same number at all pixels: only with z-pass and z-pass-plus, and only where
+/// the light has no pass that counts at the near plane.
 fn begins_with_one_number(facts: &FrameFacts, light: usize) -> bool {
     let has_near_count = facts.passes(light).any(Pass::counts_at_near_plane);
     matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
@@ -36,14 +37,15 @@ fn starts_at_eye(facts: &FrameFacts) -> bool {
     facts.volumes().is_some_and(|settings| settings.starts_at_eye)
 }
 
-/// Returns the fix that draws missing caps: by the setting that leaves them out, or else in the plan. `light_or_dark`
-/// is 0 for light caps, 1 for dark caps.
+/// Returns the fix that draws missing caps: `caps = both` where the setting leaves them out, else the given edit of the
+/// plan. `light_or_dark` is 0 for light caps, 1 for dark caps.
 fn draw_caps(facts: &FrameFacts, light_or_dark: usize, edit: PlanEdit) -> Fix {
     let is_set = facts.volumes().is_some_and(|settings| !settings.caps[light_or_dark]);
     if is_set { Fix::setting("caps", "both") } else { Fix::plan(edit) }
 }
 
-/// Returns the names of casters whose volumes contain a point, and how many volumes (casting triangles) those are.
+/// Returns the names of the casters that have casting triangles between a light and a world-space point, and the number
+/// of those triangles: the volumes that contain the point.
 fn holding(facts: &FrameFacts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
     let mut hits = facts.tracer.between_points(light, point);
     hits.retain(|hit| facts.casts(light, hit));
@@ -110,7 +112,8 @@ fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
 }
 
-/// Returns the names of casters that reach into the near-clip volume of a light.
+/// Returns the names of casting objects whose vertices are not all outside one plane of the light's near-clip volume:
+/// those that may reach into it.
 fn meeting_near_clip(facts: &FrameFacts, light: usize) -> Vec<String> {
     let camera = &facts.scene.camera;
     let [width, height] = facts.plan.size.map(f64::from);
@@ -165,8 +168,8 @@ fn is_excused(facts: &FrameFacts, caster: &str, decision: Decision) -> bool {
     facts.plan.left_out.iter().any(|left| left.is(decision, caster) || left.is(Decision::Caps, caster))
 }
 
-/// Returns the first caster that is counted wrongly and for which `lacks` is true (name, counted, expected), and how
-/// many samples show such a caster.
+/// Returns the first miscounted caster for which `lacks` is true (name, counted, expected), and how many samples have
+/// such a caster; `None` where none has.
 fn lacking(
     facts: &FrameFacts,
     case: &RegionSamples,
@@ -235,7 +238,8 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
     SuspectedCause::new(Cause::MissingLightCap, evidence, vec![Fix::setting("light-caps", "tested")], shown_by)
 }
 
-/// Returns words such as `1 of its triangles lies`.
+/// Returns the end of a sentence about `count` triangles, with its verb: `none of its triangles lies`, `1 of its
+/// triangles lies`, `2 of its triangles lie`.
 fn lie(count: i32) -> String {
     match count {
         0 => "none of its triangles lies".to_owned(),
@@ -278,7 +282,8 @@ fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     SuspectedCause::new(Cause::FarClip, evidence, fixes, shown_by)
 }
 
-/// Looks for surfaces beyond the far plane under clamped depth, which get the depth of the background.
+/// Looks for surfaces at or beyond the far plane (`far` metres along the view's axis) under clamped depth, which get
+/// the depth of the background. `None` where no sample shows one.
 fn beyond_clamped(facts: &FrameFacts, case: &RegionSamples, far: f64) -> Option<SuspectedCause> {
     let (distance, shown_by) = case.shown(|sample| {
         let distance = facts.tracer.depth_of(sample.seen?.point);
@@ -336,7 +341,8 @@ struct ExtrusionInF32 {
 }
 
 impl ExtrusionInF32 {
-    /// Measures the errors for a caster; `None` where the CPU extrudes its volume.
+    /// Measures the errors of extruding a caster's volume in single precision in the vertex shader; `None` where the
+    /// CPU extrudes it, or no side of it is drawn.
     fn of(facts: &FrameFacts, light: usize, caster: &str) -> Option<ExtrusionInF32> {
         let draw = part_of(facts, light, caster, DrawPart::Side).next()?;
         let extruded = facts.plan.meshes.get(draw.mesh.0)?.extruded.as_ref()?;

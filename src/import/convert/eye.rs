@@ -15,8 +15,8 @@ const FIELD_OF_VIEW: f64 = 90.0;
 /// How far a vertex may be off the fit, in parts of its w.
 const RESIDUAL: f64 = 1e-3;
 
-/// Returns how depths of a plan's picture follow from distances; `None` where its surfaces do not determine it, as
-/// without a perspective.
+/// Returns the depth curve that most vertices of the picture's depth-writing surfaces agree on: how stored depth
+/// follows from distance. `None` where no surface determines it, as without a perspective.
 pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
     let picture = || plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
     let is_reversed = is_reversed(picture().flat_map(|pass| &pass.draws));
@@ -68,7 +68,8 @@ pub(super) fn unknown(plan: &FramePlan) -> DepthCurve {
     DepthCurve { unit: LengthUnit::Unknown, ..mapping.curve(1.0, 0.0, 0.0) }
 }
 
-/// Returns whether greater depth is nearer, by the majority of depth tests.
+/// Returns whether greater depth is nearer: more draws test with greater (or equal) than with less (or equal). False
+/// where they are equally many.
 fn is_reversed<'a>(draws: impl Iterator<Item = &'a Draw>) -> bool {
     use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
     let votes = draws.map(|draw| match draw.raster.depth_compare {
@@ -79,7 +80,8 @@ fn is_reversed<'a>(draws: impl Iterator<Item = &'a Draw>) -> bool {
     votes.sum::<i64>() > 0
 }
 
-/// Returns z and w of a draw's vertices, with z mapped to the depth range.
+/// Returns clip-space z and w of a draw's vertices, with z mapped to the viewport's depth range; vertices that are not
+/// finite are left out.
 fn points(plan: &FramePlan, pass: &Pass, draw: &Draw) -> Vec<[f64; 2]> {
     let [near, far] = pass.viewport(plan.size).depth.map(f64::from);
     let place = |[_, _, z, w]: &[f32; 4]| {
@@ -90,7 +92,8 @@ fn points(plan: &FramePlan, pass: &Pass, draw: &Draw) -> Vec<[f64; 2]> {
     vertices.iter().map(place).filter(|[z, w]| z.is_finite() && w.is_finite()).collect()
 }
 
-/// Returns a and b of z = a·w + b by least squares; `None` where w is the same everywhere or points lie off the line.
+/// Returns a and b of z = a·w + b by least squares; `None` with fewer than three points, where w is the same
+/// everywhere, a point lies off the line, or b is 0.
 fn fitted(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
@@ -123,7 +126,8 @@ pub(super) fn camera(curve: &DepthCurve) -> Camera {
     }
 }
 
-/// Returns the matrix from that camera's view space to clip space.
+/// Returns the matrix from the assumed camera's view space (field of view 90 degrees) to clip space, for a picture of
+/// this size.
 pub(super) fn clip_from_view(curve: &DepthCurve, size: [u32; 2]) -> DMat4 {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let row = curve.z_row();

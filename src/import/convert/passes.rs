@@ -41,6 +41,7 @@ pub(super) struct PassBuilder<'a> {
 }
 
 impl<'a> PassBuilder<'a> {
+    /// Returns a builder that has made no pass, with the content that the targets had before the frame.
     pub fn new(frame: &'a RawFrame, stage: &'a FollowedTargets) -> PassBuilder<'a> {
         let mut making = PassBuilder {
             frame,
@@ -63,11 +64,14 @@ impl<'a> PassBuilder<'a> {
         making
     }
 
-    /// Returns the current content of a face of a depth map, where that is known.
+    /// Returns the current depths of a face of a depth map; `None` where they are not known.
     pub fn face(&self, map: usize, layer: u32) -> Option<Arc<Image>> {
         self.contents.get(&self.stage.target(DrawTarget::Map(map, layer)))?.depth.clone()
     }
 
+    /// Follows the next event: adds a draw to the current pass or begins one for it; a draw that can't be followed is
+    /// left out with the reason. What any event left in the targets is noted, and becomes the content that the next
+    /// pass begins with.
     pub fn event(&mut self, event: &RawEvent) {
         if let RawKind::Draw(draw) = &event.kind {
             // A pass begins with the content that is current before it.
@@ -96,7 +100,7 @@ impl<'a> PassBuilder<'a> {
         }
     }
 
-    /// Stores what an event left in the followed targets.
+    /// Stores what an event left in its depth target and in its first colour target.
     fn note(&mut self, event: &RawEvent) {
         let after = &event.after;
         if let Some(target) = event.depth_target {
@@ -107,7 +111,8 @@ impl<'a> PassBuilder<'a> {
         }
     }
 
-    /// Records the content of a target, as far as that is known.
+    /// Replaces the known content of a target, aspect by aspect; an aspect that is missing or has another size leaves
+    /// what is known.
     fn hold(&mut self, target: RawTarget, RawContents { depth, stencil, color }: RawContents) {
         let size = size_of(self.frame, target);
         let of_size = |image: Option<Arc<Image>>| image.filter(|image| image.size() == size);
@@ -117,7 +122,8 @@ impl<'a> PassBuilder<'a> {
         contents.color = of_size(color).or(contents.color.take());
     }
 
-    /// Begins a pass for a draw, unless it continues the one before; or says why the draw can't be followed.
+    /// Begins a pass for a draw, unless it continues the one before (same target, debug groups, viewport, scissor and
+    /// role). Returns the draw's target and culled faces, or as an error the reason why it can't be followed.
     fn begin_for(
         &mut self,
         event: &RawEvent,
@@ -153,8 +159,8 @@ impl<'a> PassBuilder<'a> {
         });
     }
 
-    /// Returns the light of a pass: a map's own, or the one whose volumes were counted last. A stencil that is cleared
-    /// and counted in again is another light's.
+    /// Returns the light of a pass: a map's own; for passes that count or test volumes the one whose volumes were
+    /// counted last; else `None`. Counting in a stencil that was cleared or set since begins another light.
     fn light(&mut self, run: &DrawRun) -> Option<LightId> {
         if let DrawTarget::Map(map, _) = run.place {
             return Some(LightId(map));
@@ -204,7 +210,9 @@ impl<'a> PassBuilder<'a> {
         self.run = Some(run);
     }
 
-    /// Returns the depth and stencil that were set since the target's last pass: content, or one value everywhere.
+    /// Returns the depth and stencil of a target, where the flags say that they were set since its last pass: as
+    /// content to write or, where one value is everywhere, as that value to clear to. `None` for what was not set or is
+    /// not known.
     fn content(
         &self,
         place: DrawTarget,
@@ -254,7 +262,8 @@ impl<'a> PassBuilder<'a> {
         pass.draws.push(Draw { program, ..Draw::of_positions(name, part, mesh, triangles, raster) });
     }
 
-    /// Returns the picture's current content.
+    /// Returns colour, depth and stencil of the picture as last known, each marked as unchanged where equal to the last
+    /// snapshot; what is not known is as in that one, or zero.
     fn snapshot(&mut self) -> FrameSnapshot {
         let size = self.stage.size(self.frame);
         let of_depth = self.contents.get(&self.stage.depth).cloned().unwrap_or_default();
@@ -303,7 +312,7 @@ fn after_all(before: &FrameSnapshot, mut after: FrameSnapshot) -> FrameSnapshot 
     after
 }
 
-/// Returns the one texel that is everywhere, if there is one.
+/// Returns the bytes of the texel that the whole image consists of; `None` where texels differ, or there are none.
 fn uniform(image: &Image) -> Option<Vec<u8>> {
     let texel = image.format().texel_bytes();
     let first = image.rows().next()?.get(..texel)?.to_vec();

@@ -29,8 +29,9 @@ pub(super) struct FollowedTargets {
 }
 
 impl FollowedTargets {
-    /// Chooses the targets: the picture is where most triangles are drawn with depth and colours; other depth buffers
-    /// are maps.
+    /// Chooses the targets that are followed: the picture's depth is the depth target that gets most triangles, one
+    /// with colour targets first; its colour the colour target drawn with most; other depth textures are maps. Fails
+    /// without a depth target, or with a multisampled one.
     pub fn of(frame: &RawFrame) -> Result<FollowedTargets, ImportError> {
         let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
         let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
@@ -70,7 +71,7 @@ impl FollowedTargets {
         size_of(frame, self.depth)
     }
 
-    /// Returns what a depth target is: the picture or a map.
+    /// Returns whether a depth target is the picture or a face of a map; `None` where it is neither and not followed.
     pub fn place(&self, target: RawTarget) -> Option<DrawTarget> {
         if target == self.depth {
             return Some(DrawTarget::Picture);
@@ -79,7 +80,7 @@ impl FollowedTargets {
         (target.layer < PlanMap::MOST_FACES as u32).then_some(DrawTarget::Map(map, target.layer))
     }
 
-    /// Returns the imported frame's target that this place stands for.
+    /// Returns the recorded depth target of a place: the picture's depth also for draws into colours alone.
     pub fn target(&self, place: DrawTarget) -> RawTarget {
         match place {
             DrawTarget::Picture | DrawTarget::Colors => self.depth,
@@ -87,7 +88,8 @@ impl FollowedTargets {
         }
     }
 
-    /// Returns the attachment of a place's depth and stencil.
+    /// Returns the plan's attachment for a place's depth and stencil, with the recorded name and size; of layers as
+    /// many as a map's texture has, else one.
     pub fn attachment(&self, frame: &RawFrame, place: DrawTarget, role: AttachmentRole) -> Attachment {
         let target = self.target(place);
         let texture = &frame.textures[target.texture];

@@ -31,7 +31,8 @@ named_enum! {
     }
 }
 
-/// Returns the purpose of a draw, derived from its stencil, depth and colour states.
+/// Returns the purpose of a draw, derived from its target and states: filling a map, counting volumes (but not a draw
+/// that tests the stencil and writes colour), testing, marking, drawing surfaces (writes depth) or overlays.
 pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     if matches!(place, DrawTarget::Map(..)) {
         return DrawRole::FillsMap;
@@ -57,7 +58,7 @@ pub(super) fn role(draw: &RawDraw, place: DrawTarget) -> DrawRole {
     }
 }
 
-/// Returns whether a stencil operation increments or decrements.
+/// Returns whether a stencil operation increments or decrements, wrapping or clamping; inverting does not count.
 fn counts(operation: StencilOperation) -> bool {
     matches!(
         operation,
@@ -68,7 +69,8 @@ fn counts(operation: StencilOperation) -> bool {
     )
 }
 
-/// Returns on which side of the surface a counting state counts.
+/// Returns the sides of the surface on which a raster state counts in the stencil: behind it (on depth failure), in
+/// front of it (on pass), both in this order, or none.
 pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
     let faces = [&raster.stencil.front, &raster.stencil.back];
     let behind = faces.iter().any(|face| counts(face.depth_fail_op)).then_some(CountedSide::Behind);
@@ -76,7 +78,7 @@ pub(super) fn counted_sides(raster: &RasterState) -> Vec<CountedSide> {
     behind.into_iter().chain(in_front).collect()
 }
 
-/// Returns the faces that are culled, if its triangles can be drawn as they are.
+/// Returns which face a draw culls (`None`: neither), if its triangles can be drawn again as they are.
 ///
 /// # Errors
 /// Why they can't, in words.
@@ -107,7 +109,8 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static st
     }
 }
 
-/// Returns the vertices in wgpu's clip space.
+/// Returns a draw's vertices converted to wgpu's clip space: y up, z from 0 to w, and z mirrored where the depth range
+/// is reversed.
 pub(super) fn vertices(draw: &RawDraw) -> Vec<[f32; 4]> {
     let is_reversed = draw.view.depth_range[0] > draw.view.depth_range[1];
     let place = |[x, y, z, w]: &[f32; 4]| {
@@ -118,13 +121,14 @@ pub(super) fn vertices(draw: &RawDraw) -> Vec<[f32; 4]> {
     draw.positions.iter().map(place).collect()
 }
 
-/// Returns the viewport in wgpu's terms.
+/// Returns the viewport in wgpu's terms, its depth range ascending and clamped to 0 to 1.
 pub(super) fn viewport(draw: &RawDraw) -> Viewport {
     let [near, far] = draw.view.depth_range;
     Viewport { area: draw.view.viewport, depth: [near.min(far).clamp(0.0, 1.0), near.max(far).clamp(0.0, 1.0)] }
 }
 
-/// Returns the scissor inside of a target; `None` where all of it may be drawn.
+/// Returns the scissor (left, top, columns, rows) clamped to a target of this size; `None` where all of it may be
+/// drawn. It may have no columns or rows.
 pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
     let [left, top, columns, rows] = draw.view.scissor?.map(i64::from);
     let [width, height] = size.map(i64::from);
@@ -135,7 +139,8 @@ pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
     (area != [0, 0, size[0], size[1]]).then_some(area)
 }
 
-/// Returns the raster state.
+/// Returns the raster state of a recorded draw that culls `cull`. Without a depth test everything passes and depth is
+/// not written; stencil states are left out where the target has no stencil.
 pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool) -> RasterState {
     let shape = &draw.shape;
     let [constant, slope_scale, clamp] = shape.bias;

@@ -12,13 +12,15 @@ use egui::{
 /// Size of the handle, points.
 const HANDLE: [f32; 2] = [14.0, 36.0];
 
-/// Returns the part of `rect` in which the compared picture is drawn.
+/// Returns the part of `rect` in which the compared picture is drawn: left of the divider, or right of it where the
+/// comparison is flipped.
 pub fn part(rect: Rect, compare: &Comparison) -> Rect {
     let x = rect.left() + rect.width() * compare.at;
     if compare.flipped { rect.with_min_x(x) } else { rect.with_max_x(x) }
 }
 
-/// Draws divider, handle and the names of both sides, and moves the divider.
+/// Draws the divider with its handle and the names of both sides, first that of the compared picture, and moves it by
+/// drags and, while the handle has the focus, by the left and right arrow keys; it stays within `rect`.
 pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Comparison, names: [&str; 2]) {
     let x = rect.left() + rect.width() * compare.at;
     let handle = Rect::from_center_size(pos2(x, rect.center().y), HANDLE.into());
@@ -46,7 +48,8 @@ pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Comparison, names: [&str; 2]) {
     }
 }
 
-/// Draws the line at `x` and the names of both sides, if any: first that of the compared picture.
+/// Draws the divider's line at `x` and the names of both sides at the bottom, first that of the compared picture, which
+/// is on the left unless the comparison is flipped; an empty name is not drawn.
 pub fn paint(ui: &Ui, rect: Rect, compare: &Comparison, x: f32, names: [&str; 2]) {
     let painter = ui.painter_at(rect);
     for (width, color) in [(4.0, Color32::from_black_alpha(150)), (1.5, Color32::WHITE)] {

@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3, DVec4};
 /// How far an arrow key moves a handle, as a share of the view's height: without and with Shift.
 const STEPS: [f64; 2] = [0.01, 0.1];
 
-/// What can be moved.
+/// A thing of the scene that a handle in the view moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum HandleKind {
     /// A light, or the direction towards it.
@@ -23,7 +23,8 @@ pub enum HandleKind {
 }
 
 impl HandleKind {
-    /// Returns its name, as shown: `Light 1`.
+    /// Returns the handle's name for the user, with indices counted from 1: `Light 1`, `Object 1`, `Camera`, `Camera
+    /// target`.
     pub fn name(self) -> String {
         match self {
             HandleKind::Light(index) => format::light_title(index),
@@ -43,7 +44,8 @@ pub struct HandleAnchor {
     pub reach: f64,
 }
 
-/// Returns where a light's handle is at a time in seconds, world space.
+/// Returns where a light's handle is at a time in seconds, world space: at the moved light itself, or, for a
+/// directional light, at the anchor's `reach` from its `middle` towards the light.
 pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     let position = light.motion.apply_to_light(light.position, time);
     match position.w == 0.0 {
@@ -52,8 +54,9 @@ pub fn place_of_light(light: &Light, time: f64, anchor: HandleAnchor) -> DVec3 {
     }
 }
 
-/// Returns the light's homogeneous position at the scene's start, after its handle was moved by `by` at a time in
-/// seconds.
+/// Returns the light's homogeneous position at the scene's start after its handle was moved by `by` (world space) at a
+/// time in seconds, so that its motion leads there. A directional light only turns, and keeps its length; it stays as
+/// it is where the handle would be on the anchor.
 pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) -> DVec4 {
     let rotated = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
     let back = DMat3::from_cols(rotated(DVec3::X), rotated(DVec3::Y), rotated(DVec3::Z)).transpose();
@@ -68,7 +71,7 @@ pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: HandleAnchor) ->
     }
 }
 
-/// Makes a named widget that can be dragged, and takes the focus when it is.
+/// Makes an invisible widget named `name` that can be clicked and dragged, and takes the keyboard focus when it is.
 pub fn grabbed(ui: &Ui, id: Id, rect: Rect, name: &str) -> Response {
     let response = ui.interact(rect, id, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -78,7 +81,8 @@ pub fn grabbed(ui: &Ui, id: Id, rect: Rect, name: &str) -> Response {
     response
 }
 
-/// Returns how far the arrow keys move the focused widget right and up, as a share of the view's height.
+/// Returns how far the arrow keys of this frame move the focused widget right and up, as a share of the view's height:
+/// 0.01 a press, 0.1 with Shift. `None` where it has no focus, or no key was pressed.
 pub fn arrows(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;

@@ -16,7 +16,9 @@ const CELL: f32 = 26.0;
 /// Distance between the inset and the picture's borders, points.
 const MARGIN: f32 = 12.0;
 
-/// Draws the inset around `pick` into a lower corner of `rect`.
+/// Draws an inset of 7 × 5 enlarged texels, with their numbers, around `pick` into a lower corner of `rect`. Draws
+/// nothing where texels are so large that the picture shows numbers itself, or `rect` is less than twice as large as
+/// the inset.
 pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &ShownPicture, coloring: Coloring, placement: Placement) {
     let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * CELL;
     let is_large = placement.pixels(ui.pixels_per_point()) >= canvas::NUMBERS_FROM;
@@ -59,7 +61,8 @@ pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &ShownPicture, coloring: C
     );
 }
 
-/// Returns the inset's place: the lower left corner, or the lower right one where `pick` would be under it.
+/// Returns the inset's rectangle, at a margin from the lower left corner of `rect`, or from the lower right one where
+/// `pick`, the rectangle of the picked texel with its crosshair, would be under it.
 fn place(rect: Rect, size: Vec2, pick: Rect) -> Rect {
     let left = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
     if left.intersects(pick) { left.translate(vec2(rect.right() - MARGIN - left.right(), 0.0)) } else { left }

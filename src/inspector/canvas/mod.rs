@@ -70,8 +70,9 @@ pub fn picture_id() -> Id {
     Id::unique(PICTURE)
 }
 
-/// Draws `shown` with `sheets` over it into `rect` and acts on mouse and keys. Returns where the picture lies, and
-/// the texel under the pointer.
+/// Draws the first image of `shown` with `sheets` over it into `rect`, with numbers where texels are large, and zooms,
+/// pans and picks by mouse and arrow keys. Returns where the picture lies, and the texel under the pointer, `None`
+/// outside the picture.
 pub fn ui(
     ui: &mut Ui,
     canvas: Canvas<'_>,
@@ -152,7 +153,8 @@ fn uv_of(whole: Rect, part: Rect) -> Rect {
     Rect::from_min_max(at(part.min), at(part.max))
 }
 
-/// Zooms at the pointer with the wheel, pans with a left drag.
+/// Zooms by the wheel or a pinch so that the texel under the pointer stays there, within [`Placement::ZOOM_LIMITS`],
+/// and pans with a left drag.
 fn move_view(ui: &Ui, view: &mut PictureView, response: &Response, placement: Placement, pixels_per_point: f32) {
     if response.dragged_by(PointerButton::Primary) && response.drag_delta() != egui::Vec2::ZERO {
         let moved = placement.texel_position(response.rect.center() - response.drag_delta());
@@ -176,7 +178,8 @@ fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
     view.center = [f64::from(center.x), f64::from(center.y)];
 }
 
-/// Picks with right click and right drag; where it `has_arrows`, arrow keys move the pick while it has the focus.
+/// Picks the texel under a right click or right drag; outside the picture nothing changes. Where it `has_arrows`, arrow
+/// keys move the pick while the canvas has the focus, which any click or drag gives it.
 fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement, has_arrows: bool) {
     if response.clicked() || response.secondary_clicked() || response.drag_started() {
         response.request_focus();
@@ -194,7 +197,8 @@ fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: 
     }
 }
 
-/// Returns how many texels the arrow keys ask to move by: one for a key press, ten with Shift.
+/// Returns by how many texels the arrow keys of this frame move, right and down: one for each key press, ten with
+/// Shift.
 fn nudge(ui: &Ui) -> [i32; 2] {
     ui.input(|input| {
         let far = if input.modifiers.shift { 10 } else { 1 };
@@ -208,7 +212,7 @@ fn beside(rect: Rect, part: Rect) -> Rect {
     if part.left() <= rect.left() { rect.with_min_x(part.right()) } else { rect.with_max_x(part.left()) }
 }
 
-/// Draws the number of every visible texel.
+/// Draws the number of every texel that is visible in `rect`.
 fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Placement) {
     let painter = ui.painter_at(rect);
     let first = placement.texel_position(rect.min).max(egui::Vec2::ZERO);
@@ -221,7 +225,8 @@ fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Pl
     }
 }
 
-/// Draws a texel's number into its cell, as large as fits, in black or white.
+/// Draws a texel's number into the middle of its cell, as large as it fits (at most 13 points), in black or white.
+/// Draws nothing outside the picture, and where the colouring has no number.
 pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, at: [u32; 2], cell: Rect) {
     let Some(color) = coloring.color_at(image, at) else { return };
     let lines = coloring.lines() as f32;
@@ -237,7 +242,8 @@ pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, 
     painter.galley(at, galley, ink);
 }
 
-/// Draws a box around the picked texel with four ticks, light on dark so that it shows on any picture.
+/// Draws a box of at least 11 points around the picked texel, with four ticks, light on dark so that it shows on any
+/// picture.
 pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     let middle = texel.center();
     let half = vec2(texel.width().max(11.0), texel.height().max(11.0)) / 2.0;
@@ -252,7 +258,8 @@ pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     }
 }
 
-/// Returns a square for each pixel, as one mesh.
+/// Returns a mesh with a square of at least 2.5 points at each pixel, in `color` made a little see-through; of more
+/// than 12 000 pixels, only every n-th is marked.
 pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_MARKS).max(1)) {

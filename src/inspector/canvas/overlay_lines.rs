@@ -30,7 +30,7 @@ pub enum LineKind {
     Volume(DrawPart),
 }
 
-/// Lines over the picture, in texels.
+/// Lines over the picture, in texels of the picture; those beyond a limit are only counted.
 #[derive(Debug, Default)]
 pub struct OverlayLines {
     /// Both ends of each line, and what it belongs to.
@@ -40,7 +40,8 @@ pub struct OverlayLines {
 }
 
 impl OverlayLines {
-    /// Returns the silhouettes of the casters of a light.
+    /// Returns the silhouette edges of all casters of a light, projected onto the picture; parts that are not in front
+    /// of the camera are cut off.
     pub fn silhouettes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
         let mut lines = OverlayLines::default();
@@ -54,7 +55,8 @@ impl OverlayLines {
         lines
     }
 
-    /// Returns the edges of the shadow volumes of a light, each once for each part that it belongs to.
+    /// Returns the triangle edges of all shadow volumes of a light, projected onto the picture; an edge that triangles
+    /// share is there once for each part (side, light cap, dark cap) that it belongs to.
     pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> OverlayLines {
         let projector = Projector::new(capture);
         let mut lines = OverlayLines::default();
@@ -71,7 +73,8 @@ impl OverlayLines {
         lines
     }
 
-    /// Returns the silhouette edges, on the screen, whose multiplicity is not 1.
+    /// Returns the silhouette edges whose multiplicity is neither 1 nor −1, in points on the screen, with their
+    /// multiplicity.
     fn counting(&self, placement: Placement) -> impl Iterator<Item = ([Pos2; 2], i32)> {
         self.lines.iter().filter_map(move |(ends, kind)| match kind {
             LineKind::Silhouette(multiplicity) if multiplicity.unsigned_abs() != 1 => {
@@ -81,8 +84,9 @@ impl OverlayLines {
         })
     }
 
-    /// Returns the multiplicities that can be read, in the middle of their edges: those edges are long enough, the
-    /// numbers lie in `seen` and do not overlap.
+    /// Returns the multiplicities to write, each with the middle of its edge on the screen: of edges whose multiplicity
+    /// is not ±1, that are at least 44 points long, and whose numbers lie wholly in `seen` and do not overlap an
+    /// earlier one; at most 400.
     pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
         let mut numbers: Vec<(Pos2, i32)> = Vec::new();
         let mut taken = TakenCells::default();
@@ -100,8 +104,8 @@ impl OverlayLines {
         numbers
     }
 
-    /// Returns the multiplicity of the edge nearest to `at`, of those where it is not 1; `None` where none is within
-    /// `reach` points.
+    /// Returns the multiplicity of the edge nearest to `at` on the screen, of those whose multiplicity is not ±1;
+    /// `None` where none is within `reach` points.
     pub fn number_near(&self, placement: Placement, at: Pos2, reach: f32) -> Option<i32> {
         let near = self.counting(placement).map(|(ends, multiplicity)| (distance(ends, at), multiplicity));
         let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
@@ -134,7 +138,8 @@ impl OverlayLines {
 struct TakenCells(HashMap<[i32; 2], Pos2>);
 
 impl TakenCells {
-    /// Reserves the space of a number with its middle at `at`; false where it would overlap another.
+    /// Reserves the space of a number with its middle at `at`, and returns true; returns false, and reserves nothing,
+    /// where it would overlap one that was reserved before.
     fn take(&mut self, at: Pos2) -> bool {
         let [width, height] = NUMBER_SIZE;
         let cell = [(at.x / width).floor() as i32, (at.y / height).floor() as i32];
@@ -152,19 +157,20 @@ fn on_screen(placement: Placement, at: DVec2) -> Pos2 {
     placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale
 }
 
-/// Returns the distance from a point to a segment.
+/// Returns the distance from a point to a segment, including its ends; a segment without length counts as a point.
 fn distance([from, to]: [Pos2; 2], at: Pos2) -> f32 {
     let along = to - from;
     let share = ((at - from).dot(along) / along.length_sq().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
     (from + along * share).distance(at)
 }
 
-/// Returns a multiplicity with its sign: `+2`.
+/// Returns a multiplicity as text with its sign: `+2`, `−2`; 0 is `+0`.
 pub fn multiplicity(value: i32) -> String {
     format!("{}{}", if value < 0 { "−" } else { "+" }, value.unsigned_abs())
 }
 
-/// Returns the colour of a kind of line, and its width in points.
+/// Returns the colour of a kind of line, and its width in points: a silhouette edge is wider the larger its
+/// multiplicity, up to 3.
 fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
     match kind {
         LineKind::Silhouette(multiplicity) => (theme.lit, 0.6 + 0.6 * multiplicity.unsigned_abs().min(3) as f32),
@@ -172,7 +178,7 @@ fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
     }
 }
 
-/// A strip of four rails: the outer ones see-through, the inner ones opaque.
+/// Adds a line of `width` points to a mesh, with edges that fade out over `soft` points on both sides.
 fn add_line(mesh: &mut Mesh, [from, to]: [Pos2; 2], color: Color32, width: f32, soft: f32) {
     let along = (to - from).normalized();
     let across = vec2(-along.y, along.x);
@@ -201,7 +207,8 @@ pub struct PlacedLines {
 }
 
 impl PlacedLines {
-    /// Returns the mesh of `lines`.
+    /// Returns the mesh of `lines` on the screen; it is built again only where placement, theme or pixels for each
+    /// point have changed, so that one `PlacedLines` belongs to one set of lines.
     pub fn of(
         &mut self,
         lines: &OverlayLines,
@@ -218,7 +225,8 @@ impl PlacedLines {
         self.mesh.clone()
     }
 
-    /// Returns the multiplicities of `lines` that can be read in `seen`.
+    /// Returns the multiplicities of `lines` that can be read in `seen`, as [`OverlayLines::numbers`] does; computed
+    /// again only where placement or `seen` has changed, so that one `PlacedLines` belongs to one set of lines.
     pub fn numbers(&mut self, lines: &OverlayLines, placement: Placement, seen: Rect) -> Arc<Vec<(Pos2, i32)>> {
         let key = Some((placement, seen));
         if self.numbers_key != key {

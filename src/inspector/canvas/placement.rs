@@ -3,7 +3,7 @@
 use crate::reading::picture_view::{PictureView, TexelZoom};
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// Where a picture lies on the screen.
+/// Where a picture lies on the screen, and how large its texels are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// Screen position of the picture's upper left corner, points.
@@ -18,7 +18,8 @@ impl Placement {
     /// The smallest and largest number of screen pixels for each texel.
     pub const ZOOM_LIMITS: [f32; 2] = [1.0 / 64.0, 256.0];
 
-    /// Places a picture of `size` in `panel`.
+    /// Places a picture of `size` texels in `panel`, which may be smaller: fitted and centred, or with the view's size
+    /// of texels and its centre in the middle. The corner is rounded to whole screen pixels.
     pub fn new(view: &PictureView, size: [u32; 2], panel: Rect, pixels_per_point: f32) -> Placement {
         let texels = vec2(size[0] as f32, size[1] as f32);
         let (scale, middle) = match view.zoom {
@@ -52,7 +53,7 @@ impl Placement {
         (inside && texel[0] < self.size[0] && texel[1] < self.size[1]).then_some(texel)
     }
 
-    /// Returns the screen rectangle of a texel.
+    /// Returns the screen rectangle of the texel of a column and row, also outside the picture.
     pub fn rect_of(&self, [x, y]: [u32; 2]) -> Rect {
         let min = self.origin + vec2(x as f32, y as f32) * self.scale;
         Rect::from_min_size(min, Vec2::splat(self.scale))

@@ -10,7 +10,7 @@ use crate::reading::depth::DepthScale;
 use crate::reading::picture_view::{PictureKind, ShownPicture};
 use egui::Color32;
 
-/// Opacity of an overlay of colours.
+/// Opacity with which the test results' colours lie over the picture.
 pub const OVER: f32 = 0.62;
 
 /// What the texels of a shown picture mean, with the ends of its grey ramp.
@@ -22,7 +22,7 @@ pub struct ColorMapping {
     pub range: [f64; 2],
 }
 
-/// What the texels of a picture mean.
+/// What the texels of a picture mean, and so which colours and numbers they are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coloring {
     /// sRGB bytes.
@@ -56,7 +56,8 @@ pub enum Coloring {
 }
 
 impl Coloring {
-    /// Returns the colouring of a shown picture, depths over `range`.
+    /// Returns the colouring for the kind of a shown picture; depths are drawn over `range`, from near to far, and a
+    /// light's map of what is let through as colours.
     pub fn of_shown(shown: &ShownPicture, range: [f64; 2]) -> Coloring {
         match shown.kind {
             PictureKind::Color => Coloring::Srgb,
@@ -79,7 +80,8 @@ impl Coloring {
         }
     }
 
-    /// Returns the colour that a texel is drawn in; `None` outside the picture.
+    /// Returns the colour that the texel at a column and row is drawn in, see-through where an overlay leaves the
+    /// picture visible; `None` outside the picture.
     pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
         match self {
             Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
@@ -99,8 +101,9 @@ impl Coloring {
         }
     }
 
-    /// Returns the texel's number for a cell that fits `columns` characters a line; `None` outside the picture. Colours
-    /// have one line for each channel.
+    /// Returns the texel's number, in at most `columns` characters a line where it is a decimal. Colours have a line
+    /// for each channel, red first, without alpha. `None` outside the picture, for test results and receivers, and
+    /// where a picture of changes shows none.
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
             Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
@@ -138,12 +141,12 @@ impl Coloring {
     }
 }
 
-/// Returns the colour of one bit of a value.
+/// Returns the colour of one bit of a value, counted from 0, the least significant.
 pub fn bit_color(value: u8, bit: u8) -> Color32 {
     palette::BITS[usize::from(value >> bit & 1)]
 }
 
-/// Returns the new colour where it changed, see-through elsewhere.
+/// Returns the new colour of a texel, opaque, where it changed (alpha is not 0); see-through elsewhere.
 pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
     if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
 }
@@ -153,8 +156,8 @@ pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
     palette::opaque(colors::linear([r, g, b]))
 }
 
-/// Returns the colour of a count that went up or down: deep for one, lighter the further it went; see-through where it
-/// did not.
+/// Returns the colour of a count that went up (orange) or down (blue): deep for a change of one, lighter the larger it
+/// is, up to three; see-through for 0.
 pub fn count_color(by: i8) -> Color32 {
     let strength = match by.unsigned_abs() {
         0 => return Color32::TRANSPARENT,
@@ -165,7 +168,8 @@ pub fn count_color(by: i8) -> Color32 {
     base.lerp_to_gamma(Color32::WHITE, strength)
 }
 
-/// Returns the colour of a surface that came nearer or went farther away.
+/// Returns the colour for a change of depth: `palette::UP` where a surface came nearer (negative), `palette::DOWN`
+/// where it went farther away; −∞ means that a surface appeared, +∞ that it went; see-through for 0.
 pub fn depth_color(by: f32) -> Color32 {
     match by {
         0.0 => Color32::TRANSPARENT,
@@ -182,7 +186,8 @@ pub fn depth(scale: DepthScale, depth: f32) -> Color32 {
     scale.place(depth).map_or(palette::NO_SURFACE, palette::near_far)
 }
 
-/// Returns as many digits of `value` as fit into `columns` characters.
+/// Returns `value` with as many decimals (at most six) as fit into `columns` characters, without the zero before the
+/// point; where only zeros would be shown, as a power of ten; its whole digits are never cut off.
 fn fitted(value: f64, columns: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -83,7 +83,7 @@ const LINE_DARKNESS: f32 = 0.5;
 const LINE_SPACING: usize = 5;
 
 impl FindingPattern {
-    /// Does a line go through that texel?
+    /// Returns whether a line or dot of the hatching goes through the texel at `x`, `y`.
     fn has_line(self, x: usize, y: usize) -> bool {
         let rising = (x + y).is_multiple_of(LINE_SPACING);
         // x − y, with x raised by a multiple of the spacing so that it stays positive.
@@ -104,7 +104,8 @@ pub fn color(byte: u8) -> Color32 {
     Finding::from_byte(byte).map_or_else(|| palette::stencil(byte), |finding| style(finding).color)
 }
 
-/// Returns the rank of a finding among several in one block: wrong ones come first, as each of them must be seen.
+/// Returns the rank of a finding's byte among several in one block, the highest is shown: false shadow, missing shadow,
+/// wrong surface, edge band, agreement; 0 for what is not compared or is no finding.
 fn weight(byte: u8) -> u8 {
     match Finding::from_byte(byte) {
         Some(Finding::FalseShadow) => 5,
@@ -116,7 +117,9 @@ fn weight(byte: u8) -> u8 {
     }
 }
 
-/// Returns the picture of findings in which each block of `block` × `block` texels is one texel: the worst of them.
+/// Returns the picture of findings, hatched, in which each block of `block` × `block` texels is one texel: its worst
+/// finding. Size is rounded up; a block of 0 counts as 1. Lines are not drawn at the border of an area, except dots of
+/// the edge band.
 pub fn colored(image: &Image, block: usize) -> ColorImage {
     let block = block.max(1);
     let [width, height] = image.size().map(|side| (side as usize).div_ceil(block));
@@ -146,7 +149,8 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
     ColorImage::new([width, height], pixels.collect())
 }
 
-/// Describes in a sentence how right a technique is for one light.
+/// Describes in a sentence how many compared pixels are wrong for one light, by kind, or that none is and how many are
+/// excused. The largest region, `worst`, is named only where more than one pixel is wrong.
 pub fn sentence(error: &ErrorCounts, worst: Option<&WrongRegion>) -> String {
     // A line of the sentence must not end inside a number.
     let count = |value: u64| format::count(value).replace('\u{2009}', "\u{a0}");

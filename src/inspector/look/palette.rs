@@ -6,7 +6,7 @@
 use crate::picture::colors::{self, Rgb};
 use egui::Color32;
 
-/// Labels of a light, by value.
+/// Name, meaning and colour of a light's labels, by value: lit, shadow, background, faces away.
 pub const LABELS: [LabelMeaning; 4] = [
     LabelMeaning { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
     LabelMeaning { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },
@@ -18,7 +18,7 @@ pub const LABELS: [LabelMeaning; 4] = [
     },
 ];
 
-/// The meaning of a byte of a shadow mask.
+/// Name, meaning and colour of a label in a light's mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabelMeaning {
     /// A short name.
@@ -50,19 +50,19 @@ pub fn near_far(place: f32) -> Color32 {
     opaque(colors::near_far(place))
 }
 
-/// Nothing was drawn here: the depth buffer's clear value.
+/// The colour where nothing was drawn: the depth buffer's clear value.
 pub const NO_SURFACE: Color32 = opaque(colors::NOTHING);
 
-/// A count that went up, or a surface that came nearer.
+/// The colour of a count that went up, or a surface that came nearer.
 pub const UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
 
-/// A count that went down, or a surface that went farther away.
+/// The colour of a count that went down, or a surface that went farther away.
 pub const DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
 
 /// Marks a pixel where a step drew a surface and nothing was drawn before.
 pub const APPEARED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
 
-/// No surface where there was one.
+/// The colour of a pixel without a surface where there was one before.
 pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
 
 /// The two colours of a bit: not set, set.
@@ -83,7 +83,8 @@ pub fn outcome(outcomes: u8) -> Color32 {
     }
 }
 
-/// Returns the colour for receivers: 1 on one, 2 at its outline; see-through elsewhere.
+/// Returns the colour for a byte of a picture of receivers: see-through for 0, a see-through blue on a receiver (1),
+/// opaque blue on its outline (any other).
 pub fn receiver(ink: u8) -> Color32 {
     let color = Color32::from_rgb(0x56, 0xb4, 0xe9);
     match ink {
@@ -93,8 +94,8 @@ pub fn receiver(ink: u8) -> Color32 {
     }
 }
 
-/// Returns the colour for the number of fragments at a pixel: dark for none, clearly lighter for one, then lighter by a
-/// step each time the number about doubles.
+/// Returns the colour for the number of fragments at a pixel: dark for none, clearly lighter for one, then lighter with
+/// the number's logarithm, up to white for 64 and more.
 pub fn overdraw(fragments: u8) -> Color32 {
     const RAMP: [(u8, u8, u8); 6] = [
         (0x35, 0x55, 0x9c),

@@ -20,7 +20,8 @@ const CACHED_BYTES: usize = 384 << 20;
 /// Largest side of a thumbnail in texels: twice the points, for sharp screens.
 const THUMBNAIL_SIDE: u32 = 112;
 
-/// Textures and statistics of images, computed on first use.
+/// The textures and statistics of images, computed on first use and found again by the image's address, not its
+/// content.
 #[derive(Default)]
 pub struct PictureCache {
     textures: Vec<CachedTexture>,
@@ -32,7 +33,7 @@ pub struct PictureCache {
     clock: u64,
 }
 
-/// How many texels let all of the light through, none of it, or a part.
+/// How many texels of a picture let all of the light through, none of it, or a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LightShares {
     /// All: white.
@@ -43,9 +44,9 @@ pub struct LightShares {
     pub part: u64,
 }
 
-/// Bars of a histogram of depths.
+/// The number of bars in a histogram of depths.
 pub const DEPTH_BARS: usize = 48;
-/// How many texels lie in each part of a range of depths.
+/// How many texels lie in each of [`DEPTH_BARS`] equal parts of a range of depths, the smallest first.
 pub type DepthHistogram = [u64; DEPTH_BARS];
 
 /// The resolution that is needed of a texture.
@@ -68,7 +69,8 @@ struct CachedTexture {
 }
 
 impl PictureCache {
-    /// Call once a frame: drops what has not been used for long when memory is short.
+    /// Counts a frame, and drops the textures unused for longest while all of them take more than 384 MiB; those used
+    /// in this frame or the last stay. Call it once a frame.
     pub fn tick(&mut self) {
         self.clock += 1;
         let mut bytes: usize = self.textures.iter().map(|texture| texture.handle.byte_size()).sum();
@@ -80,7 +82,7 @@ impl PictureCache {
         }
     }
 
-    /// Drops what belongs to images that nothing else refers to.
+    /// Drops textures and statistics of images that nothing outside this cache refers to any longer.
     pub fn forget_unused(&mut self) {
         let own_uses = |image: &Arc<Image>| {
             let textures = self.textures.iter().filter(|texture| Arc::ptr_eq(&texture.image, image)).count();
@@ -107,7 +109,9 @@ impl PictureCache {
         keep_where(&mut self.ranges, &ranges);
     }
 
-    /// Returns the texture of `image` in `coloring`.
+    /// Returns the texture of `image` in `coloring`, cached by image, colouring and size. An image too large for the
+    /// size is drawn with every n-th texel, or, for findings, the worst of each block. A new range of depths replaces
+    /// the textures of earlier ranges.
     pub fn texture(
         &mut self,
         ctx: &Context,
@@ -146,7 +150,7 @@ impl PictureCache {
         handle
     }
 
-    /// Returns how many texels of a byte picture have each value.
+    /// Returns how many texels of a picture of bytes have each value; cached.
     pub fn histogram(&mut self, image: &Arc<Image>) -> [u64; 256] {
         if let Some((_, histogram)) = self.histograms.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return **histogram;
@@ -156,7 +160,7 @@ impl PictureCache {
         histogram
     }
 
-    /// Returns how many texels of a picture of counts have each count.
+    /// Returns how many texels of a picture of float counts have each count, rounded to whole numbers; cached.
     pub fn tally(&mut self, image: &Arc<Image>) -> Arc<Tally> {
         if let Some((_, tally)) = self.tallies.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return tally.clone();
@@ -166,7 +170,8 @@ impl PictureCache {
         tally
     }
 
-    /// Returns how many texels of a picture of linear colours are white, black, or neither.
+    /// Returns how many texels of a colour picture let all light through (white), none (black), or a part (any other
+    /// colour); alpha is ignored; cached.
     pub fn shares(&mut self, image: &Arc<Image>) -> LightShares {
         if let Some((_, shares)) = self.shares.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return *shares;
@@ -176,7 +181,9 @@ impl PictureCache {
         shares
     }
 
-    /// Returns how many texels of a depth picture lie in each part of `range`; texels outside it are not counted.
+    /// Returns how many texels of a depth picture lie in each of [`DEPTH_BARS`] equal parts of `range`, which includes
+    /// both ends and is in the unit of `measure`. Texels outside it or without a depth are not counted. Only the last
+    /// result is cached.
     pub fn depth_histogram(&mut self, image: &Arc<Image>, measure: DepthMeasure, range: [f64; 2]) -> DepthHistogram {
         if let Some((of, by, over, bars)) = &self.depth_histogram
             && Arc::ptr_eq(of, image)
@@ -189,7 +196,8 @@ impl PictureCache {
         bars
     }
 
-    /// Returns the smallest and largest value of a depth picture.
+    /// Returns the smallest and largest finite depth of a picture in the unit of `measure`; `None` where no texel has
+    /// one; cached.
     pub fn depth_range(&mut self, image: &Arc<Image>, measure: DepthMeasure) -> Option<[f64; 2]> {
         let known = self.ranges.iter().find(|(of, by, _)| Arc::ptr_eq(of, image) && *by == measure);
         if let Some((_, _, range)) = known {
@@ -221,13 +229,15 @@ fn options(coloring: Coloring) -> TextureOptions {
     TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
 }
 
-/// Returns how many texels become one, each way, in a texture of at most `most` a side.
+/// Returns how many texels become one, each way, so that a texture of the image has at most `most` texels a side; at
+/// least 1.
 fn thinning(image: &Image, most: u32) -> usize {
     let [width, height] = image.size();
     width.max(height).div_ceil(most.max(1)).max(1) as usize
 }
 
-/// Returns the picture in its colours; every n-th texel where it has more than `most` a side.
+/// Returns the picture in its colours. Where it has more than `most` texels a side, only every n-th texel each way, or,
+/// for findings, the worst of each block.
 fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
     let [width, height] = image.size();
     let step = thinning(image, most);
@@ -284,7 +294,8 @@ fn depth_bars(image: &Image, measure: DepthMeasure, [low, high]: [f64; 2]) -> De
     bars
 }
 
-/// Returns the picture in its colours, texel by texel, for a file.
+/// Returns the picture in its colours, one pixel for each texel, for a file; alpha is dropped, so that see-through
+/// colours lie on black.
 pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     let colored = colored(image, coloring, u32::MAX);
     let [width, height] = image.size();
@@ -297,7 +308,8 @@ pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     picture
 }
 
-/// Lays these columns of a picture over another of its size, whose texels stay where it is see-through.
+/// Blends the columns `columns` of `image`, in its colours, over those of another picture; where a colour is
+/// see-through, the other picture stays.
 pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring, columns: Range<u32>) {
     let colored = colored(image, coloring, u32::MAX);
     let [width, height] = image.size();

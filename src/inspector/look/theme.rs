@@ -134,7 +134,8 @@ pub const TEXT_SIZE: f32 = 12.5;
 /// Size of numbers and side notes, in points.
 pub const SMALL_SIZE: f32 = 11.5;
 
-/// Gives `ctx` the colours, spacing and type of the inspector.
+/// Sets colours, spacing and fonts of the inspector in `ctx`, for egui's dark and light theme; which of the two is in
+/// use does not change.
 pub fn apply(ctx: &egui::Context) {
     for (egui_theme, theme) in [(egui::Theme::Dark, &DARK), (egui::Theme::Light, &LIGHT)] {
         ctx.style_mut_of(egui_theme, |style| apply_style(style, theme));
@@ -207,7 +208,7 @@ pub fn number_font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Monospace)
 }
 
-/// Returns the word on a switch of a toolbar, dim while it is off.
+/// Returns the word on a switch of a toolbar, bright while the switch is on and dim while it is off.
 pub fn switch_word(ui: &Ui, word: &str, is_on: bool) -> RichText {
     RichText::new(word).color(if is_on { of(ui).text } else { of(ui).dim })
 }
@@ -229,7 +230,8 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
     response
 }
 
-/// Draws one line of text, cut off with an ellipsis where it does not fit.
+/// Draws one line of text with its upper left corner at `at`, cut off with an ellipsis after `width` points (at least
+/// 8).
 pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, color: Color32) {
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
@@ -237,7 +239,8 @@ pub fn line(ui: &Ui, at: egui::Pos2, width: f32, text: &str, style: TextStyle, c
     ui.painter().galley(at, galley, color);
 }
 
-/// Draws two words on one line, the second dim, cut off with an ellipsis; `at` is the left end, at half height.
+/// Draws two texts on one line, the first in `color` and the second dim, cut off with an ellipsis after `width` points
+/// (at least 8); `at` is the left end, at half height. An empty second text is left out.
 pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Color32) {
     let mut job = egui::text::LayoutJob::default();
     let format = |color| egui::TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
@@ -250,7 +253,8 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, width: f32, words: [&str; 2], color: Co
     ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
 }
 
-/// Draws the background of a row that can be clicked: the accent where it is selected.
+/// Draws the background of a row that can be clicked: the accent and a bar where it is selected, a lighter one where it
+/// is under the pointer, nothing otherwise; and an outline while it has the focus.
 pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &egui::Response) {
     let painter = ui.painter();
     if is_selected {
@@ -284,7 +288,7 @@ pub fn panel_frame(ui: &Ui) -> egui::Frame {
     egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::same(8))
 }
 
-/// Draws a small square of colour, as in legends.
+/// Draws a square of colour with an outline, 10 points a side, as in legends.
 pub fn swatch(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().rect(rect, CornerRadius::same(2), color, Stroke::new(1.0, of(ui).faint), egui::StrokeKind::Inside);

@@ -9,7 +9,8 @@ use crate::picture::Picture;
 use egui::epaint::{ImageData, Mesh, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TexturesDelta};
 
-/// Returns the font texture, as egui creates it in its first frame; its first texel is white.
+/// Returns the font texture, built from the texture changes of egui's first frame; a single white texel where they
+/// contain none. Its first texel is white.
 pub fn letters(textures: &TexturesDelta) -> ColorImage {
     let mut letters = ColorImage::filled([1, 1], Color32::WHITE);
     for delta in textures.set.get(&TextureId::default()).into_iter().flatten() {
@@ -29,7 +30,9 @@ pub fn letters(textures: &TexturesDelta) -> ColorImage {
     letters
 }
 
-/// Fills the triangles of `mesh`, in pixels, over `picture` where they lie in `clip`.
+/// Blends the triangles of `mesh`, whose positions are pixels, over `picture` where a pixel's middle lies in them and
+/// in `clip`. Colours are multiplied by `letters`; triangles of either winding are drawn, and those with a missing
+/// vertex or no area are left out.
 pub fn fill(picture: &mut Picture, mesh: &Mesh, clip: Rect, letters: &ColorImage) {
     let [width, height] = picture.size().map(|side| side as f32);
     let clip = clip.intersect(Rect::from_min_max(Pos2::ZERO, Pos2::new(width, height)));
@@ -69,8 +72,8 @@ fn fill_triangle(picture: &mut Picture, corners: [Vertex; 3], clip: Rect, letter
     }
 }
 
-/// Returns where the line at height `y` enters and leaves a triangle; an edge includes its upper end, and not its lower
-/// one.
+/// Returns the smallest and largest x where the horizontal line at `y` crosses a triangle's edges; `None` where it
+/// crosses none. An edge includes its upper end, and not its lower one.
 fn between([a, b, c]: [Pos2; 3], y: f32) -> Option<[f32; 2]> {
     let crossing = |[p, q]: [Pos2; 2]| {
         let [upper, lower] = if p.y <= q.y { [p, q] } else { [q, p] };

@@ -28,15 +28,16 @@ impl<'a> ButtonSegment<'a> {
 /// Padding between the words of joined buttons and their borders, points.
 const SEGMENT_PADDING: f32 = 7.0;
 
-/// Draws buttons side by side in one frame, of which one is chosen: label and explanation of each. Returns the one that
-/// was clicked.
+/// Draws buttons side by side in one frame, given as label and hover text; `chosen` is the index of the one drawn as
+/// chosen. Returns the index of the one that was clicked in this frame, which may be the chosen one.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
     let all: Vec<ButtonSegment> =
         labels.iter().map(|(label, explanation)| ButtonSegment::new(label, explanation)).collect();
     segments_of(ui, &all, chosen)
 }
 
-/// Does the same as [`segments`] for segments some of which can't be pressed.
+/// Draws buttons side by side in one frame, with dots at changed settings and a line under the one whose picture is
+/// shown; those not enabled can't be pressed. Returns the index of the one that was clicked in this frame.
 pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize>) -> Option<usize> {
     let mut clicked = None;
     let frame = egui::Frame::new()
@@ -91,7 +92,7 @@ pub fn segments_of(ui: &mut Ui, segments: &[ButtonSegment], chosen: Option<usize
     clicked
 }
 
-/// Draws the name of a setting: brighter where it was changed.
+/// Draws the name of a setting, bright where the setting was changed and dim otherwise.
 pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
     let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
     ui.label(theme::note(name).color(ink))
@@ -117,7 +118,8 @@ pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
     button.on_hover_text(format!("Changed. Back to {before}")).clicked()
 }
 
-/// Marks a widget as moved by arrow keys: while it has the focus they do not step through the frame.
+/// Reserves the arrow keys for a widget while it has the focus, so that they do not step through the frame or move the
+/// focus. Call it in each frame.
 pub fn keep_arrows(ui: &Ui, response: &Response) {
     if response.has_focus() {
         let arrows =
@@ -137,7 +139,9 @@ fn own_arrows() -> egui::Id {
     egui::Id::unique("moved by arrows itself")
 }
 
-/// Draws the contents at the right end of a row, in the order in which they are read and Tab goes.
+/// Draws the contents at the right end of a row, laid out from left to right, the order in which they are read and Tab
+/// goes. `name` identifies their width, which is known from the last frame; where it changed, the frame is laid out
+/// again.
 pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     let id = ui.scope_id().with(name);
     let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
@@ -150,7 +154,8 @@ pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     }
 }
 
-/// Draws words on a plate in the background colour, so that they can be read over anything.
+/// Draws text on a plate in the theme's background colour, so that it can be read over anything; `align` says which
+/// point of the text is at `at`, and numbers are monospaced.
 pub fn plate(
     painter: &egui::Painter,
     at: egui::Pos2,

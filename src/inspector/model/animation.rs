@@ -21,7 +21,7 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// Starts the animation, or stops it.
+    /// Starts the animation, or stops it if it is running.
     pub fn toggle(&mut self) {
         self.is_running = !self.is_running;
         self.last = None;
@@ -34,7 +34,8 @@ impl Model {
         self.scene.as_ref().is_some_and(|scene| scene.animated)
     }
 
-    /// Asks for the next frame once the last one is shown. `now` is egui's time, seconds.
+    /// Advances the scene's time by what has passed since the last frame (at most 0.25 s) and runs it, unless a run is
+    /// still awaited. Stops the animation where nothing in the scene moves. `now` is egui's time, seconds.
     pub fn animate(&mut self, now: f64, actions: &mut Vec<Action>) {
         if !self.animation.is_running || !self.is_animated() {
             self.animation.is_running = false;
@@ -48,7 +49,8 @@ impl Model {
         self.advance(passed, actions);
     }
 
-    /// Advances the animation by one step; stops it if it is running.
+    /// Advances the scene's time by 1/30 s and runs it; does nothing where nothing moves. Stops a running animation in
+    /// any case.
     pub fn step_animation(&mut self, actions: &mut Vec<Action>) {
         self.animation.is_running = false;
         if self.is_animated() {

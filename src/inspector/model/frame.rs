@@ -9,7 +9,7 @@ use crate::reading::format;
 use crate::reading::picture_view::has_truth;
 use std::sync::Arc;
 
-/// The frame that is shown.
+/// The frame that is shown: its capture, the plan that was run, and a number.
 #[derive(Debug, Default)]
 pub struct ShownFrame {
     /// The capture, with all answers that are known.
@@ -35,13 +35,14 @@ impl Model {
         self.scene.is_some() || self.frame.plan.is_some()
     }
 
-    /// Returns where the frame comes from, if another program drew it.
+    /// Returns where the frame comes from, if another program drew it; `None` for own frames and without a capture.
     pub fn origin(&self) -> Option<&Origin> {
         self.frame.capture.as_ref()?.origin.as_ref()
     }
 
-    /// Shows another capture. The step stays where it means the same, and so does the pick
-    /// where it still lies inside.
+    /// Shows the capture of a new frame. The selected step stays where it means the same, and the pick where it lies
+    /// inside; answers about the frame before are dropped or become older ones, errors of failed runs are removed, and
+    /// the view follows the step.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.activity.is_waiting = false;
         self.activity.succeeded();
@@ -55,7 +56,7 @@ impl Model {
         self.frame.set(capture);
     }
 
-    /// Shows the same frame with more answers in its capture.
+    /// Replaces the capture by one of the same frame with more answers in it; selection and answers stay.
     pub fn update_capture(&mut self, capture: Arc<Capture>) {
         if has_truth(&capture) {
             self.view.older_truth = None;
@@ -64,7 +65,8 @@ impl Model {
         self.textures.forget_unused();
     }
 
-    /// Where the truth is shown, that of the previous frame stays until that of this frame is known.
+    /// Stores the previous frame's truth, to be shown until this frame's is known, where the truth is shown and both
+    /// frames have the same scene and size; otherwise drops a stored one.
     fn keep_truth(&mut self, before: Option<&Capture>, now: &Capture) {
         let is_alike = |before: &&Capture| before.scene == now.scene && before.size == now.size;
         match before.filter(is_alike).filter(|_| self.view.wants_truth()) {
@@ -77,7 +79,8 @@ impl Model {
         }
     }
 
-    /// Stops the work on questions of this kind, for good.
+    /// Stops the work on the question of this kind; it is not asked again automatically. With the truth, an older one
+    /// that is still shown is dropped.
     pub fn cancel(&mut self, kind: QuestionKind) {
         self.answers.cancel(kind);
         if kind == QuestionKind::TruthOf {
@@ -85,7 +88,8 @@ impl Model {
         }
     }
 
-    /// Adds an answer to a question of this kind to the frame, where it belongs there.
+    /// Adds the last current answer of this kind to the shown frame: truth, states after draws, timing or test results;
+    /// a film's answer is shown as an export. Does nothing for other kinds.
     pub fn take_in(&mut self, kind: QuestionKind) {
         if kind == QuestionKind::FilmOf
             && let Some((film, Filmed { pictures, bytes })) =

@@ -21,15 +21,16 @@ impl Model {
         }
     }
 
-    /// Asks for the history of the picked pixel. Returns the seconds until it is late, while it is waited for and not
-    /// late yet.
+    /// Asks for the history of the picked pixel, and returns the seconds until the answer is late ([`PATIENCE`]);
+    /// `None` where it is known, failed, is late already, or no pixel is picked.
     pub fn want_history_until(&self) -> Option<f64> {
         let reply = self.want_history();
         let is_waited_for = self.selection.pick.is_some() && reply.ready.is_none() && reply.failed.is_none();
         (is_waited_for && self.can_ask() && !is_late(&reply)).then(|| (PATIENCE - reply.waits_for).max(0.001))
     }
 
-    /// Returns the history of the picked pixel, or of the pixel picked before in the same frame.
+    /// Asks for and returns the history of the picked pixel; while that is not known and not late, the last one of the
+    /// same frame, which may be of another pixel. `None` otherwise.
     pub fn history_of_frame(&self) -> Option<Arc<PixelHistory>> {
         let reply = self.want_history();
         let is_late = is_late(&reply);
@@ -37,7 +38,8 @@ impl Model {
         reply.ready.or_else(|| before().filter(|_| !is_late))
     }
 
-    /// Returns the index of the event of the selected triangle.
+    /// Returns the index of the first event in `history` that belongs to the selected triangle; `None` where no
+    /// triangle is selected, or it has no event there.
     pub fn selected_in(&self, history: &PixelHistory) -> Option<usize> {
         history.events.iter().position(|event| self.selection.has_event(event))
     }

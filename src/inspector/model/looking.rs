@@ -90,7 +90,7 @@ impl Comparison {
 }
 
 impl ComparedWith {
-    /// Describes it in a few words.
+    /// Describes the compared picture in a few words: the step's number and title, or the technique's name.
     pub fn words(self, capture: &Capture) -> String {
         match self {
             ComparedWith::Step(step) => step_words(capture, step),
@@ -99,7 +99,7 @@ impl ComparedWith {
     }
 }
 
-/// `step 2 · volumes`, `the mask of light 1`.
+/// Describes a step in words: `step 2 · volumes`, or, as a mask has no number, `the mask of light 1`.
 pub fn step_words(capture: &Capture, step: usize) -> String {
     match steps::number(capture, step) {
         Some(_) => format!("step {}", steps::title(capture, step)),
@@ -107,7 +107,7 @@ pub fn step_words(capture: &Capture, step: usize) -> String {
     }
 }
 
-/// How the picture is looked at.
+/// How the picture is looked at: phase, bit, comparison and overlays.
 #[derive(Debug, Default)]
 pub struct ViewModes {
     /// Whether the state before, the state after, or the change is shown.
@@ -120,12 +120,13 @@ pub struct ViewModes {
     pub overlays: BTreeSet<Overlay>,
 }
 
-/// Has this kind of picture a state before and after each step?
+/// Returns whether this kind of picture has a state before and after each step: colour, stencil and depth do.
 pub fn has_phases(kind: PictureKind) -> bool {
     matches!(kind, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
 }
 
-/// Returns the point of the frame before this one.
+/// Returns the point of the frame before this one: the draw before it in the same step, otherwise (for a step or its
+/// first draw) the step before as a whole.
 ///
 /// # Errors
 /// There is none, or its state is not known.
@@ -140,7 +141,8 @@ pub fn before(capture: &Capture, at: CapturePoint) -> Result<CapturePoint, NoSte
 }
 
 impl Model {
-    /// Returns the picture that is shown: of the selected point of the frame, or of the one before it.
+    /// Returns the picture that is shown: of the shown point of the frame, or, in the mode for the state before, of the
+    /// one before it, unless its kind has no phases. `None` where there is no such picture, or no state before.
     pub fn shown(&self, capture: &Capture) -> Option<ShownPicture> {
         let now = self.view.shown(capture, self.shown_point());
         match self.modes.phase {
@@ -152,7 +154,7 @@ impl Model {
         }
     }
 
-    /// Returns the picture before the selected point of the frame.
+    /// Returns the picture of the same kind at the point before the shown one, with a title that says so.
     ///
     /// # Errors
     /// There is nothing before it, or it is not known.
@@ -172,7 +174,8 @@ impl Model {
         self.modes.phase != StepPhase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
     }
 
-    /// Returns the run that captures another technique with all else as in the shown frame.
+    /// Returns the request that captures the open scene with another technique, in its last settings, and all else as
+    /// in the draft; `None` where no scene is open, or its draft can't be run.
     fn request_of(&self, technique: Technique) -> Option<RunRequest> {
         let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
         let remembered = scene.choices.get(&technique).cloned();
@@ -195,7 +198,8 @@ impl Model {
         }
     }
 
-    /// Returns the picture that is compared with the shown one.
+    /// Returns the picture that the shown one is compared with: of another step, or of the same step of another
+    /// technique, whose capture is asked for. It has the kind, number and size of images of `shown`.
     ///
     /// # Errors
     /// There is none, in a sentence.
@@ -233,13 +237,14 @@ impl Model {
         self.answers.want(TestsOf { step, draw })
     }
 
-    /// Asks for the results of the tests where a picture of them is to be shown.
+    /// Asks for the results of the tests on the selected step's or draw's fragments where the chosen kind of picture is
+    /// overdraw; `None`, and nothing is asked, for other kinds.
     pub fn want_tests_shown(&self) -> Option<Reply<TestOutcomes>> {
         (self.view.kind == Some(PictureKind::Overdraw)).then(|| self.want_tests())
     }
 
-    /// Returns the light whose counts a pixel is read from, and those: the light whose picture is shown, else the
-    /// step's.
+    /// Returns the index of the light whose float counts are shown, and these counts: where a picture of counts is
+    /// shown, that light's, else those known after the shown step. `None` where there are none.
     pub fn counts_to_show<'a>(&self, capture: &'a Capture) -> Option<(usize, &'a Arc<Image>)> {
         let at = self.shown_point();
         if self.view.shown(capture, at).is_some_and(|shown| shown.kind == PictureKind::Count) {
@@ -252,7 +257,8 @@ impl Model {
 }
 
 impl Model {
-    /// Returns the colours of `shown` in the current modes.
+    /// Returns the colouring of `shown`, with the range of depths that the user set or that its images have; where one
+    /// bit is chosen, a stencil picture shows that bit.
     pub fn shown_coloring(&mut self, shown: &ShownPicture) -> ColorMapping {
         let range = self.shown_range(shown);
         let coloring = match (Coloring::of_shown(shown, range), self.modes.bit) {
@@ -273,7 +279,8 @@ impl Model {
     }
 }
 
-/// Returns the smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
+/// Returns the smallest and largest finite depth of all images of `shown`; `[0, 1]` where it is not a picture of
+/// depths, or has none.
 pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2] {
     if !matches!(Coloring::of_shown(shown, [0.0, 1.0]), Coloring::Depth(_)) {
         return [0.0, 1.0];
@@ -282,7 +289,8 @@ pub fn full_range(textures: &mut PictureCache, shown: &ShownPicture) -> [f64; 2]
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
 }
 
-/// Returns a sentence that says how many texels differ.
+/// Returns a sentence that says how many of `all` texels differ, and their share; `None` for pictures of different
+/// kinds, which can't be counted.
 pub fn sentence(texels: Option<u64>, all: u64) -> String {
     match texels {
         None => "Pictures of different kinds: nothing to count.".to_owned(),

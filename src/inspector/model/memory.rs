@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// How many recent sources are stored.
 const MOST_RECENT: usize = 12;
 
-/// Dark or light.
+/// The theme that the user chose, dark by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ThemeChoice {
@@ -49,7 +49,8 @@ pub struct StoredSettings {
 }
 
 impl Model {
-    /// Puts a source that was opened in the first place of the recent ones.
+    /// Puts a source first among the recent ones; if it is among them already, it moves there. Only the last 12 are
+    /// stored.
     pub fn note_recent(&mut self, source: &str) {
         self.recent.retain(|other| other != source);
         self.recent.insert(0, source.to_owned());

@@ -95,7 +95,7 @@ pub struct Activity {
 }
 
 impl Activity {
-    /// Removes the errors about opening and running a scene, after one was opened or run.
+    /// Removes the errors about opening and running a scene, after one was opened or run; other errors stay.
     pub fn succeeded(&mut self) {
         let failures = std::mem::take(&mut self.failures);
         self.errors.retain(|error| !failures.contains(error));
@@ -121,7 +121,7 @@ pub struct Requests {
     pub first_layout: bool,
 }
 
-/// The search field above the passes.
+/// The search field above the passes, with the text typed so far.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StepSearch {
     /// Ctrl-G: a step's number.
@@ -131,7 +131,8 @@ pub enum StepSearch {
 }
 
 impl Model {
-    /// Chooses the kind of picture. Choosing it again where it could not be traced tries again.
+    /// Chooses the kind of picture. A kind that needs the truth allows a trace that failed or was cancelled to be tried
+    /// again.
     pub fn choose_picture(&mut self, kind: PictureKind) {
         if kind.needs_truth() {
             self.answers.try_again(QuestionKind::TruthOf);
@@ -139,12 +140,13 @@ impl Model {
         self.view.choose(kind);
     }
 
-    /// Returns the kind of picture that is shown at the selected point of the frame.
+    /// Returns the kind of picture at the shown point of the frame; `None` without a capture or a picture.
     pub fn kind(&self) -> Option<PictureKind> {
         self.view.kind_at(self.frame.capture.as_ref()?, self.shown_point())
     }
 
-    /// Asks for the truth where its picture is chosen and it is not known.
+    /// Asks for the truth where a chosen kind of picture needs it, is available at the shown point, and the capture
+    /// does not contain it yet.
     pub fn want_truth(&self) {
         let is_missing = self.frame.capture.as_ref().is_some_and(|capture| {
             let kinds = available(capture, self.shown_point());
@@ -155,13 +157,14 @@ impl Model {
         }
     }
 
-    /// Shows why a scene could not be opened or run, until one is.
+    /// Shows why a scene could not be opened or run, until one succeeds or the message is dismissed.
     pub fn push_failure(&mut self, error: String) {
         self.activity.failures.insert(error.clone());
         self.push_error(error);
     }
 
-    /// Shows an error with its remedy until it is dismissed; what was shown before stays.
+    /// Shows an error with its remedy until it is dismissed, once if it is shown already; errors shown before stay.
+    /// Also stops the animation and a pending undo or redo, so that what failed is not tried again automatically.
     pub fn push_error(&mut self, error: String) {
         // What failed is not tried again automatically.
         self.restoring = None;

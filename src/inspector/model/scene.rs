@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The scene that is open.
+/// The scene that is open, with the draft of its next run.
 #[derive(Debug, Clone)]
 pub struct OpenScene {
     /// Its name, as shown.
@@ -44,17 +44,19 @@ impl OpenScene {
         self.source.clone().unwrap_or_else(|| self.name.clone())
     }
 
-    /// Returns the light, as it was when the scene was opened, that is the draft's light of this index.
+    /// Returns the draft's light of this index as it was when the scene was opened; `None` where it was added since, or
+    /// there is no such light.
     pub fn light_opened(&self, index: usize) -> Option<&Light> {
         self.opened.lights.get(self.lights_opened.get(index).copied()??)
     }
 
-    /// Returns the object of an index with the draft's changes.
+    /// Returns the object of an index, in its pose in the draft; added objects come after those of the scene, and
+    /// objects switched off are returned too. `None` where there is none.
     pub fn object(&self, index: usize) -> Option<Object> {
         self.placed(index).map(|(object, pose)| Object { pose, ..object.clone() })
     }
 
-    /// Returns the object of an index as it was loaded or added, and its pose in the draft.
+    /// Returns the object of an index as it was loaded or added, and its pose in the draft; `None` where there is none.
     pub fn placed(&self, index: usize) -> Option<(&Object, Pose)> {
         let changes = &self.draft.objects;
         match self.loaded.get(index) {
@@ -63,7 +65,7 @@ impl OpenScene {
         }
     }
 
-    /// Returns how many objects it has, including those that were added.
+    /// Returns how many objects the scene has, including those that were added and those that are switched off.
     pub fn object_count(&self) -> usize {
         self.loaded.len() + self.draft.objects.added.len()
     }
@@ -73,7 +75,8 @@ impl OpenScene {
         self.middles.get(index).copied().unwrap_or_else(|| middle(&object.mesh))
     }
 
-    /// Sets an object's pose.
+    /// Sets the pose of the object of an index in the draft; at its loaded pose it no longer counts as moved. Does
+    /// nothing where there is no such object; nothing is run.
     pub fn place(&mut self, index: usize, pose: Pose) {
         let (changes, count) = (&mut self.draft.objects, self.loaded.len());
         match self.loaded.get(index) {
@@ -84,13 +87,13 @@ impl OpenScene {
         }
     }
 
-    /// Adds a light to the draft.
+    /// Adds a light at the end of the draft's lights; nothing is run.
     pub fn add_light(&mut self, light: Light) {
         self.draft.lights.push(light);
         self.lights_opened.push(None);
     }
 
-    /// Deletes a light of the draft.
+    /// Deletes the draft's light of this index; nothing is run. Panics where there is none.
     pub fn delete_light(&mut self, index: usize) {
         self.draft.lights.remove(index);
         // A scene that was run again may have more lights than were opened.
@@ -99,7 +102,8 @@ impl OpenScene {
         }
     }
 
-    /// Are its lights and objects those that it was opened with?
+    /// Returns whether lights, moved, added and switched-off objects of the draft are those that the scene was opened
+    /// with; camera, technique and time may differ.
     fn is_as_opened(&self) -> bool {
         let RunRequest { lights, off, objects, .. } = &self.draft;
         (lights, off, objects) == (&self.opened.lights, &self.opened.off, &self.opened.objects)
@@ -107,7 +111,9 @@ impl OpenScene {
 }
 
 impl Model {
-    /// Opens another scene; `None` for a capture folder, which can't be run again.
+    /// Makes another scene the open one, or none for a capture folder, which can't be run again. Its source becomes the
+    /// first of the recent ones; answers about the scene before, the plan and the comparison are dropped, a report of
+    /// it is stored for when it is opened again, and undo goes on across scenes.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
         let before = self.scene.take();
         let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
@@ -172,7 +178,8 @@ impl Model {
         }
     }
 
-    /// Chooses a technique, with the settings that it had when it was last chosen, and runs it.
+    /// Chooses a technique, with the settings that it had when it was last chosen (or its defaults), and runs it; does
+    /// nothing where it is chosen already, or no scene is open.
     pub fn choose_technique(&mut self, technique: Technique, actions: &mut Vec<Action>) {
         let Some(scene) = &mut self.scene else { return };
         if scene.draft.choice.technique() != technique {
@@ -181,7 +188,8 @@ impl Model {
         }
     }
 
-    /// Sets the technique and its settings, and runs the scene.
+    /// Sets the technique and its settings in the draft, and runs the scene; the settings so far are remembered for
+    /// their technique. Does nothing where no scene is open.
     pub fn choose(&mut self, choice: Choice, actions: &mut Vec<Action>) {
         let Some(scene) = &mut self.scene else { return };
         scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
@@ -189,7 +197,7 @@ impl Model {
         self.run_draft(actions);
     }
 
-    /// Replaces the draft, and runs it.
+    /// Replaces the whole draft, and runs it; does nothing where no scene is open.
     pub fn replace_draft(&mut self, draft: RunRequest, actions: &mut Vec<Action>) {
         let Some(scene) = &mut self.scene else { return };
         scene.lights_opened = lights_opened(&draft.lights, &scene.opened.lights, Some(&scene.lights_opened));
@@ -197,7 +205,8 @@ impl Model {
         self.run_draft(actions);
     }
 
-    /// Asks for a run of the draft, or stores why it can't be run.
+    /// Adds the action that runs the draft, and records the run for undo; where the draft can't be run, only stores the
+    /// reason in [`OpenScene::problem`]. Does nothing where no scene is open.
     pub fn run_draft(&mut self, actions: &mut Vec<Action>) {
         if let Some(scene) = &mut self.scene {
             scene.problem = scene.draft.check().err();
@@ -210,7 +219,8 @@ impl Model {
         }
     }
 
-    /// Adds a run of the present draft to the undo history.
+    /// Records a run of the open scene in the undo history, unless it belongs to an undo or redo that is still opening
+    /// another scene.
     fn note_for_undo(&mut self, request: Arc<RunRequest>) {
         if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
             self.undo.note(undo::RunState {
@@ -221,13 +231,15 @@ impl Model {
         }
     }
 
-    /// Undoes the last change.
+    /// Undoes the last change and runs the scene as it was before; where another scene was open then, opens it first.
+    /// Does nothing where nothing can be undone.
     pub fn take_back(&mut self, actions: &mut Vec<Action>) {
         let before = self.undo.undo();
         self.restore(before, actions);
     }
 
-    /// Redoes the change that was undone last.
+    /// Redoes the change that was undone last and runs the scene so; where another scene was open then, opens it first.
+    /// Does nothing where nothing can be redone.
     pub fn make_again(&mut self, actions: &mut Vec<Action>) {
         let after = self.undo.redo();
         self.restore(after, actions);
@@ -250,7 +262,8 @@ impl Model {
         }
     }
 
-    /// Runs the scene that undo or redo opened, with the settings of that time.
+    /// Runs the scene that undo or redo asked to open, with the settings of that time; does nothing until that scene is
+    /// open, or where nothing is restored.
     pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
         let is_open =
             |state: &mut undo::RunState| self.scene.as_ref().is_some_and(|scene| scene.source == state.source);
@@ -270,8 +283,9 @@ impl Model {
     }
 }
 
-/// Returns [`OpenScene::lights_opened`] of a scene that is opened to be run with the lights of `draft`. `before` is the
-/// value for the same scene where it is loaded again and run with lights added or deleted.
+/// Returns, for each light of `draft`, its index among the lights that the scene was loaded with, or `None` for one
+/// that was added. `before` is the value for the same scene before it was loaded again; without it and with another
+/// number of lights, all count as added.
 fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&[Option<usize>]>) -> Vec<Option<usize>> {
     let in_order = || (0..draft.len()).map(Some).collect();
     match before.filter(|known| known.len() == draft.len()) {
@@ -282,7 +296,7 @@ fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&[Option<usiz
     }
 }
 
-/// Returns the middle of a mesh's bounding box.
+/// Returns the middle of a mesh's bounding box, object space; the origin for a mesh without vertices.
 fn middle(mesh: &Mesh) -> DVec3 {
     let all = || mesh.positions().iter().copied();
     let (low, high) = (all().reduce(DVec3::min), all().reduce(DVec3::max));

@@ -17,7 +17,7 @@ const GO_TO_PIXELS: f32 = 240.0;
 /// Screen pixels for each texel, at most, after the picture has gone to a region.
 const MOST_GO_TO_ZOOM: f32 = 12.0;
 
-/// The texel under the pointer.
+/// The texel under the pointer, and in which of the shown images it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hover {
     /// Index of the image among the shown ones.
@@ -26,10 +26,10 @@ pub struct Hover {
     pub at: [u32; 2],
 }
 
-/// A triangle of a frame: pass, draw, primitive.
+/// Indices of a triangle in a frame: pass, draw of the pass, primitive of the draw.
 pub type TriangleKey = [usize; 3];
 
-/// What is selected.
+/// The selected step, draw, pixel and triangle, and what is under the pointer.
 #[derive(Debug, Default)]
 pub struct Selection {
     /// Index of the step.
@@ -57,12 +57,13 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Returns the pick in the picture that is shown: a texel of the map, or a pixel of the frame.
+    /// Returns the pick for a kind of picture: the texel picked in a shadow map, or the pixel picked in the frame for
+    /// all other kinds.
     pub fn pick_of(&mut self, kind: PictureKind) -> &mut Option<[u32; 2]> {
         if kind == PictureKind::Map { &mut self.map_pick } else { &mut self.pick }
     }
 
-    /// Selects the triangle of an event, or nothing where it has none.
+    /// Selects the triangle of an event; selects no triangle where the event has none, as a clear.
     pub fn select_event(&mut self, event: &PixelEvent) {
         self.triangle = key(event);
     }
@@ -83,7 +84,8 @@ impl Model {
         self.frame.capture.as_ref().map_or(0, |capture| steps::count(capture))
     }
 
-    /// Returns the numbered steps before and after the selected one.
+    /// Returns the indices of the numbered steps before and after the selected one, passing over masks; `None` at the
+    /// start or end.
     pub fn neighbours(&self) -> [Option<usize>; 2] {
         let of = |find: fn(&Capture, usize) -> Option<usize>| find(self.frame.capture.as_ref()?, self.selection.step);
         [of(steps::previous), of(steps::next)]
@@ -94,14 +96,17 @@ impl Model {
         CapturePoint { step: self.selection.step, draw: self.selection.draw }
     }
 
-    /// Returns the point of the frame that is shown: the selected one, or the one shown before while that is not known.
+    /// Returns the point of the frame that is shown: the selected one, or, while the state after the selected draw is
+    /// not known, the one that was shown before it was selected.
     pub fn shown_point(&self) -> CapturePoint {
         let selected = self.selected();
         let is_known = self.frame.capture.as_ref().is_none_or(|capture| selected.is_known(capture));
         if is_known { selected } else { self.selection.stays }
     }
 
-    /// Adapts the selection to a capture that replaces `before`: what is selected stays where it means the same.
+    /// Adapts the selection to a capture that replaces `before`: the step that means the same, the draw of the same
+    /// name, and the pick if it lies inside; without `before`, the last step. Playing and what is under the pointer are
+    /// cleared.
     pub(super) fn select_in(&mut self, before: Option<&Capture>, now: &Capture) {
         let at = self.selected();
         let [width, height] = now.size;
@@ -124,7 +129,8 @@ impl Model {
         self.selection.stays = self.selection.step.into();
     }
 
-    /// Selects a step; the last one if there are fewer.
+    /// Selects the step of this index, the last one if there are fewer, as a whole, scrolls to it and shows it. States
+    /// after draws that failed may be asked for again. Does nothing without a capture.
     pub fn select_step(&mut self, step: usize) {
         let Some(capture) = self.frame.capture.clone() else { return };
         self.selection.step = step.min(capture.steps.len().saturating_sub(1));
@@ -134,7 +140,8 @@ impl Model {
         self.view.follow(&capture, self.selection.step);
     }
 
-    /// Selects a point of the frame; where its step has no draw of that number, the step.
+    /// Selects a point of the frame; where its step has no draw of that index, the step as a whole. Until the draw's
+    /// state is known, the point shown so far stays. Stops playing.
     pub fn select(&mut self, at: CapturePoint) {
         let stays = self.shown_point();
         self.select_step(at.step);
@@ -145,7 +152,7 @@ impl Model {
         self.selection.playing = None;
     }
 
-    /// Goes forward by `by` steps, or back where it is negative; masks are passed over.
+    /// Goes forward by `by` steps, or back where it is negative, as far as there are any; masks are passed over.
     pub fn step_by(&mut self, by: isize) {
         for _ in 0..by.unsigned_abs() {
             let [before, after] = self.neighbours();
@@ -154,7 +161,8 @@ impl Model {
         }
     }
 
-    /// Goes forward by `by` draws through the whole frame, or back where it is negative.
+    /// Goes forward by `by` draws through the whole frame, or back where it is negative, from step to step, as far as
+    /// there are any.
     pub fn draw_by(&mut self, by: isize) {
         let Some(capture) = self.frame.capture.clone() else { return };
         let mut at = self.selected();
@@ -167,7 +175,8 @@ impl Model {
         }
     }
 
-    /// Asks for the states after the draws of the selected step, where one of them is shown and not known.
+    /// Asks for the states after the draws of the selected step, where the selected draw, or in the modes that need it
+    /// the one before, is not known; otherwise an empty reply.
     pub fn want_draws(&self) -> Reply<StepDraws> {
         let is_missing = self.frame.capture.as_ref().is_some_and(|capture| !self.selected().is_known(capture));
         if is_missing || self.lacks_draw_before() {
@@ -177,7 +186,8 @@ impl Model {
         }
     }
 
-    /// Starts to play at time `now`, from the start if the end is reached; or stops.
+    /// Stops playing, or starts it at time `now` (seconds), from the first step if the last is selected; the first
+    /// change comes 0.8 s later. A frame with fewer than two numbered steps is not played.
     pub fn toggle_play(&mut self, now: f64) {
         if self.selection.playing.take().is_none() && self.steps() > 1 {
             if self.neighbours()[1].is_none() {
@@ -187,7 +197,8 @@ impl Model {
         }
     }
 
-    /// Goes to the next step when it is time to; returns the seconds until the one after it while playing.
+    /// Goes to the next step when its time has come, and stops at the last; returns the seconds until the next change,
+    /// `None` while not playing.
     pub fn play(&mut self, now: f64) -> Option<f64> {
         if now >= self.selection.playing? {
             self.step_by(1);
@@ -196,7 +207,8 @@ impl Model {
         self.selection.playing.map(|next| (next - now).max(0.0))
     }
 
-    /// Moves the pick of the shown picture by so many pixels; without one, from the middle.
+    /// Moves the pick of the shown picture right and down by so many texels, and keeps it inside; without a pick, it
+    /// starts in the middle. Does nothing where no picture is shown.
     pub fn move_pick(&mut self, by: [i32; 2]) {
         let Some(capture) = self.frame.capture.clone() else { return };
         let Some(shown) = self.shown(&capture) else { return };
@@ -205,8 +217,8 @@ impl Model {
         *pick = Some(moved(*pick, by, size));
     }
 
-    /// Picks a pixel and brings it to the middle, large enough that `side` texels around it take
-    /// a good part of the panel.
+    /// Picks a pixel and brings it to the middle of the view. From a fitted view, zooms so that `side` texels take
+    /// about 240 screen pixels, with 1 to 12 for each; another zoom stays, with at least one.
     pub fn go_to(&mut self, at: [u32; 2], side: u32) {
         self.selection.pick = Some(at);
         let fitting = (GO_TO_PIXELS / side.max(1) as f32).clamp(1.0, MOST_GO_TO_ZOOM);
@@ -230,7 +242,8 @@ pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     now.steps.iter().position(is_same).unwrap_or(last)
 }
 
-/// Returns a pick moved within a picture of this size; without a pick, starts from its middle.
+/// Returns a pick moved right and down by `by`, limited to a picture of this size; without a pick, it starts from the
+/// middle.
 pub fn moved(pick: Option<[u32; 2]>, by: [i32; 2], size: [u32; 2]) -> [u32; 2] {
     let from = pick.unwrap_or(size.map(|side| side / 2));
     [0, 1].map(|axis| from[axis].saturating_add_signed(by[axis]).min(size[axis].saturating_sub(1)))

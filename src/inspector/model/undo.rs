@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// How many steps are stored.
 const MOST: usize = 200;
 
-/// How a scene was run.
+/// How a scene was run, as undo and redo restore it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunState {
     /// The source that opens the scene: a built-in name or a path; `None` where it can't be opened again by name.
@@ -21,7 +21,7 @@ pub struct RunState {
     pub lights_opened: Vec<Option<usize>>,
 }
 
-/// The steps that can be undone and redone.
+/// The runs that can be restored by undo and redo: at most 200 in the past.
 #[derive(Debug, Default)]
 pub struct UndoHistory {
     past: Vec<RunState>,
@@ -34,13 +34,16 @@ pub struct UndoHistory {
 }
 
 impl UndoHistory {
-    /// Sets whether all changes from now on belong to one step.
+    /// Sets whether all changes from now on belong to one step, as while a mouse button is down; ends that step when
+    /// false.
     pub fn hold(&mut self, is_paused: bool) {
         self.has_begun &= is_paused;
         self.is_paused = is_paused;
     }
 
-    /// Records how the scene is run now.
+    /// Records how the scene is run now. A change makes a step that can be undone, and clears what could be redone; one
+    /// of the time alone does not, nor a further one while changes belong to one step. Of more than 200 steps the
+    /// oldest is dropped.
     pub fn note(&mut self, state: RunState) {
         let is_other =
             |before: &RunState| before.source != state.source || !before.request.is_same_but_for_time(&state.request);
@@ -67,14 +70,14 @@ impl UndoHistory {
         !self.future.is_empty()
     }
 
-    /// Goes one step back; returns the state to restore.
+    /// Goes one step back, and returns the state to restore; `None`, and nothing changes, where there is none.
     pub fn undo(&mut self) -> Option<RunState> {
         let before = self.past.pop()?;
         self.future.extend(self.now.replace(before.clone()));
         Some(before)
     }
 
-    /// Goes one step forward again; returns the state to restore.
+    /// Goes one step forward again, and returns the state to restore; `None`, and nothing changes, where there is none.
     pub fn redo(&mut self) -> Option<RunState> {
         let after = self.future.pop()?;
         self.past.extend(self.now.replace(after.clone()));

@@ -57,7 +57,7 @@ impl Default for WalkState {
 }
 
 impl WalkGravity {
-    /// Returns whether the walker is on the ground, with the same walls as before.
+    /// Returns whether the walker stands on the ground, and that was computed with the very same walls.
     pub fn is_at_rest(&self, walls: &Arc<Walls>) -> bool {
         let is_same = self.within.as_ref().is_some_and(|within| Arc::ptr_eq(within, walls));
         is_same && self.standing.is_some_and(|standing| standing.is_on_ground)
@@ -72,7 +72,9 @@ impl WalkState {
 }
 
 impl Model {
-    /// Begins to walk, where there is something to walk in.
+    /// Begins to walk: shows the Picture tab, takes the focus from other widgets and grabs the pointer. Does nothing
+    /// where no scene is open, no capture is shown, or the user walks already; gravity, collisions and speed stay as
+    /// set before.
     pub fn start_walking(&mut self, ctx: &Context) {
         if self.scene.is_none() || self.frame.capture.is_none() || self.walk.is_on {
             return;
@@ -87,7 +89,7 @@ impl Model {
         hold_pointer(ctx, true);
     }
 
-    /// Stops walking.
+    /// Stops walking and releases the pointer; does nothing where the user does not walk.
     pub fn stop_walking(&mut self, ctx: &Context) {
         if std::mem::take(&mut self.walk.is_on) {
             hold_pointer(ctx, false);

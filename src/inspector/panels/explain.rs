@@ -10,7 +10,8 @@ use crate::reading::left_out::by_reason;
 use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
-/// Draws the tab Explain: what the shown step does, in sentences with this frame's numbers.
+/// Draws the tab Explain: the selected step's purpose and what it does, in sentences with this frame's numbers, and the
+/// list of tours. Without a capture, only a hint to open a scene.
 pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(Label::new(theme::note("Open a scene: what each pass is for is told here.")).wrap());
@@ -103,7 +104,7 @@ impl ExplainPanel {
     }
 }
 
-/// Draws the list of tours, the chosen technique's first.
+/// Draws a button for each tour, the chosen technique's first; a click asks for that tour to begin.
 fn tours(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "Guided tours");
     ui.add(

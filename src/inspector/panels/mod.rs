@@ -29,7 +29,7 @@ use scene::SceneView;
 use shadow_map::ShadowMapPanel;
 use stress::StressPanel;
 
-/// The state of each tab.
+/// The state of the panels that have one of their own, by tab.
 #[derive(Debug, Default)]
 pub struct Panels {
     /// The frame, step by step.

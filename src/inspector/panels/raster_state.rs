@@ -9,14 +9,15 @@ use crate::reading::format;
 use crate::reading::steps;
 use egui::{Label, Ui};
 
-/// The state of the tab.
+/// The state of the tab State.
 #[derive(Debug, Default)]
 pub struct RasterStatePanel {
     /// The API in whose terms the state is shown.
     api: RasterApi,
 }
 
-/// Draws the tab State: the raster state of the selected pass or draw.
+/// Draws the tab State: attachments, raster state and matrices of the selected draw, or of the pass's last draw where
+/// none is selected. Without a plan, what the capture's plan text says; without a capture, a hint.
 pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(Label::new(theme::note("Open a scene: the state of its passes is shown here.")).wrap());
@@ -44,7 +45,8 @@ pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
     });
 }
 
-/// Draws the pass's attachments, and what they contain at its start.
+/// Draws from where a pass is seen, its attachments with what they contain at its start (cleared or stored before), and
+/// its viewport and scissor where it has them.
 fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
     let name = |id: crate::plan::AttachmentId| plan.attachments.get(id.0).map_or("?", |attachment| &attachment.name);
     let loaded = || "kept".to_owned();
@@ -113,7 +115,8 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
     }
 }
 
-/// Draws the matrices from world to clip space, each with the names of its spaces.
+/// Draws the matrices from world to clip space, each with the names of its spaces, for the camera and, where it has a
+/// map, the pass's or the chosen light. For another program's frame only says that they are not known.
 fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: &crate::capture::Capture) {
     let Some(view) = plan.views.get(pass.view.0) else { return };
     theme::heading(ui, "Matrices");
@@ -155,7 +158,8 @@ fn matrix(ui: &mut Ui, name: &str, columns: &[f32; 16]) {
     ui.add_space(4.0);
 }
 
-/// In a capture folder only the plan's text is known: draws its part about the pass.
+/// Draws the part of the plan's text that is about the pass of index `step`, for captures without a plan, with a button
+/// that copies it; says so where there is none.
 fn from_text(ui: &mut Ui, text: &str, step: usize) {
     let start = format!("pass {step}: ");
     let lines: Vec<&str> = text

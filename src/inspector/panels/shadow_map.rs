@@ -29,7 +29,7 @@ use std::sync::{Arc, Weak};
 /// Width of the column beside the map, points.
 const COLUMN: f32 = 232.0;
 
-/// The state of the tab.
+/// The state of the tab Shadow map: light, face, pick and what is under the pointer.
 #[derive(Debug, Default)]
 pub struct ShadowMapPanel {
     view: PictureView,
@@ -57,12 +57,13 @@ struct MarkedTexel {
 }
 
 impl ShadowMapPanel {
-    /// Returns which texel each pixel reads, for the shown frame and light, where the tab was shown.
+    /// Returns which texel each pixel reads, for the shown frame and this tab's light, without asking for it; `None`
+    /// where that is not known.
     pub fn readers(&self, model: &Model) -> Option<Arc<MapReaders>> {
         model.answers.of(ReadersOf { light: self.light }).ready
     }
 
-    /// Returns the pixels that read a texel, found once and cached.
+    /// Returns the pixels that read a texel, in reading order; cached for the last texel and answer.
     fn pixels(&mut self, readers: &Arc<MapReaders>, texel: MapTexel) -> Arc<Vec<[u32; 2]>> {
         let is_it =
             |marked: &&MarkedTexel| marked.texel == texel && std::ptr::eq(marked.of.as_ptr(), Arc::as_ptr(readers));
@@ -92,7 +93,8 @@ impl ShadowMapPanel {
     }
 }
 
-/// Draws the tab Shadow map: the map of the selected light, with the texel that the picked pixel reads.
+/// Draws the tab Shadow map: a depth map of the selected light, with the texel that the picked pixel reads and the
+/// pixels that read the marked texel. Where the frame has no such map, only a hint.
 pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
@@ -189,7 +191,8 @@ struct TexelLinks<'a> {
 }
 
 impl TexelLinks<'_> {
-    /// Returns the pixel on whose surface the texel is measured: the middle one of all readers in reading order.
+    /// Returns the pixel on whose surface the texel is measured: the linked one if there is one, otherwise the middle
+    /// one of all readers in reading order; `None` where no pixel reads the texel.
     fn on_surface(&self) -> Option<[u32; 2]> {
         self.pixel.or_else(|| self.pixels.get(self.pixels.len() / 2).copied())
     }
@@ -200,7 +203,7 @@ fn empty(ui: &mut Ui, rect: Rect, text: &str) {
     ui.put(place, egui::Label::new(theme::note(text)).wrap());
 }
 
-/// Splits a rectangle into the map, and the column beside it where there is space.
+/// Splits a rectangle into the map at the left and a column at the right, at most 0.4 of the width.
 fn split(rect: Rect) -> [Rect; 2] {
     let column = COLUMN.min(rect.width() * 0.4);
     let x = rect.right() - column;
@@ -250,14 +253,16 @@ fn show_face(own: &mut ShadowMapPanel, face: usize) {
     own.pick = None;
 }
 
-/// Shows a texel's face, centres the texel and zooms in until its number is legible. Clears the picked texel.
+/// Shows a texel's face, centres the texel and zooms in until its number is legible, also where the zoom was larger.
+/// Clears the picked texel.
 fn show_texel(own: &mut ShadowMapPanel, texel: MapTexel) {
     show_face(own, texel.face);
     own.view.zoom = TexelZoom::Pixels(canvas::NUMBERS_FROM + 4.0);
     own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
 }
 
-/// Draws the shown face; returns the texel under the pointer.
+/// Draws the shown face of the map, the `linked` texel and the outline of a pixel's `footprint` where they lie on that
+/// face; returns the texel under the pointer. Draws nothing, and returns `None`, where there is no such map.
 fn face(
     ui: &mut Ui,
     own: &mut ShadowMapPanel,
@@ -283,7 +288,8 @@ fn face(
     over
 }
 
-/// Draws a quadrilateral over a picture, light on dark; `corners` are in its texels.
+/// Draws the outline of a quadrilateral over a picture, light on dark; `corners` are in its texels. Draws nothing where
+/// one is not finite on the screen.
 fn quadrilateral(painter: &Painter, placement: Placement, corners: [DVec2; 4], color: Color32) {
     let place = |at: DVec2| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale;
     let points: Vec<Pos2> = corners.into_iter().map(place).filter(|at| at.is_finite()).collect();
@@ -293,7 +299,7 @@ fn quadrilateral(painter: &Painter, placement: Placement, corners: [DVec2; 4], c
     }
 }
 
-/// Draws a box, light on dark, around the texel that a pixel reads.
+/// Draws a box of at least 9 points, light on dark, around the texel that a pixel reads.
 fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
     let texel = placement.rect_of(at);
     let texel = Rect::from_center_size(texel.center(), texel.size().max(vec2(9.0, 9.0)));
@@ -303,7 +309,8 @@ fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
     }
 }
 
-/// Draws the frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
+/// Draws the frame's final colours, small, with the marked pixels, the picked one and what the texel covers; pointing
+/// at a pixel marks the texel that it reads, and a click picks it.
 fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, capture: &Capture, links: &TexelLinks) {
     let [width, height] = capture.size.map(|side| side as f32);
     let scale = (ui.available_width() / width.max(1.0)).min(240.0 / height.max(1.0));
@@ -340,7 +347,8 @@ fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, captu
     }
 }
 
-/// Returns what the texel covers of the surface, in texels of the picture.
+/// Returns the corners of what the shown texel covers of the plane of its reader's surface, in texels of the picture;
+/// `None` where no texel is shown, no pixel reads it, or a corner is behind the eye.
 fn texel_in_picture(capture: &Capture, links: &TexelLinks) -> Option<[DVec2; 4]> {
     let corners = links.readers?.texel_on_surface(links.texel?, links.on_surface()?)?;
     let [a, b, c, d] = corners.map(|corner| pick_ray::texel_of(capture, corner.extend(1.0)).map(DVec2::from_array));
@@ -400,7 +408,8 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Texel
     }
 }
 
-/// Draws what is known of a texel, and how far each bias moves the surface there.
+/// Returns names and values of a texel: its map, stored depth, what the linked pixel and the texel cover, and how far
+/// each bias moves the surface there; values that are not known are left out.
 fn values(
     capture: &Capture,
     light: usize,

@@ -21,7 +21,7 @@ const MOST_VALUES: usize = 12;
 /// Where the table's columns with findings and verdict begin, points from its left.
 const COLUMNS: [f32; 2] = [196.0, 330.0];
 
-/// The state of the tab.
+/// The state of the tab Stress: the selected case.
 #[derive(Debug, Default)]
 pub struct StressPanel {
     /// Index of the selected case.
@@ -33,7 +33,8 @@ fn verdict(rows: &StressRows, case: &StressCase) -> Option<StressVerdict> {
     rows.of(case).map(|summary| summary.verdict).max()
 }
 
-/// Draws the panel Stress: the table of cases and techniques, and the plot of the selected case.
+/// Draws the panel Stress: the list of all cases with their verdicts, and the selected case's lesson and results.
+/// Results of the last run stay visible while another runs.
 pub fn ui(ui: &mut Ui, own: &mut StressPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let all: Vec<&'static StressCase> = cases::all().collect();
     let selected = own.selected.min(all.len().saturating_sub(1));
@@ -62,7 +63,8 @@ pub fn ui(ui: &mut Ui, own: &mut StressPanel, model: &mut Model, actions: &mut V
     });
 }
 
-/// Draws the buttons that run cases, and the progress.
+/// Draws the buttons that run the selected case or all, with how many results are unexpected; or, while cases run, the
+/// progress and a button that cancels.
 fn top_line(
     ui: &mut Ui,
     model: &mut Model,
@@ -110,7 +112,7 @@ fn top_line(
     ui.add_space(4.0);
 }
 
-/// Returns a sign and a word for a verdict.
+/// Returns a word for a verdict, and its colour; an empty word for `None`, a case that was not run.
 fn mark(ui: &Ui, verdict: Option<StressVerdict>) -> (&'static str, egui::Color32) {
     match verdict {
         None => ("", theme::of(ui).faint),
@@ -142,7 +144,8 @@ fn list_row(ui: &mut Ui, own: &mut StressPanel, rows: &StressRows, case: &Stress
     response.on_hover_text(case.lesson);
 }
 
-/// Draws the selected case: its lesson, its values, and the results of each technique.
+/// Draws the selected case: its lesson, buttons that open its scene at some values, and the results of each technique,
+/// or what is expected of each where the case was not run.
 fn detail(ui: &mut Ui, rows: &StressRows, case: &'static StressCase, actions: &mut Vec<Action>) {
     theme::heading(ui, case.name);
     ui.add(egui::Label::new(theme::note(case.lesson).color(theme::of(ui).text)).wrap());
@@ -176,7 +179,7 @@ fn detail(ui: &mut Ui, rows: &StressRows, case: &'static StressCase, actions: &m
     }
 }
 
-/// Returns the values, or some of them, the ends included.
+/// Returns all values where they are few, otherwise an evenly spread choice of them, first and last included.
 fn offered(values: &[f64]) -> Vec<f64> {
     if values.len() <= MOST_VALUES {
         return values.to_vec();
@@ -185,7 +188,8 @@ fn offered(values: &[f64]) -> Vec<f64> {
     (0..MOST_VALUES).filter_map(|index| values.get(index * last / (MOST_VALUES - 1)).copied()).collect()
 }
 
-/// Draws a technique's row; a click opens the case where it is unexpected, else where it breaks, or at its last value.
+/// Draws a technique's row of a stress case; a click opens the case with that technique at the value with the
+/// unexpected result, else where it breaks or is blurred, else at the last value that is not heavy.
 fn table_row(ui: &mut Ui, case: &'static StressCase, summary: &StressSummary, actions: &mut Vec<Action>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let (found, verdict, expected) = (summary.found_text(), summary.verdict_text(), summary.expected.name());

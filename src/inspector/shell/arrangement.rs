@@ -30,13 +30,15 @@ pub struct TileDrag {
 }
 
 impl TileDrag {
-    /// Returns the drag that is under way, if there is one.
+    /// Returns the drag of a tile that is under way, with the layout before it; `None` where none is.
     pub fn under_way(tree: &Tree<PanelKind>, ui: &egui::Ui) -> Option<TileDrag> {
         let tile = tree.dragged_id(ui)?;
         Some(TileDrag { tile, before: tree.clone(), pointer: ui.input(|input| input.pointer.interact_pos()) })
     }
 
-    /// Corrects the layout after the tile was dropped, in a window of this size.
+    /// Corrects the layout after the tile was dropped. Where its panels would get too small in a window of `size`, or a
+    /// panel would be lost, the layout is as before the drag, with the tile added to the group of tabs under the
+    /// pointer, if any.
     pub fn settle(self, tree: &mut Tree<PanelKind>, size: Vec2) {
         fix(tree, self.pointer);
         let least = |tree: &Tree<PanelKind>| tree.root.map_or(Vec2::ZERO, |root| least(&tree.tiles, root));
@@ -54,7 +56,7 @@ impl TileDrag {
     }
 }
 
-/// Returns whether every panel is in the layout exactly once.
+/// Returns whether every kind of panel is in the layout exactly once.
 pub fn is_whole(tree: &Tree<PanelKind>) -> bool {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
@@ -62,8 +64,8 @@ pub fn is_whole(tree: &Tree<PanelKind>) -> bool {
     is_tree && panels == PanelKind::ALL
 }
 
-/// Adds missing panels, as in a layout that an older version stored: to the tabs about the picked pixel, or to the
-/// first tabs.
+/// Adds panels that are missing from a layout, as in one that an older version stored: at the end of the tabs with
+/// Explain, or of the first tabs. Does nothing where a tile is missing or occurs twice, or there are no tabs.
 pub fn complete(tree: &mut Tree<PanelKind>) {
     let mut panels = Vec::new();
     let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
@@ -83,7 +85,8 @@ pub fn complete(tree: &mut Tree<PanelKind>) {
     }
 }
 
-/// Collects the panels below a tile; false where a tile is missing or occurs twice.
+/// Appends the panels below a tile, in order; false where a tile is missing or occurs twice, and then not all are
+/// appended. `seen` collects the tiles' numbers.
 fn visit(tiles: &Tiles<PanelKind>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<PanelKind>) -> bool {
     if !seen.insert(tile.0) {
         return false;
@@ -130,7 +133,8 @@ pub fn fix(tree: &mut Tree<PanelKind>, pointer: Option<Pos2>) {
     share_fairly(tree);
 }
 
-/// Finds tabs with a group among them, and that group.
+/// Returns tabs that have another container as a child, and that child; of several, the tabs with the smallest number.
+/// `None` where there are none.
 fn split_in_tabs(tiles: &Tiles<PanelKind>) -> Option<(TileId, TileId)> {
     let mut found: Vec<(TileId, TileId)> = Vec::new();
     for (id, tile) in tiles.iter() {
@@ -153,7 +157,8 @@ fn groups_below(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec<TileId> {
     }
 }
 
-/// Returns the group of tabs at a position, among those for which `is_meant` is true.
+/// Returns the group of tabs at a position, among those for which `is_meant` is true; of several, the one with the
+/// smallest number.
 fn group_at(tiles: &Tiles<PanelKind>, at: Pos2, is_meant: &dyn Fn(TileId) -> bool) -> Option<TileId> {
     let is_group = |id: &TileId| matches!(tiles.get(*id), Some(Tile::Container(Container::Tabs(_))));
     let is_there = |id: &TileId| tiles.rect(*id).is_some_and(|rect| rect.contains(at));
@@ -173,7 +178,8 @@ fn share_fairly(tree: &mut Tree<PanelKind>) {
     }
 }
 
-/// Returns the least size of a tile.
+/// Returns the least size of a tile, in points: a fixed one for tabs and panels, and for rows and columns that of their
+/// children and the gaps together.
 fn least(tiles: &Tiles<PanelKind>, tile: TileId) -> Vec2 {
     let Some(Tile::Container(Container::Linear(linear))) = tiles.get(tile) else { return LEAST };
     let gaps = GAP * linear.children.len().saturating_sub(1) as f32;
@@ -194,7 +200,8 @@ pub fn fit(tree: &mut Tree<PanelKind>, size: Vec2) -> Vec<(TileId, Shares)> {
     before
 }
 
-/// Restores shares that were changed for one window size.
+/// Restores the shares of rows and columns that were changed for one window size; those that no longer exist are passed
+/// over.
 pub fn restore_waiting(tree: &mut Tree<PanelKind>, shares: Vec<(TileId, Shares)>) {
     for (id, before) in shares {
         if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(id) {
@@ -222,8 +229,8 @@ fn fit_tile(tiles: &mut Tiles<PanelKind>, tile: TileId, size: Vec2, before: &mut
     }
 }
 
-/// Returns the wished lengths, but none below what is needed; where the space is too small for that, the needed lengths
-/// scaled down in the same ratio.
+/// Returns the wished lengths scaled to fill `space`, but none below what is needed, for which the others give way;
+/// where the space is too small for all needed lengths, these scaled down in the same ratio.
 fn lengths(wished: &[f32], needed: &[f32], space: f32) -> Vec<f32> {
     let all: f32 = needed.iter().sum();
     if all >= space {

@@ -32,7 +32,7 @@ const REPORT_SHARE: f32 = 0.42;
 /// A stored layout, in egui's own format.
 pub type StoredLayout = serde_json::Value;
 
-/// The docked panels and their layout.
+/// The docked panels and their layout, which is the initial one until the user changes it.
 #[derive(Debug)]
 pub struct Dock {
     tree: Tree<PanelKind>,
@@ -55,7 +55,7 @@ impl Dock {
         Dock::first(false)
     }
 
-    /// Returns the initial layout of a window that is wide, with the scene beside the picture, or of one that is not.
+    /// Returns the initial layout: with the scene beside the picture where `is_wide`, otherwise as tabs of one group.
     fn first(is_wide: bool) -> Dock {
         let mut tiles = Tiles::default();
         let sides = [PanelKind::Passes, PanelKind::Settings].map(|panel| tiles.insert_pane(panel));
@@ -78,12 +78,13 @@ impl Dock {
         Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false, is_wide, shown: Vec::new() }
     }
 
-    /// Returns the layout; `None` while it is the initial one.
+    /// Returns the layout that the user made; `None` while it is the initial one.
     pub fn layout(&self) -> Option<StoredLayout> {
         self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
     }
 
-    /// Restores a stored layout. One that does not consist of these panels is ignored.
+    /// Restores a stored layout, with panels that it lacks added. One that can't be read or contains a panel twice is
+    /// ignored.
     pub fn restore(&mut self, layout: StoredLayout) {
         let Ok(mut tree) = serde_json::from_value::<Tree<PanelKind>>(layout) else { return };
         arrangement::complete(&mut tree);
@@ -94,7 +95,8 @@ impl Dock {
         }
     }
 
-    /// Draws all panels into the rest of the window.
+    /// Draws all panels into the rest of the window, and shows the tabs that other panels asked for. The initial layout
+    /// follows the window's size; once the user has changed it, it stays.
     pub fn ui(&mut self, ui: &mut Ui, panels: &mut Panels, model: &mut Model, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
             let is_wide = ui.available_width() >= WIDE;

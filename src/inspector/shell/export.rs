@@ -18,7 +18,7 @@ use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
 use std::sync::Arc;
 
-/// The dialog that asks for the path.
+/// The dialog that asks for an export's path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportDialog {
     /// What is exported.
@@ -32,7 +32,8 @@ pub struct ExportDialog {
 }
 
 impl ExportDialog {
-    /// Opens the dialog with a name that describes the content; `None` where there is nothing of this kind.
+    /// Opens the dialog with a file name that describes the content, in which unusual characters are `-`; `None` where
+    /// there is nothing of this kind to export, or a film is being written and this would be another.
     pub fn new(kind: ExportKind, model: &Model) -> Option<ExportDialog> {
         if is_film(kind) && model.answers.asked::<FilmOf>().is_some() {
             return None;
@@ -46,7 +47,8 @@ impl ExportDialog {
         Some(ExportDialog { kind, path, taken: None, error: None })
     }
 
-    /// Returns a file name for an export of the capture or of the open scene.
+    /// Returns a file name for an export of the capture or of the open scene; `None` where there is nothing of this
+    /// kind, for several layers as they are shown, and for the report.
     fn name_of_shown(kind: ExportKind, model: &Model) -> Option<String> {
         let capture = model.frame.capture.as_ref()?;
         let title = || {
@@ -71,7 +73,7 @@ impl ExportDialog {
     }
 }
 
-/// The data to be written.
+/// The data of an export, ready to be written.
 #[derive(Debug, Clone)]
 pub enum ExportData {
     /// A finished picture.
@@ -92,13 +94,14 @@ pub enum ExportData {
     Report(Box<Report>),
 }
 
-/// Returns the run of the present settings, where it is possible.
+/// Returns the run of the open scene with the present settings; `None` where no scene is open, or they can't be run.
 fn runnable(model: &Model) -> Option<RunRequest> {
     let scene = model.scene.as_ref()?;
     scene.problem.is_none().then(|| scene.draft.clone())
 }
 
-/// Returns the data of a `kind` of export now; `None` where there is none.
+/// Returns the data for a `kind` of export as it is now; `None` where there is none, as for several layers as they are
+/// shown.
 pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Option<ExportData> {
     if kind == ExportKind::Report {
         return measured(model).cloned().map(|report| ExportData::Report(Box::new(report)));
@@ -138,19 +141,20 @@ fn is_film(kind: ExportKind) -> bool {
     matches!(kind, ExportKind::Steps | ExportKind::LightRound)
 }
 
-/// Returns the light that moves round the scene: the shown one; `None` where no light can.
+/// Returns the index of the light that goes round the scene: the one chosen in the picture panel, or the last where
+/// there are fewer; `None` without a scene or lights.
 fn selected_light(model: &Model) -> Option<usize> {
     let last = model.scene.as_ref()?.draft.lights.len().checked_sub(1)?;
     Some(model.view.light.min(last))
 }
 
-/// Returns the measured report; `None` until it is complete.
+/// Returns the last measured report; `None` while one is being measured, or where it has no rows.
 fn measured(model: &Model) -> Option<&Report> {
     let (_, measured) = model.answers.last::<ReportOf>().filter(|_| model.answers.asked::<ReportOf>().is_none())?;
     Some(&measured.report).filter(|report| !report.rows.is_empty())
 }
 
-/// Lays pictures in a row, their tops aligned.
+/// Returns pictures in a row from left to right, their tops aligned, black below those that are less high.
 fn side_by_side(pictures: &[Picture]) -> Picture {
     let width = pictures.iter().map(|picture| picture.size()[0]).sum();
     let height = pictures.iter().map(|picture| picture.size()[1]).max().unwrap_or(0);
@@ -163,7 +167,8 @@ fn side_by_side(pictures: &[Picture]) -> Picture {
     all
 }
 
-/// Draws the menu's entries.
+/// Draws the menu's entries, one for each kind of export, off with the reason where there is nothing of that kind; a
+/// click opens the dialog.
 pub fn menu(ui: &mut Ui, model: &mut Model) {
     for kind in ExportKind::ALL {
         let dialog = ExportDialog::new(kind, model);
@@ -188,7 +193,8 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws the dialog while it is open; `own` is its state.
+/// Draws the export dialog while it is open, and adds the action that the user asks for; `own` is its state, `None`
+/// while it is closed. It closes where there is nothing to export.
 pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(DialogKind::Export(kind)) = model.dialog else {
         *own = None;

@@ -10,7 +10,7 @@ use egui::{Context, Id, Ui};
 /// Width of the column of keys, points.
 const KEYS_WIDTH: f32 = 168.0;
 
-/// Draws the window while it is open.
+/// Draws the window Help, with all keys and a button that resets the layout, while it is open.
 pub fn ui(ctx: &Context, model: &mut Model) {
     if model.dialog != Some(DialogKind::Help) {
         return;

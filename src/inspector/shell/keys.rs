@@ -11,7 +11,7 @@ use crate::inspector::model::looking::StepPhase;
 use crate::inspector::model::{Model, StepSearch};
 use egui::{Context, EventFilter, Id, Key, Modifiers};
 
-/// What a key does.
+/// A command that a key carries out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyCommand {
     /// Goes one pass back.
@@ -62,7 +62,7 @@ pub enum KeyCommand {
     Unpick,
 }
 
-/// The focus in which a key acts.
+/// Where the keyboard focus has to be for a key to act.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyScope {
     /// Any focus but a text field.
@@ -75,7 +75,7 @@ pub enum KeyScope {
     Free,
 }
 
-/// A key and its command.
+/// A key with its modifiers, where it acts, its command, and words for the help.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyBinding {
     /// The modifier keys that have to be pressed with it.
@@ -106,7 +106,8 @@ const fn binding(
 const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 const FAR: Modifiers = REDO;
 
-/// Help describes it among the actions on the picture, all in one line.
+/// Returns the binding of a key that moves the pick right and down by so many texels. It has no words: help describes
+/// all of them in one line.
 const fn move_pick(modifiers: Modifiers, key: Key, [right, down]: [i32; 2]) -> KeyBinding {
     binding(modifiers, key, KeyScope::Steps, KeyCommand::MovePick(right, down), "", "")
 }
@@ -193,7 +194,8 @@ pub struct FocusBefore {
     is_typing: bool,
 }
 
-/// Acts on the keys of this frame.
+/// Carries out the commands of the keys that were pressed in this frame where their scope allows it, and consumes those
+/// keys; nothing while the open or export dialog is open. `before` is the focus at the end of the last frame.
 pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &mut Vec<Action>) {
     if matches!(model.dialog, Some(DialogKind::Open | DialogKind::Export(_))) {
         return;
@@ -222,7 +224,8 @@ pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &
     }
 }
 
-/// Returns what has the focus at the end of a frame. Keeps arrow keys from moving it to another widget, as they step.
+/// Returns what has the focus at the end of a frame, and prevents arrow keys from moving the focus to another widget,
+/// as they step through the frame; not while text is edited or a menu is open.
 pub fn remember(ctx: &Context) -> FocusBefore {
     let widget = ctx.memory(egui::Memory::focused);
     let is_typing = ctx.text_edit_focused();
@@ -233,12 +236,12 @@ pub fn remember(ctx: &Context) -> FocusBefore {
     FocusBefore { widget, is_typing }
 }
 
-/// Returns whether it is a key that a text field uses to edit its text.
+/// Returns whether a text field uses the command's key to edit its text: undo and redo.
 fn edits_text(command: KeyCommand) -> bool {
     matches!(command, KeyCommand::Undo | KeyCommand::Redo)
 }
 
-/// Carries out a command.
+/// Carries out a command as often as its key was pressed in the frame, where repeating it has a meaning.
 pub fn act(ctx: &Context, model: &mut Model, command: KeyCommand, presses: usize, actions: &mut Vec<Action>) {
     let by = presses as isize;
     match command {

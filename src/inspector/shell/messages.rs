@@ -8,7 +8,8 @@ use egui::{CornerRadius, Margin, RichText, Stroke, Ui};
 /// The largest share of the window's height for errors; more are scrolled to.
 const MOST_HEIGHT: f32 = 0.25;
 
-/// Draws the offer to load a changed file again, and a bar for each error.
+/// Draws the offer to load a changed file again, and a bar for each error, the last one first, which can be dismissed
+/// one by one or all at once; nothing where there is neither.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if let Some(file) = model.activity.changed_file.clone() {
         reload(ui, model, &file, actions);

@@ -29,18 +29,19 @@ pub struct OpenDialog {
 }
 
 impl OpenDialog {
-    /// Returns a dialog with these scenes.
+    /// Returns a dialog that offers these built-in scenes, and no frames of other programs.
     pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
     }
 
-    /// Returns whether the source is one of those that are listed.
+    /// Returns whether the source is the name of a listed scene or frame.
     fn names(&self, source: &str) -> bool {
         self.scenes.iter().chain(&self.frames).any(|entry| entry.name == source)
     }
 }
 
-/// Draws the dialog while it is open.
+/// Draws the open dialog while it is open, and adds the action that opens what was chosen or asks for a file or folder;
+/// a choice closes it. The typed path is cleared while it is closed.
 pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut Vec<Action>) {
     if model.dialog != Some(DialogKind::Open) {
         own.path.clear();
@@ -129,7 +130,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> OpenRepl
     answer
 }
 
-/// Draws a scene's name and lesson; returns true when it is chosen.
+/// Draws a button with a scene's name, and its lesson; returns true when the button is clicked.
 fn scene_row(ui: &mut Ui, name: &str, lesson: &str) -> bool {
     let text = RichText::new(name).color(theme::of(ui).text);
     ui.horizontal(|ui| {

@@ -70,7 +70,8 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
     }
 }
 
-/// Draws from right to left: adapter, frame time, bytes, and the running job.
+/// Draws from right to left: adapter, frame time, which is asked for where it is not known, the capture's bytes, a
+/// film's progress, and the running job, or the last export where nothing runs.
 fn costs(ui: &mut Ui, model: &mut Model) {
     if let Some(capture) = &model.frame.capture {
         let adapter = &capture.adapter;
@@ -96,7 +97,7 @@ fn costs(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws the progress of an animation that is being written; it can be stopped.
+/// Draws the progress of a film that is being written, with a button that cancels it; nothing where none is.
 fn film(ui: &mut Ui, model: &mut Model) {
     let Some(progress) = model.answers.under_way::<FilmOf>().running else { return };
     if ui.small_button("Cancel").on_hover_text("Stop writing the animation; nothing of it is left").clicked() {

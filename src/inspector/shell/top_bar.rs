@@ -34,7 +34,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws the name of what is open, with a menu of what was.
+/// Draws the name of what is open, with a menu that opens recent sources again; nothing where nothing is open.
 fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     let Some(name) = open_name(model) else { return };
     let text = RichText::new(&name).color(theme::of(ui).text);
@@ -89,7 +89,8 @@ fn open_name(model: &Model) -> Option<String> {
     of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} ({what})", capture.scene)))
 }
 
-/// Draws one button for each technique, joined.
+/// Draws one button for each technique, or a list where the window is narrow; choosing another one runs the scene with
+/// it. Where no scene is open, only the capture's technique, or that it is another program's.
 fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else {
         // A capture folder: its technique can't be changed.
@@ -130,7 +131,8 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
-/// Returns the settings of a technique that differ from its defaults: `casters light-facing`.
+/// Returns the settings of a technique, as used now or last in this scene, that differ from its defaults: `casters
+/// light-facing`, separated by commas. Empty where none does or it was not used.
 fn changes(scene: &OpenScene, technique: Technique) -> String {
     let choice = if scene.draft.choice.technique() == technique {
         Some(&scene.draft.choice)

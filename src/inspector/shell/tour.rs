@@ -18,13 +18,13 @@ use egui::{Label, Margin, RichText, Ui};
 const LIT: u8 = 0;
 const SHADOW: u8 = 1;
 
-/// The tour that is running, if any.
+/// The tour that is running, if any, and its stop.
 #[derive(Debug, Default)]
 pub struct Tours {
     at: Option<TourState>,
 }
 
-/// The tour, the stop, and its state.
+/// A running tour: its index, the index of its stop, and whether that stop waits for its frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TourState {
     tour: usize,
@@ -41,7 +41,7 @@ impl Tours {
         self.go_to_stop(model, tour, 0, actions);
     }
 
-    /// Goes to a stop of the tour of a technique.
+    /// Goes to a stop of the tour of a technique; does nothing where the technique has no tour.
     pub fn go_to_stop_of(&mut self, model: &mut Model, technique: Technique, stop: usize, actions: &mut Vec<Action>) {
         if let Some((tour, _)) = tour_of(technique) {
             self.go_to_stop(model, tour, stop, actions);
@@ -64,14 +64,15 @@ impl Tours {
         run_technique(model, found.stops[stop].technique(found), actions);
     }
 
-    /// Stores an error for the stop that is waiting, which shows it.
+    /// Stores an error for the stop that waits for its frame, which shows it; does nothing where none waits.
     pub fn note_error(&mut self, error: &str) {
         if let Some(tour) = self.at.as_mut().filter(|tour| tour.is_pending) {
             tour.error = Some(error.to_owned());
         }
     }
 
-    /// Returns why the stop has no frame, and gets none without the user's help; `None` while one may come.
+    /// Returns why the stop has no frame, and gets none without the user's help; `None` where no stop waits, or while a
+    /// run is awaited or a job is running.
     fn trouble(&self, model: &Model) -> Option<String> {
         let at = self
             .at
@@ -81,7 +82,8 @@ impl Tours {
         Some(at.error.clone().or(problem).unwrap_or_else(|| "the run ended without a picture".to_owned()))
     }
 
-    /// Carries out the stop's moves, as soon as its capture is there.
+    /// Carries out the moves of the waiting stop as soon as the capture of its scene and technique is shown; until then
+    /// chooses its technique, if necessary. For a capture folder, which can't be run, the stop only stops waiting.
     pub fn go_on(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
         let Some(at) = self.at.clone().filter(|tour| tour.is_pending && !model.activity.is_waiting) else { return };
         let Some(tour) = TOURS.get(at.tour) else { return };
@@ -116,14 +118,16 @@ impl Tours {
     }
 }
 
-/// Returns the scene that a stop is about, where another one is open.
+/// Returns the built-in scene that a stop, or the last stop before it that names one, is about; `None` where that scene
+/// is open or none is named.
 fn scene_to_open(model: &Model, tour: &Tour, stop: usize) -> Option<&'static str> {
     let scene = tour.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go))?;
     let is_open = model.scene.as_ref().is_some_and(|open| open.name == scene);
     (!is_open).then_some(scene)
 }
 
-/// Chooses a technique; where it is chosen already, and has no frame, runs it again.
+/// Chooses a technique, which runs it; where it is chosen already, is not what is shown and no run is awaited, runs it
+/// again.
 fn run_technique(model: &mut Model, technique: Technique, actions: &mut Vec<Action>) {
     let is_chosen = model.scene.as_ref().is_some_and(|scene| scene.draft.choice.technique() == technique);
     let is_of = |capture: &Capture| {
@@ -170,13 +174,15 @@ fn scene_of(go: &[TourMove]) -> Option<&'static str> {
     go.iter().find_map(|go| if let TourMove::Scene(name) = go { Some(*name) } else { None })
 }
 
-/// Returns the pixel nearest to the middle that has this label under the first light.
+/// Returns the pixel nearest to the middle that has this label in the first mask of any light; `None` where there is no
+/// mask or no such pixel.
 fn pixel_with(capture: &Capture, label: u8) -> Option<[u32; 2]> {
     let image = capture.lights.iter().find_map(|light| light.shadow.as_ref())?;
     nearest_to_middle(image, |value| value == label)
 }
 
-/// Returns the wrong pixel nearest to the middle, where the truth is known.
+/// Returns the wrong pixel nearest to the middle, under the first light whose truth is known; `None` where there is
+/// none.
 fn wrong_pixel(capture: &Capture) -> Option<[u32; 2]> {
     let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
     nearest_to_middle(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))
@@ -191,7 +197,8 @@ fn nearest_to_middle(image: &crate::capture::Image, is_it: impl Fn(u8) -> bool) 
     found.min_by_key(|(x, y)| far(*x, *y)).map(|(x, y)| [x as u32, y as u32])
 }
 
-/// Draws the stop, over the status bar, while a tour is running.
+/// Begins a tour that a panel asked for, carries out its stop's moves, and draws the stop over the status bar while a
+/// tour is running.
 pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Action>) {
     if let Some(tour) = model.requests.tour.take() {
         own.start(model, tour, actions);
@@ -215,7 +222,8 @@ pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Act
     }
 }
 
-/// Draws text and buttons; returns the stop to go to, `Some(None)` to end.
+/// Draws a stop's text and buttons, and `trouble` with a button to try again. Returns the index of the stop to go to,
+/// `Some(None)` to end the tour, `None` to stay.
 fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<Option<usize>> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();

@@ -43,7 +43,7 @@ const TECHNIQUES: [Technique; 6] = [
     Technique::ShadowMap,
 ];
 
-/// What a key does while the user walks.
+/// A command that a key carries out while the user walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WalkCommand {
     /// Walks in this direction while it is pressed: ahead, and to the right.
@@ -85,7 +85,7 @@ const fn key(key: Key, keys: &'static str, command: WalkCommand, does: &'static 
     WalkKey { key, keys, command, does }
 }
 
-/// All keys; both handling and help read them here.
+/// All keys that act while the user walks; both handling and help read them here.
 pub const KEYS: [WalkKey; 13] = [
     key(Key::W, "W", WalkCommand::Go(1, 0), "walk ahead"),
     key(Key::S, "S", WalkCommand::Go(-1, 0), "walk back"),
@@ -102,7 +102,9 @@ pub const KEYS: [WalkKey; 13] = [
     key(Key::Escape, "Esc", WalkCommand::Leave, "stop walking, free the pointer"),
 ];
 
-/// Acts on keys and mouse of this frame while the user walks; returns true then, and no other keys are to act.
+/// Carries out this frame's keys and mouse movement while the user walks, and returns true, so that no other keys act;
+/// also lets a key begin to walk. Where a dialog opens, help is asked for or the window loses the focus, it ends
+/// walking and returns false.
 pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bool {
     if !model.walk.is_on() {
         return begins(ctx, model);
@@ -186,7 +188,8 @@ fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec
     }
 }
 
-/// Goes through the overlays of the picture: silhouettes, then volumes, then the shadow alone, then none.
+/// Goes on to the next view of shadow geometry: silhouettes, then volumes, then the mask alone, then the plain picture.
+/// Other overlays stay.
 fn next_overlay(model: &mut Model) {
     let kind_now = model.kind();
     let on = &mut model.modes.overlays;
@@ -218,7 +221,8 @@ fn next_size(model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
-/// Rotates and moves the camera by the input since the last step, once that step's frame is shown.
+/// Rotates and moves the camera by the input since the last step, and runs the scene; waits while a frame is awaited,
+/// or walls that are needed are not known. Does nothing where nothing moves.
 fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     let is_down = |key| ctx.input(|input| input.key_down(key));
     let goes: DVec3 = KEYS.iter().filter(|key| is_down(key.key)).map(|key| way(key.command)).sum();
@@ -296,7 +300,8 @@ fn fallen(model: &mut Model, eye: DVec3, by: DVec3, seconds: f64, walls: &Arc<Wa
     }
 }
 
-/// Returns the walls of the scene to be run; until they are known, the previous ones.
+/// Returns the walls of the scene as it will be run, which are asked for; until they are known, the last ones. `None`
+/// without a scene, without any walls known yet, or where neither collision nor gravity needs them.
 fn walls(model: &Model) -> Option<Arc<Walls>> {
     let scene = model.scene.as_ref().filter(|_| model.walk.collides || model.walk.weight.is_some())?;
     let time = if scene.animated { scene.draft.time } else { 0.0 };
@@ -311,7 +316,8 @@ fn way(command: WalkCommand) -> DVec3 {
     }
 }
 
-/// Rotates a camera about its eye; up is the world's.
+/// Rotates a camera about its eye by mouse movement in points: right about the world's vertical axis, down about the
+/// horizontal one, up to a steepest pitch. The target's distance stays.
 fn turn(camera: &mut Camera, by: Vec2) {
     let ahead = camera.target - camera.eye;
     let Some(direction) = ahead.try_normalize() else { return };

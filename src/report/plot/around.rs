@@ -6,7 +6,8 @@ use super::{
 };
 use crate::report::{Report, ReportRow, table};
 
-/// Returns a sentence that describes the plot, for screen readers.
+/// Returns a sentence on what the plot shows, for screen readers: the number of rows, the scenes, and the rows on the
+/// Pareto front.
 pub fn summary(report: &Report) -> String {
     let (rows, scenes) = (report.rows.len(), report.scenes());
     let front: Vec<String> = report.rows.iter().filter(|row| row.pareto).map(ReportRow::summary).collect();
@@ -27,7 +28,8 @@ pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
     plot.add_heading(&lines) + 4.0
 }
 
-/// Returns the lines of a text, each at most `width` points wide.
+/// Returns the text in lines at most `width` points wide, broken at spaces; a longer word has a line of its own and
+/// exceeds that.
 fn wrapped(text: &str, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -42,8 +44,8 @@ fn wrapped(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
-/// Returns the legend as a plot `width` points wide: each technique's mark, and what filled marks, lines and whiskers
-/// mean.
+/// Returns the legend as a plot `width` points wide: the mark of each technique that has a measured row, and what
+/// filled marks, lines and whiskers mean. Empty where nothing was measured.
 pub fn legend(report: &Report, width: f64) -> Plot {
     let mut legend = Plot::empty(width);
     let mut used: Vec<(&'static TechniqueStyle, &str)> = Vec::new();
@@ -85,7 +87,8 @@ struct LegendFlow<'a> {
 }
 
 impl LegendFlow<'_> {
-    /// Adds an entry: a sign of 14 points' width, which `sign` draws at a position, then its text.
+    /// Adds an entry to the legend: a sign about 14 points wide, which `sign` draws at a position, then its text.
+    /// Begins a new line first where the entry would exceed the width.
     fn add(&mut self, words: &str, ink: PlotInk, sign: &dyn Fn(&mut Plot, [f64; 2])) {
         let taken = 18.0 + text_width(words, SMALL_SIZE) + 14.0;
         if self.at[0] > 8.0 && self.at[0] + taken > self.width {
@@ -101,7 +104,8 @@ impl LegendFlow<'_> {
     }
 }
 
-/// Returns notes about rows that are not in the plot, or not at their own position.
+/// Returns lines, at most `width` points wide, about rows that are not drawn, with the reason, and about those that
+/// took 0 ms and are drawn at the left edge. Empty where there are none.
 pub fn notes(report: &Report, width: f64) -> Vec<String> {
     let mut notes = Vec::new();
     for row in &report.rows {

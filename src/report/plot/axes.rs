@@ -23,14 +23,16 @@ pub(crate) struct Tick {
 }
 
 impl Tick {
-    /// Returns ticks at these `values` of a scale.
+    /// Returns ticks at these `values`, in order: their positions on the scale, and their numbers with `unit` after a
+    /// no-break space.
     pub fn along(scale: &LogScale, values: impl IntoIterator<Item = f64>, unit: &str) -> Vec<Tick> {
         let tick = |value| Tick { at: scale.position(value), text: format!("{}\u{a0}{unit}", number(value)) };
         values.into_iter().map(tick).collect()
     }
 }
 
-/// Returns a tick's number as text, as short as it is exact.
+/// Returns a tick's number as text: as it is from 1e-5 to below 1000, with separated thousands to below 1e7 (cut to
+/// whole numbers), else in scientific notation.
 fn number(value: f64) -> String {
     match value {
         1e-5..1e3 => value.to_string(),
@@ -55,8 +57,8 @@ pub(crate) struct Axes {
 }
 
 impl Axes {
-    /// Returns axes within `outer` that contain all `percents`, with ticks at least `apart` points from one to the next
-    /// and a band of `lanes` below.
+    /// Returns axes within `outer` that contain all positive `percents`, with vertical ticks at least `apart` points
+    /// from one to the next and none above 100 per cent. Below is a band of `lanes` for rows with 0.
     pub fn new(
         outer: PlotRect,
         lanes: usize,
@@ -74,7 +76,8 @@ impl Axes {
         Axes { area, band, lane_height, up, x_ticks, y_ticks }
     }
 
-    /// Returns the y coordinate of a percentage of wrong pixels; where it is 0, that of the `lane` of the band.
+    /// Returns the y coordinate of a percentage of wrong pixels on the logarithmic axis; where it is 0, the middle of
+    /// the band's `lane`, which counts from 0 at the top.
     pub fn height(&self, percent: f64, lane: usize) -> f64 {
         if percent > 0.0 {
             self.up.position(percent)
@@ -83,7 +86,8 @@ impl Axes {
         }
     }
 
-    /// Returns a grid line for each tick.
+    /// Returns a grid line for each tick: one through the area for a vertical tick, two for a horizontal one (area and
+    /// band).
     pub fn grid(&self) -> Vec<PlotLine> {
         let [left, right] = [self.area.min[0], self.area.max[0]];
         let level = self.y_ticks.iter().map(|tick| PlotLine::grid([[left, tick.at], [right, tick.at]]));
@@ -102,7 +106,7 @@ impl Axes {
         ]
     }
 
-    /// Returns the texts of all ticks, and of the band.
+    /// Returns the texts of all ticks, and that of the band for rows without a wrong pixel.
     pub fn tick_texts(&self) -> impl Iterator<Item = PlotText> {
         let beside = |y, text: &str| PlotText::small([self.area.min[0] - 6.0, y], text).anchored(TextAnchor::End);
         let none = beside((self.band.min[1] + self.band.max[1]) / 2.0, NONE_WRONG);

@@ -35,7 +35,8 @@ pub struct ChartFrame {
 }
 
 impl ChartFrame {
-    /// Returns axes that contain the rows of all `scenes`, in charts of `size`.
+    /// Returns the axes that charts of all these scenes share, so that they can be compared, in charts of `size`
+    /// points; `compact` leaves less space above and below.
     pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2], compact: bool) -> ChartFrame {
         let [top, below] = if compact { [COMPACT_TOP, COMPACT_BOTTOM] } else { [TOP, BOTTOM] };
         let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
@@ -84,7 +85,8 @@ impl ChartFrame {
     }
 }
 
-/// Returns the chart of these `rows` of the report, at a position of the page.
+/// Returns the chart of these `rows` (indices) of the report, `corner` being its upper left corner on the page: marks,
+/// whiskers, the front, labels and grid.
 pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, corner: [f64; 2]) -> SceneChart {
     let captions = captions(report, rows);
     let Axes { area, band, .. } = frame.axes;
@@ -116,7 +118,8 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &ChartFrame, c
     SceneChart { texts: frame.texts(&title), title, area, band, lines, spots, labels }.moved(corner)
 }
 
-/// Returns the rows without a wrong pixel, those on the Pareto front first: they are nearest to the chart's area.
+/// Returns the rows without a wrong pixel, those on the Pareto front first, then by median time: the first are nearest
+/// to the chart's area.
 fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a ReportRow)> {
     let rows = rows.iter().map(|index| (*index, &report.rows[*index]));
     let mut rows: Vec<_> = rows.filter(|(_, row)| row.wrong_fraction == 0.0).collect();
@@ -124,8 +127,8 @@ fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a ReportRo
     rows
 }
 
-/// Returns a lane for each row of the band, so that marks with their labels stay apart; beyond `most` lanes they may
-/// overlap.
+/// Returns for each row of the band, by its index, the first lane in which its mark and label are clear of earlier
+/// ones; where all `most` lanes are taken, one in turn, so that texts may overlap.
 fn lanes(
     rows: &[(usize, &ReportRow)],
     captions: &BTreeMap<usize, MarkCaption>,
@@ -190,7 +193,8 @@ struct MarkCaption {
     names_technique: bool,
 }
 
-/// Returns a text for each row: one row of a technique has its name, the others what distinguishes them.
+/// Returns a text for each row: the row of a technique that is on the front and fastest has its full name; the others
+/// have their label, which says what distinguishes them, or the name where that is empty.
 fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, MarkCaption> {
     let caption = |index: &usize| {
         let row = &report.rows[*index];
@@ -247,7 +251,8 @@ fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
     keys.into_iter().map(along).rev().max_by_key(longest).unwrap_or_default()
 }
 
-/// Returns the Pareto front as a staircase line: rows above it and to its right are beaten.
+/// Returns the Pareto front of these rows as a staircase line from left to right; `None` where fewer than two rows are
+/// on it.
 fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<PlotLine> {
     let mut on_front: Vec<[f64; 2]> =
         rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();
@@ -266,7 +271,8 @@ fn segments(lines: &[PlotLine]) -> impl Iterator<Item = [[f64; 2]; 2]> {
     lines.iter().flat_map(|line| line.points.windows(2).map(|pair| [pair[0], pair[1]]))
 }
 
-/// Places texts beside marks, and lines to those that are far away. Names of techniques go first, then the front.
+/// Places texts beside marks, and lines to those that are far away. Names of techniques are placed first, then rows on
+/// the front; empty texts are left out, and so are those without a free place unless they name a technique.
 fn label(
     report: &Report,
     spots: &[PlotPoint],
@@ -293,7 +299,7 @@ fn label(
 }
 
 impl SceneChart {
-    /// Returns the same chart at another position of the page.
+    /// Returns the chart moved by this vector (right, down), points.
     pub(crate) fn moved(self, [right, down]: [f64; 2]) -> SceneChart {
         let to = |[x, y]: [f64; 2]| [x + right, y + down];
         let rect = |rect: PlotRect| PlotRect { min: to(rect.min), max: to(rect.max) };

@@ -5,7 +5,7 @@
 
 use super::{PlotInk, PlotLine, PlotRect, PlotText, RADIUS, SMALL_SIZE, TextAnchor, text_width};
 
-/// A text that is to be placed beside a mark.
+/// A text that is to be placed beside a mark, with the area that it must stay in.
 #[derive(Debug, Clone)]
 pub struct LabelRequest {
     /// Centre of the mark, points.
@@ -71,7 +71,8 @@ pub fn words_and_leaders(wishes: &[LabelRequest], obstacles: &LabelObstacles) ->
     (placed.into_iter().map(|placed| placed.text).collect(), leaders)
 }
 
-/// Returns the place of each label, found in the order of `wishes`; `None` for those that are left out.
+/// Returns the place of each label, found in the order of `wishes`: near its mark; where nothing is free there, farther
+/// away with a line to it if it must be shown, else `None`.
 pub fn place(wishes: &[LabelRequest], obstacles: &LabelObstacles) -> Vec<Option<PlacedLabel>> {
     let mut taken: Vec<PlotRect> = Vec::new();
     wishes
@@ -106,7 +107,8 @@ fn best(wish: &LabelRequest, away: f64, obstacles: &LabelObstacles, taken: &[Plo
     candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, text)| text)
 }
 
-/// Returns the label's text at the distance `away` from its mark, in a direction.
+/// Returns the label's text `away` points from its mark in a direction, anchored towards it. To the left or right it is
+/// also clear of the mark's whisker, if that is not too long.
 fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     let anchor = if right > 0.0 {
         TextAnchor::Start
@@ -123,7 +125,7 @@ fn beside(wish: &LabelRequest, [right, down]: [f64; 2], away: f64) -> PlotText {
     PlotText::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
 }
 
-/// Returns the rectangle that a mark with this centre covers.
+/// Returns the square that a mark with this centre covers.
 fn around([x, y]: [f64; 2]) -> PlotRect {
     PlotRect { min: [x - RADIUS, y - RADIUS], max: [x + RADIUS, y + RADIUS] }
 }
@@ -136,7 +138,7 @@ fn leader(from: [f64; 2], rect: &PlotRect) -> [[f64; 2]; 2] {
     [start, to]
 }
 
-/// Returns whether a segment touches the rectangle (Liang and Barsky 1984).
+/// Returns whether a segment touches the rectangle, its border included (Liang and Barsky 1984).
 fn crosses([from, to]: &[[f64; 2]; 2], rect: &PlotRect) -> bool {
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {

@@ -49,7 +49,7 @@ const fn style(technique: &'static str, mark: MarkShape, paper: [u8; 3], screen:
     TechniqueStyle { technique, mark, paper, screen }
 }
 
-/// The styles of all techniques, in teaching order.
+/// The styles of all techniques, in the order of [`Technique::ALL`].
 pub static STYLES: [TechniqueStyle; Technique::ALL.len()] = {
     let mut styles = [const { style("", MarkShape::Hexagon, [0; 3], [0; 3]) }; Technique::ALL.len()];
     let mut index = 0;
@@ -76,7 +76,7 @@ const fn look(technique: Technique) -> TechniqueStyle {
     style(technique.name(), mark, paper, screen)
 }
 
-/// Style of a technique that is not in the table.
+/// The style of a technique that this version does not know: a grey hexagon.
 pub static UNKNOWN: TechniqueStyle = style("", MarkShape::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
 
 /// Returns the style of a technique; a neutral one for a name that is not known.
@@ -117,7 +117,8 @@ impl MarkShape {
     }
 }
 
-/// Returns the outline of a plus sign of two bars.
+/// Returns the outline of an upright plus sign of two bars around the origin, a little larger than a circle of
+/// `radius`.
 fn bars(radius: f64) -> Vec<[f64; 2]> {
     let [short, long] = [0.4 * radius, 1.25 * radius];
     let arm = [[-short, -short], [-short, -long], [short, -long]];

@@ -12,7 +12,8 @@ pub struct LogScale {
 /// The least ratio of a scale's ends: two ticks are always inside.
 const LEAST_RATIO: f64 = 8.0;
 
-/// Returns the range of positive, finite values with a margin around them; `fallback` where there are none.
+/// Returns the smallest and largest of the positive, finite values, widened by a factor at both ends and so that they
+/// are at least `LEAST_RATIO` apart; `fallback` where there are none.
 pub fn range(values: impl Iterator<Item = f64>, fallback: [f64; 2]) -> [f64; 2] {
     const MARGIN: f64 = 1.35;
     let usable = values.filter(|value| value.is_finite() && *value > 0.0);
@@ -33,7 +34,8 @@ impl LogScale {
         LogScale { low, high, start, end }
     }
 
-    /// Returns the position of a value in points; values beyond an end are placed at it.
+    /// Returns the position of a value on the logarithmic axis, in points; values beyond an end (0 and less too) are
+    /// placed at it.
     pub fn position(&self, value: f64) -> f64 {
         let [low, high] = [self.low.log10(), self.high.log10()];
         let share = (value.max(self.low).log10() - low) / (high - low);

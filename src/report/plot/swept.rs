@@ -24,7 +24,8 @@ const NAMES: f64 = 58.0;
 /// Distance from a name to the next below it, points.
 const NAME_HEIGHT: f64 = 13.0;
 
-/// Returns the plot of a report that is a sweep: frame times against the sweep's values.
+/// Returns the plot of a report that is a sweep: for each scene a chart of frame times against the sweep's values, one
+/// below the other.
 pub fn sweep(report: &Report) -> Plot {
     let scenes = report.scenes();
     let name = report.rows.iter().find_map(|row| Some(row.sweep.as_ref()?.name.clone())).unwrap_or_default();
@@ -43,8 +44,8 @@ pub fn sweep(report: &Report) -> Plot {
     plot
 }
 
-/// Returns the lines of a scene's chart: the name of each technique with its settings, and its rows from value to
-/// value.
+/// Returns the lines of a scene's chart: for each technique with its settings the name and the indices of its rows, in
+/// the order of values. Rows that are not of a sweep, or not measured, are left out.
 fn lines_of(report: &Report, scene: &str) -> Vec<(String, Vec<usize>)> {
     let mut lines: Vec<(String, Vec<usize>)> = Vec::new();
     for index in report.rows_of(scene) {

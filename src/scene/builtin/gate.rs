@@ -17,7 +17,8 @@ const SIZE: [f64; 3] = [1.7, 2.6, 0.5];
 /// Numbers of boxes, and from which to which size relative to the outermost, from outside to inside.
 const GROUPS: [(u32, f64, f64); 3] = [(250, 1.0, 0.85), (6, 0.8, 0.79), (44, 0.6, 0.55)];
 
-/// Builds the scene. The floor is at height 0, the wall behind the gate at z = −1.6.
+/// Builds the scene `gate`: a caster of nested boxes above a floor, at height 0, before a wall at z = −1.6, with a
+/// point light.
 pub fn build() -> Result<Scene, MeshError> {
     let floor = shapes::quad([14.0, 10.0])?;
     let wall = shapes::parallelogram(DVec3::new(-7.0, 0.0, -1.6), [DVec3::X * 14.0, DVec3::Y * 5.0])?;
@@ -38,7 +39,7 @@ pub fn build() -> Result<Scene, MeshError> {
         .build())
 }
 
-/// Returns one mesh, the outermost box first: one caster of 300 closed shells.
+/// Returns one mesh of 300 boxes inside each other, the outermost first: one caster of 300 closed shells.
 fn nested_boxes() -> Result<Mesh, MeshError> {
     let sizes = GROUPS.iter().flat_map(|(count, outer, inner)| {
         let step = (outer - inner) / f64::from(count - 1);

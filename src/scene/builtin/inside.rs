@@ -23,7 +23,7 @@ const SLAT_HEIGHT: f64 = 2.6;
 const SUN: DVec3 = DVec3::new(0.25, 1.0, 0.12);
 const EYE: [f64; 3] = [-0.25, 1.6, 4.0];
 
-/// Builds the scene. The ground is at height 0; slats run away from the eye, along z.
+/// Builds the scene `inside`, with the eye under slats that run away from it, along z. The ground is at height 0.
 pub fn build() -> Result<Scene, MeshError> {
     let ground = Arc::new(shapes::quad([30.0, 30.0])?);
     let slat = Arc::new(shapes::cuboid([0.22, 0.16, 9.0])?);

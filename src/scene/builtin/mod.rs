@@ -16,7 +16,7 @@ mod two_lights;
 
 use super::{MeshError, Scene, SceneError};
 
-/// A scene that code builds.
+/// A scene that code builds: its name, its lesson, and how it is built.
 #[derive(Debug, Clone, Copy)]
 pub struct Builtin {
     /// Its name on the command line.
@@ -26,7 +26,7 @@ pub struct Builtin {
     build: fn() -> Result<Scene, MeshError>,
 }
 
-/// All of them; the first is the default.
+/// All built-in scenes; the first is the default.
 pub const ALL: &[Builtin] = &[
     Builtin {
         name: "tori",
@@ -96,7 +96,7 @@ pub const ALL: &[Builtin] = &[
 ];
 
 impl Builtin {
-    /// Returns the scene of that name.
+    /// Returns the built-in scene of exactly that name; `None` where there is none.
     pub fn named(name: &str) -> Option<&'static Builtin> {
         ALL.iter().find(|builtin| builtin.name == name)
     }

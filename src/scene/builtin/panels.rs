@@ -42,7 +42,8 @@ const PARALLELOGRAMS: [Panel; 9] = [
     panel("purple panel", [0.60, 0.19, 0.38], [14.0, -72.0, -440.0], [60.0, -8.0, 22.0], [-16.0, 56.0, -10.0]),
 ];
 
-/// Measures of room and light are those of the source that the scene is from.
+/// Builds the scene `panels`: a box that is open towards the eye, with four slanted panels in it, nine parallelograms
+/// in all, and a point light. Its measures are those of the source that the scene is from.
 pub fn build() -> Result<Scene, MeshError> {
     let objects = PARALLELOGRAMS.iter().map(Panel::object).collect::<Result<Vec<Object>, _>>()?;
     Ok(SceneBuilder::new("panels")

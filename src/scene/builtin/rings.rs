@@ -12,7 +12,8 @@ const BLUE: [f32; 3] = [0.09, 0.40, 0.78];
 const ORANGE: [f32; 3] = [0.78, 0.35, 0.02];
 const PURPLE: [f32; 3] = [0.60, 0.19, 0.38];
 
-/// Measures are those of the source that the scene is from; its tori rotate, and the one on the plane dips into it.
+/// Builds the scene `rings`: a plane at height 0 and three tori that rotate: one that dips into the plane, one beyond
+/// the light, and one under the plane. Its measures are those of the source that the scene is from.
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.5, 0.2, 64, 32)?);
     let turning = |name: &str, color, at: [f64; 3]| {

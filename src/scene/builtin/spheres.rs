@@ -12,7 +12,8 @@ const FLOOR: [f32; 3] = [0.72, 0.70, 0.66];
 /// Slices and stacks: twice the slices, times the stacks less one, are triangles.
 const FINENESS: [[u32; 2]; 3] = [[10, 11], [15, 16], [90, 91]];
 
-/// Balls of radius 0.5 in a row, and a small one that emits light's colour where the lamp is, and casts nothing.
+/// Builds the scene `spheres`: balls of radius 0.5 in a row, each of other fineness, on a checkered floor, and a small
+/// one where the light is, which glows and neither casts nor receives.
 pub fn build() -> Result<Scene, MeshError> {
     let lamp = DVec3::new(0.9, 2.1, 1.3);
     let floor = Material { checks: 0.5, ..Material::matte(FLOOR) };

@@ -21,7 +21,8 @@ const BALLS: [(&str, [f32; 3], [f64; 3]); 5] = [
 ];
 const BALL_RADIUS: f64 = 0.3;
 
-/// Builds the scene. The floor is at height 0; the flight that receives climbs to the right up to the wall.
+/// Builds the scene `steps`: two flights of stairs, a wall and balls on a floor at height 0; the larger flight climbs
+/// to the right up to the wall.
 pub fn build() -> Result<Scene, MeshError> {
     let floor = Arc::new(shapes::quad([9.0, 8.0])?);
     let flight = Arc::new(shapes::stairs(8, 0.2, 0.32, 2.4)?);

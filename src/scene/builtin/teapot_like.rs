@@ -15,7 +15,7 @@ const CUP: [f32; 3] = [0.72, 0.66, 0.52];
 /// Segments around the axis.
 const AROUND: u32 = 56;
 
-/// Builds the scene. The table's top is at height 0.
+/// Builds the scene `teapot-like`: a pot that spins and a cup on a round table, whose top is at height 0.
 pub fn build() -> Result<Scene, MeshError> {
     let table = Arc::new(shapes::cylinder(3.4, 0.16, 96)?);
     let glazed =
@@ -36,7 +36,7 @@ pub fn build() -> Result<Scene, MeshError> {
         .build())
 }
 
-/// Returns all parts in one mesh: one caster.
+/// Returns body, lid, spout and handle of the pot in one mesh: one caster.
 fn pot() -> Result<Mesh, MeshError> {
     let mut outline = curve([[0.62, 0.0], [1.15, 0.12], [1.25, 0.85], [0.66, 1.2]], 18);
     outline.push(DVec2::new(0.62, 1.26));
@@ -51,7 +51,7 @@ fn pot() -> Result<Mesh, MeshError> {
     shapes::joined([(&body, DVec3::ZERO), (&lid, raised), (&spout, DVec3::ZERO), (&handle, DVec3::ZERO)])
 }
 
-/// Returns a cubic Bézier curve as points, both ends included.
+/// Returns a cubic Bézier curve as `pieces` + 1 points, both ends included.
 fn curve(control: [[f64; 2]; 4], pieces: u32) -> Vec<DVec2> {
     let [a, b, c, d] = control.map(DVec2::from_array);
     let at = |step: u32| {
@@ -63,7 +63,8 @@ fn curve(control: [[f64; 2]; 4], pieces: u32) -> Vec<DVec2> {
     (0..pieces).map(at).chain([d]).collect()
 }
 
-/// Returns a tube around such a curve in the plane z = 0; `radius` by the position along it, 0 to 1.
+/// Returns a tube around a Bézier curve in the plane z = 0; `radius` returns its radius by the curve's parameter, 0 to
+/// 1.
 fn tube(control: [[f64; 2]; 4], radius: impl Fn(f64) -> f64) -> Result<Mesh, MeshError> {
     const PIECES: u32 = 16;
     let points = curve(control, PIECES).into_iter().zip(0..);

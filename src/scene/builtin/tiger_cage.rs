@@ -43,7 +43,8 @@ const CORD: f64 = 0.8;
 /// The swing of an ideal pendulum of that length.
 const SWING: Swing = Swing { pivot: PIVOT, axis: DVec3::new(0.35, 0.0, 1.0), degrees: 20.0, period_seconds: 1.8 };
 
-/// Builds the scene. The floor is at height 0, the origin in the middle of the cells.
+/// Builds the scene `tiger-cage`: two rows of cells in a hall with a walkway above, lit by a lamp that swings. The
+/// floor is at height 0, the origin in the middle of the cells.
 pub fn build() -> Result<Scene, MeshError> {
     let mut objects = hall()?;
     objects.extend(cells()?);
@@ -65,7 +66,7 @@ pub fn build() -> Result<Scene, MeshError> {
         .build())
 }
 
-/// Floor, roof and outer walls. The floor is one sheet; walls stand through it.
+/// Returns floor, roof and outer walls. The floor is one sheet; walls reach below it.
 fn hall() -> Result<Vec<Object>, MeshError> {
     let half_width = CORRIDOR_HALF + CELL_DEPTH;
     let length = 2.0 * HALF_LENGTH + LANDING;
@@ -90,7 +91,7 @@ fn hall() -> Result<Vec<Object>, MeshError> {
     ])
 }
 
-/// Fronts with doors, partitions, beds and bars of both rows.
+/// Returns fronts with doors, partitions, beds and bars of both rows of cells.
 fn cells() -> Result<Vec<Object>, MeshError> {
     let front = Arc::new(cell_fronts()?);
     let partition = Arc::new(shapes::cuboid([CELL_DEPTH - WALL, CELL_HEIGHT + SUNK, WALL])?);
@@ -124,7 +125,7 @@ fn cells() -> Result<Vec<Object>, MeshError> {
     Ok(objects)
 }
 
-/// Returns one wall along x with a door to each cell, upright on the floor.
+/// Returns one wall along x with a door to each cell, upright, reaching below the floor at height 0.
 fn cell_fronts() -> Result<Mesh, MeshError> {
     let mut lines = vec![-HALF_LENGTH];
     for cell in 0..CELLS {
@@ -135,7 +136,7 @@ fn cell_fronts() -> Result<Mesh, MeshError> {
     shapes::plate(&lines, &[-SUNK, DOOR[1], CELL_HEIGHT], WALL, |column, row| column % 2 == 1 && row == 0)
 }
 
-/// Returns the ceiling of a cell: bars along the corridor, let into the partitions, and one across.
+/// Returns the ceiling of a cell: bars along the corridor, which reach into the partitions, and one across under them.
 fn bars() -> Result<Mesh, MeshError> {
     const SPACING: f64 = 0.19;
     const COUNT: u32 = 12;

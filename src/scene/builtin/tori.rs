@@ -71,7 +71,8 @@ const TORI: [Orbiting; 4] = [
     },
 ];
 
-/// Builds the scene. The room's origin is its centre.
+/// Builds the scene `tori`: four tori that orbit a point light inside a room whose centre is the origin; the room
+/// itself casts nothing.
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.66, 0.22, 64, 28)?);
     let plaster = Material { color: PLASTER, ..Material::default() };

@@ -15,7 +15,8 @@ const RED: [f32; 3] = [0.66, 0.10, 0.05];
 const WARM: [f32; 3] = [1.0, 0.60, 0.24];
 const COOL: [f32; 3] = [0.30, 0.52, 1.0];
 
-/// Builds the scene. The slab's top is at height 0.
+/// Builds the scene `two-lights`: columns, a ball and a ring on a slab, whose top is at height 0, under a point and a
+/// directional light.
 pub fn build() -> Result<Scene, MeshError> {
     let slab = Arc::new(shapes::cuboid([6.4, 0.2, 5.0])?);
     let column = Arc::new(shapes::cylinder(0.24, 1.7, 48)?);

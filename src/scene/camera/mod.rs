@@ -44,7 +44,7 @@ pub struct Ray {
     pub along: DVec3,
 }
 
-/// The view rays of a picture.
+/// The view rays of a camera's picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraRays {
     world_from_view: DMat3,
@@ -143,12 +143,12 @@ impl Camera {
         if self.is_parallel() { self.eye + self.rays(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
     }
 
-    /// Returns the name of [`Camera::counting_place`], as it is shown.
+    /// Returns in words where volumes are counted from ([`Camera::counting_place`]).
     pub fn counting_place_name(&self) -> &'static str {
         if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
     }
 
-    /// Returns the view rays of a picture of this width over height.
+    /// Returns the view rays of a picture whose width is `aspect` times its height.
     pub fn rays(&self, aspect: f64) -> CameraRays {
         let half = self.half_height();
         CameraRays {
@@ -213,7 +213,8 @@ impl Camera {
 }
 
 impl CameraRays {
-    /// Returns the ray through a point of the picture, by x and y from −1 to 1, right and up.
+    /// Returns the ray, relative to the eye, through a point of the picture, given by x and y from −1 to 1, right and
+    /// up. Along it, distance 1 is one metre of depth along the view axis.
     #[inline]
     pub fn through(&self, at: DVec2) -> Ray {
         let place = at * self.half;
@@ -242,9 +243,9 @@ impl Projection {
     pub const NAMES: [&str; 3] = ["perspective", "orthographic", "oblique"];
     /// The usual angle of an oblique projection, degrees.
     pub const USUAL_ANGLE: f64 = 45.0;
-    /// Cabinet projection's factor.
+    /// The depth factor of a cabinet projection.
     pub const CABINET: f64 = 0.5;
-    /// Cavalier projection's factor.
+    /// The depth factor of a cavalier projection.
     pub const CAVALIER: f64 = 1.0;
 
     /// Returns whether it is the perspective projection.
@@ -269,7 +270,8 @@ impl Projection {
         }
     }
 
-    /// Checks its own numbers, as [`Camera::check`] does.
+    /// Checks the projection's own numbers: half height from 1e-30 to 1e30, angle within ±360 degrees, factor from 0 to
+    /// 100. The error says what must be.
     fn check(self) -> Result<(), &'static str> {
         let is_usable = |half_height: f64| (1e-30..=1e30).contains(&half_height);
         match self {

@@ -21,7 +21,7 @@ const WIDTH_OVER_HEIGHT: f64 = 1.35;
 const NEAR: f64 = 0.01;
 const FOV_Y_DEGREES: f64 = 45.0;
 
-/// The bounding box of a scene's objects.
+/// The axis-aligned bounding box of a scene's objects, from which camera and light are placed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneBounds {
     low: DVec3,
@@ -62,13 +62,14 @@ impl SceneBounds {
         self.low / 2.0 + self.high / 2.0
     }
 
-    /// Returns a white point light above in front.
+    /// Returns a white point light above in front, at a distance in proportion to the box's extent.
     pub fn light(&self) -> Light {
         let towards_light = TOWARDS_LIGHT.normalize();
         Light::point(self.middle() + towards_light * LIGHT_DISTANCE * self.extent())
     }
 
-    /// Returns a camera that has all of `points` in view, in a picture wider than high.
+    /// Returns a perspective camera that looks at the box's middle from above in front and has all of `points` in view,
+    /// in a picture wider than high, without a far plane.
     pub fn camera<'a>(&self, points: impl IntoIterator<Item = &'a DVec3>) -> Camera {
         let back = TOWARDS_EYE.normalize();
         let right = DVec3::Y.cross(back).normalize();

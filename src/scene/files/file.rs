@@ -32,7 +32,8 @@ use crate::scene::{Scene, SceneError};
 use problem::SceneFileProblem;
 use std::path::{Path, PathBuf};
 
-/// Returns the models and pictures that a scene file names; empty where it can't be read, which loading reports.
+/// Returns the paths of the models and pictures that a scene file names, beside that file, sorted and each once; empty
+/// where it can't be read, which loading reports.
 pub fn models_of(path: &Path) -> Vec<PathBuf> {
     let table = read_text(path, "scene file").ok().and_then(|text| text.parse::<toml::Table>().ok());
     let objects = table.as_ref().and_then(|table| table.get("objects")?.as_array());
@@ -62,7 +63,8 @@ pub fn load(file: &Path) -> Result<Scene, SceneError> {
     })
 }
 
-/// `name` is the scene's unless the text gives one.
+/// Returns the scene of a scene file's text. Its name is `name` unless the text gives one; models are read from
+/// `folder`.
 fn parse(text: &str, name: &str, folder: &Path) -> Result<Scene, SceneFileProblem> {
     let table = toml::from_str(text).map_err(|error| SceneFileProblem::of_toml(&error))?;
     build::scene(table, name, folder)

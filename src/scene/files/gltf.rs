@@ -38,7 +38,7 @@ use std::sync::Arc;
 /// The most vertices of all objects together, each instance counted: each has its own position in every frame.
 const MOST_VERTICES: usize = 1 << 23;
 
-/// The content of a file.
+/// The content of a glTF file, as objects, lights and camera of a scene.
 #[derive(Debug)]
 pub struct LoadedGltf {
     /// Objects in the order of the file's tree.
@@ -53,7 +53,8 @@ pub struct LoadedGltf {
     pub not_taken: Vec<Unsupported>,
 }
 
-/// Returns a name of the file's as it can be shown and written to other files: in one line, and not too long.
+/// Returns a name of the file's as it can be shown and written to other files: in one line, at most 80 characters,
+/// trimmed. `otherwise` gives one where it has none or it is blank.
 fn named(given: Option<&str>, otherwise: impl FnOnce() -> String) -> String {
     const MOST: usize = 80;
     let plain: String =
@@ -61,7 +62,7 @@ fn named(given: Option<&str>, otherwise: impl FnOnce() -> String) -> String {
     if plain.trim().is_empty() { otherwise() } else { plain.trim().to_owned() }
 }
 
-/// Reads a file.
+/// Reads a glTF file (.gltf or .glb) with its buffers and pictures.
 pub fn load(file: &Path) -> Result<LoadedGltf, SceneError> {
     let document = GltfDocument::open(file)?;
     read(&document, file).map_err(|reason| SceneError::Read { file: file.to_owned(), reason })
@@ -227,7 +228,8 @@ fn read(document: &GltfDocument, file: &Path) -> GltfResult<LoadedGltf> {
     Ok(LoadedGltf { objects, pointers, lights, camera: camera.map(|eye| eye.it), not_taken: refusals.into_list() })
 }
 
-/// Returns the mesh of a node in world space: with its skin, or by the node's matrix.
+/// Returns the mesh of a node in world space: moved by the joints of its skin, if it has one, otherwise by the node's
+/// matrix.
 fn in_world(
     document: &GltfDocument,
     nodes: &GltfNodes,
@@ -255,7 +257,8 @@ fn in_world(
     meshes.mesh(index, VertexTransform::Skinned(&joints))
 }
 
-/// Returns the meshes of a file as its scene has them, each with the pointer that names it.
+/// Returns the meshes of a glTF file as its scene has them, each once with the pointer that names it, sorted by
+/// pointer; empty where the file can't be read.
 pub fn named_meshes(file: &Path) -> Vec<(Arc<Mesh>, String)> {
     let Ok(loaded) = load(file) else { return Vec::new() };
     let all = loaded.pointers.into_iter().zip(loaded.objects.into_iter().map(|object| object.mesh));

@@ -12,7 +12,7 @@ use crate::scene::{Mesh, Scene, SceneError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The format of a model's file.
+/// The format of a model's file: OBJ, PLY or glTF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelFormat {
     Obj,
@@ -22,7 +22,8 @@ pub enum ModelFormat {
 }
 
 impl ModelFormat {
-    /// Returns the format by the name's ending; `None` for any other.
+    /// Returns the format by the file name's ending, in any case: `obj`, `ply`, `gltf` or `glb`; `None` for any other.
+    /// The file is not read.
     pub fn of(file: &Path) -> Option<ModelFormat> {
         let ending = file.extension()?.to_ascii_lowercase();
         match ending.to_str()? {
@@ -34,7 +35,8 @@ impl ModelFormat {
     }
 }
 
-/// Splits `model.glb#/meshes/2` into file and pointer; any other name has no pointer.
+/// Splits `model.glb#/meshes/2` into file and pointer; a name whose part before the `#` is not a glTF file's is all
+/// file, without a pointer.
 pub fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
         Some((file, pointer)) if ModelFormat::of(Path::new(file)) == Some(ModelFormat::Gltf) => (file, Some(pointer)),
@@ -52,8 +54,8 @@ pub struct ModelReader {
 }
 
 impl ModelReader {
-    /// Reads the mesh in a file, of a glTF file the one that `pointer` names. A name without a known ending is an
-    /// OBJ's.
+    /// Reads the mesh in a file; in a glTF file the one that `pointer` names. A file without a known ending is read as
+    /// OBJ. Pictures, and the last glTF file, are shared with later calls.
     #[cfg_attr(not(feature = "program"), expect(unused_variables, reason = "only glTF files have pointers"))]
     pub fn mesh(&mut self, file: &Path, pointer: Option<&str>) -> Result<Mesh, SceneError> {
         match ModelFormat::of(file) {
@@ -64,7 +66,7 @@ impl ModelReader {
     }
 }
 
-/// Reads a file that is one mesh.
+/// Reads a PLY or OBJ file as one mesh; one with any other ending is read as OBJ.
 fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneError> {
     match ModelFormat::of(file) {
         #[cfg(feature = "program")]
@@ -75,7 +77,8 @@ fn of_one_mesh(file: &Path, pictures: &mut ImageLoader) -> Result<Mesh, SceneErr
     }
 }
 
-/// Returns the scene of a model: completed by light, camera and floor where its file has none.
+/// Returns the scene of a model: completed by light, camera and, with `floor`, a floor where its file has none. `up` is
+/// not used for glTF files.
 pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let scene = match ModelFormat::of(file) {
         #[cfg(feature = "program")]
@@ -85,7 +88,8 @@ pub fn scene(file: &Path, floor: bool, up: UpAxis) -> Result<Scene, SceneError> 
     scene.map_err(|error| error.in_file(file))
 }
 
-/// Returns the other files that a model consists of; empty where it can't be read, which loading reports.
+/// Returns the other files that a model consists of (libraries, buffers, pictures); empty where it has none or can't be
+/// read, which loading reports.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     match ModelFormat::of(file) {
         Some(ModelFormat::Obj) => obj::files_of(file),
@@ -96,7 +100,7 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
 }
 
 /// Returns the meshes of a file as its scene has them, each with the name that a scene file gives it where the file is
-/// named `called`.
+/// named `called`; empty for other formats and files that can't be read.
 pub fn named_meshes(file: &Path, called: &str) -> Vec<(Arc<Mesh>, String)> {
     match ModelFormat::of(file) {
         #[cfg(feature = "program")]

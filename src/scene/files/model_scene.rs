@@ -43,8 +43,8 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Sc
     completed(name, vec![model], floor)
 }
 
-/// Returns the scene of a glTF file. One without lights or a camera gets them, and one that has neither is a bare
-/// model.
+/// Returns the scene of a glTF file. Without lights or a camera it gets them; one that has neither is a bare model, and
+/// only that gets a floor, where `floor` is true.
 #[cfg(feature = "program")]
 pub(super) fn gltf_scene(name: &str, loaded: gltf::LoadedGltf, floor: bool) -> Result<Scene, SceneError> {
     let gltf::LoadedGltf { objects, lights, camera, not_taken, .. } = loaded;
@@ -58,7 +58,8 @@ pub(super) fn gltf_scene(name: &str, loaded: gltf::LoadedGltf, floor: bool) -> R
     })
 }
 
-/// Returns these objects with a light, a camera and, with `floor`, a floor.
+/// Returns a scene of these objects with a light, a camera and, with `floor`, a floor under them as the last object. An
+/// error where they have no finite size, or are too large or too small.
 fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene, SceneError> {
     let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
     let positions: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
@@ -88,7 +89,7 @@ fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene,
     })
 }
 
-/// Returns a floor around the model's own origin, facing up.
+/// Returns a square floor a little below the model, facing up, with the model's own origin above its middle.
 fn floor_under(model: &SceneBounds) -> Result<Object, SceneError> {
     let half = FLOOR_REACH * model.extent();
     let y = model.lowest() - FLOOR_GAP * model.extent();

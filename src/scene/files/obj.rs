@@ -34,8 +34,8 @@ pub(in crate::scene) fn load_among(file: &Path, pictures: &mut ImageLoader) -> R
     parse(&raw, folder, pictures).map_err(|problem| problem.of(file))
 }
 
-/// Returns the libraries of a model, and the pictures that they show; empty where it can't be read, which loading
-/// reports.
+/// Returns the libraries that a model names, and the pictures that they show, sorted and each once; empty where it
+/// can't be read, which loading reports.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     let Ok(raw) = read_old_text(file, "OBJ model") else { return Vec::new() };
     let named = raw.lines().filter_map(|line| line.trim().strip_prefix("mtllib"));
@@ -47,7 +47,8 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Parses a model. Material libraries are read from `folder`.
+/// Parses an OBJ text as one mesh. Material libraries are read from `folder`; what is not supported is recorded in the
+/// mesh. A text without faces, or whose triangles all have equal corners, is an error.
 fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, FileProblem> {
     let mut contents =
         text::read(raw).map_err(|text::ObjLineProblem { line, reason }| FileProblem::Line(line, reason))?;
@@ -65,7 +66,8 @@ fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, F
     Ok(mesh.without(libraries.refusals.into_list()))
 }
 
-/// Adds all but the positions: face after face, and the statements between them.
+/// Returns a builder with all of the mesh but the positions: faces in order as triangles, in groups as the statements
+/// between them say. It has normals or texture coordinates where at least one whole face has them.
 fn assemble(contents: &ObjContents, folder: &Path, libraries: &mut MaterialLibraries) -> MeshBuilder {
     let faces = || {
         let mut rest = contents.corners.as_slice();
@@ -168,7 +170,8 @@ impl ObjAssembly<'_, '_> {
         });
     }
 
-    /// Makes the faces since the last group a group, if there are any. The name and material still apply.
+    /// Makes the triangles since the last group a group with the current name and material, if there are any, and
+    /// begins the next; name and material still apply. Records a texture that can't be placed.
     fn end_part(&mut self) {
         let triangles = self.part.start..self.builder.triangles.len();
         let from = self.part.material.map(|material| self.libraries.material(material));

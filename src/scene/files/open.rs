@@ -7,7 +7,7 @@ use crate::scene::suggestion::nearest;
 use crate::scene::{Scene, SceneError, UpAxis};
 use std::path::{Path, PathBuf};
 
-/// What to open, and how a bare model is completed.
+/// The name or path of a scene to open, and how a bare model is completed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenSpec {
     /// A built-in name, or the path of a scene file (`.toml`), a glTF file (`.gltf`, `.glb`) or a model (`.obj`, `.ply`).
@@ -26,8 +26,8 @@ impl OpenSpec {
     }
 }
 
-/// Returns the files that a scene consists of: none for a built-in one, a model, or a scene file with its models, and
-/// their libraries and pictures.
+/// Returns the files that a scene consists of: none for a built-in one; otherwise its own path first, the models that a
+/// scene file names, and their libraries, buffers and pictures. A file may be listed twice.
 pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     if Builtin::named(&spec.name).is_some() {
         return Vec::new();
@@ -59,7 +59,8 @@ pub fn is_scene_file(path: &Path) -> bool {
     SceneFileKind::of(path).is_some()
 }
 
-/// Returns whether this names a bare model, whose up axis is not defined. A glTF file's is y.
+/// Returns whether this names a bare model (`.obj`, `.ply`), whose up axis is not defined; false for a built-in scene,
+/// a scene file, and a glTF file, whose up axis is y.
 pub fn is_model(name: &str) -> bool {
     let format = ModelFormat::of(Path::new(name)).filter(|_| Builtin::named(name).is_none());
     matches!(format, Some(ModelFormat::Obj | ModelFormat::Ply))

@@ -60,7 +60,8 @@ fn read(file: &Path) -> Result<Mesh, FileProblem> {
     Ok(mesh.without(not_taken(&header, &wanted).into_list()))
 }
 
-/// Splits off the header with its last line.
+/// Splits a PLY file after its header's last line, `end_header`; an error where it is empty, does not begin with `ply`,
+/// or has no end of the header within a limit.
 fn split_header(bytes: &[u8]) -> Result<(&[u8], &[u8]), &'static str> {
     if bytes.is_empty() {
         return Err("is empty: give a PLY model with content");
@@ -133,7 +134,8 @@ impl PlyProperties {
         })
     }
 
-    /// Returns whether this property is read.
+    /// Returns whether this property of this element is read: positions, normals and texture coordinates of vertices,
+    /// and corners of faces and strips.
     fn takes(&self, element: &str, property: &str) -> bool {
         match element {
             "vertex" => {
@@ -152,7 +154,8 @@ fn is_fraction(of: &ScalarType) -> bool {
     matches!(of, ScalarType::Float | ScalarType::Double)
 }
 
-/// Returns what the file contains and no mesh stores.
+/// Returns what the file contains and no mesh stores: other elements, colours and other properties, and pictures that
+/// its comments name.
 fn not_taken(header: &Header, wanted: &PlyProperties) -> UnsupportedList {
     let mut refusals = UnsupportedList::default();
     for element in header.elements.values().filter(|element| element.count > 0) {
@@ -193,7 +196,7 @@ struct PlyRow {
 }
 
 impl PlyRow {
-    /// Returns where a number of this name is stored.
+    /// Returns where a vertex's number of this property name is stored; `None` for a property that is not read.
     fn number(&mut self, name: &str) -> Option<&mut f64> {
         let at = |names: &[&str]| names.iter().position(|known| *known == name);
         if let Some(axis) = at(&PLACE) {
@@ -237,7 +240,7 @@ impl PropertyAccess for SkippedElement {
     }
 }
 
-/// Returns the property's number; `None` for a list.
+/// Returns a property's number as a float; `None` for a list.
 fn number(property: &Property) -> Option<f64> {
     match property {
         Property::Char(number) => Some(f64::from(*number)),
@@ -252,7 +255,7 @@ fn number(property: &Property) -> Option<f64> {
     }
 }
 
-/// Returns the property's list of whole numbers; empty for anything else.
+/// Returns a property's list of whole numbers; empty for anything else, also for lists of floats.
 fn integers(property: Property) -> Vec<i64> {
     fn of<T: Into<i64>>(numbers: Vec<T>) -> Vec<i64> {
         numbers.into_iter().map(T::into).collect()
@@ -277,7 +280,8 @@ struct PlyRows<'a> {
 }
 
 impl<'a> PlyRows<'a> {
-    /// Reads the next element, number `at` of its kind.
+    /// Reads the next element, number `at` of its kind (counted from 0), as text or binary, and advances; text is
+    /// parsed by `of_text`. An error where the file ends or the element does not match the header.
     fn next<E: PropertyAccess>(
         &mut self,
         element: &ElementDef,
@@ -313,7 +317,7 @@ impl<'a> PlyRows<'a> {
         })
     }
 
-    /// Returns the next line with anything on it.
+    /// Returns the next line that is not blank, with its line end, and counts the lines passed over; `None` at the end.
     fn line(&mut self) -> Option<&'a [u8]> {
         while !self.rest.is_empty() {
             let end = self.rest.iter().position(|byte| *byte == b'\n').map_or(self.rest.len(), |end| end + 1);
@@ -326,7 +330,8 @@ impl<'a> PlyRows<'a> {
         None
     }
 
-    /// Returns the error of the element that was read last: with its line, where there are lines.
+    /// Returns the error about the element that was read last, number `at` of its kind: with its line for a text file,
+    /// otherwise with its number.
     fn wrong(&self, what: &str, at: usize, reason: &str) -> FileProblem {
         match self.encoding {
             Encoding::Ascii => FileProblem::Line(self.line, format!("the {what} {reason}")),
@@ -335,7 +340,8 @@ impl<'a> PlyRows<'a> {
     }
 }
 
-/// Parses a line of text as an element; `None` where it does not match the header.
+/// Parses a line of text as an element, passing over properties that are not read; `None` where a number is missing or
+/// is none. Words after the last property are ignored.
 fn row_of_text(line: &str, element: &ElementDef) -> Option<PlyRow> {
     let mut row = PlyRow::default();
     let mut words = line.split_ascii_whitespace();
@@ -476,7 +482,9 @@ impl PlySurface {
         builder.build().map_err(|error| error.to_string())
     }
 
-    /// Adds a triangle of these corners.
+    /// Adds the triangle of these corners of the file to `builder`, with normals and texture coordinates where the file
+    /// has them; a corner's own coordinates come before its vertex's, and the triangle has none where one can't be
+    /// used.
     fn add(&self, corners: [usize; 3], builder: &mut MeshBuilder) {
         let vertices = corners.map(|corner| self.corners[corner]);
         builder.triangles.push(vertices);

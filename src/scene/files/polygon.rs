@@ -11,7 +11,8 @@ use glam::{DVec2, DVec3, Vec3};
 /// one is a fan, of the same outline.
 const MOST_EARS: usize = 1 << 14;
 
-/// Adds the triangles of a face, as indices into its corners, of which there are at least three.
+/// Calls `add` with each triangle of a face, as indices into its corners, of which there are at least three: ears where
+/// it is not convex, otherwise, or where that fails or there are very many corners, a fan. All have the face's winding.
 pub fn triangulate(corners: &[DVec3], add: impl FnMut([usize; 3])) {
     let ears = match corners.len() {
         3 | MOST_EARS.. => None,
@@ -38,7 +39,8 @@ fn fan(count: usize) -> impl Iterator<Item = [usize; 3]> {
     (2..count).map(|last| [0, last - 1, last])
 }
 
-/// Returns the corners in the plane, counter-clockwise; `None` where the face has no area.
+/// Returns the corners in the plane in which they are seen largest, counter-clockwise and scaled; `None` where the face
+/// has no area.
 fn projected(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     // Scaled to about 1, so that no product overflows.
     let first = *corners.first()? / 2.0;
@@ -55,7 +57,7 @@ fn projected(corners: &[DVec3]) -> Option<Vec<DVec2>> {
     (normal[axis] != 0.0).then(|| scaled.iter().map(|p| DVec2::new(p[u], p[v])).collect())
 }
 
-/// Returns whether it turns left at every corner and goes round once.
+/// Returns whether the outline never turns right (straight on counts as left) and goes round once.
 fn is_convex(flat: &[DVec2]) -> bool {
     let edge = |i: usize| flat[(i + 1) % flat.len()] - flat[i % flat.len()];
     let turns_left = (0..flat.len()).all(|i| edge(i).perp_dot(edge(i + 1)) >= 0.0);
@@ -65,7 +67,8 @@ fn is_convex(flat: &[DVec2]) -> bool {
     turns_left && reversals <= 2
 }
 
-/// Cuts a face ear by ear; `None` where that fails, as for a face that crosses itself.
+/// Cuts a counter-clockwise face into triangles, all counter-clockwise; `None` where that gives none. A face that
+/// crosses itself may not be covered.
 fn cut_ears(flat: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     let no_holes: [usize; 0] = [];
     let mut indices: Vec<usize> = Vec::new();

@@ -4,7 +4,7 @@ use crate::files::{ReadError, read_plain};
 use crate::scene::SceneError;
 use std::path::Path;
 
-/// Bytes of the largest text that is read.
+/// The largest text file that is read, bytes.
 pub const MOST_TEXT: u64 = 2 << 30;
 
 /// Returns the text of `file`, a byte order mark removed.
@@ -46,7 +46,8 @@ fn read(file: &Path, kind: &str, decode: impl FnOnce(Vec<u8>) -> Option<String>)
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
-/// Returns a word of a file as it may be in an error line: short, and no control characters.
+/// Returns a word of a file as it may be in an error line: in backticks, at most 40 characters with an ellipsis after
+/// them, control characters escaped.
 pub fn quoted(word: &str) -> String {
     const MOST: usize = 40;
     let shown: String = word.chars().take(MOST).flat_map(char::escape_debug).collect();

@@ -37,7 +37,7 @@ pub struct WalkerBody {
     eye: f64,
 }
 
-/// The state of a body: where it stands, or how it falls.
+/// Where a walker's body stands, or how it falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footing {
     /// Position of its feet, world space.
@@ -51,7 +51,7 @@ pub struct Footing {
 }
 
 impl WalkerBody {
-    /// Returns a body of this radius, metres.
+    /// Returns a body of this radius, metres, with its eye at a person's height, or higher for a large radius.
     pub fn new(radius: f64) -> WalkerBody {
         WalkerBody { radius, eye: EYE.max(STEP + radius * 1.5) }
     }
@@ -61,8 +61,8 @@ impl WalkerBody {
         feet + DVec3::Y * self.eye
     }
 
-    /// Returns the state of a body whose eye is here: on its feet where the ground is nearer to the eye than they would
-    /// be, else in the air.
+    /// Returns the state of a body whose eye is at `eye`: on the highest ground between its eye and where its feet
+    /// would be, even if that lifts them; else in the air, not yet falling.
     pub fn under(&self, eye: DVec3, walls: &Walls) -> Footing {
         let feet = eye - DVec3::Y * self.eye;
         let ground = self.ground(walls, feet, [feet.y, eye.y]);
@@ -102,7 +102,8 @@ impl WalkerBody {
         if head_meets { self.settled(walls, from, from.feet, step) } else { gone }
     }
 
-    /// Returns the state on its feet over a place, or a step of time farther down.
+    /// Returns the state after `step` seconds over the place `at`: on the highest ground between a step above it and
+    /// where it falls to (a step below where it stood on ground), else as much farther down and faster.
     fn settled(&self, walls: &Walls, from: Footing, at: DVec3, step: f64) -> Footing {
         let fallen = at.y - from.falls_by * step - GRAVITY * step * step / 2.0;
         // A body on the ground goes down steps on its feet.
@@ -118,7 +119,8 @@ impl WalkerBody {
         }
     }
 
-    /// Returns where feet get that should go by a short distance, height unchanged.
+    /// Returns where feet get that should go by a short distance, height unchanged: beside walls that are in the way,
+    /// or where they are if they can't. Without `collides`, or inside a wall that it can't leave, it goes freely.
     fn gone(&self, walls: &Walls, feet: DVec3, by: DVec3, collides: bool) -> DVec3 {
         let far = feet + by;
         // A body that can't be pushed out of a wall walks out of it.
@@ -140,8 +142,8 @@ impl WalkerBody {
         self.deepest(walls, feet).is_some()
     }
 
-    /// Returns the place beside walls at which the capsule is in none; `None` where it is not found, or only up or
-    /// down.
+    /// Returns the place, moved only sideways, at which the body is in no wall; the same where it is in none. `None`
+    /// where none is found, or it could only be pushed up or down.
     fn pushed_aside(&self, walls: &Walls, feet: DVec3) -> Option<DVec3> {
         let mut at = feet;
         for _ in 0..PUSHES {
@@ -154,8 +156,8 @@ impl WalkerBody {
         self.deepest(walls, at).is_none().then_some(at)
     }
 
-    /// Returns the point of the axis that is nearest to a wall, and the wall's point, where they are nearer than the
-    /// radius.
+    /// Returns the point of the body's axis that is nearest to a wall, and the wall's nearest point, where they are
+    /// nearer than the radius by more than a slack; `None` where none is.
     fn deepest(&self, walls: &Walls, feet: DVec3) -> Option<(DVec3, DVec3)> {
         let axis = self.axis(feet);
         let reach = DVec3::splat(self.radius);
@@ -180,7 +182,8 @@ impl WalkerBody {
         found
     }
 
-    /// Returns the highest ground under the footprint between two heights.
+    /// Returns the height of the highest ground under the footprint between two heights; `None` where there is none.
+    /// Upright triangles are no ground.
     fn ground(&self, walls: &Walls, feet: DVec3, [low, high]: [f64; 2]) -> Option<f64> {
         let half = self.radius / 2.0;
         let places = FOOTPRINT.map(|[x, z]| DVec2::new(feet.x + x * half, feet.z + z * half));
@@ -199,7 +202,8 @@ impl WalkerBody {
     }
 }
 
-/// Returns the height of a triangle over a place of the ground; `None` where it is not over it, or stands upright.
+/// Returns the height of a triangle above a place (x and z); `None` where the place is not under or over it, or it
+/// stands upright.
 fn height_at([a, b, c]: &Wall, place: DVec2) -> Option<f64> {
     let flat = [a, b, c].map(|corner| DVec2::new(corner.x, corner.z) - place);
     let cross = |from: usize, to: usize| flat[from].perp_dot(flat[to]);

@@ -26,7 +26,7 @@ pub struct Walls {
     trees: Vec<Arc<WallTree>>,
 }
 
-/// The walls of objects, cached as long as these stay where they are.
+/// The walls of each object of the last scene, which are used again while it stays where it is.
 #[derive(Debug, Default)]
 pub struct WallCache {
     /// Trees by the mesh's content and the pose.
@@ -34,8 +34,8 @@ pub struct WallCache {
 }
 
 impl WallCache {
-    /// Returns the walls of a scene at its time: of all objects that are drawn. Those of objects that have not moved
-    /// since the last call are not built again.
+    /// Returns the walls of a scene at its poses: of all visible objects. Those of objects with the same mesh and pose
+    /// as in the last call are not built again; all others are dropped.
     pub fn walls(&mut self, scene: &Scene) -> Walls {
         let tree = |object: &Object| {
             let key = (object.mesh.content_hash(), object.pose.bits());
@@ -60,8 +60,9 @@ impl Walls {
         Walls { trees: vec![Arc::new(WallTree::new(triangles))] }
     }
 
-    /// Returns where a sphere gets that starts at `from` and should go by `by`. One that starts in a wall and can't be
-    /// pushed out of it goes freely until it is out.
+    /// Returns where a sphere gets that starts at `from` and should go by `by`: it slides along walls and passes
+    /// through none. One that starts in a wall and can't be pushed out of it goes freely; it stays where a number is
+    /// not finite or the radius not positive.
     pub fn walk(&self, from: DVec3, by: DVec3, radius: f64) -> DVec3 {
         if !(by.is_finite() && from.is_finite() && radius > 0.0) {
             return from;
@@ -96,13 +97,13 @@ impl Walls {
         at
     }
 
-    /// Returns whether nothing is near the way between two points.
+    /// Returns whether no wall's box overlaps the box around the way between two points, enlarged by `radius`.
     fn is_free(&self, from: DVec3, to: DVec3, radius: f64) -> bool {
         let reach = DVec3::splat(radius);
         !self.any_near(from.min(to) - reach, from.max(to) + reach, |_| true)
     }
 
-    /// Returns whether there is no triangle.
+    /// Returns whether there is no wall.
     pub fn is_empty(&self) -> bool {
         self.trees.iter().all(|tree| tree.is_empty())
     }
@@ -116,7 +117,8 @@ impl Walls {
         self.trees.iter().any(|tree| tree.any_near(low, high, &mut visit))
     }
 
-    /// Returns the nearest place found at which the sphere is in no wall.
+    /// Returns a place near `at` at which the sphere touches no wall, found by pushing it out of the deepest one again
+    /// and again; the same where it is in none, `None` where none is found in a few pushes.
     fn pushed_out(&self, at: DVec3, radius: f64) -> Option<DVec3> {
         let mut at = at;
         for _ in 0..PUSHES {
@@ -130,7 +132,8 @@ impl Walls {
         self.deepest(at, radius * (1.0 - SLACK)).is_none().then_some(at)
     }
 
-    /// Returns the nearest point of the walls that is nearer than `radius`, with its wall.
+    /// Returns the point of the walls that is nearest to `at`, with its wall; `None` where none is nearer than
+    /// `radius`.
     fn deepest(&self, at: DVec3, radius: f64) -> Option<(DVec3, Wall)> {
         let mut found = None;
         let mut least = radius * radius;
@@ -187,7 +190,8 @@ pub(super) fn closest([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
     if whole == 0.0 { a } else { a + ab * (vb / whole) + ac * (vc / whole) }
 }
 
-/// Returns whether a segment crosses a triangle.
+/// Returns whether a segment goes from one side of a triangle to the other through it, edges included; not where it
+/// runs in the triangle's plane.
 fn is_crossed([a, b, c]: [DVec3; 3], from: DVec3, to: DVec3) -> bool {
     let normal = (b - a).cross(c - a);
     let (before, after) = (normal.dot(from - a), normal.dot(to - a));

@@ -15,7 +15,7 @@ const FEW: usize = 4;
 /// The deepest that halving a list by its median can get.
 const DEEPEST: usize = 64;
 
-/// A triangle, world space.
+/// The corners of a triangle that can't be walked through, world space.
 pub type Wall = [DVec3; 3];
 
 /// A tree of triangles by their position.
@@ -54,7 +54,7 @@ impl WallTree {
         tree
     }
 
-    /// Returns whether there is no triangle.
+    /// Returns whether the tree has no triangle.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
@@ -64,7 +64,8 @@ impl WallTree {
         self.nodes.first().map(|root| root.low.y)
     }
 
-    /// Adds the node of a run of the triangles that begins at `first`, with those below it.
+    /// Adds the node of a run of the triangles that begins at index `first`, with those below it; sorts the run so that
+    /// each half is a run of its own.
     fn grow(&mut self, triangles: &mut [Wall], first: usize) {
         let AxisBox { low, high } = AxisBox::around(triangles.iter().flatten().copied());
         let index = self.nodes.len();

@@ -21,7 +21,7 @@ pub fn cuboid(name: &str, center: [f64; 3], size: [f64; 3]) -> Result<Object, Me
     Ok(Object::of(name, shapes::cuboid(size)?).at(center))
 }
 
-/// Returns the scene moved by a vector, eye and lights with it.
+/// Returns the scene moved by a vector: objects, eye, target and point lights. Directional lights stay.
 pub fn carried(mut scene: Scene, by: DVec3) -> Scene {
     scene.camera.eye += by;
     scene.camera.target += by;
@@ -32,7 +32,8 @@ pub fn carried(mut scene: Scene, by: DVec3) -> Scene {
     scene
 }
 
-/// Returns the scene scaled about the origin by a factor, eye and lights with it.
+/// Returns the scene scaled about the origin: objects, eye, target, near and far planes and the places of point lights.
+/// Directional lights and ranges of lights stay.
 pub fn enlarged(mut scene: Scene, factor: f64) -> Scene {
     scene.camera.eye *= factor;
     scene.camera.target *= factor;

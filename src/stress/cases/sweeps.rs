@@ -279,7 +279,8 @@ const THIN_GAP: StressCase = StressCase {
     ..PLAIN
 };
 
-/// Returns the corners of two halves of a board, with a slit of this width along z between them.
+/// Returns the corners of two flat halves of a board at y 0, with a slit of this width along z between them; the half
+/// at negative x first, four corners each.
 fn slit(width: f64) -> [[f64; 3]; 8] {
     let half = |side: f64| {
         let [inner, outer] = [side * width / 2.0, side * (width / 2.0 + 1.6)];

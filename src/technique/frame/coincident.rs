@@ -23,7 +23,8 @@ type CornersKey = [[u64; 3]; 3];
 
 type CornersKeys = HashSet<CornersKey, RandomState>;
 
-/// Returns whether any two drawn triangles have the same three corners, bit for bit.
+/// Returns whether any two drawn triangles, of one object or of two, have the same three corners, bit for bit and in
+/// any order. Results about large objects are cached.
 pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> bool {
     let drawn: Vec<&FrameObject> = placed.iter().filter(|placed| placed.surface.is_some()).collect();
     let is_small = |placed: &FrameObject| placed.object.mesh.triangles().len() <= MOST_OF_SMALL;
@@ -64,15 +65,16 @@ pub(super) fn coincide(placed: &[FrameObject], cache: &mut GeometryCache) -> boo
     })
 }
 
-/// Adds the keys of an object's triangles to `keys`, and returns whether one of them was in there already.
+/// Returns whether a triangle of an object has the same corners as an earlier one of it or as one in `keys`, and adds
+/// its triangles to `keys`; stops adding at the first such triangle.
 fn has_doubles(placed: &FrameObject, keys: &mut CornersKeys) -> bool {
     let triangles = placed.object.mesh.triangles();
     keys.reserve(triangles.len());
     triangles.iter().any(|corners| !keys.insert(key(placed, corners)))
 }
 
-/// Returns whether two triangles of an object have the same hash, so that they may coincide. Takes a tenth of the
-/// memory of [`has_doubles`].
+/// Returns whether two triangles of an object have the same hash, so that they may coincide; false is certain. Takes a
+/// tenth of the memory of [`has_doubles`].
 fn may_have_doubles(placed: &FrameObject) -> bool {
     let state = RandomState::default();
     let hash = |corners: &[u32; 3]| state.hash_one(key(placed, corners));

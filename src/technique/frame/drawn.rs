@@ -34,7 +34,7 @@ impl SurfaceDrawing {
         SurfaceDrawing { program: Program::Label(Visibility::Everywhere), raster, label }
     }
 
-    /// Returns this drawing limited to pixels where the stencil, masked by `read_mask`, equals `reference`; it then
+    /// Returns this drawing limited to pixels where the stencil equals `reference`, both masked by `read_mask`; it
     /// writes no stencil.
     pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> SurfaceDrawing {
         let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
@@ -44,8 +44,8 @@ impl SurfaceDrawing {
         self
     }
 
-    /// Returns a drawing that adds the light where the masked stencil is 0, and increments the stencil there, so that
-    /// of surfaces at one depth only the first is lit.
+    /// Returns a drawing that adds the light, without another shadow test, where the stencil masked by `read_mask` is
+    /// 0; it increments the stencil there, so that of surfaces at one depth only the first is lit.
     pub fn light_once_where_zero(read_mask: u32) -> SurfaceDrawing {
         let once = StencilFace {
             compare: CompareFunction::Equal,

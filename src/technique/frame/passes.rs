@@ -32,7 +32,8 @@ impl FrameBuilder<'_> {
         SurfaceDrawing { program: Program::Light(how), ..self.light_everywhere() }
     }
 
-    /// Returns a drawing that multiplies the picture by what one layer of a light's texture lets through.
+    /// Returns a drawing that multiplies the picture, where surfaces are visible, by what one layer of a light's
+    /// texture lets through. The caller sets the layer of its draws.
     pub fn darken_through(&self) -> SurfaceDrawing {
         let raster = RasterState::visible_surface(ColorWrite::Multiply);
         SurfaceDrawing { program: Program::Through, raster, label: LIT.into() }
@@ -44,7 +45,8 @@ impl FrameBuilder<'_> {
         self.stencil_pass_from(0, light, name, purpose, draws);
     }
 
-    /// Adds a stencil pass whose stencil begins at `start`; with `start` 0, clears it only where that may matter.
+    /// Adds a pass that writes the stencil alone, which begins at `start`. With 0 it is cleared only where another
+    /// light has written it, or where clears may not be left out; one that is left out is recorded in the plan.
     pub fn stencil_pass_from(&mut self, start: u8, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let is_untouched = self.stencil_of.is_none();
         let is_cleared = start != 0 || (is_untouched && !self.common.allows(Decision::Clear));
@@ -58,8 +60,8 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// Adds a timed pass of a light that the camera sees. The first pass of a light clears the stencil if another light
-    /// wrote it.
+    /// Adds a timed pass of a light from the camera's view, limited to the light's scissor. It clears the stencil to 0
+    /// if another light wrote it, and counts as having written it itself.
     fn push_pass(&mut self, light: LightId, name: &str, purpose: &str, color: Option<ColorTarget>, draws: Vec<Draw>) {
         let depth_stencil = self.depth_stencil_of(light);
         self.stencil_of = Some(light);
@@ -78,12 +80,13 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// Returns the picture as a colour target that keeps its content.
+    /// Returns the picture as a colour target that is not cleared.
     fn stored_color(&self) -> ColorTarget {
         ColorTarget { attachment: self.color, layer: 0, clear: None }
     }
 
-    /// Gives a light a float attachment to count its shadow volumes in.
+    /// Adds a float attachment of the picture's size in which a light's shadow volumes are counted, and sets it as the
+    /// light's count.
     pub fn add_count(&mut self, light: LightId) {
         let count = self.add_attachment(Attachment {
             name: format!("{} count", light.name()),
@@ -96,7 +99,7 @@ impl FrameBuilder<'_> {
     }
 
     /// Adds a pass that adds to a light's float count, tested against the camera's depth. The light's first such pass
-    /// clears the count to `start`.
+    /// clears the count to `start`, later ones don't. Adds nothing where the light has no float count.
     pub fn count_pass(&mut self, start: u32, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let Some(attachment) = self.plan.lights[light.0].count else { return };
         let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
@@ -105,7 +108,8 @@ impl FrameBuilder<'_> {
         self.push_pass(light, name, purpose, Some(target), draws);
     }
 
-    /// Adds the first pass of the picture: draws the depth of all surfaces, and their colour in ambient light.
+    /// Adds the first pass of the picture: clears colour, depth and stencil, and draws the depth of all surfaces and
+    /// their colour in ambient light.
     pub fn ambient_pass(&mut self) {
         // Clamped depth lets through what lies between eye and near plane.
         let from_near = self.common.depth.clamps();
@@ -171,7 +175,8 @@ impl FrameBuilder<'_> {
         self.mask_pass_with(light, layers, Vec::new());
     }
 
-    /// Adds a mask pass ([`FrameBuilder::mask_pass`]) with more draws after its surfaces.
+    /// Adds a mask pass ([`FrameBuilder::mask_pass`]) with the draws `over` after its surfaces. Objects that receive
+    /// nothing are labelled as lit, in the first layer.
     pub fn mask_pass_with(&mut self, light: LightId, layers: &[SurfaceDrawing], over: Vec<Draw>) {
         let mut draws = Vec::new();
         let unshadowed = SurfaceDrawing::lit();
@@ -206,8 +211,8 @@ impl FrameBuilder<'_> {
         });
     }
 
-    /// Returns draws that darken visible receivers by one layer of the light's texture, except the pieces that own the
-    /// layer.
+    /// Returns draws that darken visible receivers by one layer of the light's texture. Pieces whose own layer that is
+    /// are left out: a silhouette does not fall on its caster.
     pub fn draws_through(&self, layer: usize) -> Vec<Draw> {
         let drawn = self.darken_through();
         let mut draws = self.surface_draws(|object| object.receives.then_some(&drawn));
@@ -250,8 +255,8 @@ impl FrameBuilder<'_> {
         pieces.iter().filter_map(draw).collect()
     }
 
-    /// Returns the picture's depth-stencil target for a pass of `light`; clears the stencil to 0 if another light wrote
-    /// it.
+    /// Returns the picture's depth-stencil target for a pass of `light`: depth is kept; the stencil, if there is one,
+    /// is cleared to 0 if another light wrote it last.
     fn depth_stencil_of(&self, light: LightId) -> DepthStencilTarget {
         let is_of_another = self.stencil_of.is_some_and(|other| other != light);
         let clear_stencil = (self.has_stencil && is_of_another).then_some(0);
@@ -287,8 +292,8 @@ impl FrameBuilder<'_> {
     }
 }
 
-/// Returns [`DrawConstants::checks_from`]: the eye's x and z within one period of the checkers, small enough for single
-/// precision.
+/// Returns [`DrawConstants::checks_from`]: the eye's x and z modulo two checks of the size `checks`, metres, small
+/// enough for single precision; zero without checks.
 fn checks_from(eye: DVec3, checks: f32) -> [f32; 2] {
     let pair = f64::from(checks) * 2.0;
     if pair > 0.0 { [eye.x, eye.z].map(|at| at.rem_euclid(pair) as f32) } else { [0.0; 2] }

@@ -91,13 +91,14 @@ impl FrameBuilder<'_> {
         Ok(())
     }
 
-    /// Records in the plan what a file contains and this program does not support.
+    /// Adds to the plan's left-out list, under the name `name`, what a file contains and this program does not support.
     fn name_not_taken(&mut self, decision: Decision, name: &str, list: &[Unsupported]) {
         let named = |one: &Unsupported| LeftOut::named(decision, &one.what, name, one.because.as_str());
         self.plan.left_out.extend(list.iter().map(named));
     }
 
-    /// Returns a piece for each group of the object that is placed next.
+    /// Returns a piece for each group of the object that is placed next, with its material and texture; textures that
+    /// are new are added to the plan. The common setting `shading` overrides the materials'.
     fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<SurfacePiece> {
         let (shading, index) = (self.common.shading, self.placed.len());
         let piece = |group: &MeshGroup| SurfacePiece {
@@ -139,7 +140,7 @@ impl FrameBuilder<'_> {
         }
     }
 
-    /// Returns the objects that are drawn or cast, and do not lie wholly outside a plane of the view.
+    /// Returns the placed objects that are drawn or cast, without those that lie wholly outside one plane of the view.
     fn in_view(&self) -> impl Iterator<Item = &FrameObject<'_>> {
         let [width, height] = self.job.size.map(f64::from);
         let view = ViewVolume::new(&self.job.scene.camera, width / height);

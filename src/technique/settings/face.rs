@@ -81,13 +81,14 @@ pub(in crate::technique) const fn words<T>(
 }
 
 impl<T: Copy + PartialEq> WordSetting<T> {
-    /// Returns the word that stands for a value.
+    /// Returns the setting's word that stands for a value; its first word for a value that no word stands for.
     pub fn word(&self, value: T) -> &'static str {
         let SettingValues::OneOf(words) = self.spec.values else { return self.spec.default };
         words[self.values.iter().position(|one| *one == value).unwrap_or(0)]
     }
 
-    /// Returns what this setting's word in `values` stands for.
+    /// Returns the value for which this setting's word in `values` stands; that of its default where the key is
+    /// missing, or the word is none of its words.
     pub fn read(&self, values: &SettingMap) -> T {
         let SettingValues::OneOf(words) = self.spec.values else { return self.values[0] };
         let set = self.spec.of(values);
@@ -123,7 +124,8 @@ pub(in crate::technique) const fn number(
 }
 
 impl NumberSetting {
-    /// Returns this setting's number in `values`, or its default.
+    /// Returns this setting's number in `values`; its default where the key is missing, or the text is no number of its
+    /// range.
     pub fn read(&self, values: &SettingMap) -> f64 {
         self.spec.of(values).parse().unwrap_or(0.0)
     }
@@ -149,7 +151,8 @@ pub(in crate::technique) const fn number_or(
 }
 
 impl NumberOrWordSetting {
-    /// Returns the number; `None` where the value is the word.
+    /// Returns the number after the setting's prefix in `values`; `None` where the value is a word. A missing or
+    /// invalid value counts as the default.
     pub fn read(&self, values: &SettingMap) -> Option<f64> {
         let SettingValues::WordOr { prefix, .. } = self.spec.values else { return None };
         self.spec.of(values).strip_prefix(prefix)?.parse().ok()

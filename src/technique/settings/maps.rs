@@ -147,7 +147,8 @@ pub struct MapSettings {
 }
 
 impl MapSettings {
-    /// Parses the values that a choice or a capture has; settings without a valid value have their defaults.
+    /// Parses the settings of shadow maps from a choice's or a capture's values; missing and invalid values become
+    /// their defaults.
     pub fn read(values: &SettingMap) -> MapSettings {
         MapSettings {
             size: MAP_SIZE.read(values) as u32,
@@ -242,7 +243,8 @@ pub struct TextureSettings {
 }
 
 impl TextureSettings {
-    /// Parses the settings of receiver textures.
+    /// Parses the settings of receiver textures; missing and invalid values become their defaults. Only size and
+    /// caching are read, the rest is fixed.
     pub fn of_receivers(values: &SettingMap) -> TextureSettings {
         let (is_single_pass, projects_backwards) = (true, false);
         TextureSettings {
@@ -255,7 +257,7 @@ impl TextureSettings {
         }
     }
 
-    /// Parses the settings of silhouettes.
+    /// Parses the settings of projected silhouettes; missing and invalid values become their defaults.
     pub fn of_silhouettes(values: &SettingMap) -> TextureSettings {
         TextureSettings {
             size: SILHOUETTE_SIZE.read(values) as u32,

@@ -101,7 +101,7 @@ pub struct PlanarSettings {
 }
 
 impl PlanarSettings {
-    /// Parses the values that are set; settings without a valid value have their defaults.
+    /// Parses the settings of planar shadows; missing and invalid values become their defaults.
     pub fn read(values: &SettingMap) -> PlanarSettings {
         let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
         PlanarSettings {

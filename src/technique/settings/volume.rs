@@ -275,7 +275,8 @@ pub enum CasterRule {
 
 impl VolumeSettings {
     /// Returns whether these settings make closed volumes in their right place and lose no step of the count, so that a
-    /// surface outside all volumes reads 0.
+    /// surface outside all volumes reads 0: both caps, tested light caps, no far vertices from the origin, no clamping
+    /// in the stencil.
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
         let loses_steps = self.operations == CountOperations::Clamping && !self.counts_in_float;
@@ -290,7 +291,7 @@ impl VolumeSettings {
         VolumeSettings { casters, ..VolumeSettings::read(&SettingMap::new()) }
     }
 
-    /// Parses the values that are set; settings without a valid value have their defaults.
+    /// Parses the settings of shadow volumes; missing and invalid values become their defaults.
     pub fn read(values: &SettingMap) -> VolumeSettings {
         VolumeSettings {
             casters: CASTERS.read(values),

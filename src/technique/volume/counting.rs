@@ -75,8 +75,8 @@ pub enum FaceSelection {
 }
 
 impl FaceSelection {
-    /// Returns the counting passes of a light in their order: one for both faces, or one each. Incrementing first keeps
-    /// clamped counts right up to 255.
+    /// Returns the counting passes of a light in their order: one for both faces, or with two passes incrementing
+    /// first, which keeps clamped counts right up to 255, unless the settings say otherwise.
     pub fn all(options: &VolumeSettings) -> &'static [FaceSelection] {
         match (options.two_pass, options.takes_away_first) {
             (false, _) => &[FaceSelection::BothFaces],
@@ -85,6 +85,7 @@ impl FaceSelection {
         }
     }
 
+    /// Returns the name of the counting pass: `volumes`, with two passes `volumes, adding` and `volumes, taking away`.
     pub fn name(self) -> &'static str {
         match self {
             FaceSelection::BothFaces => "volumes",

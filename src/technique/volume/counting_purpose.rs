@@ -81,7 +81,8 @@ impl CountingPurpose<'_> {
         }
     }
 
-    /// Returns the sentence that says what the count means when all faces are counted.
+    /// Returns the sentences that say what the count begins at, if that is worth saying, and what it means when all
+    /// faces are counted.
     fn left(&self) -> String {
         let begins = self.begins();
         let what = match self.by {
@@ -115,7 +116,8 @@ impl CountingPurpose<'_> {
         }
     }
 
-    /// Returns the words that say under which condition the count is right.
+    /// Returns the end of a sentence that says under which condition the count is right: where eye and near plane may
+    /// be, and which caps are lacking.
     fn condition(&self) -> String {
         let eye = match (self.by, self.start) {
             (Some(CountingMode::InFront), _) if self.chooses_side && self.is_parallel => {

@@ -80,8 +80,8 @@ pub struct CasterVolume<'a> {
 }
 
 impl VolumePlan {
-    /// Returns the casting triangles as parts that can be drawn, those that face the light first; empty where a vertex
-    /// shader chooses them.
+    /// Returns the casting triangles as light cap parts that can be drawn: those that face the light, then the flipped
+    /// ones. Empty runs are left out, and all where a vertex shader chooses them.
     pub fn casting(&self) -> impl Iterator<Item = CountedPart> {
         let runs = match &self.casting {
             CastingTriangles::Runs([light_cap, flipped]) => vec![(false, light_cap), (true, flipped)],
@@ -92,7 +92,9 @@ impl VolumePlan {
         parts.filter(|part| !part.triangles.is_empty())
     }
 
-    /// Returns the casting triangles, world space, each turned towards the light unless a vertex shader chooses them.
+    /// Returns the corners of the casting triangles in world space: those that face the light, then the flipped ones in
+    /// the surface's own vertex order. Where a vertex shader chooses, those that face `light` as its rule says, edge-on
+    /// ones included for `All`.
     pub fn casting_triangles(&self, frame: &FrameBuilder, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
         let placed = &frame.placed[self.object];
         let (corners, casters) = match &self.casting {
@@ -115,6 +117,7 @@ impl VolumePlan {
         self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
     }
 
+    /// Returns a draw for each needed part that adds to, or subtracts from, a float count.
     pub fn float_draws(&self, options: &VolumeSettings) -> Vec<Draw> {
         let draw = |part: &CountedPart| {
             let (raster, count) = self.counting.float_raster(part, options);
@@ -124,6 +127,8 @@ impl VolumePlan {
         self.needed.iter().map(draw).collect()
     }
 
+    /// Returns the draw of one part of the volume by position only, with this raster state and a name such as `sides of
+    /// bunny`.
     pub fn draw(&self, part: &CountedPart, raster: RasterState) -> Draw {
         let what = match (part.part, part.flipped) {
             (DrawPart::Side, _) if part.grazes => "grazing sides",
@@ -151,7 +156,8 @@ impl VolumePlan {
     }
 }
 
-/// Makes the volume of a caster with far vertices that the CPU extrudes away from the light.
+/// Makes the volume of a caster with far vertices that the CPU extrudes away from the light, with the parts that must
+/// be counted. Adds nothing to the plan.
 ///
 /// # Errors
 /// Returns what to record where the caster needs no volume.
@@ -177,8 +183,8 @@ pub fn make(frame: &mut FrameBuilder, of: &CasterVolume, options: &VolumeSetting
     Ok(made)
 }
 
-/// Returns the mesh of a volume, the ranges of triangles that are its parts, and what replaces its far end where view
-/// rays are parallel.
+/// Returns the mesh of a volume and the ranges of triangles that are its parts; for parallel view rays and infinite
+/// extrusion also what replaces its far end, `None` otherwise.
 fn outlined(
     frame: &mut FrameBuilder,
     of: &CasterVolume,
@@ -220,8 +226,8 @@ fn outlined(
 }
 
 impl VolumeMesh {
-    /// Adds the parts that count. Records those that are not needed, except dark caps that the settings leave out
-    /// anyway.
+    /// Appends the parts that count to `needed`: sides, light caps and dark cap as `form` says. Records dark caps that
+    /// are not needed or are smaller, except where the settings leave them out anyway.
     fn add_parts(
         &mut self,
         form: VolumeSpec,
@@ -272,7 +278,8 @@ impl VolumeMesh {
 }
 
 impl ParallelFarEnd {
-    /// Returns words for the point that the sides lead away from; empty where that is the light itself.
+    /// Returns words for how far from the light the point lies that the sides lead away from: metres for a point light,
+    /// radians for a directional one; empty where it is the light itself.
     fn beside(self) -> String {
         match self.beside > 0.0 {
             true => {

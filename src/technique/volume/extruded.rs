@@ -17,15 +17,15 @@ use crate::scene::Scene;
 use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 
-/// Returns whether a vertex shader can extrude volumes in this scene and the settings ask for it. It can't for infinite
-/// volumes under parallel view rays.
+/// Returns whether the settings ask for volumes that a vertex shader extrudes and it can: not infinite ones under
+/// parallel view rays.
 pub fn can_serve(options: &VolumeSettings, scene: &Scene) -> bool {
     let ends_in_a_point = scene.camera.is_parallel() && options.extrusion == Extrusion::Infinite;
     options.by_vertex_shader && !ends_in_a_point
 }
 
-/// Returns whether a vertex shader extrudes the volumes of a light, and the record for the plan where the settings ask
-/// for that and it can't.
+/// Returns whether a vertex shader extrudes the volumes of a light, and the plan's record where the settings ask for
+/// that but it can't; `None` where they don't ask, or it can.
 pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) -> (bool, Option<LeftOut>) {
     let can = can_serve(options, frame.job.scene);
     let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
@@ -34,7 +34,8 @@ pub fn serves(frame: &FrameBuilder, light: LightId, options: &VolumeSettings) ->
     (can, cannot.then(|| LeftOut::new(Decision::VertexExtrusion, light.name(), because)))
 }
 
-/// Makes the volume of a caster that the vertex shader extrudes away from the light.
+/// Makes the volume of a caster that the vertex shader extrudes away from the light. Either cap that is needed brings
+/// both, and no number is added to the start of the count.
 pub fn make(frame: &mut FrameBuilder, of: &CasterVolume) -> VolumeMesh {
     let CasterVolume { light, index, casters, form, .. } = *of;
     let (position, eye) = (frame.light_position(light), frame.eye());

@@ -18,8 +18,8 @@ pub fn at(frame: &FrameBuilder, light: LightId, volumes: &[VolumePlan]) -> u32 {
     casting.filter(|corners| holds(*corners, light, place)).count() as u32
 }
 
-/// Returns whether the volume of one triangle, extended to infinity, contains a point; not if the point is on a side
-/// plane.
+/// Returns whether the volume of one triangle, extended to infinity away from a homogeneous light, strictly contains a
+/// point: not if it is on a side plane or in the triangle's plane. Exact.
 fn holds(corners: [DVec3; 3], light: DVec4, point: DVec3) -> bool {
     let [of_light, of_point] = [light, point.extend(1.0)].map(|place| side_of_triangle(corners, place));
     let [a, b, c] = corners;

@@ -37,7 +37,7 @@ pub struct FarPoint {
 }
 
 impl FarPoint {
-    /// Returns the far point of a camera; `None` for a perspective one, whose view rays end in as many points.
+    /// Returns the far point of a camera whose view rays are parallel; `None` for a perspective one.
     pub fn of(camera: &Camera) -> Option<FarPoint> {
         let world_from_view = camera.world_from_view();
         let shear = camera.projection.shear();

@@ -71,7 +71,8 @@ pub fn pass(frame: &mut FrameBuilder, light: LightId, options: &VolumeSettings, 
     }
 }
 
-/// Returns a raster state in which either face adds 1, whatever the depth.
+/// Returns a raster state in which a fragment of either face increments the count, whatever its depth: in the stencil,
+/// or in a float target where the settings count there.
 fn raster(options: &VolumeSettings) -> RasterState {
     let count = StencilFace {
         compare: CompareFunction::Always,

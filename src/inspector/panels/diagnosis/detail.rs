@@ -9,7 +9,8 @@ use crate::inspector::model::Model;
 use crate::reading::format;
 use egui::{Button, Color32, Label, RichText, Ui};
 
-/// Draws the details of the selected region.
+/// Draws the details of a diagnosis: the advice with its fixes, the causes of the selected region, if any, and what was
+/// found of meshes and flags.
 pub fn ui(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
@@ -44,7 +45,8 @@ pub fn ui(
     meshes_and_flags(ui, diagnosis);
 }
 
-/// While a fix is applied: draws buttons for the picture with it and without.
+/// Draws a button that switches between the picture with the applied fix and without it; nothing where no fix was
+/// applied.
 fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(applied) = own.applied.clone() else { return };
     let is_after = model.scene.as_ref().is_some_and(|scene| scene.draft.choice == applied.after);
@@ -92,7 +94,8 @@ fn cause(
     }
 }
 
-/// Draws a button that applies a fix to technique and settings; changes to the scene are left to the user.
+/// Draws a button that applies a fix to technique and settings and renders; off where it changes nothing. A fix that
+/// changes the scene is only described: that is left to the user.
 fn apply_button(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,

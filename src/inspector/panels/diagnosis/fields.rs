@@ -13,7 +13,7 @@ pub struct AppliedFix {
     pub after: Choice,
 }
 
-/// The state of the tab: what is selected in a diagnosis.
+/// The state of the tab Diagnosis: the selected region, the applied fix, and the diagnosis that they belong to.
 #[derive(Debug, Default)]
 pub struct DiagnosisPanel {
     /// Index of the selected region.
@@ -24,7 +24,7 @@ pub struct DiagnosisPanel {
 }
 
 impl DiagnosisPanel {
-    /// Clears the selection when the diagnosis is another one.
+    /// Clears the selected region and the applied fix where the diagnosis is another one than before, by content.
     pub fn follow(&mut self, diagnosis: &Arc<Diagnosis>) {
         let is_shown = |of: &Arc<Diagnosis>| Arc::ptr_eq(of, diagnosis) || of == diagnosis;
         if !self.of.as_ref().is_some_and(is_shown) {

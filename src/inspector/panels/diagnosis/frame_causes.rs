@@ -8,7 +8,8 @@ use crate::inspector::model::Model;
 use crate::reading::format;
 use egui::{RichText, ScrollArea, Ui};
 
-/// Draws the panel Diagnosis for another program's frame: each cause with its evidence and its proof.
+/// Draws the panel Diagnosis for another program's frame: a button that starts or cancels the diagnosis, an error, and
+/// once it is known each cause with its evidence and its proof.
 pub fn ui(ui: &mut Ui, model: &mut Model) {
     let reply = model.answers.under_way::<FaultsOf>();
     ui.horizontal(|ui| match reply.steps() {

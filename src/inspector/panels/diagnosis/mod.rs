@@ -28,7 +28,8 @@ const LIST_SHARE: f32 = 0.5;
 const INDENT: f32 = 28.0;
 const BELOW_TITLE: f32 = 26.0;
 
-/// Draws the panel Diagnosis: regions of wrong pixels, their causes, and the fixes with their proofs.
+/// Draws the panel Diagnosis: regions of wrong pixels, their causes, and the fixes with their proofs; the last
+/// diagnosis stays visible while another runs. For another program's frame, its own list of causes.
 pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
     if model.origin().is_some() {
         return frame_causes::ui(ui, model);
@@ -57,7 +58,8 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
     });
 }
 
-/// Draws the buttons, and the progress.
+/// Draws the button that starts the diagnosis with a summary, or, while one is running, its progress and a button that
+/// cancels it. It can't be started without a scene and a capture.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Option<&Diagnosis>) {
     let can_run = model.scene.is_some() && model.frame.capture.is_some();
     ui.horizontal(|ui| match reply.steps() {
@@ -82,7 +84,8 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
     });
 }
 
-/// Returns the findings in a sentence.
+/// Returns a sentence: how many compared pixels are wrong in the known diagnosis, and whether it is of what is shown
+/// now; without one, what diagnosing does or that a scene must be opened.
 fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
     match known {
         Some(diagnosis) => {
@@ -160,13 +163,14 @@ fn region_row(
     }
 }
 
-/// Returns the most likely cause, and how certain it is.
+/// Returns a region's most likely cause and how certain it is; where it has none, why.
 fn because(diagnosis: &Diagnosis, region: &RegionFound) -> String {
     let none = || diagnosis.without_cause(region).to_owned();
     region.causes.first().map_or_else(none, |found| format!("{} ({})", found.cause, found.proof.name()))
 }
 
-/// Returns the colour that this kind of region has in the error picture.
+/// Returns the colour that this kind of region has in the error picture; a region that is too dark has the false
+/// shadow's.
 fn color(kind: RegionKind) -> egui::Color32 {
     let finding = match kind {
         RegionKind::Wrong(finding) => finding,
@@ -175,7 +179,8 @@ fn color(kind: RegionKind) -> egui::Color32 {
     crate::inspector::look::findings::style(finding).color
 }
 
-/// Picks a pixel of a region, shows what is wrong around it, and selects the step that decided it.
+/// Picks a pixel of a region in the error picture, enlarged so that the region takes a good part of the panel, and
+/// selects the step that decided the region's light, if there is one.
 fn go_to(model: &mut Model, region: &RegionFound) {
     let [left, top, right, bottom] = region.bounds;
     if let Some(step) = model.frame.capture.as_ref().and_then(|capture| deciding_step(capture, region.light)) {
@@ -185,8 +190,9 @@ fn go_to(model: &mut Model, region: &RegionFound) {
     model.go_to(region.at, (right - left).max(bottom - top) + 1);
 }
 
-/// Returns the last pass of a light that draws into the picture before its labels are written: where its shadow was
-/// counted or drawn. Where there is none, the pass that writes the labels.
+/// Returns the index of the last pass of a light that draws into the picture or its float counts before its labels are
+/// written; where there is none, of the pass that writes the labels, or else of the light's last pass. `None` where the
+/// light has no pass.
 fn deciding_step(capture: &Capture, light: usize) -> Option<usize> {
     let target = |index: usize| match &capture.steps.get(index)?.snapshot {
         Snapshot::Frame(frame) => Some(frame.target),

@@ -14,7 +14,8 @@ use std::sync::Arc;
 const INDENT: f32 = 12.0;
 const MOST_INDENTED: usize = 4;
 
-/// Draws which program drew the frame, with which API, what recorded it, and what could not be read.
+/// Draws which program drew the frame, with which API, what recorded it, and what could not be read. Draws nothing for
+/// own frames.
 pub fn origin(ui: &mut Ui, model: &Model) {
     let Some(origin) = model.origin() else { return };
     let program = origin.program.as_ref().map_or_else(String::new, |program| format!("{program} · "));
@@ -32,14 +33,15 @@ pub fn groups_of(plan: &FramePlan, pass: usize) -> &[String] {
     plan.passes.get(pass).and_then(|pass| pass.recorded.as_ref()).map_or(&[], |recorded| &recorded.groups)
 }
 
-/// The debug groups of a frame, if it has any.
+/// The debug groups of a frame that has any, as its plan lists them for each pass.
 #[derive(Debug)]
 pub struct DebugGroups {
     plan: Arc<FramePlan>,
 }
 
 impl DebugGroups {
-    /// Returns the groups of the shown frame. Groups that hide the selected pass are opened when it has to be visible.
+    /// Returns the groups of the shown frame; `None` where no pass is in a group or the plan is not known. Where the
+    /// selected pass has to be scrolled to, the groups that hide it are opened; with another scene, all are.
     pub fn new(own: &mut PassesPanel, model: &Model) -> Option<DebugGroups> {
         let plan = model.frame.plan.clone()?;
         if (0..plan.passes.len()).all(|pass| groups_of(&plan, pass).is_empty()) {
@@ -58,15 +60,16 @@ impl DebugGroups {
         Some(groups)
     }
 
-    /// Returns the first pass of the group that contains a pass on a level.
+    /// Returns the index of the first pass of the run of passes, up to `pass`, that are in the same group on this level
+    /// (and in the same groups around it).
     fn first(&self, pass: usize, level: usize) -> usize {
         let path = groups_of(&self.plan, pass).get(..=level);
         let is_in = |other: &usize| groups_of(&self.plan, *other).get(..=level) == path;
         (0..=pass).rev().take_while(is_in).last().unwrap_or(pass)
     }
 
-    /// Draws the headings of groups that begin with a pass. Returns its indent in levels, or `None` where one of its
-    /// groups hides it.
+    /// Draws the headings of the groups that begin with `pass`, down to the first one that is folded. Returns the
+    /// pass's indent in levels, or `None` where a folded group hides it.
     pub fn above(&self, ui: &mut Ui, own: &mut PassesPanel, pass: usize) -> Option<usize> {
         let path = groups_of(&self.plan, pass);
         for (level, name) in path.iter().enumerate() {
@@ -82,7 +85,8 @@ impl DebugGroups {
     }
 }
 
-/// Draws a group's heading: a click shows or hides its passes.
+/// Draws a group's heading, with a sign that says whether it is folded; a click folds or unfolds its passes. `group` is
+/// the index of its first pass, and its level.
 fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
     let is_folded = own.folded.contains(&group);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::click());
@@ -101,21 +105,24 @@ fn heading(ui: &mut Ui, own: &mut PassesPanel, name: &str, group: [usize; 2]) {
     }
 }
 
-/// Draws contents indented by so many levels of groups.
+/// Draws contents indented by so many levels of groups; deeper levels than a limit are indented by that limit.
 pub fn indented(ui: &mut Ui, levels: usize, add: impl FnOnce(&mut Ui)) {
     let mut area = ui.available_rect_before_wrap();
     area.min.x = (area.min.x + INDENT * levels.min(MOST_INDENTED) as f32).min(area.max.x);
     ui.scope_builder(UiBuilder::new().max_rect(area), add);
 }
 
-/// Returns at how many pixels the draw's result differs from the stored one when it is run again; `None` where it does
-/// not.
+/// Returns a mark for a draw of another program's frame, `≠ 12`, with the larger of the numbers of pixels whose depth
+/// and whose stencil differ from the stored ones when it is run again; `None` where none differs or it was not run
+/// again.
 pub fn mark(draw: &DrawSummary) -> Option<String> {
     let RecomputeDifference { depth, stencil, .. } = draw.differs.filter(|differs| !differs.is_nowhere())?;
     Some(format!("≠ {}", format::count(depth.max(stencil))))
 }
 
-/// Explains the mark, and what the shader of a draw of the selected pass may do that is not known here.
+/// Explains the mark of [`mark`], and what the shader of the draw of this index in the selected pass may do that is not
+/// followed here: discard fragments, write its own depth. Each sentence begins with a line break; empty where there is
+/// nothing to say.
 pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
     let mut words = String::new();
     if let Some(RecomputeDifference { depth, stencil, .. }) = draw.differs.filter(|differs| !differs.is_nowhere()) {

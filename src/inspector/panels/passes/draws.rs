@@ -56,7 +56,8 @@ pub fn of_step(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &
     }
 }
 
-/// Draws the row of one draw, which can be selected, and shows when its state is being fetched.
+/// Draws the row of one draw of the selected step, which a click selects, and says while it is selected and its state
+/// is being fetched.
 fn row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, fetched: &Reply<StepDraws>, index: usize) {
     let draw = &capture.steps[model.selection.step].draws[index];
     let is_selected = model.selection.draw == Some(index);
@@ -96,7 +97,7 @@ fn changes_nothing(draw: &DrawSummary) -> bool {
     draw.after.as_ref().is_some_and(DrawState::changes_nothing)
 }
 
-/// Draws a thumbnail of what the draw changed, or a sign that it changed nothing.
+/// Draws a thumbnail of the picture that the draw wrote to, with a `=` over it where the draw changed nothing.
 fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row: Rect) {
     let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
     let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
@@ -109,7 +110,8 @@ fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row
     }
 }
 
-/// Draws the part's swatch, the draw's name, and at the right its mark and its number of triangles.
+/// Draws the swatch of the part of a volume (if it has a colour), the draw's name, and at the right `mark` and `right`,
+/// its number of triangles; dimmer where the draw is not selected or changed nothing.
 fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, mark: Option<&str>, right: &str, row: Rect) {
     let left = row.left() + INDENT;
     if let Some(color) = theme::of(ui).part(draw.part) {
@@ -157,7 +159,8 @@ fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws
     ui.add_space(4.0);
 }
 
-/// Draws what the frame left out, faint, with the reason: absence is a lesson too.
+/// Draws what the frame left out, grouped by reason, faint; draws nothing, not even a heading, where nothing was left
+/// out.
 pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
     if left_out.is_empty() {
         return;

@@ -3,7 +3,7 @@
 use crate::inspector::model::StepSearch;
 use std::collections::BTreeSet;
 
-/// The state of the panel.
+/// The state of the panel Passes: search, folded groups, and the step whose draws are all listed.
 #[derive(Debug, Default)]
 pub struct PassesPanel {
     /// The search field, while it is open.

@@ -21,7 +21,9 @@ use thumbnail::{colored, paint_row_background, paint_thumbnail};
 /// The words in a mask's row.
 const BESIDE: &str = "beside the frame";
 
-/// Draws the panel Passes: the frame's passes and draws in order, to step through.
+/// Draws the panel Passes: controls, the frame's passes and draws in order, what was left out, and why the selected
+/// pass is there. Without a capture or passes, only a hint. Requests to search and to scroll to the selected row are
+/// carried out.
 pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     if let Some(search) = model.requests.search.take() {
         own.search = Some(search);
@@ -89,7 +91,8 @@ fn tree(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model, capture: &Arc<Cap
     }
 }
 
-/// Draws a heading for the passes below; pressing it selects `last`, the last of them: the state after all.
+/// Draws the heading of a light's passes, or of the scene's for `None`; a click selects the pass `last`, whose state is
+/// the one after all of them, and stops playing.
 fn group_heading(ui: &mut Ui, model: &mut Model, capture: &Capture, light: Option<usize>, last: usize) {
     ui.add_space(8.0);
     let text = match light {
@@ -112,7 +115,8 @@ fn group_heading(ui: &mut Ui, model: &mut Model, capture: &Capture, light: Optio
     ui.add_space(2.0);
 }
 
-/// Returns the kind of a light; an unknown position is zero.
+/// Returns the kind of a light from its homogeneous position, with a separator in front: ` · point`, ` · directional`
+/// (w is 0), or ` · not found` where all four are zero, as for a position that is not known.
 fn kind_of(position: glam::DVec4) -> &'static str {
     match position.w {
         _ if position == glam::DVec4::ZERO => " · not found",
@@ -121,7 +125,8 @@ fn kind_of(position: glam::DVec4) -> &'static str {
     }
 }
 
-/// Draws one pass: thumbnail of what it changed, number and name, what it drew, its time.
+/// Draws the row of one pass, which a click selects: thumbnail of what it wrote, number and name, what it drew, its GPU
+/// time, and a mark where it touched the picked pixel. A pass beside the frame (a mask) is dim.
 fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize) {
     let step = &capture.steps[index];
     let is_selected = index == model.selection.step && model.selection.draw.is_none();
@@ -169,7 +174,8 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     theme::line(ui, pos2(left, rect.top() + 23.0), width, &summary, TextStyle::Small, theme::of(ui).dim);
 }
 
-/// Draws a small crosshair: the pass changed the picked pixel.
+/// Draws a small crosshair with its middle at `at`, which says that the pass named `step` did something to the picked
+/// pixel.
 fn pick_mark(ui: &Ui, at: egui::Pos2, step: &str) {
     let place = Rect::from_center_size(at, egui::Vec2::splat(12.0));
     let response = ui.interact(place, ui.scope_id().with(("pick mark", step)), Sense::hover());
@@ -202,7 +208,7 @@ fn summary(step: &Step) -> String {
     format!("{draws}{differing} · {}", format::counted(step.triangles(), "triangle"))
 }
 
-/// Draws "Why this pass" at the panel's foot.
+/// Draws at the panel's foot why the step is there.
 fn purpose(ui: &mut Ui, step: &Step) {
     let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
     let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);

@@ -10,7 +10,8 @@ use crate::reading::written::{TexelContent, WrittenAspects};
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 use std::sync::Arc;
 
-/// Draws the background of a row of the tree, and the marks of selection and focus.
+/// Draws a row's background: the accent with a bar where it is selected, a lighter one where it is only under the
+/// pointer, otherwise nothing; and an outline while it has the focus.
 pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
     let painter = ui.painter();
     if is_selected {
@@ -25,7 +26,8 @@ pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: 
     }
 }
 
-/// Returns the picture of what a step or a draw wrote, with its colouring.
+/// Returns the image that a step or a draw wrote, with its colouring; depths over the range of the image, or [0, 1]
+/// where it has none. `None` where nothing was written.
 pub fn colored(model: &mut Model, written: Option<WrittenAspects>) -> Option<(Arc<Image>, Coloring)> {
     let WrittenAspects { image, content, .. } = written?;
     let coloring = match content {
@@ -42,7 +44,8 @@ pub fn colored(model: &mut Model, written: Option<WrittenAspects>) -> Option<(Ar
     Some((image, coloring))
 }
 
-/// Draws a small picture in its frame; only the frame where there is none.
+/// Draws a small picture, fitted into `rect` and centred, with an outline; only background and outline where there is
+/// none.
 pub fn paint_thumbnail(ui: &Ui, model: &mut Model, picture: Option<(Arc<Image>, Coloring)>, rect: Rect) {
     let painter = ui.painter();
     painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);

@@ -8,7 +8,8 @@ use crate::reading::format;
 use crate::reading::steps;
 use egui::{Key, Ui, vec2};
 
-/// Draws the controls above the passes.
+/// Draws the controls above the passes: buttons for steps, playing and draws, the selected step's number, and the
+/// search field while it is open. Draws nothing without a capture.
 pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else { return };
     let count = model.steps();
@@ -46,7 +47,8 @@ pub fn ui(ui: &mut Ui, own: &mut PassesPanel, model: &mut Model) {
     search(ui, own, model);
 }
 
-/// Draws the buttons that go through the draws of the whole frame, and the number of the selected one.
+/// Draws the buttons that go to the previous and next draw through the whole frame, and the selected draw's number or
+/// how many draws the selected step has.
 fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let at = model.selected();
     ui.horizontal(|ui| {
@@ -71,7 +73,7 @@ fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     });
 }
 
-/// Draws words in the rest of a row, cut short where it is narrow.
+/// Draws words at the right end of a row, cut off with an ellipsis where they do not fit.
 fn at_the_right(ui: &mut Ui, words: String) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         ui.add(egui::Label::new(theme::note(words)).truncate());
@@ -139,7 +141,8 @@ fn go(model: &mut Model, search: &StepSearch) {
     }
 }
 
-/// Do a pass and its draws contain all words?
+/// Returns whether a pass contains all words, each anywhere in its name, its light (`scene` without one), or the names
+/// and parts of its draws; upper and lower case are the same. True for no words.
 pub fn matches(step: &crate::capture::Step, words: &str) -> bool {
     let light = step.light.map_or_else(|| "scene".to_owned(), format::light);
     let draws = step.draws.iter().flat_map(|draw| [draw.name.as_str(), draw.part.name()]);

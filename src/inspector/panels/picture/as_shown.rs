@@ -23,7 +23,7 @@ use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
 /// The least width of a picture in which the sides of a comparison have their names, pixels.
 const NAMED_FROM: u32 = 480;
 
-/// A picture, and triangles that are yet to be drawn over it.
+/// A picture with one pixel for each texel, and the triangles of overlays that are yet to be drawn over it.
 #[derive(Debug, Clone)]
 pub struct PictureDrawing {
     picture: Picture,
@@ -32,7 +32,7 @@ pub struct PictureDrawing {
 }
 
 impl PictureDrawing {
-    /// Draws the triangles: some tenths of a second where there are wireframes.
+    /// Returns the picture with the triangles drawn over it; takes some tenths of a second where there are wireframes.
     pub fn finish(&self) -> Picture {
         let mut picture = self.picture.clone();
         for primitive in &self.triangles {
@@ -44,8 +44,9 @@ impl PictureDrawing {
     }
 }
 
-/// Returns `shown`, which is one image, as it is drawn, without the pick, handles, legends and cards. The divider is at
-/// the texel at which it is in the window.
+/// Returns `shown`, which is one image, as the panel draws it: with changes, overlays and comparison, one pixel for
+/// each texel, but without pick, handles, legends and cards. The divider is at the texel at which it is in the window;
+/// small pictures leave out its names.
 pub fn drawing(
     own: &mut PicturePanel,
     model: &mut Model,
@@ -81,7 +82,8 @@ pub fn drawing(
     PictureDrawing { picture, triangles, letters }
 }
 
-/// Returns what `paint` draws into a window of this size, one point for each pixel, and the font texture.
+/// Returns, as triangles, what `paint` draws into a window of this size, one point for each pixel, in a context of its
+/// own; and the font texture that they use.
 fn painted(rect: Rect, theme: egui::Theme, mut paint: impl FnMut(&mut Ui)) -> (Vec<ClippedPrimitive>, ColorImage) {
     let ctx = Context::default();
     theme::apply(&ctx);

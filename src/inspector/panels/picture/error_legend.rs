@@ -27,7 +27,8 @@ const ORDER: [Finding; 6] = [
     Finding::NotCompared,
 ];
 
-/// Draws the legend of `shown`, which is an error picture.
+/// Draws the legend of an error picture: the findings with their colours, the share of wrong pixels, a switch `counts`
+/// between numbers and names, and a button that goes to the largest region, if there is one.
 pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPicture) {
     ui.spacing_mut().interact_size.y = LINE;
     let truth = model.frame.capture.as_ref().and_then(|capture| model.view.truth_to_show(capture));
@@ -68,7 +69,8 @@ pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &ShownPictur
     }
 }
 
-/// Returns the share of compared pixels that is wrong, in a few words.
+/// Returns, in a few words, the share of compared pixels that is wrong: `none wrong`, or `nothing compared` where no
+/// pixel is.
 fn share(error: &ErrorCounts) -> String {
     match (error.compared, error.wrong()) {
         (0, _) => "nothing compared".to_owned(),
@@ -77,7 +79,8 @@ fn share(error: &ErrorCounts) -> String {
     }
 }
 
-/// Draws swatch and name as one widget, so that rows break between findings; faint where no pixel has it.
+/// Draws a finding's swatch and name as one widget, so that lines break between findings; dim where no pixel has it,
+/// and with the number of pixels as hover text.
 fn named(ui: &mut Ui, finding: Finding, pixels: u64) {
     let style = findings::style(finding);
     let ink = if pixels > 0 { theme::of(ui).text } else { theme::of(ui).dim };
@@ -91,7 +94,7 @@ fn named(ui: &mut Ui, finding: Finding, pixels: u64) {
     response.on_hover_text(format!("{}. {}", format::counted(pixels, "pixel"), style.meaning));
 }
 
-/// Draws a line: swatch, number and name, how many pixels.
+/// Draws a line of the legend: a finding's swatch, its byte and name, and at the right how many pixels have it.
 fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
     let style = findings::style(finding);
     let line = ui.horizontal(|ui| {
@@ -104,7 +107,7 @@ fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
     line.response.on_hover_text(style.meaning);
 }
 
-/// Draws a swatch with the hatching of a finding.
+/// Draws a square in a finding's colour and hatching at the next free place.
 pub fn hatched(ui: &mut Ui, style: FindingStyle) {
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
     paint(ui, rect, style);

@@ -21,7 +21,8 @@ const LEAST_SIDE: f32 = 88.0;
 /// A picture up to this size on the screen is drawn with a thumbnail texture, which shows as much, screen pixels.
 const SMALL: f32 = 112.0;
 
-/// Draws the layers of `shown`, named; a click shows one of them large. Leaves space for the legend.
+/// Draws all layers of `shown` in a grid, each with its name, and leaves space for the legend at the right; a click on
+/// a layer shows it alone.
 pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture, coloring: Coloring) {
     let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::space_beside(rect, shown), 0.0)).shrink(GAP);
     let (columns, side) = arrangement(area.size(), shown.images.len());
@@ -39,7 +40,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture, colo
     });
 }
 
-/// Returns the number of columns and a picture's side, as large as all of them fit, but not below the least.
+/// Returns the number of columns and the side, in points, of square pictures so that all `count` fit into the area as
+/// large as possible; where they would be smaller than the least side, as many columns as fit at about that side, to be
+/// scrolled.
 fn arrangement(area: egui::Vec2, count: usize) -> (usize, f32) {
     let side_of = |columns: usize| {
         let rows = count.div_ceil(columns).max(1);

@@ -18,7 +18,7 @@ const INSET: f32 = 18.0;
 /// Distance from the eye to the handle of a directional light, metres: any distance shows its direction.
 const SUN: f64 = 10.0;
 
-/// Draws the switch in the picture's toolbar.
+/// Draws the switch that shows and hides the lights' handles; nothing where no scene is open.
 pub fn button(ui: &mut Ui, is_off: &mut bool, model: &Model) {
     if model.scene.is_some() {
         let word = theme::switch_word(ui, "Gizmos", !*is_off);
@@ -29,7 +29,9 @@ pub fn button(ui: &mut Ui, is_off: &mut bool, model: &Model) {
     }
 }
 
-/// Draws the handles and moves the lights of the draft.
+/// Draws a handle for each light of the draft, at the picture's border with an arrow where the light is out of view,
+/// moves lights by drags and arrow keys in the plane parallel to the picture, and runs the scene then. Draws nothing
+/// over a map, while walking, or without a scene.
 pub fn ui(
     ui: &Ui,
     model: &mut Model,
@@ -92,14 +94,15 @@ pub fn ui(
     }
 }
 
-/// Returns a position outside a rectangle, in this direction from its middle.
+/// Returns a position outside a rectangle, just beyond its border, in the direction `way` from its middle.
 fn beyond(whole: Rect, way: [f64; 2]) -> Pos2 {
     let way = vec2(way[0] as f32, way[1] as f32);
     let sides = (whole.width() / 2.0 / way.x.abs()).min(whole.height() / 2.0 / way.y.abs());
     whole.center() + way * (sides + INSET)
 }
 
-/// Draws a sun, light on dark so that it shows on any picture; for a light out of view with an arrow in its direction.
+/// Draws a light's sun at `at`, light on dark so that it shows on any picture; with an arrow in the direction
+/// `outwards` for a light out of view, and a ring while it is active.
 fn sign(ui: &Ui, whole: Rect, at: Pos2, is_active: bool, outwards: Option<Vec2>) {
     let painter = ui.painter_at(whole);
     let colors = theme::of(ui);

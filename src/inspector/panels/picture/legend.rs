@@ -38,7 +38,8 @@ fn width(rect: Rect, kind: PictureKind) -> f32 {
     if kind == PictureKind::Error { error_legend::WIDTH.min(rect.width() / 2.0 - 12.0).max(WIDTH) } else { WIDTH }
 }
 
-/// Draws the legend of `shown`; `range` is that of the grey ramp.
+/// Draws the legend of `shown` into the upper right corner of `rect`; `range` is that of the grey ramp for depths.
+/// Draws nothing for the colour picture, or where `rect` is too narrow.
 pub fn ui(
     ui: &mut Ui,
     counts_findings: &mut bool,
@@ -62,14 +63,15 @@ pub fn ui(
     });
 }
 
-/// Draws the legend of what a step changed.
+/// Draws the legend of what a step changed into the upper right corner of `rect`; nothing where `rect` is too narrow.
 pub fn of_change(ui: &mut Ui, rect: Rect, change: &StepChange) {
     if rect.width() >= WIDTH * 2.0 {
         card(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
     }
 }
 
-/// Draws a card in the upper right corner of `rect`.
+/// Draws `contents` on a card of `width` points in the upper right corner of `rect`; the picture underneath gets no
+/// clicks through it.
 fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
@@ -105,7 +107,7 @@ fn stencil(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
 /// Values, each with the number of pixels that have it.
 type ValueCounts<V> = Vec<(V, u64)>;
 
-/// Returns the values with the most pixels, as many as are listed, and the others; both in the order given.
+/// Returns the `most` values with the most pixels, and the others; both in the order given.
 fn most_frequent<V>(values: ValueCounts<V>, most: usize) -> (ValueCounts<V>, ValueCounts<V>) {
     let mut by_pixels: Vec<usize> = (0..values.len()).collect();
     by_pixels.sort_by_key(|index| std::cmp::Reverse(values[*index].1));
@@ -125,7 +127,8 @@ fn more_values<V>(ui: &mut Ui, rest: &[(V, u64)]) {
     }
 }
 
-/// Draws signed counts; those that eight bits would take for zero apart.
+/// Draws the legend of float counts: the most frequent values, from 0 upwards and then from −1 downwards, and apart
+/// from them those that eight bits would take for zero (multiples of 256).
 fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let tally = model.textures.tally(&shown.images[0]);
     theme::heading(ui, &title(shown));
@@ -148,7 +151,8 @@ fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     }
 }
 
-/// Explains what white, black and colours mean in a picture of the light that is let through.
+/// Draws the legend of a picture of the light that is let through or arrives: how many texels of all shown images are
+/// white (all of it), black (none), or in between.
 fn let_through(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let content = model.frame.capture.as_ref().and_then(|capture| MapContent::of_capture(capture));
     let arrives = content == Some(MapContent::Textures);
@@ -196,7 +200,8 @@ fn labels(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     }
 }
 
-/// Draws the grey ramp with its ends and handles.
+/// Draws the legend of a depth picture: a histogram, the grey ramp with the values at its ends and handles to move
+/// them, and a button that fits it again.
 fn depth(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2]) {
     let is_raw = shown.measure == DepthMeasure::Raw;
     theme::heading(ui, if is_raw { "Depth as stored" } else { "Distance" });
@@ -243,7 +248,8 @@ fn handles(ui: &mut Ui, model: &mut Model, range: [f64; 2], full: [f64; 2]) {
     }
 }
 
-/// Near is light; a stored depth is small where it is far.
+/// Draws the grey ramp from the smallest value at the left to the largest: near is light. A raw stored depth is small
+/// where it is far, so that its ramp runs the other way.
 fn ramp(ui: &mut Ui, is_raw: bool) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 8.0), Sense::hover());
     let steps = 48;

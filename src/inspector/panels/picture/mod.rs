@@ -37,7 +37,7 @@ use std::sync::Arc;
 /// points.
 const COMPARE_WIDTH: f32 = 232.0;
 
-/// The state of the panel.
+/// The state of the panel Picture: cached overlays and changes, and which handles and counts are shown.
 #[derive(Debug, Default)]
 pub struct PicturePanel {
     /// The geometry of the overlays.
@@ -55,7 +55,7 @@ pub struct PicturePanel {
 }
 
 impl PicturePanel {
-    /// Drops what was computed for a frame that is no longer shown.
+    /// Drops the cached overlays and changes where `frame`, the number of the shown frame, is another than before.
     pub fn follow(&mut self, frame: u64) {
         if std::mem::replace(&mut self.frame, frame) != frame {
             self.changes.forget();
@@ -88,7 +88,8 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
     walking::banner(ui, model, rect);
 }
 
-/// Draws one picture with what is over it: the change, or the comparison.
+/// Draws one picture with what lies over it: change, comparison, overlays, pick, the selected triangle's outline,
+/// handles of lights and legend; acts on mouse and keys.
 fn single(
     ui: &mut Ui,
     own: &mut PicturePanel,
@@ -146,7 +147,7 @@ fn single(
     }
 }
 
-/// The layers over a picture.
+/// The layers over a picture: change, tints and compared picture.
 pub struct PictureLayers {
     /// The change that the step made.
     pub change: Option<StepChange>,
@@ -156,8 +157,8 @@ pub struct PictureLayers {
     pub compared: Option<Comparison>,
 }
 
-/// Returns the layers over `shown` in `rect`: the change, tints, and on one side of `compare`'s divider the compared
-/// picture.
+/// Returns the layers over `shown` in `rect`, from bottom to top: the change, tints, and on one side of `compare`'s
+/// divider the compared picture, in the same bit or range. What is not known yet is asked for and left out.
 pub fn layers(
     own: &mut PicturePanel,
     model: &mut Model,
@@ -192,7 +193,8 @@ pub fn layers(
     PictureLayers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
 }
 
-/// Returns the names of the sides of a comparison: of the compared picture, and of the shown one.
+/// Returns the names of the two sides of a comparison: first the compared picture's, then the shown one's; steps by
+/// their words, techniques by their names.
 pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) -> [String; 2] {
     let now = match compare.with {
         ComparedWith::Step(_) => model.shown_point().words(capture),
@@ -201,7 +203,8 @@ pub fn compared_names(model: &Model, capture: &Capture, compare: &Comparison) ->
     [compare.with.words(capture), now]
 }
 
-/// Returns what the selected step or draw changed, over the frame's colours in grey; `None` where it is not shown.
+/// Returns what the selected step or draw changed, and the frame's colours in grey to lie under it. `None` unless the
+/// mode is the change, the kind is colour, stencil or depth, and the state before is known.
 pub fn change_of(
     own: &mut PicturePanel,
     model: &Model,
@@ -220,7 +223,8 @@ pub fn change_of(
     Some((own.changes.ground(&colors), change))
 }
 
-/// Says that there is no picture, and why.
+/// Draws in the middle of `rect` why there is no picture: there is no known state before, or nothing is drawn yet at
+/// this step.
 fn nothing(ui: &mut Ui, model: &Model, capture: &Capture, rect: Rect) {
     let text = match model.modes.phase {
         StepPhase::Before => model.shown_before(capture).err().map(NoStepBefore::sentence),
@@ -273,7 +277,8 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
     });
 }
 
-/// Draws the tools for one kind of picture.
+/// Draws the tools for the shown kind of picture: the choice of light, map layer and depth measure; nothing for other
+/// kinds.
 fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     match shown.map(|shown| shown.kind) {
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
@@ -318,7 +323,7 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// Draws the choice of the light whose mask or map is shown, where there are several.
+/// Draws the choice among the lights for which `has` is true; nothing where there are fewer than two.
 fn lights(
     ui: &mut Ui,
     model: &mut Model,
@@ -339,7 +344,8 @@ fn lights(
     combo.response.accessible_name("Light of the picture");
 }
 
-/// Draws the choice of the layer of a map, or all.
+/// Draws the choice between one layer of a light's map and all; nothing where it has fewer than two. Another choice
+/// drops the picked texel.
 fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let Some(light) = model.view.light_with(capture, |light| light.map.is_some()) else { return };
     let layers = layers::layers(capture, light);
@@ -363,7 +369,8 @@ fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     }
 }
 
-/// Draws a list, for names that are too long and too many for buttons.
+/// Draws a list to choose a layer from, for names that are too long and too many for buttons. `chosen` is 0 for all and
+/// otherwise the layer's index plus 1; returns the new choice, `None` where it did not change.
 fn layer_list(ui: &mut Ui, layers: &[layers::MapLayer], mut chosen: usize) -> Option<usize> {
     let before = chosen;
     let all = format!("All {}", layers.len());
@@ -393,7 +400,8 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Draws the zoom in per cent, where it moves no button, then the buttons.
+/// Draws the zoom in per cent (unless fitted), and the buttons for walking, handles, one screen pixel a texel, and
+/// fitting. Draws nothing where no picture is shown.
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };

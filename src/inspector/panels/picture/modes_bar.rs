@@ -15,7 +15,8 @@ use egui::{Button, Rect, Ui, UiBuilder, vec2};
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
 
-/// Draws the tools for `shown`: the permanent ones first, so that they do not move.
+/// Draws the tools for `shown`: the permanent ones first, so that they do not move; the choice of a bit only for
+/// stencil pictures. Comparison and overlays are off where several images are shown at once.
 pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
     let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
@@ -29,7 +30,8 @@ pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&ShownPicture>) {
     }
 }
 
-/// They stay in their place where a picture has no state before and after.
+/// Draws the choice between the state before, the state after, and the change; it is off, but stays in its place, for
+/// kinds of picture without such states.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
     let is_enabled = kind.is_some_and(has_phases);
     let segment = |phase: StepPhase| {
@@ -71,7 +73,8 @@ pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     model.modes.compare = Some(compare);
 }
 
-/// Draws what the picture is compared with, and a button that swaps the sides.
+/// Draws the list of steps, and of other techniques where a scene is open, to compare the picture with; and a button
+/// that swaps the sides.
 fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Comparison) {
     ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
@@ -102,7 +105,8 @@ fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Co
     }
 }
 
-/// Draws in the upper left corner of `rect` how many texels differ, or why nothing is compared.
+/// Draws in the upper left corner of `rect` how many texels differ between the compared pictures, or why they can't be
+/// compared; nothing while nothing is compared.
 pub fn compare_note(
     ui: &mut Ui,
     changes: &mut ChangeCache,

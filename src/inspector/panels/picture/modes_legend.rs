@@ -15,7 +15,8 @@ const MOST_LISTED: usize = 10;
 /// Height of a histogram of depths, points.
 const BARS_HEIGHT: f32 = 32.0;
 
-/// Draws the kinds of change, with how many texels have each.
+/// Draws how many texels changed, and how many have each kind of change: of counts the ten largest increases first, of
+/// depths those that occur, of colours no kinds.
 pub fn change(ui: &mut Ui, found: &StepChange) {
     theme::heading(ui, &format!("{} changed", format::counted(found.texels, "texel")));
     let [width, height] = found.image.size().map(u64::from);
@@ -56,7 +57,7 @@ pub fn change(ui: &mut Ui, found: &StepChange) {
         .on_hover_text("In grey: the picture's colours, dimmed");
 }
 
-/// Draws the two colours of a bit, with how many texels have each.
+/// Draws the two colours of a bit of the stencil, with how many texels of the shown image have it set and not set.
 pub fn bit(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, bit: u8) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, &format!("Bit {bit} of the stencil"));
@@ -68,7 +69,8 @@ pub fn bit(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, bit: u8) {
     entry(ui, palette::BITS[0], "0 not set", all - set);
 }
 
-/// Draws how many pixels had how many fragments.
+/// Draws how many fragments there are in all, and how many pixels have how many: 0 to 8 one by one, then in ranges up
+/// to 255 or more; lines without pixels are left out.
 pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     let histogram = model.textures.histogram(&shown.images[0]);
     theme::heading(ui, "Fragments a pixel");
@@ -86,7 +88,8 @@ pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
     }
 }
 
-/// Draws a histogram of depths over `full`; the part that the grey ramp covers is lighter.
+/// Draws a histogram of the depths of all shown images over `full`; the bars within `range`, which the grey ramp
+/// covers, are lighter. The highest bar fills the height.
 pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &ShownPicture, range: [f64; 2], full: [f64; 2]) {
     let mut bars = [0_u64; DEPTH_BARS];
     for image in &shown.images {

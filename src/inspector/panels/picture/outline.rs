@@ -9,7 +9,8 @@ use crate::reading::picture_view::{PictureKind, ShownPicture};
 use crate::reading::projected::outline;
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
 
-/// Draws the outline over the picture in `rect`, unless it is a map, which has pixels of its own.
+/// Draws the outline of the triangle that is selected in the picked pixel's history over the picture in `rect`. Draws
+/// nothing over a map, or where no triangle is selected or it was not drawn from the eye.
 pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     let Some(capture) = &model.frame.capture else { return };
     let Some(history) = model.history_of_frame().filter(|_| shown.kind != PictureKind::Map) else { return };

@@ -88,7 +88,8 @@ impl Overlays {
     }
 }
 
-/// Draws the menu, with a box and a swatch for each overlay.
+/// Draws the button and menu of overlays, with a box and a swatch for each; the button shows how many are on, and the
+/// menu opens where another panel asked for it.
 pub fn menu(ui: &mut Ui, model: &mut Model) {
     let count = model.modes.overlays.len();
     let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay · {count}") };
@@ -130,7 +131,8 @@ fn swatch_of(ui: &Ui, overlay: Overlay) -> egui::Color32 {
     }
 }
 
-/// Returns the overlays that are pictures; asks for what they need.
+/// Returns the overlays that are pictures, receivers and test results, and asks for the answers that overlays need;
+/// those not known yet are left out. None over a map.
 pub fn sheets(
     own: &mut Overlays,
     model: &Model,
@@ -162,7 +164,8 @@ pub fn sheets(
     sheets
 }
 
-/// Draws the overlays that are lines and names, and the card that lists all.
+/// Draws the overlays that are lines and names, the number of the edge under the pointer, and the card that lists all
+/// overlays. Draws nothing over a map, or where no overlay is on.
 pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &ShownPicture, placement: Placement) {
     if model.modes.overlays.is_empty() || shown.kind == PictureKind::Map {
         return;
@@ -175,7 +178,8 @@ pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown:
     card(ui, own, model, rect);
 }
 
-/// Draws lines, their numbers and names, clipped to `seen`.
+/// Draws the lines of volumes and silhouettes, multiplicities, and casters' names, of the overlays in `on`, clipped to
+/// `seen`. Draws nothing that is not cached yet.
 pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement) {
     let painter = ui.painter_at(seen);
     let (theme, is_dark, pixels) = (theme::of(ui), ui.visuals().dark_mode, ui.pixels_per_point());
@@ -197,7 +201,8 @@ pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, pl
     }
 }
 
-/// Draws beside the pointer the multiplicity of the edge under it, where it is not 1. Short edges have no number.
+/// Draws beside the pointer the multiplicity of the silhouette edge nearest to it, within a few points and where it is
+/// not ±1, also for short edges, which have no number of their own.
 fn number_under(ui: &Ui, own: &Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement, pointer: Pos2) {
     let made = own.made.as_ref().filter(|_| on.contains(&Overlay::Silhouettes));
     let Some((lines, _)) = made.and_then(|made| made.silhouettes.as_ref()) else { return };
@@ -214,8 +219,8 @@ fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
     painter.galley(place.min, galley, theme::of(ui).text);
 }
 
-/// Draws, in the lower right corner, a card that lists the overlays in their colours. Its height is that of the last
-/// frame.
+/// Draws, in the lower right corner of `rect`, a card that lists the overlays in their colours. It is placed by its
+/// height in the last frame, and drawn again where that changed.
 fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
     let id = ui.scope_id().with("overlay card height");
     let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
@@ -290,7 +295,8 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
     }
 }
 
-/// Says, while the overdraw is chosen and not known, that it is being counted, or why it can't be.
+/// Draws, where overdraw is chosen and not shown, that fragments are being counted, why they can't be, or, where no
+/// scene is open, that the scene has to be opened.
 pub fn counting_note(ui: &mut Ui, model: &Model, rect: Rect) {
     let text = match (&model.scene, model.want_tests().failed) {
         (None, _) => "Opened from a folder: its fragments can't be counted. Open the scene instead.".to_owned(),

@@ -11,7 +11,8 @@ use egui::{Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 /// Width of the note, points.
 const WIDTH: f32 = 264.0;
 
-/// Draws the note into the upper left corner of `rect`; `shown` is the picture that is shown meanwhile.
+/// Draws a note about the truth that is awaited into the upper left corner of `rect`; `shown` is the picture that is
+/// shown meanwhile. Draws nothing where no truth is wanted or it is known.
 pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &ShownPicture) {
     let is_known = model.frame.capture.as_ref().is_some_and(|capture| has_truth(capture));
     if !model.view.wants_truth() || is_known {

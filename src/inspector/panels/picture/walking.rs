@@ -7,7 +7,8 @@ use egui::{Rect, Ui, UiBuilder, vec2};
 /// Height of the banner over the picture, points.
 const BANNER_HEIGHT: f32 = 56.0;
 
-/// Draws the button over the picture.
+/// Draws the button that starts and stops walking; off where no scene is open, and not drawn for another program's
+/// frame.
 pub fn button(ui: &mut Ui, model: &mut Model) {
     if model.origin().is_some() {
         return;
@@ -26,7 +27,8 @@ pub fn under_banner(model: &Model, rect: Rect) -> Rect {
     if model.walk.is_on() { rect.with_min_y((rect.top() + BANNER_HEIGHT + 8.0).min(rect.bottom())) } else { rect }
 }
 
-/// Draws the banner, which says that the user is walking, how, and how it ends.
+/// Draws at the top of `rect` that the user is walking, how, and how it ends, or why the last key did nothing; draws
+/// nothing while the user does not walk.
 pub fn banner(ui: &mut Ui, model: &Model, rect: Rect) {
     if !model.walk.is_on() {
         return;

@@ -11,7 +11,8 @@ use egui::{CollapsingHeader, Grid, Label, Ui};
 /// Decimals that fit into a narrow panel.
 const DIGITS: u32 = 4;
 
-/// Draws the section, folded at first.
+/// Draws the section Coordinates, folded at first: the pixel's point, or a chosen corner of its triangle, in each
+/// space, and the matrices between them. Draws nothing for another program's frame.
 pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, at: [u32; 2], picked: &PickedHistory) {
     // Another program's camera is a guess, and so is its unit.
     if capture.origin.is_some() {
@@ -36,7 +37,8 @@ pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &Model, capture: &Capture, a
     });
 }
 
-/// Draws the choice between the coordinates of the point and those of a corner.
+/// Draws the choice between the coordinates of the pixel's point (`None`) and those of a corner of its triangle; a
+/// chosen corner of another triangle is cleared. Draws nothing where no corner is known.
 fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[VertexCoordinates]) {
     let Some(first) = vertices.first() else { return };
     // For another triangle than before, the point comes first.

@@ -19,8 +19,8 @@ const MOST_WRONG: usize = 3;
 /// Opacity of a history that does not belong to the picked pixel.
 const GREYED: f32 = 0.4;
 
-/// Draws the heading, the rows and the selected event of the picked pixel's history. Returns the y, in points, at which
-/// the rows end.
+/// Draws the heading, the rows and the selected event of the picked pixel's history, or why there is none. Returns the
+/// y, in points, at which the rows end, above the selected event.
 pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -57,7 +57,8 @@ pub fn ui(
     drawn.inner
 }
 
-/// Draws title, number of events, and the switch; while another pixel's history is waited for, a note.
+/// Draws the title, the number of listed and of all events, and the switch that hides idle ones; while the history is
+/// waited for and late, a note instead.
 fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHistory, at: [u32; 2]) {
     ui.horizontal(|ui| {
         theme::heading(ui, "History");
@@ -87,7 +88,8 @@ fn heading(ui: &mut Ui, own: &mut PixelPanel, model: &Model, picked: &PickedHist
     });
 }
 
-/// Draws a warning: a history that contradicts the GPU must not be believed.
+/// Draws a warning with the first few contradictions between a history and the GPU, and how many more there are;
+/// nothing where there is none.
 fn wrong(ui: &mut Ui, wrong: &[String]) {
     if wrong.is_empty() {
         return;
@@ -108,7 +110,8 @@ fn wrong(ui: &mut Ui, wrong: &[String]) {
     ui.add_space(4.0);
 }
 
-/// Returns the indices of the events that are listed.
+/// Returns the indices of the events that are listed: all, or, where idle ones are hidden, those that did something and
+/// those of the selected triangle.
 fn shown(own: &PixelPanel, model: &Model, history: &PixelHistory) -> Vec<usize> {
     let is_shown = |event: &PixelEvent| !own.hides_idle || event.does_something() || model.selection.has_event(event);
     history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
@@ -162,7 +165,8 @@ struct HistoryColumns {
 }
 
 impl HistoryColumns {
-    /// Returns the columns in a row; tests and operations of a stencil have columns only where there is one.
+    /// Returns where the columns of a row begin, in points; the column for the stencil test exists only where there is
+    /// a stencil.
     fn of(row: Rect, has_stencil: bool) -> HistoryColumns {
         let change = row.right() - 6.0;
         let operation = change - 80.0;
@@ -306,7 +310,8 @@ fn paint(ui: &Ui, rect: Rect, cells: &HistoryCells, has_stencil: bool, ink: Colo
     painter.text(pos2(columns.change, middle), Align2::RIGHT_CENTER, &cells.change, number, color);
 }
 
-/// Draws a test's result: a tick, a cross, a word or a dash, in its colour.
+/// Draws a test's result with its left end at `at`: a tick where it passed, a cross where it failed, a word or a dash
+/// where it always passes or was not reached.
 fn test(ui: &Ui, at: Pos2, test: TestResult) {
     let painter = ui.painter();
     let mark = |points: &[(f32, f32)], color: Color32| {
@@ -326,7 +331,8 @@ fn test(ui: &Ui, at: Pos2, test: TestResult) {
     }
 }
 
-/// Draws the selected event in full, and a button that goes to its step.
+/// Draws the event of the selected triangle in full, with buttons that go to its step and to the triangle in the scene;
+/// nothing where the history has no such event.
 fn selected(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory) {
     let Some(event) = model.selected_in(history).and_then(|index| history.events.get(index)) else { return };
     theme::card(ui).show(ui, |ui| {

@@ -27,13 +27,13 @@ const COUNT_WIDTH: f32 = 40.0;
 /// How many folded rungs a click opens at most, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
-/// Does this frame count volumes, so that there is a ladder?
+/// Returns whether a ladder can be drawn: the pixel's history is known, and the frame counts volumes.
 pub fn is_shown(picked: &PickedHistory, capture: &Capture) -> bool {
     picked.history.is_some() && capture.counts_volumes()
 }
 
-/// Draws the ladder of `light` under the history, within `height` points if possible; nothing where no volumes are
-/// counted.
+/// Draws the ladder of `light` under the history, within `height` points if possible. Draws nothing where the history
+/// is not known or this light's shadow is not counted in volumes.
 pub fn ui(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -68,7 +68,8 @@ pub fn ui(
     });
 }
 
-/// Returns the direction of counting, and where it begins, in words.
+/// Returns sentences that say from where to where the light's volumes are counted, at which number the count starts,
+/// how many faces count, and the sum.
 fn direction(ladder: &Ladder) -> String {
     let way = match (ladder.side, ladder.surface) {
         (CountedSide::Behind, Some(_)) => "Counted from infinity towards the surface",
@@ -95,7 +96,8 @@ fn direction(ladder: &Ladder) -> String {
     format!("{way}{start}. {counted} of {faces} count: {} in all{}.", signed(ladder.count), in_its_bits(ladder))
 }
 
-/// Returns what the light pass reads where the bits of the stencil can't store the count.
+/// Returns a clause with what the light pass reads where the bits of the stencil store the count as another value;
+/// empty where they store it as it is, and for counts in floats.
 fn in_its_bits(ladder: &Ladder) -> String {
     match ladder.tested {
         VolumeCount::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => {
@@ -105,12 +107,12 @@ fn in_its_bits(ladder: &Ladder) -> String {
     }
 }
 
-/// Returns a whole number with the same sign that stencil values have.
+/// Returns a whole number, negative ones with a minus sign (`−1`), others without a sign.
 fn signed(value: i32) -> String {
     if value < 0 { format!("−{}", value.unsigned_abs()) } else { value.to_string() }
 }
 
-/// Returns what a face added: `+1`, or an empty text.
+/// Returns what a face added to the count: `+1`, `−1`, or an empty text for 0.
 fn added(value: i32) -> String {
     match value {
         0 => String::new(),
@@ -142,7 +144,8 @@ impl LadderColumns {
     }
 }
 
-/// Draws the ladder itself, down to `bottom` if possible, or says that no face is on it.
+/// Draws the ladder itself, down to `bottom` if possible, with rungs that do not fit folded; or says that no face is on
+/// the view ray.
 fn drawn(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -198,7 +201,8 @@ fn drawn(
     paint_count(ui, columns, top, ladder, &stretches(ladder, &placed));
 }
 
-/// Draws a rung as a widget: clicking it selects its triangle everywhere.
+/// Draws a rung as a widget: a click selects its triangle in all panels. Draws nothing where its event is not in the
+/// history.
 fn rung(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -223,7 +227,8 @@ fn rung(
     response.on_hover_text(history_row::line(history, event, &capture.depth));
 }
 
-/// Draws folded rungs as a widget; returns those that a click opens.
+/// Draws a fold of the ladder as a widget; where it is clicked, returns the first of its rungs, as many as are opened
+/// at once.
 fn fold(ui: &mut Ui, ladder: &Ladder, rungs: Range<usize>, rect: Rect) -> Option<Range<usize>> {
     let response = ui.interact(rect, ui.scope_id().with(("fold", rungs.start)), Sense::click());
     let opened = rungs.start..rungs.end.min(rungs.start + OPENED_AT_ONCE);
@@ -237,7 +242,7 @@ fn fold(ui: &mut Ui, ladder: &Ladder, rungs: Range<usize>, rect: Rect) -> Option
     response.on_hover_text(hover).clicked().then_some(opened)
 }
 
-/// Describes folded rungs in words: how many, and what they added.
+/// Describes folded rungs in words: how many, and what they add in sum, or that none is counted.
 fn folded(rungs: &[Rung]) -> String {
     let counting = rungs.iter().filter(|rung| rung.added != 0).count();
     let sum: i32 = rungs.iter().map(|rung| rung.added).sum();
@@ -248,7 +253,8 @@ fn folded(rungs: &[Rung]) -> String {
     }
 }
 
-/// Describes a rung in words.
+/// Describes a rung in words for assistive technology: part, object, triangle (counted from 1), side, distance, what it
+/// added, and the running count. Empty where its event drew no triangle.
 fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return String::new() };
     let (part, of) = named(one);
@@ -258,7 +264,7 @@ fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
     format!("rung: {part} of {of}, triangle {triangle}, {side}, at {distance}: {counted}, count {running}")
 }
 
-/// Draws the ray itself, from the eye to infinity.
+/// Draws the line of the view ray, from the first to the last placed mark.
 fn ray(ui: &Ui, columns: LadderColumns, top: f32, placed: &[PlacedMark]) {
     let [Some(first), Some(last)] = [placed.first(), placed.last()] else { return };
     let stroke = Stroke::new(1.5, theme::of(ui).faint);
@@ -306,7 +312,8 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::of(ui).text);
 }
 
-/// Returns a distance in as few digits as fit into a column. An unknown unit takes the space of a letter.
+/// Returns a distance in few digits with the unit's letter: two decimals from 0.1 to 100, none up to 10 000, otherwise
+/// as a general length; `∞` where it is not finite.
 fn short(capture: &Capture, distance: f64) -> String {
     let unit = capture.depth.unit.letter();
     match distance {
@@ -328,7 +335,8 @@ fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
     painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, folded(rungs), font, theme::of(ui).dim);
 }
 
-/// Draws the mark of eye, near plane, surface or infinity.
+/// Draws the mark and words of eye, near plane, surface or infinity on the ladder, with its distance and the count
+/// there where it has them; nothing for rungs.
 fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: LadderMark, rect: Rect) {
     let columns = LadderColumns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
@@ -388,7 +396,8 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
     }
 }
 
-/// Returns the name of the object with the visible surface.
+/// Returns the name of the draw of the last surface that changed the pixel's depth, which is the visible one; `None`
+/// where no surface did.
 fn surface_name(history: &PixelHistory) -> Option<&str> {
     let wrote = history
         .triangles()
@@ -396,7 +405,8 @@ fn surface_name(history: &PixelHistory) -> Option<&str> {
     wrote.last().map(|(_, one)| one.draw_name.as_str())
 }
 
-/// Draws the running count as a step line, further right where it is higher, with an arrow at its end.
+/// Draws the running count as a step line, further right where it is higher, with a line for 0, and an arrow at its end
+/// in the direction of counting.
 fn paint_count(ui: &Ui, columns: LadderColumns, top: f32, ladder: &Ladder, stretches: &[CountStretch]) {
     let counts = || stretches.iter().map(|one| one.count).chain([0]);
     let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };

@@ -24,7 +24,8 @@ pub fn decision(model: &Model, capture: &Capture, light: usize, at: [u32; 2]) ->
     MapDecision::of(capture, &*reply.ready?, light, at)
 }
 
-/// Draws the texel, both depths and what follows, and a button that goes to the texel.
+/// Draws how a light's shadow map decides the picked pixel: the texel that it reads, the depth stored there and the
+/// surface's own, the result, and a button that goes to the texel.
 pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, decision: &MapDecision) {
     let MapSettings { bias_constant, bias_slope, bias_normal, .. } = MapSettings::read(&capture.settings);
     ui.label(theme::note(format!("Shadow map of {}", format::light(decision.light))));

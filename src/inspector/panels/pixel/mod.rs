@@ -35,7 +35,8 @@ pub use picked::PixelPanel;
 /// Height of a row of values where vertical space is short, points.
 const TIGHT_ROW: f32 = 18.0;
 
-/// Draws the panel Pixel: the history of the picked pixel and why it is lit or dark.
+/// Draws the panel Pixel: why the picked pixel is lit or dark, its values, its label for each light, and its history.
+/// Without a capture, or without a pick, a hint on what to do.
 pub fn ui(ui: &mut Ui, own: &mut PixelPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
         ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());
@@ -85,7 +86,8 @@ fn first_tour(technique: Technique) -> Technique {
     if technique == Technique::Auto { Technique::ZPass } else { technique }
 }
 
-/// Explains, while nothing is picked, how to pick, and where a new user may begin.
+/// Draws, while no pixel is picked, how to pick one, and an offer to take the tour for the chosen technique, where
+/// there is one.
 fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
     let text = "Right-click a pixel of the picture, or drag with the right button: why it is dark or lit is told here. \
@@ -114,8 +116,8 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
 }
 
-/// Returns the sentence. While the history of a pixel is being computed the last sentence stays, so that it does not
-/// change twice.
+/// Draws the verdict on the picked pixel. While its history is computed and not late, the last sentence stays, so that
+/// it does not change twice; a history that contradicts the GPU is not used.
 fn sentence(
     ui: &mut Ui,
     own: &mut PixelPanel,
@@ -149,7 +151,8 @@ fn sentence(
     });
 }
 
-/// Draws names and values, one in each row, or two where `is_tight`.
+/// Draws the names and values of the picked pixel after the shown step, one in each row, or two where `is_tight`; then
+/// the light's count and the picked map texel, where they are shown.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
     theme::heading(ui, &format!("After {}", model.shown_point().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
@@ -258,7 +261,8 @@ fn stencil_cells(ui: &mut Ui, pairs: &mut ValuePairs, stencil: u8) {
     }
 }
 
-/// Draws the signed count for the light in question, where it is known after the step.
+/// Draws the float count at the pixel, with what eight bits would read where that differs; nothing where no counts are
+/// known after the step.
 fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
     let Some((light, image)) = model.counts_to_show(capture) else { return };
     let Some(count) = image.count_at(at) else { return };
@@ -276,7 +280,8 @@ fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
     ui.end_row();
 }
 
-/// Draws the picked texel of a picture of the light that is let through.
+/// Draws the picked texel of a map of the light that is let through: its linear shares, stored bytes, and whether
+/// labels take the light for blocked (alpha below 128).
 fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r, g, b, a]: [u8; 4]) {
     row(ui, what, layer);
     row(ui, "texel", &format!("{}, {}", texel[0], texel[1]));
@@ -292,7 +297,8 @@ fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r,
     ui.end_row();
 }
 
-/// Draws the picked texel of the map that is shown.
+/// Draws the picked texel of the map that is shown: its depth and distance, or the light let through. Draws nothing
+/// where several layers are shown, or the texel lies outside.
 fn map_values(ui: &mut Ui, model: &Model, capture: &Capture, texel: [u32; 2]) {
     let Some(shown) = model.view.shown(capture, model.shown_point()).filter(|shown| shown.images.len() == 1) else {
         return;
@@ -316,7 +322,8 @@ fn row(ui: &mut Ui, name: &str, value: &str) {
     ui.end_row();
 }
 
-/// Draws every light with its label in words; where the truth is known, beside it and with the finding.
+/// Draws every light with its label at the pixel in words; where the truth is known, also the true label and the
+/// finding.
 fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
     theme::heading(ui, "Lights");
     if has_truth(capture) {
@@ -347,7 +354,7 @@ fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
     }
 }
 
-/// Draws the technique's label beside the truth's, and below them what follows.
+/// Draws a light's label beside the truth's, and below them the finding that follows, if there is one.
 fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note(format::light(index)));

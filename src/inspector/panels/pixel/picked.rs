@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Weak};
 
-/// The state of the panel.
+/// The state of the panel Pixel, and what it caches of the history that it showed last.
 #[derive(Debug, Default)]
 pub struct PixelPanel {
     /// Events that did nothing are hidden.
@@ -43,7 +43,9 @@ pub struct PickedHistory {
 }
 
 impl PixelPanel {
-    /// Returns what is known of the pick now. When the history is another one, all rungs are folded again.
+    /// Returns what is known of the picked pixel's history, which is asked for: while there is none, an older one of
+    /// another pixel or frame, and none where it failed. When another history comes, all rungs are folded and the
+    /// selected event is scrolled to.
     pub fn picked_history(&mut self, model: &Model) -> PickedHistory {
         let reply = model.want_history();
         let history = reply.latest().filter(|_| reply.failed.is_none()).cloned();

@@ -14,7 +14,7 @@ const LEAST_LADDER: f32 = 250.0;
 const MOST_ROWS: usize = 12;
 const LEAST_ROWS: usize = 4;
 
-/// The rows of the history.
+/// Height and number of the history's rows that are visible at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HistoryRows {
     /// Height of one row, points.
@@ -35,7 +35,8 @@ pub fn is_tight(size: egui::Vec2) -> bool {
     size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
 }
 
-/// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder below it.
+/// Returns the rows for a history of `events`, where `left` points remain for it and for the ladder below it: high rows
+/// for all if they fit, otherwise low ones, as many as fit within limits; the rest scrolls.
 pub fn rows(left: f32, events: usize, has_ladder: bool) -> HistoryRows {
     let all = events.min(MOST_ROWS);
     let [wished, least] = if has_ladder { [LADDER, LEAST_LADDER] } else { [0.0; 2] };

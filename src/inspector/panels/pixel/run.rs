@@ -31,7 +31,8 @@ struct RunValues {
     depth: Option<RunValue>,
 }
 
-/// Draws the table; clicking a pass selects its step.
+/// Draws a table of the pixel's values after each step, those that the step did not change faint; a click on a pass
+/// selects its step. Steps that draw a map have no values.
 pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     theme::heading(ui, "Over the steps");
     let mut selected = None;
@@ -76,7 +77,8 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     }
 }
 
-/// Draws the head of the columns. Where there are counts in floats too, the distance does not fit: it is shown above.
+/// Draws the head of the columns: stencil only where there is one, and the distance only where no float counts take its
+/// place.
 fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     let columns =
         [("pass", true), ("stencil", has_stencil), ("count", has_count), ("colour", true), ("distance", !has_count)];
@@ -86,7 +88,8 @@ fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     ui.end_row();
 }
 
-/// Draws number and name of a pass, shortened to so many letters; returns true when it is clicked.
+/// Draws a button with number (a dash for a mask) and name of a pass, cut off with an ellipsis after `longest` letters;
+/// returns true when it is clicked.
 fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, longest: usize, is_selected: bool) -> bool {
     let name = &capture.steps[index].name;
     let color = if is_selected { theme::of(ui).text } else { theme::of(ui).dim };
@@ -133,7 +136,8 @@ fn row(ui: &mut Ui, now: &RunValues, before: Option<&RunValues>, [has_stencil, h
     }
 }
 
-/// Draws a value with its colour; faint where the pass did not change it at this pixel.
+/// Draws a value with its swatch, if it has a colour; faint where it equals the one before, and an empty cell for
+/// `None`.
 fn cell(ui: &mut Ui, now: Option<&RunValue>, before: Option<&RunValue>) {
     let Some(value) = now else {
         ui.label("");

@@ -27,14 +27,14 @@ const STACKED_PLOT_HEIGHT: f32 = 240.0;
 /// From so many finished steps on, the time that the rest takes is shown.
 const LEAST_STEPS: usize = 8;
 
-/// The state of the tab: its plot, laid out once for each size.
+/// The state of the tab Report: its plot, laid out once for each report and size.
 #[derive(Debug, Default)]
 pub struct ReportPanel {
     plot: Option<(Weak<MeasuredReport>, PlotPage, Arc<Plot>)>,
 }
 
 impl ReportPanel {
-    /// Returns the plot of a report on a page.
+    /// Returns the plot of a report on a page, cached for the last report and page.
     fn plot(&mut self, measured: &Arc<MeasuredReport>, page: PlotPage) -> Arc<Plot> {
         match &self.plot {
             Some((of, laid_out, plot)) if std::ptr::eq(of.as_ptr(), Arc::as_ptr(measured)) && *laid_out == page => {
@@ -49,7 +49,8 @@ impl ReportPanel {
     }
 }
 
-/// Draws the panel Report: a plot and a table of every technique's errors and times on the open scene.
+/// Draws the panel Report: a plot and a table of every technique's errors and times, side by side where the panel is
+/// wide. The last report stays visible while another is measured; without rows, only the buttons.
 pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut Vec<Action>) {
     let reply = model.answers.under_way::<ReportOf>();
     let measured = model.answers.last::<ReportOf>().map(|(_, measured)| Arc::clone(measured));
@@ -96,7 +97,8 @@ fn plot_of(
     plot::ui(ui, model, &measured.report, &own.plot(measured, page), actions);
 }
 
-/// Draws the buttons, and the progress.
+/// Draws the button that starts measuring, or, while it runs, the progress with the time left and a button that cancels
+/// it. It can't be started without a scene.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measured: Option<&MeasuredReport>) {
     let can_run = model.scene.is_some();
     ui.horizontal(|ui| match &reply.running {
@@ -147,7 +149,8 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
     });
 }
 
-/// Returns how long the rest takes, as far as that follows from the time so far; empty where it does not.
+/// Returns how long the rest takes, in seconds, or minutes from 90 s on, if it goes on as fast as so far; empty where
+/// too few steps are done, no time has passed, or `done` exceeds `of`.
 fn time_left(seconds: f64, done: usize, of: usize) -> String {
     if done < LEAST_STEPS || seconds <= 0.0 || done > of {
         return String::new();

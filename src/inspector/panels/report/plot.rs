@@ -19,7 +19,8 @@ const TARGET: f32 = 18.0;
 /// Radius of the ring around the selected or hovered mark.
 const RING: f32 = 9.0;
 
-/// Draws `plot` at the next free place and acts on its marks.
+/// Draws `plot` at the next free place in its own size; a click on a row's mark adds the action that renders with its
+/// technique and settings.
 pub fn ui(ui: &mut Ui, model: &Model, report: &Report, plot: &Plot, actions: &mut Vec<Action>) {
     let size = vec2(plot.size[0] as f32, plot.size[1] as f32);
     let (rect, canvas) = ui.allocate_exact_size(size, Sense::hover());
@@ -44,7 +45,8 @@ pub fn ui(ui: &mut Ui, model: &Model, report: &Report, plot: &Plot, actions: &mu
     }
 }
 
-/// Draws a row's mark, which is a button.
+/// Draws a row's mark in the plot, a button that adds the action to render with its technique and settings; with a ring
+/// where the row is what is shown now.
 fn mark(ui: &mut Ui, model: &Model, sheet: &PlotSheet, spot: &PlotPoint, row: &ReportRow, actions: &mut Vec<Action>) {
     let at = sheet.place(spot.at);
     let target = Rect::from_center_size(at, Vec2::splat(TARGET));
@@ -152,7 +154,8 @@ impl PlotSheet {
     }
 }
 
-/// Returns a shape, of which every corner is visible from its middle, as triangles: some shapes are not convex.
+/// Returns an outline's area as a fan of triangles around `middle`, from which every corner must be visible; the
+/// outline may be concave.
 fn fan(middle: Pos2, outline: &[Pos2], color: Color32) -> Mesh {
     let mut mesh = Mesh::default();
     let corners = [middle].into_iter().chain(outline.iter().copied());

@@ -4,7 +4,8 @@ use crate::inspector::action::Action;
 use crate::inspector::model::Model;
 use crate::report::ReportRow;
 
-/// Has the row the scene, technique and settings that are shown now?
+/// Returns whether a row has the scene, the technique and, for each setting that the row names, the value of the open
+/// scene's draft, or of the shown capture where no scene is open; false where nothing is shown.
 pub fn is_current(model: &Model, row: &ReportRow) -> bool {
     let (scene, technique, settings) = match (&model.scene, &model.frame.capture) {
         (Some(open), _) => {

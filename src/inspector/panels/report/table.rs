@@ -39,7 +39,8 @@ const COLUMNS: [TableColumn; 7] = [
     TableColumn { heading: "MiB", width: 46.0, rank: 6, cell: |row| numbers::mebibytes(row.bytes) },
 ];
 
-/// Draws the table in the available width.
+/// Draws the report's table in the available width, one section with headings for each scene; a click on a row adds the
+/// action that renders so.
 pub fn ui(ui: &mut Ui, model: &Model, report: &Report, actions: &mut Vec<Action>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let columns = columns(&report.rows, ui.available_width());
@@ -53,7 +54,8 @@ pub fn ui(ui: &mut Ui, model: &Model, report: &Report, actions: &mut Vec<Action>
     }
 }
 
-/// Returns the columns that fit beside the names, the more important ones first; error and time always.
+/// Returns the columns that fit into `width` points beside the names, in their usual order; less important ones are
+/// left out first, error and time never.
 fn columns(rows: &[ReportRow], width: f32) -> Vec<&'static TableColumn> {
     let name = |row: &ReportRow| text_width(&row.name(), f64::from(theme::TEXT_SIZE)) as f32;
     let names = SIGN_WIDTH + rows.iter().map(name).fold(0.0, f32::max).min(WIDEST_NAME);
@@ -75,7 +77,7 @@ fn headings(ui: &mut Ui, name: &str, columns: &[&'static TableColumn]) {
     }
 }
 
-/// Returns each column with the right end of its cell in a row.
+/// Returns each column, from right to left, with the right end of its cell in a row, at half height.
 fn places(columns: &[&'static TableColumn], row: Rect) -> impl Iterator<Item = (&'static TableColumn, Pos2)> {
     let mut right = row.right() - 6.0;
     columns.iter().copied().rev().map(move |column| {
@@ -108,7 +110,7 @@ fn table_row(ui: &mut Ui, model: &Model, row: &ReportRow, columns: &[&'static Ta
     response.on_hover_text(row.details());
 }
 
-/// Draws technique and label, cut where the numbers begin.
+/// Draws a row's technique, and its label dim beside it, cut off with an ellipsis where the columns of numbers begin.
 fn name(ui: &Ui, rect: Rect, row: &ReportRow, columns: &[&'static TableColumn]) {
     let numbers: f32 = columns.iter().map(|column| column.width).sum();
     let width = (rect.width() - numbers - SIGN_WIDTH - 6.0).max(40.0);

@@ -9,7 +9,8 @@ use crate::plan::DrawPart;
 use crate::reading::format;
 use egui::{Color32, Margin, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
 
-/// Draws the toolbar.
+/// Draws the Scene tab's toolbar: layout of the views, reset, the camera's own view, and which handles there are; no
+/// switches for handles where the view is only assumed, as in other programs' frames.
 pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -46,7 +47,8 @@ fn layouts(ui: &mut Ui, view: &mut SceneView) {
     }
 }
 
-/// Draws the legend: the kinds of geometry with their colours, each entry a switch.
+/// Draws the legend into `rect`: the kinds of geometry with their colours, each a switch, the choice of light and
+/// caster, and notes; also that the geometry is of the frame before, where it is not `is_of_frame`.
 pub fn legend(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy, is_of_frame: bool, stage: &SceneStage, rect: Rect) {
     ui.painter().rect_filled(rect, egui::CornerRadius::ZERO, theme::of(ui).panel);
     let builder = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 6.0))).id_salt("scene legend");
@@ -126,7 +128,8 @@ fn switch(ui: &mut Ui, on: &mut bool, mark: EntryMark, name: &str, hint: &str) {
     });
 }
 
-/// Draws the choice of light and caster.
+/// Draws the choice of the light and of the caster whose shadows are shown, or all; objects that do not cast are not
+/// listed.
 fn choosers(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     theme::heading(ui, "Shadows of");
     let lights = (0..anatomy.lights.len()).map(format::light_title).collect::<Vec<_>>();

@@ -24,7 +24,8 @@ const GRAB: f32 = 18.0;
 const AXIS: f64 = 44.0;
 const AXES: [(&str, DVec3); 3] = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
 
-/// Draws lights and camera into a view, with handles where they are switched on.
+/// Draws lights, eye and target into a view, objects only where they can be moved, with handles where those are
+/// switched on; what the user moves is run. Another program's frame gets signs without handles.
 pub fn ui(
     ui: &Ui,
     model: &mut Model,
@@ -70,7 +71,8 @@ pub fn ui(
     }
 }
 
-/// Draws the found lights and the eye of another program's frame, which can't be moved.
+/// Draws the found lights and the eye of another program's frame, which can't be moved, in the view `here`; their names
+/// where `has_names`.
 fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &GizmoView) {
     let painter = ui.painter_at(here.rect);
     let lights = anatomy.lights.iter().enumerate().map(|(index, light)| {
@@ -90,7 +92,8 @@ fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
     widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, name, false, theme::of(ui));
 }
 
-/// Returns the name of a handle, as shown.
+/// Returns the name of a handle for the user: an object's own name, where there is such an object, otherwise that of
+/// [`HandleKind::name`].
 fn name_of(scene: &OpenScene, grip: HandleKind) -> String {
     let object = if let HandleKind::Object(index) = grip { scene.placed(index) } else { None };
     object.map_or_else(|| grip.name(), |(object, _)| object.name.clone())
@@ -110,14 +113,16 @@ pub struct GizmoView<'a> {
 }
 
 impl<'a> GizmoView<'a> {
-    /// Returns a pane's view of the stage in a rectangle.
+    /// Returns a pane's view of the stage in `rect`, with the handles of directional lights at 0.85 of the scene's
+    /// radius from its middle.
     pub fn new(pane: Pane, lens: &'a Lens, rect: Rect, stage: &SceneStage) -> GizmoView<'a> {
         let anchor = HandleAnchor { middle: stage.middle, reach: 0.85 * stage.radius };
         GizmoView { pane, lens, rect, anchor }
     }
 }
 
-/// Returns where a thing is at the draft's time, world space.
+/// Returns where a handle's thing is at the draft's time, world space: a light, eye or target, or the middle of an
+/// object's box; `None` where there is no such light or object.
 fn place(scene: &OpenScene, grip: HandleKind, anchor: HandleAnchor) -> Option<DVec3> {
     let draft = &scene.draft;
     match grip {
@@ -149,7 +154,8 @@ fn move_by(scene: &mut OpenScene, grip: HandleKind, by: DVec3, anchor: HandleAnc
     }
 }
 
-/// Returns an object's pose at the scene's start after it was moved by `by` at a time in seconds.
+/// Returns an object's pose at the scene's start after it was moved by `by`, metres in world space, at a time in
+/// seconds, so that its motion leads there.
 fn moved_object(object: &Object, time: f64, by: DVec3) -> Pose {
     let pose = object.pose;
     let moved = |by: DVec3| Pose { translate: pose.translate + by, ..pose };
@@ -162,7 +168,8 @@ fn moved_object(object: &Object, time: f64, by: DVec3) -> Pose {
     moved(DMat3::from_cols(x, y, z).transpose() * by)
 }
 
-/// Draws the sign of a thing, whether it can be moved or not.
+/// Draws the sign of a light (with an arrow towards the scene's middle where it is directional), an eye, a target or an
+/// object at a position on the screen, whether it can be moved or not.
 fn sign(ui: &Ui, painter: &Painter, grip: HandleKind, is_directional: bool, at: Pos2, here: &GizmoView) {
     let colors = theme::of(ui);
     match grip {
@@ -193,7 +200,8 @@ fn sign(ui: &Ui, painter: &Painter, grip: HandleKind, is_directional: bool, at: 
     }
 }
 
-/// Draws the handle and, where it is the chosen one, its axes. Returns true where it was moved.
+/// Draws a handle and, where it is the chosen one, its axes, and moves its thing by drags and arrow keys. A handle that
+/// is used becomes the chosen one, and its object the edited one. Returns true where it was moved.
 fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, grip: HandleKind, at: Pos2, here: &GizmoView) -> bool {
     let in_view = format!("in the {} view", here.pane.name());
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
@@ -255,7 +263,7 @@ fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, grip: HandleKind
     by != DVec3::ZERO
 }
 
-/// Returns the world axis that is nearest to a direction.
+/// Returns the world axis, with its sign, that is nearest to a direction.
 fn nearest_axis(direction: DVec3) -> DVec3 {
     let along = |axis: &&(&str, DVec3)| direction.dot(axis.1).abs();
     let nearest = AXES.iter().max_by(|a, b| along(a).total_cmp(&along(b)));

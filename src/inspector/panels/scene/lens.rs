@@ -17,7 +17,7 @@ const STEP: f64 = 3e-4;
 const MOST_PITCH: f64 = 89.9;
 
 named_enum! {
-    /// The projection.
+    /// The projection of a view of the scene in space.
     pub enum LensProjection(
         /// What it does.
         meaning
@@ -40,7 +40,7 @@ impl LensProjection {
     }
 }
 
-/// Where a view looks from, and its projection.
+/// The point that a view of the scene looks at, its direction, size and projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaneView {
     /// The point in the middle, world space.
@@ -60,13 +60,15 @@ pub struct PaneView {
 }
 
 impl PaneView {
-    /// Rotates by angles in degrees.
+    /// Rotates the view by angles in degrees; yaw wraps around at 360, and pitch stops just before straight up and
+    /// down.
     pub fn orbit(&mut self, yaw: f64, pitch: f64) {
         self.yaw = (self.yaw + yaw).rem_euclid(360.0);
         self.pitch = (self.pitch + pitch).clamp(-MOST_PITCH, MOST_PITCH);
     }
 
-    /// Shows `factor` times as much.
+    /// Shows `factor` times as much (a factor above 1 zooms out); ignored where the view's height would leave 1e-6 to
+    /// 1e9 metres.
     pub fn zoom(&mut self, factor: f64) {
         let height = self.height * factor;
         if (1e-6..1e9).contains(&height) {
@@ -74,7 +76,8 @@ impl PaneView {
         }
     }
 
-    /// Returns the rotation from world to view space.
+    /// Returns the rotation from world to view space, in which the view looks along −z; pitch is limited to ±90
+    /// degrees.
     pub fn rotation(&self) -> DMat3 {
         let pitch = self.pitch.clamp(-90.0, 90.0).to_radians();
         DMat3::from_rotation_x(pitch) * DMat3::from_rotation_y(-self.yaw.to_radians())
@@ -85,7 +88,8 @@ impl PaneView {
         self.height / 2.0 / (self.fov_y.to_radians() / 2.0).tan()
     }
 
-    /// Returns the view in a rectangle of the screen.
+    /// Returns this view as seen in a rectangle of the screen, whose shorter side shows [`PaneView::height`] metres; a
+    /// rectangle without area counts as one point wide and high.
     pub fn lens(&self, rect: Rect) -> Lens {
         let length = match self.projection {
             LensProjection::Cavalier => 1.0,
@@ -106,7 +110,7 @@ impl PaneView {
     }
 }
 
-/// A view in a rectangle of the screen.
+/// A view of the scene in a rectangle of the screen: maps world space to points and back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
     /// Rotation from world to view space.
@@ -173,7 +177,7 @@ impl Lens {
         self.eye.map_or(f64::INFINITY, |eye| eye * (1.0 - NEAR))
     }
 
-    /// Returns where a point of view space is on the screen; it must not be nearer than [`Lens::near`].
+    /// Returns where a point of view space is on the screen, in points; it must not be nearer than [`Lens::near`].
     pub fn project(&self, view: DVec3) -> Pos2 {
         let at = match self.eye {
             Some(eye) => view.truncate() * (eye / (eye - view.z)),
@@ -188,7 +192,8 @@ impl Lens {
         (view.z <= self.near()).then(|| self.project(view))
     }
 
-    /// Returns both ends of a line on the screen, clipped where it goes behind the eye.
+    /// Returns both ends of a line in world space on the screen, clipped where it goes behind the eye; `None` where all
+    /// of it is behind. It may leave the rectangle.
     pub fn line(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {
         let [a, b] = ends.map(|end| self.view(end));
         let near = self.near();
@@ -209,8 +214,8 @@ impl Lens {
         self.rotation.transpose() * view
     }
 
-    /// Returns the move along `axis`, of unit length, that moves a point `at` by about so much on the screen; zero
-    /// where the axis is seen from its end.
+    /// Returns the move in world space along `axis`, of unit length, that moves the point `at` by about `by` points on
+    /// the screen; zero where the axis is seen from its end, or begins or ends behind the eye.
     pub fn moved_along(&self, at: DVec3, axis: DVec3, by: Vec2) -> DVec3 {
         let step = 8.0 / self.scale;
         let Some([from, to]) = self.line([at, at + axis * step]) else { return DVec3::ZERO };

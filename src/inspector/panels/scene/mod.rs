@@ -32,7 +32,8 @@ const LEGEND_WIDTH: f32 = 164.0;
 /// In a narrower panel the legend is left out, points.
 const LEAST_WIDTH: f32 = 420.0;
 
-/// Draws the panel Scene: views of the scene in space with its lights, frusta and shadow volumes.
+/// Draws the panel Scene: views of the scene in space with its lights, frusta and shadow volumes. While the geometry of
+/// a frame is not known, that of the frame before; where there is none, the reason.
 pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Vec<Action>) {
     view.follow(model.scenes_opened);
     if let Some(words) = missing(model) {
@@ -81,7 +82,8 @@ pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Ve
     }
 }
 
-/// Returns why there is nothing to see, and what to do.
+/// Returns, as heading and remedy, why there is no geometry to show; `None` where a capture is shown whose geometry can
+/// be asked for.
 fn missing(model: &Model) -> Option<[String; 2]> {
     let own = |words: [&str; 2]| Some(words.map(ToOwned::to_owned));
     match (&model.frame.capture, &model.scene, &model.activity.job) {

@@ -26,7 +26,8 @@ const KEY_ZOOM: f64 = 1.15;
 /// An edge's multiplicity is written where the edge is at least so long on the screen, points.
 const LEAST_EDGE: f32 = 44.0;
 
-/// Draws `pane` into a rectangle.
+/// Draws one view of the scene into `rect`: geometry, rays, labels, handles, name and choice of projection; and
+/// navigates it by mouse and keys.
 pub fn ui(
     ui: &mut Ui,
     model: &mut Model,
@@ -61,7 +62,7 @@ pub fn ui(
     title(ui, view, pane, rect);
 }
 
-/// Draws the view's name, and the choice of its projection.
+/// Draws a view's name and the choice of its projection, with the angle where that is oblique, along the top of `rect`.
 fn title(ui: &mut Ui, view: &mut SceneView, pane: Pane, rect: Rect) {
     let strip = Rect::from_min_size(rect.min + vec2(6.0, 4.0), vec2((rect.width() - 12.0).max(1.0), theme::ROW_HEIGHT));
     ui.scope_builder(UiBuilder::new().max_rect(strip).id_salt(("view title", pane.name())), |ui| {

@@ -14,7 +14,8 @@ use glam::{DVec3, DVec4};
 /// The label of pixels that the light reaches.
 const LIT: u8 = 0;
 
-/// Draws rays and triangle.
+/// Draws the picked pixel's view ray, its rays to the chosen lights (by the label at the pixel) and the selected
+/// triangle; nothing where no pixel is picked, and no light rays where it shows no surface.
 pub fn ui(
     ui: &Ui,
     model: &Model,
@@ -69,7 +70,9 @@ pub fn middle_of_selected(model: &Model, stage: &SceneStage, anatomy: &Anatomy) 
     middle.is_finite().then_some(middle)
 }
 
-/// Returns the corners of the drawn part of the selected triangle, which may reach to infinity.
+/// Returns the corners, world space, of the polygon that is drawn for the triangle selected in the pixel's history;
+/// corners at infinity are cut off at a distance. `None` where none is selected, it was not drawn from the eye, or
+/// fewer than three corners remain.
 fn selected(model: &Model, capture: &Capture, stage: &SceneStage, anatomy: &Anatomy) -> Option<Vec<DVec3>> {
     let history = model.history_of_frame()?;
     let event = history.events.get(model.selected_in(&history)?).filter(|event| event.is_from_camera)?;

@@ -39,7 +39,7 @@ const MOST_VERTICES: usize = 7_000_000;
 /// The most triangles that the GPU is given: 240 MB of corners.
 const MOST_TRIANGLES: usize = 20_000_000;
 
-/// A text at a point.
+/// A text at a point of the scene, or on a line of it.
 #[derive(Debug, Clone)]
 pub struct StageLabel {
     /// Position in world space, metres.
@@ -50,7 +50,7 @@ pub struct StageLabel {
     pub of: Option<[DVec3; 2]>,
 }
 
-/// The geometry of the views.
+/// The geometry and labels that all views of the scene show.
 #[derive(Debug, Default)]
 pub struct SceneStage {
     /// World space; geometry is relative to it.
@@ -69,8 +69,8 @@ pub struct SceneStage {
     pub is_cut: bool,
 }
 
-/// Returns for each object whether it encloses the others, as rooms, walls and floors do. These may be of any size, and
-/// must not hide what they enclose.
+/// Returns for each object whether it encloses the others, as rooms, walls and floors do: its box is nearly as large as
+/// that of all objects. All false where all are so large.
 pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
     let size =
         |points: &mut dyn Iterator<Item = DVec3>| bounds(points).map_or(0.0, |(low, high)| (high - low).length());
@@ -81,7 +81,8 @@ pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
     if large.contains(&false) { large } else { vec![false; large.len()] }
 }
 
-/// Returns middle and radius of the visible scene: all objects but those that enclose the others.
+/// Returns middle (world space) and radius, in metres, of the visible objects that do not enclose others, by their box;
+/// where there is none, or all are one point, around the camera's target with half its distance from the eye.
 pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
     let casters = anatomy.objects.iter().zip(holders).filter(|(object, holds)| !**holds && is_seen(object));
     let camera = &anatomy.camera;
@@ -118,7 +119,8 @@ fn is_seen(object: &PlacedObject) -> bool {
 }
 
 impl SceneStage {
-    /// Returns the stage of `anatomy`, in the colours of `theme`.
+    /// Returns the stage of `anatomy`, in the colours of `theme`: only the parts that are `shown`, and of volumes and
+    /// silhouettes those of `choice`.
     pub fn new(anatomy: &Anatomy, shown: &SceneToggles, choice: VolumeFilter, theme: &Theme) -> SceneStage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
@@ -181,7 +183,9 @@ impl SceneStage {
         (place - self.middle).extend(1.0)
     }
 
-    /// Returns the drawn part of one triangle of `light`'s volumes, or of none: corners of a polygon, world space.
+    /// Returns the drawn part of one triangle, as corners of a polygon in world space. Corners at infinity are ended at
+    /// a distance, for a directional light once for each finite neighbour; with `None`, the triangle belongs to no
+    /// light's volumes and only corners at infinity are ended.
     pub fn polygon(&self, corners: [DVec4; 3], light: Option<&PlacedLight>) -> Vec<DVec3> {
         let ended = light.map_or(corners.map(|corner| corner - (self.middle * corner.w).extend(0.0)), |light| {
             corners.map(|corner| self.ended(corner, light))
@@ -209,8 +213,8 @@ struct StageBuilder<'a> {
 }
 
 impl StageBuilder<'_> {
-    /// Adds the triangles and edges of an object. One that encloses others has its front towards `inside`, the
-    /// picture's eye.
+    /// Adds an object's triangles, smooth where the angle between them is small, and edges. With `inside`, the eye, for
+    /// an object that encloses others, each triangle is flat and faces `inside`.
     fn object(&mut self, object: &PlacedObject, inside: Option<DVec3>) {
         let triangles = object.mesh.triangles();
         let at = |corner: u32| object.positions[corner as usize];
@@ -258,7 +262,8 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Adds each edge of the triangles of an object once.
+    /// Adds each edge of the triangles of an object once, fainter the more there are; notes where they are too many to
+    /// be drawn.
     fn wireframe(&mut self, object: &PlacedObject) {
         let triangles = object.mesh.triangles();
         let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);

@@ -52,14 +52,16 @@ pub struct VolumeFilter {
 }
 
 impl VolumeFilter {
-    /// Are the volume and silhouette of a light and caster shown? Those of objects that enclose everything are shown
-    /// only where they are chosen by name.
+    /// Returns whether the volume and silhouette of a light and a caster are shown: those of the chosen light and
+    /// caster, or of all where none is chosen; but a caster that encloses everything, in `holders`, only where it is
+    /// chosen.
     pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
         let holds = holders.get(caster).is_some_and(|holds| *holds);
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
     }
 
-    /// Returns whether the frustum of a light's map is shown, or of the silhouette of one caster in it.
+    /// Returns whether the frustum of a light's map is shown: where that light, or none, is chosen, and, for a map that
+    /// belongs to one `caster`, no other caster is.
     pub fn has_frustum(self, light: usize, caster: Option<usize>) -> bool {
         let is_other = caster.is_some_and(|caster| self.caster.is_some_and(|one| one != caster));
         self.light.is_none_or(|one| one == light) && !is_other

@@ -14,7 +14,7 @@ use std::sync::Arc;
 const MARGIN: f64 = 2.1;
 
 named_enum! {
-    /// One of the views, as laid out in rows.
+    /// One of the four views of the scene, in the order of their rows.
     pub enum Pane {
         /// Seen from above.
         Top = "Top",
@@ -39,7 +39,7 @@ impl Pane {
     }
 }
 
-/// Which views are shown.
+/// Whether one view of the scene is shown, or all four.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PaneLayout {
     /// One view.
@@ -88,7 +88,7 @@ impl Default for SceneView {
     }
 }
 
-/// A stage, with its inputs.
+/// The built geometry of the views, with the inputs that it was built from.
 #[derive(Debug)]
 pub struct BuiltStage {
     /// What is shown.
@@ -101,7 +101,8 @@ pub struct BuiltStage {
 }
 
 impl SceneView {
-    /// Resets what belongs to a scene, when another one is open: it is shown as a whole.
+    /// Resets what belongs to a scene, when another one is open: the choice of light and caster, the chosen handle and
+    /// the geometry; the views are fitted again. Layout and switches stay.
     fn forget(&mut self) {
         self.fitted = false;
         self.choice = VolumeFilter::default();
@@ -109,7 +110,8 @@ impl SceneView {
         self.built = None;
     }
 
-    /// Resets what belongs to another scene than the one that was opened last.
+    /// Resets what belongs to another scene than the one that was opened last, given as the number of scenes opened;
+    /// does nothing where that is the same.
     pub fn follow(&mut self, scenes_opened: u64) {
         if std::mem::replace(&mut self.scenes_opened, scenes_opened) != scenes_opened {
             self.forget();
@@ -126,7 +128,8 @@ impl SceneView {
         &mut self.views[index_of(pane)]
     }
 
-    /// Sets every view to its initial state, which shows the whole scene.
+    /// Sets every view to its initial direction and size, which shows the whole scene; the free view looks over the
+    /// camera's shoulder. Each view's projection stays.
     pub fn reset(&mut self, anatomy: &Anatomy) {
         let (middle, radius) = stage::framed(anatomy, &stage::holders(anatomy));
         for pane in Pane::ALL {
@@ -145,7 +148,8 @@ impl SceneView {
         self.fitted = true;
     }
 
-    /// Sets the free view to the camera's; a camera that is rolled is shown upright.
+    /// Shows the free view alone, from the camera's eye and with its projection; a camera that is rolled is shown
+    /// upright, and an oblique one as cavalier or cabinet, whichever is nearer.
     pub fn see_from(&mut self, camera: &Camera) {
         let view = self.view_mut(Pane::Free);
         (view.yaw, view.pitch) = angles(camera);
@@ -165,6 +169,8 @@ impl SceneView {
         self.layout = PaneLayout::One(Pane::Free);
     }
 
+    /// Returns the geometry of the views, built anew only where anatomy, switches, choice or theme have changed since
+    /// the last call.
     pub fn stage(&mut self, anatomy: &Arc<Anatomy>, theme: &theme::Theme) -> Arc<BuiltStage> {
         let is_dark = *theme == theme::DARK;
         if let Some(built) = &self.built
@@ -181,12 +187,13 @@ impl SceneView {
     }
 }
 
-/// Returns its index in a row of all.
+/// Returns a view's index in [`Pane::ALL`].
 pub fn index_of(pane: Pane) -> usize {
     Pane::ALL.iter().position(|one| *one == pane).unwrap_or_default()
 }
 
-/// Returns the yaw and pitch of a camera, degrees.
+/// Returns the yaw and pitch of a camera, in degrees, as in [`PaneView`]: yaw 0 looks along −z, and a positive pitch
+/// looks down.
 fn angles(camera: &Camera) -> (f64, f64) {
     let ahead = (camera.target - camera.eye).normalize_or_zero();
     ((-ahead.x).atan2(-ahead.z).to_degrees(), (-ahead.y).clamp(-1.0, 1.0).asin().to_degrees())

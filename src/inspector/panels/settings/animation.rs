@@ -5,7 +5,8 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::Ui;
 
-/// Draws the controls: run or stop, one step, back to the start.
+/// Draws the controls of the animation: run or stop, one step, back to the start; nothing where nothing in the scene
+/// moves.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if !model.is_animated() {
         return;

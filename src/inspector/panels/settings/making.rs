@@ -29,7 +29,8 @@ const SHAPES: [(&str, Shading, ShapeMaker); 5] = [
     ("board", Shading::Flat, || shapes::quad([1.0; 2])),
 ];
 
-/// Draws this part of the panel; returns true when something changed.
+/// Draws the section Make: adds objects and lights, deletes lights, and edits one object. Returns true when the draft
+/// changed; nothing is run.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     ui.add_space(8.0);
     let header = CollapsingHeader::new("Make: add, move, delete").id_salt("make");
@@ -41,7 +42,8 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     made.body_returned.unwrap_or(false)
 }
 
-/// Draws buttons that add: new objects are placed where the eye looks, lights above it.
+/// Draws buttons that add objects, with a size for the view, where the eye looks, and lights above that. An added
+/// object becomes the edited one. Returns true when something was added.
 fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let camera = scene.draft.camera;
     let Camera { eye, target, .. } = camera;
@@ -79,7 +81,8 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     changed
 }
 
-/// Returns a length with two digits, as a user would type it.
+/// Returns a positive length rounded to two significant digits, as a user would type it; 1 where that is not a normal
+/// number.
 fn rounded(length: f64) -> f64 {
     let digit = 10.0_f64.powf(length.log10().floor() - 1.0);
     let rounded = (length / digit).round() * digit;
@@ -108,7 +111,8 @@ fn delete_lights(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     deleted.map(|index| scene.delete_light(index)).is_some()
 }
 
-/// Draws the chosen object: its position, and what can be done with it.
+/// Draws the choice of the edited object, its position, and what can be done with it; objects that are switched off are
+/// not listed. Returns true when the draft changed, false without objects.
 fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let all = 0..scene.object_count();
     let on: Vec<(usize, Object)> = all
@@ -147,7 +151,8 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     changed
 }
 
-/// Switches an object of the scene off; removes one that was added here, so that the indices after it change.
+/// Switches off an object of the loaded scene; removes one that was added, so that the indices after it, also of those
+/// switched off, decrease by one.
 fn delete(scene: &mut OpenScene, index: usize) {
     let (draft, count) = (&mut scene.draft, scene.loaded.len());
     if index < count {
@@ -188,7 +193,9 @@ fn pose_settings(ui: &mut Ui, pose: &mut Pose) -> bool {
     changed
 }
 
-/// Makes the eye look at an object, from its present side; returns false where the object has no size.
+/// Makes the eye look at an object from its present side, so near that the object fills most of the view, and brings
+/// the near plane nearer where it would cut it. Returns false, and changes nothing, where the object has no size, or
+/// eye and target are one point.
 fn look_at(camera: &mut Camera, object: &Object) -> bool {
     let positions = object.world_positions();
     let Some(low) = positions.iter().copied().reduce(DVec3::min) else { return false };

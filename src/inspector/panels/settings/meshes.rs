@@ -8,7 +8,8 @@ use egui::Ui;
 /// How many objects are listed one by one.
 const MOST_OBJECTS: usize = 24;
 
-/// Draws the section; `None` until the meshes have been examined.
+/// Draws the section Meshes: the topology of each object, those with findings first, as many as are listed; `meshes` is
+/// `None` until they have been examined.
 pub fn ui(ui: &mut Ui, meshes: Option<&[ObjectMesh]>) {
     theme::heading(ui, "Meshes");
     let Some(meshes) = meshes else {

@@ -16,7 +16,8 @@ use crate::technique::{Choice, SettingSpec, SettingValues, Technique};
 use egui::{DragValue, RichText, Ui};
 use std::sync::Arc;
 
-/// Draws the panel Scene settings: the camera, lights and objects of the open scene, and the technique's settings.
+/// Draws the panel Scene settings: the technique and its settings, lights, camera and objects of the open scene; a
+/// change runs it. Where no scene is open, only why nothing can be set.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if model.scene.is_none() {
         let text = match (&model.frame.capture, &model.activity.job) {
@@ -76,7 +77,8 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     ui.add(egui::Label::new(theme::note(current.summary())).wrap());
 }
 
-/// Draws the settings of the technique; returns true when one changed.
+/// Draws the settings of the technique in use, each with a reset button where it was changed and off where it has no
+/// effect; returns true when one changed. Nothing is run.
 fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
@@ -103,7 +105,8 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     changed
 }
 
-/// Returns what a setting does, and why it does nothing now.
+/// Returns what a setting does, with a capital letter, and after an empty line the reason `off` why it does nothing
+/// now, if any.
 fn hover(spec: &SettingSpec, off: Option<&str>) -> String {
     let mut letters = spec.meaning.chars();
     let meaning: String =
@@ -111,7 +114,8 @@ fn hover(spec: &SettingSpec, off: Option<&str>) -> String {
     off.map_or_else(|| meaning.clone(), |reason| format!("{meaning}\n\n{reason}"))
 }
 
-/// Draws the widget of one setting; returns its new value when it changed. On hover it says why it is `off`.
+/// Draws the widget of one setting, or plain text where it has only one value; returns its new value when it changed.
+/// On hover it shows what it does and why it is `off`.
 fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, off: Option<&str>) -> Option<String> {
     let hover = hover(spec, off);
     let explained = |response: egui::Response| response.on_hover_text(&hover).on_disabled_hover_text(&hover);
@@ -159,7 +163,8 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
     }
 }
 
-/// Draws a menu of words to tick, with all and none among the choices.
+/// Draws a menu of words to tick. Returns the new value when it changed: the ticked words, separated by commas, `all`
+/// or `none`.
 fn some_of(
     ui: &mut Ui,
     name: &str,
@@ -193,7 +198,8 @@ fn some_of(
     chosen
 }
 
-/// Sets up a number that may be tiny: dragging changes it in proportion, and a power of ten shows how small it is.
+/// Sets up a number that may be tiny: for a value below 0.001 (the number after the last `:` of `current`), dragging
+/// changes it in proportion, and it is shown as a power of ten. Changes take effect when editing ends.
 fn any_size<'a>(widget: DragValue<'a>, current: &str) -> DragValue<'a> {
     let size = current.rsplit(':').next().and_then(|number| number.parse::<f64>().ok()).map_or(0.0, f64::abs);
     if size == 0.0 || size >= 1e-3 {
@@ -202,7 +208,8 @@ fn any_size<'a>(widget: DragValue<'a>, current: &str) -> DragValue<'a> {
     widget.speed(size * 0.02).update_while_editing(false).custom_formatter(|value, _| format!("{value:.1e}"))
 }
 
-/// Draws the widget for one of several words; returns the new word when it changed.
+/// Draws the widget for one of several words, of which `current` is chosen; returns its response, and the new word when
+/// it changed.
 fn choose(ui: &mut Ui, key: &str, words: &[&str], current: &str) -> (egui::Response, Option<String>) {
     let mut value = current.to_owned();
     let combo = egui::ComboBox::from_id_salt(key).selected_text(current);

@@ -4,7 +4,8 @@ use super::row::row;
 use crate::scene::{Camera, Projection};
 use egui::{DragValue, Ui};
 
-/// Draws rows of the camera's grid; returns true when one changed.
+/// Draws the camera's rows for the projection, its field of view, and the numbers that the projection has, each with a
+/// reset to `before`; returns true when one changed.
 pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     let half_height = camera.half_height_at_target();
     let mut changed =
@@ -37,7 +38,8 @@ pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     changed
 }
 
-/// Returns half height, and angle and factor, where a projection has them.
+/// Returns a projection's half height in metres, and its angle in degrees with the depth factor; `None` where it has no
+/// such number.
 fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
     match projection {
         Projection::Perspective => (None, None),
@@ -48,7 +50,9 @@ fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
     }
 }
 
-/// Draws the choice of kind. Another kind shows the target at the same size.
+/// Draws the choice between perspective, orthographic and oblique; returns true when it changed. A new parallel
+/// projection has `half_height`, so that the target stays at its size, and an oblique one the cabinet's angle and
+/// factor.
 fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64) -> bool {
     let before = projection.name();
     let (angle_degrees, factor) = (Projection::USUAL_ANGLE, Projection::CABINET);

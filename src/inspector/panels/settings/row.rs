@@ -3,7 +3,9 @@
 use crate::inspector::look::widgets;
 use egui::Ui;
 
-/// Draws one setting in a row: a reset button where it was changed, its name, its widget. Returns true when it changes.
+/// Draws one setting in a row of a grid: a button that resets it to `before` where it differs, its name, its widget.
+/// Returns true when `widget` returned true or it was reset. `name` is the setting's name for assistive technology,
+/// `label` the one that is drawn.
 pub fn row<T: PartialEq + Clone>(
     ui: &mut Ui,
     name: &str,

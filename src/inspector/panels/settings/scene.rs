@@ -18,7 +18,8 @@ const FAR_OF_NEAR: f64 = 1000.0;
 const LEAST_FAR_OF_NEAR: f64 = 1.01;
 const MOST_FAR: f64 = 1e7;
 
-/// Draws the settings into the panel; true when one changed.
+/// Draws the settings of lights, camera, picture, and which objects are there; returns true when one changed. An added
+/// light has its own values as those to reset to.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut changed = false;
     for index in 0..scene.draft.lights.len() {
@@ -42,7 +43,8 @@ fn grid(ui: &mut Ui, name: impl egui::AsIdSalt, rows: impl FnOnce(&mut Ui) -> bo
     egui::Grid::new(name).num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, rows).inner
 }
 
-/// Draws the choice of the objects that are in the scene.
+/// Draws a box for each object of the loaded scene (not for added ones) that switches it on and off; returns true when
+/// one changed.
 fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
     theme::heading(ui, "Objects");
     let mut changed = false;
@@ -100,8 +102,8 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
     })
 }
 
-/// Draws the choice of point or directional light, by its homogeneous coordinate. The numbers stay: they are a
-/// position, or the direction towards the light.
+/// Draws the choice of point or directional light, by the homogeneous coordinate `w`, which becomes 1 or 0; returns
+/// true when it changed. The other numbers stay: they are a position, or the direction towards the light.
 fn light_kind(ui: &mut Ui, name: &str, w: &mut f64) -> bool {
     let before = *w;
     let combo = egui::ComboBox::from_id_salt(("kind", name));
@@ -136,7 +138,8 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     })
 }
 
-/// Draws the choice of no far plane, or of its distance.
+/// Draws the choice of no far plane, or of its distance in metres, and returns true when it changed. A far plane that
+/// is switched on begins at a multiple of the near plane's distance.
 fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
     ui.horizontal(|ui| {
         let mut is_there = far.is_some();
@@ -181,7 +184,7 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
     })
 }
 
-/// Draws three numbers in a row.
+/// Draws three numbers in a row, x, y and z; returns true when one changed.
 fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
     let mut changed = false;
     ui.horizontal(|ui| {

@@ -14,7 +14,8 @@ const LABELS: [(&str, &str); 2] = [
     ("z up", "Turns the model; floor, light and camera go with it, unless you moved them"),
 ];
 
-/// Draws the choice where a bare model is open; true when it changed.
+/// Draws the choice of the axis that is up, where the scene was opened from a bare model file; rotates the model when
+/// it changes, and then returns true. Draws nothing otherwise.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     if !scene.source.as_deref().is_some_and(is_model) {
         return false;

@@ -31,7 +31,8 @@ const OF_OBLIQUE: [&str; 2] = [
 /// The near plane's distance unless given, in distances from eye to target.
 const DEFAULT_NEAR: f64 = 0.01;
 
-/// Builds a scene. `name` is the scene's unless the table gives one; meshes are read from `folder`.
+/// Builds a scene from its tables. Its name is `name` unless the table gives one; models are read from `folder`. A
+/// camera or lights that the table lacks are placed to fit the objects; a table without objects is an error.
 pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, SceneFileProblem> {
     let mut builder = ObjectBuilder {
         folder,
@@ -88,7 +89,8 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
     Ok(camera)
 }
 
-/// Returns the projection, with `half_height` where the table gives none.
+/// Returns the table's projection (perspective by default), with `half_height` where the table gives none. A number
+/// that this projection does not use, or an unknown name, is an error.
 fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, SceneFileProblem> {
     let number = |value: &Option<SpannedNumber>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
     let kind = table.projection.as_ref().map_or("perspective", |kind| kind.get_ref());
@@ -116,7 +118,8 @@ fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Scene
     })
 }
 
-/// Returns the position of the value that makes the camera unusable.
+/// Returns the position, as a byte of the text, of the value that makes the camera unusable; of the eye where no other
+/// is found.
 fn culprit(table: &CameraTable, camera: &Camera) -> usize {
     let place = |value: &Option<SpannedNumber>| value.as_ref().map(|value| value.span().start);
     let eye = table.eye.span().start;
@@ -151,7 +154,7 @@ fn culprit(table: &CameraTable, camera: &Camera) -> usize {
     found.unwrap_or(eye)
 }
 
-/// Returns whether a projection's factor is what is wrong with it.
+/// Returns whether a projection is oblique with a depth factor outside 0 to 100.
 fn is_wrong_factor(projection: Projection) -> bool {
     matches!(projection, Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor))
 }
@@ -296,7 +299,9 @@ impl ObjectBuilder<'_> {
         Ok(model)
     }
 
-    /// Returns the texture of those parts of a mesh that have no material of their own.
+    /// Returns the texture for those parts of a mesh that have no material of their own; `None` where the table names
+    /// none. An error where its other keys are given alone, no part takes it, texture coordinates are missing without
+    /// `texture_side`, or the picture can't be read.
     fn texture(&mut self, table: &MaterialTable, mesh: &Mesh) -> Result<Option<MaterialTexture>, SceneFileProblem> {
         let Some(file) = &table.texture else {
             let side = table.texture_side.as_ref().map(|side| ("texture_side", side.span()));
@@ -327,7 +332,8 @@ impl ObjectBuilder<'_> {
         }))
     }
 
-    /// Returns the given name, else the mesh's, with a number where that is taken.
+    /// Returns the object's given name, or an error where another object has it; without one, the shape's or the
+    /// model's, with a number where that is taken.
     fn name(&mut self, table: &ObjectTable) -> Result<String, SceneFileProblem> {
         if let Some(name) = &table.name {
             if !self.names.take(name.get_ref()) {
@@ -416,7 +422,7 @@ fn within(value: &SpannedNumber, low: f64, high: f64) -> Result<f32, SceneFilePr
     Err(SceneFileProblem::new(value.span(), format!("{range}: correct it")))
 }
 
-/// Returns linear RGB, each from 0 to `most`.
+/// Returns linear RGB, each from 0 to `most`; an error where one is outside or not finite.
 fn color(value: &SpannedTriple, most: f64) -> Result<[f32; 3], SceneFileProblem> {
     let rgb = finite(value)?.to_array();
     if rgb.iter().all(|part| (0.0..=most.min(f64::from(f32::MAX))).contains(part)) {

@@ -3,7 +3,7 @@
 use crate::scene::suggestion;
 use std::ops::Range;
 
-/// An error at a position of the text.
+/// An error at a position of a scene file's text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneFileProblem {
     /// Byte offset of the value.
@@ -23,14 +23,14 @@ impl SceneFileProblem {
         SceneFileProblem { at: error.span().map_or(0, |span| span.start), reason: in_words(error.message()) }
     }
 
-    /// Returns its line, counted from 1.
+    /// Returns the problem's line in the text, counted from 1.
     pub fn line_in(&self, text: &str) -> usize {
         let before = text.as_bytes().get(..self.at).unwrap_or(text.as_bytes());
         before.iter().filter(|byte| **byte == b'\n').count() + 1
     }
 }
 
-/// Returns the reader's message with how to fix it.
+/// Returns the TOML reader's message in one line and in plain words, with how to fix it.
 fn in_words(message: &str) -> String {
     let message = message.replace(['\n', '\r'], " ");
     // serde: unknown field `colour`, expected one of `color`, `range`

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Triangles of the largest mesh that is written in the scene file.
 const MOST_INLINE: usize = 32;
 
-/// A scene as text, with the files that it names.
+/// A scene as the text of a scene file, with the contents of the files that it names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SavedScene {
     /// Text of the scene file.
@@ -39,8 +39,8 @@ pub enum SaveError {
     Picture(#[from] png::EncodingError),
 }
 
-/// Writes a scene. New models are called `stem-object.obj`; meshes that have a file already are `known`, each with its
-/// file's name.
+/// Returns a scene as text and files, writing nothing. New models are called `stem-object.obj`; meshes in `known` are
+/// named by their file instead, and small plain ones are written as triangles in the text.
 pub fn save(scene: &Scene, stem: &str, known: Vec<(Arc<Mesh>, String)>) -> Result<SavedScene, SaveError> {
     let mut beside = Beside { stem, files: Vec::new(), meshes: known, pictures: Vec::new() };
     let mut objects = Vec::with_capacity(scene.objects.len());
@@ -119,7 +119,7 @@ fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
     (orbit, swing)
 }
 
-/// Returns the table of an object. `texture`: the file of its picture.
+/// Returns the table of an object, with its mesh and, in `texture`, the file of its picture.
 fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> ObjectTable {
     let lies = object.texture.as_ref();
     let (orbit, swing) = motion(&object.motion);
@@ -163,7 +163,9 @@ struct Beside<'a> {
 }
 
 impl Beside<'_> {
-    /// Returns the file of a mesh, which is written unless an earlier object has it; or its triangles.
+    /// Returns how the table names an object's mesh: by the file that has it already, as triangles where they are few
+    /// and without groups, normals and texture coordinates, or by a new model file, which is added with its material
+    /// library.
     fn mesh(&mut self, object: &Object) -> Result<MeshSource, SaveError> {
         let mesh = &object.mesh;
         if let Some((_, name)) = self.meshes.iter().find(|(other, _)| other == mesh) {
@@ -198,7 +200,7 @@ impl Beside<'_> {
         Ok(MeshSource::File(format!("{name}.obj")))
     }
 
-    /// Returns the file of a picture, which is written unless an earlier object has it.
+    /// Returns the file name of a picture, which is added as PNG unless an earlier object has it.
     fn picture(&mut self, picture: &Arc<TextureImage>) -> Result<String, SaveError> {
         if let Some((_, name)) = self.pictures.iter().find(|(other, _)| other == picture) {
             return Ok(name.clone());
@@ -210,7 +212,8 @@ impl Beside<'_> {
         Ok(name)
     }
 
-    /// Returns a name, without its ending, that no other file has.
+    /// Returns a name, without its ending, that no other added file has: the stem and `of`, in letters, digits and
+    /// dashes, with a number where that is taken.
     fn unused(&self, of: &str, ending: &str) -> String {
         let plain: String = of.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
         let taken = |name: &str| self.files.iter().any(|(other, _)| other == &format!("{name}.{ending}"));
@@ -239,7 +242,8 @@ fn png(picture: &TextureImage) -> Result<Vec<u8>, png::EncodingError> {
     Ok(bytes)
 }
 
-/// Returns a mesh as an OBJ model.
+/// Returns a mesh as the text of an OBJ model, with normals, texture coordinates and groups where it has them;
+/// `library` is the file of its materials.
 fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     let mut out = String::new();
     let mut line = |text: std::fmt::Arguments| {
@@ -296,7 +300,8 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
     out
 }
 
-/// Returns the materials of a mesh's groups with the files of their pictures; empty where they have none.
+/// Returns the text of the materials of a mesh's groups (MTL), with the files of their pictures; groups without a
+/// material are left out, and it is empty where none has one.
 fn library(mesh: &Mesh, pictures: &[Option<String>]) -> String {
     let mut out = String::new();
     for (index, (group, picture)) in mesh.groups().iter().zip(pictures).enumerate() {

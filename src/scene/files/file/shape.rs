@@ -23,7 +23,8 @@ const SHAPES: [(&str, &[&str]); 8] = [
 /// The most segments around or along a shape.
 const MOST_SEGMENTS: u32 = 4096;
 
-/// Returns the mesh of a shape.
+/// Returns the mesh of a shape, with defaults for parameters that are not given. An unknown shape, or a parameter that
+/// it does not take, is an error.
 pub fn mesh(table: &ShapeTable) -> Result<Mesh, SceneFileProblem> {
     let name = table.shape.get_ref().as_str();
     let names = SHAPES.map(|(name, _)| name);
@@ -93,7 +94,7 @@ fn with_surface<T>(mesh: Mesh, made_of: &Spanned<T>) -> Result<Mesh, SceneFilePr
     Ok(mesh)
 }
 
-/// Returns the parameters that are given, with their positions.
+/// Returns the names of the parameters that are given, with their positions in the text.
 fn given(table: &ShapeTable) -> Vec<(&'static str, Range<usize>)> {
     fn place<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
         value.as_ref().map(Spanned::span)

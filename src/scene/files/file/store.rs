@@ -30,7 +30,8 @@ pub enum StoreError {
     },
 }
 
-/// Writes `scene` to `file`; a model that it was opened from (`source`) is named and not written again.
+/// Writes `scene` to `file`, which must end in `.toml` and is replaced, with its models and pictures beside it. Meshes
+/// unchanged since `source` was opened are named there and not written again.
 pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), StoreError> {
     if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("toml")) {
         return Err(StoreError::NoSceneFile(file.display().to_string().escape_debug().to_string()));
@@ -40,7 +41,8 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
     write_files(&save(scene, &stem(file), known)?, file)
 }
 
-/// Writes the models first, so that the scene file is never there without them; where writing fails, new files are
+/// Writes models and pictures first, so that the scene file is never there without them. One with the same content
+/// stays; another of that name is an error, and nothing is written. Where writing fails, files that were new are
 /// removed.
 fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
     let mut models: Vec<(PathBuf, &[u8])> =

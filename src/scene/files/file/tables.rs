@@ -10,8 +10,11 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Spanned;
 
+/// A number with its position in the text.
 pub type SpannedNumber = Spanned<f64>;
+/// Three numbers with their position in the text.
 pub type SpannedTriple = Spanned<[f64; 3]>;
+/// A text with its position in the file.
 pub type SpannedText = Spanned<String>;
 
 /// Returns a value that is to be written, without a position.
@@ -126,7 +129,7 @@ pub struct TechniqueTable {
     pub settings: BTreeMap<String, Spanned<toml::Value>>,
 }
 
-/// A model's path, or a shape.
+/// The source of an object's mesh: a model's path, or a shape.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub enum MeshSource {
@@ -151,7 +154,7 @@ pub struct ShapeTable {
     pub indices: Option<Spanned<Vec<[u32; 3]>>>,
 }
 
-/// `32`, or `[48, 24]`.
+/// How finely a shape is divided: one number, `32`, or several, `[48, 24]`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Segments(pub Vec<u32>);
 

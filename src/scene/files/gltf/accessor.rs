@@ -69,7 +69,8 @@ impl GltfDocument {
         Ok(self.numbers::<1>(index)?.iter().map(|number| *number as u32).collect())
     }
 
-    /// Returns `count` items of `size` bytes, which lie in the view one after the other or at its stride.
+    /// Returns `count` items of `size` bytes from `offset` of a buffer view on, one after the other or at the view's
+    /// stride. An error where they reach beyond the view, or the stride is less than `size`.
     fn strided(
         &self,
         view: Index<buffer::View>,
@@ -92,7 +93,8 @@ impl GltfDocument {
     }
 }
 
-/// Returns the number at the start of some bytes, of which there are enough.
+/// Returns the little-endian number at the start of some bytes, of which there must be enough. With `normalized`, an
+/// integer becomes 0 to 1, or −1 to 1 for signed ones.
 fn component(kind: ComponentType, normalized: bool, bytes: &[u8]) -> f64 {
     let two = || [bytes[0], bytes[1]];
     let four = || [bytes[0], bytes[1], bytes[2], bytes[3]];

@@ -31,7 +31,7 @@ const KNOWN_EXTENSIONS: [&str; 5] = [
 /// The error says why a file can't be shown and how to fix it; in one line, without the file's name.
 pub type GltfResult<T> = Result<T, String>;
 
-/// A file that is valid by the format's rules.
+/// A glTF file that is valid by the format's rules, with its buffers.
 #[derive(Debug)]
 pub struct GltfDocument {
     /// Its JSON.
@@ -46,7 +46,7 @@ pub struct GltfDocument {
 }
 
 impl GltfDocument {
-    /// Reads a file and its buffers.
+    /// Reads a glTF file and its buffers, and checks the rules that reading relies on.
     pub fn open(file: &Path) -> Result<GltfDocument, SceneError> {
         let failed = |reason: String| SceneError::Read { file: file.to_owned(), reason };
         let bytes = read_plain(file, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
@@ -86,7 +86,8 @@ impl GltfDocument {
         Ok(())
     }
 
-    /// Returns the bytes of a buffer's or a picture's URI: a file beside this one, or data in the URI itself.
+    /// Returns the bytes of a buffer's or a picture's URI: a file whose path is relative to this one's, of at most
+    /// `most` bytes, or data in the URI itself.
     pub fn resource(&self, uri: &str, most: u64) -> GltfResult<Vec<u8>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let broken = || "a data URI can't be read: export the file again".to_owned();
@@ -100,12 +101,13 @@ impl GltfDocument {
         read_plain(&self.file.with_file_name(path), most).map_err(|error| format!("{} {error}", quoted(uri)))
     }
 
-    /// Returns where a picture's file would be.
+    /// Returns the path of the file that a URI names, relative to this file; `None` for data in the URI and other
+    /// schemes. It may not exist.
     pub fn beside(&self, uri: &str) -> Option<PathBuf> {
         path_of(uri).map(|path| self.file.with_file_name(path))
     }
 
-    /// Returns the bytes of a buffer view.
+    /// Returns the bytes of a buffer view; an error where it reaches beyond its buffer.
     pub fn view(&self, index: Index<buffer::View>) -> GltfResult<&[u8]> {
         let missing = || format!("buffer view {} is beyond its buffer: export the file again", index.value());
         let view = self.root.get(index).ok_or_else(missing)?;
@@ -117,7 +119,7 @@ impl GltfDocument {
             .ok_or_else(missing)
     }
 
-    /// Takes items from the number that may still be read or computed.
+    /// Subtracts `items` from the number of items that may still be read or computed; an error where fewer are left.
     pub fn take(&self, items: u64) -> GltfResult<()> {
         let left = self.left.get().checked_sub(items);
         self.left.set(left.ok_or("tells of more vertices and triangles than its buffers have bytes: split the model")?);
@@ -125,7 +127,8 @@ impl GltfDocument {
     }
 }
 
-/// Returns the files that a file names; empty where it can't be read, which loading reports.
+/// Returns the paths of the buffers and pictures that a glTF file names, sorted and each once, without data in URIs;
+/// empty where it can't be read, which loading reports.
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = read_plain(file, MOST_BYTES) else { return Vec::new() };
     let Ok((root, _)) = parse(&bytes, file) else { return Vec::new() };
@@ -138,7 +141,8 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Returns the path in a relative URI (RFC 3986); `None` for one that is elsewhere.
+/// Returns the decoded path in a URI (RFC 3986); `None` for data, another scheme with `://`, an empty URI, or bytes
+/// that are not UTF-8.
 fn path_of(uri: &str) -> Option<PathBuf> {
     let is_elsewhere = uri.starts_with("data:") || uri.contains("://") || uri.is_empty();
     let path = percent_encoding::percent_decode_str(uri).decode_utf8().ok()?;
@@ -167,13 +171,14 @@ fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneErro
     }
 }
 
-/// Returns a foreign message as one short line.
+/// Returns a foreign message as one line of at most 120 characters, control characters escaped.
 fn in_a_line(words: &str) -> String {
     const MOST: usize = 120;
     words.chars().take(MOST).flat_map(char::escape_debug).collect()
 }
 
-/// Checks the rules of the format that reading relies on.
+/// Checks the rules of the format that reading relies on: version 2, no unknown required extension, valid indices and
+/// values. The error says what is wrong and how to fix it.
 fn checked(root: &Root) -> GltfResult<()> {
     if root.asset.version.split('.').next() != Some("2") {
         let version = quoted(&root.asset.version);
@@ -212,7 +217,7 @@ pub fn is_known(extension: &str) -> bool {
     KNOWN_EXTENSIONS.contains(&extension) || extension.starts_with("KHR_materials_")
 }
 
-/// Returns whether all of it is supported.
+/// Returns whether an extension is fully supported.
 pub fn is_done(extension: &str) -> bool {
     KNOWN_EXTENSIONS.contains(&extension)
 }

@@ -20,14 +20,16 @@ use gltf::json::validation::Checked;
 /// The least near plane of an orthographic camera, as a part of its distance to the far plane.
 const NEAREST: f64 = 1e-6;
 
-/// A light or a camera, and the node that it hangs on.
+/// A light or a camera, and the index of the node that it belongs to.
 #[derive(Debug, Clone)]
 pub struct NodeItem<T> {
     pub node: usize,
     pub it: T,
 }
 
-/// Returns the lights of the scene that is shown.
+/// Returns the lights of the scene that is shown, in world space, with intensities at the middle of the scene scaled so
+/// that they sum to 1; records in `refusals` what is not shown, such as a spot's cone, which becomes a point light, and
+/// lights beyond the most that fit.
 pub fn lights(
     root: &Root,
     nodes: &GltfNodes,
@@ -77,7 +79,8 @@ pub fn lights(
     found
 }
 
-/// Returns the first camera of the scene that is shown.
+/// Returns the first camera of the shown scene that can be used; records in `refusals` the others. `None` where there
+/// is none.
 pub fn camera(
     root: &Root,
     nodes: &GltfNodes,

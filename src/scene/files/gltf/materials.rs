@@ -19,7 +19,7 @@ use gltf::json::{Index, material};
 /// Share of light that a dielectric surface reflects straight on.
 const PLAIN_REFLECTANCE: f32 = 0.04;
 
-/// The material of a primitive.
+/// The material of a glTF primitive, with its name and texture.
 #[derive(Debug, Clone, Default)]
 pub struct PrimitiveMaterial {
     /// The material's name, or one that stands for it.
@@ -30,7 +30,7 @@ pub struct PrimitiveMaterial {
     pub map: Option<GltfTexture>,
 }
 
-/// A texture, and its texture coordinates.
+/// A texture, and which texture coordinates are used for it and how they are transformed.
 #[derive(Debug, Clone)]
 pub struct GltfTexture {
     /// The texture.
@@ -54,7 +54,7 @@ impl GltfTexture {
     }
 }
 
-/// A file's materials, each read once.
+/// A glTF file's materials, each read on first use.
 #[derive(Debug)]
 pub struct GltfMaterials<'a> {
     document: &'a GltfDocument,
@@ -68,7 +68,8 @@ impl<'a> GltfMaterials<'a> {
         GltfMaterials { document, pictures, known: vec![None; document.root.materials.len()] }
     }
 
-    /// Returns a material, recording what of it is not shown.
+    /// Returns a material, with defaults where `index` is `None` or names none, and records in `refusals` what of it is
+    /// not shown, also when it was read before.
     pub fn look(
         &mut self,
         index: Option<Index<material::Material>>,

@@ -29,7 +29,7 @@ pub enum VertexTransform<'a> {
     Skinned(&'a [DMat4]),
 }
 
-/// Reads meshes of a file.
+/// Reads meshes of a glTF file, with their materials.
 #[derive(Debug)]
 pub struct GltfMeshes<'a> {
     document: &'a GltfDocument,
@@ -42,7 +42,8 @@ impl<'a> GltfMeshes<'a> {
         GltfMeshes { document, materials }
     }
 
-    /// Returns a mesh of the file, which may have no triangle.
+    /// Returns a mesh of the file with all its primitives of triangles, in the space that `form` says; it may have no
+    /// triangle. Points, lines and morph targets are left out and recorded in the mesh.
     ///
     /// # Errors
     /// Accessors that don't fit; an index beyond the vertices; a position that is not finite.
@@ -181,7 +182,8 @@ fn uvs(document: &GltfDocument, index: Index<Accessor>, map: &GltfTexture, used:
     uvs.iter().all(is_usable_uv).then_some(uvs)
 }
 
-/// Returns for each vertex that is used the matrix that its joints move it by.
+/// Returns for each vertex in `used` the matrix that its joints move it by, their weighted mean; the identity where all
+/// weights are 0 or there are no joints.
 fn skin(
     document: &GltfDocument,
     accessor: &dyn Fn(Semantic) -> Option<Index<Accessor>>,
@@ -217,7 +219,8 @@ fn skin(
     Ok(matrices)
 }
 
-/// Returns the corners of triangles, all with the same winding.
+/// Returns the corners of a list, strip or fan of triangles, all with the same winding; indices that complete no
+/// triangle are left out.
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => polygon::strip(indices.len()).map(|of| of.map(|corner| indices[corner])).collect(),
@@ -229,7 +232,8 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     }
 }
 
-/// Returns one mesh of all parts.
+/// Returns one mesh of all parts, in order, each a group with its material. Where some parts have normals, triangles of
+/// the others get those of their planes. Records in `refusals` what is not shown.
 fn assemble(
     parts: &[(PrimitiveVertices, PrimitiveMaterial)],
     name: &str,

@@ -19,7 +19,7 @@ const BESIDE: f64 = 1e-3;
 /// The number of times at which a motion is compared with the rotation that it replaces.
 const SAMPLES: usize = 7;
 
-/// The rotation of a node, and of what hangs on it.
+/// The uniform rotation of a node and all below it about an axis.
 #[derive(Debug, Clone, Copy)]
 pub struct NodeRotation {
     pivot: DVec3,
@@ -28,7 +28,7 @@ pub struct NodeRotation {
     degrees_per_second: f64,
 }
 
-/// The rotations of a file's first animation.
+/// The rotations of a file's first animation, by node.
 #[derive(Debug)]
 pub struct NodeRotations {
     /// For each node, what moves it.
@@ -45,7 +45,8 @@ enum MovingAncestor {
 }
 
 impl NodeRotations {
-    /// Converts an animation; records in `refusals` what it leaves out.
+    /// Converts the rotations of the file's first animation; records in `refusals` what it leaves out, such as other
+    /// animations and other kinds of motion.
     pub fn new(document: &GltfDocument, nodes: &GltfNodes, refusals: &mut UnsupportedList) -> NodeRotations {
         let mut own: Vec<Option<NodeRotation>> = vec![None; document.root.nodes.len()];
         for (index, animation) in document.root.animations.iter().enumerate() {
@@ -82,7 +83,8 @@ impl NodeRotations {
         !matches!(self.above[node], MovingAncestor::Nothing)
     }
 
-    /// Returns the motion of an object of this pose that hangs on a node.
+    /// Returns the motion of an object of this pose that belongs to a node: still, or a spin about x, y or z, with an
+    /// orbit where the node is off the axis.
     ///
     /// # Errors
     /// A rotation that no motion of ours is.
@@ -197,7 +199,7 @@ fn turn(
     Ok(NodeRotation { pivot, axis, degrees_per_second: speed.length().to_degrees() })
 }
 
-/// Returns whether it scales more along one axis than along another.
+/// Returns whether a pose scales more along one axis than along another.
 fn is_uneven(pose: Pose) -> bool {
     let DVec3 { x, y, z } = pose.scale;
     (x - y).abs().max((x - z).abs()) > BESIDE * x.abs()

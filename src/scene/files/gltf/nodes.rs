@@ -9,7 +9,7 @@ use gltf::json::{Index, Root, scene};
 /// single precision.
 const BESIDE: f64 = 1e-6;
 
-/// All nodes of a file.
+/// All nodes of a glTF file, with their matrices, and which are shown.
 #[derive(Debug)]
 pub struct GltfNodes {
     /// World space from the node's own, for each node.
@@ -23,7 +23,8 @@ pub struct GltfNodes {
 }
 
 impl GltfNodes {
-    /// Returns the nodes of the file's scene: its default scene, the first, or all nodes.
+    /// Returns the nodes of the file, all placed in world space; shown are those of its default scene, else of its
+    /// first scene, else all.
     ///
     /// # Errors
     /// Nodes that form no tree; numbers that are not finite.
@@ -62,7 +63,7 @@ impl GltfNodes {
     }
 }
 
-/// Returns these nodes and all below them, each once, and after the node that it hangs on.
+/// Returns these nodes and all below them, each once and after its parent; a missing node is left out.
 fn below(root: &Root, from: &[usize]) -> Vec<usize> {
     let mut is_visited = vec![false; root.nodes.len()];
     let mut waiting: Vec<usize> = from.iter().rev().copied().collect();
@@ -77,7 +78,8 @@ fn below(root: &Root, from: &[usize]) -> Vec<usize> {
     found
 }
 
-/// Returns the parent's space from the node's own.
+/// Returns the transform from a node's own space to its parent's: its matrix, or else its scale, rotation and
+/// translation.
 fn local(node: &scene::Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
@@ -97,14 +99,15 @@ pub fn rotation_of(node: &scene::Node) -> DQuat {
     node.rotation.map_or(DQuat::IDENTITY, |given| unit(given.0.map(f64::from)))
 }
 
-/// Returns a quaternion of unit length; zero becomes no rotation.
+/// Returns the quaternion (x, y, z, w) scaled to unit length; one of zero, tiny or no finite length becomes no
+/// rotation.
 pub fn unit(given: [f64; 4]) -> DQuat {
     let turn = DQuat::from_array(given);
     let length = turn.length();
     if length.is_normal() { turn / length } else { DQuat::IDENTITY }
 }
 
-/// Returns the pose that a node's matrix is, where there is one: no mirroring, no shear.
+/// Returns the pose whose matrix is `world`; `None` where no pose has it: it mirrors, shears, or has no volume.
 pub fn pose_of(world: &DMat4) -> Option<Pose> {
     if world.determinant() <= 0.0 {
         return None;

@@ -31,7 +31,7 @@ pub struct MaterialLibraries<'a> {
     pictures: &'a mut ImageLoader,
 }
 
-/// A material's texture, and its texture coordinates.
+/// A material's texture, and how texture coordinates are scaled and moved for it.
 #[derive(Debug, Clone)]
 pub struct ObjTexture {
     /// The texture.
@@ -48,7 +48,7 @@ impl ObjTexture {
 }
 
 impl<'a> MaterialLibraries<'a> {
-    /// Returns a list without materials.
+    /// Returns libraries without materials, which read pictures with `pictures`.
     pub fn new(pictures: &'a mut ImageLoader) -> MaterialLibraries<'a> {
         MaterialLibraries {
             materials: Vec::new(),
@@ -60,17 +60,17 @@ impl<'a> MaterialLibraries<'a> {
         }
     }
 
-    /// Returns the index of the material of that name, of the libraries that were read.
+    /// Returns the index of the material of that name in the libraries that were read; `None` where there is none.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.by_name.get(name).copied()
     }
 
-    /// Returns a material by its index.
+    /// Returns a material by its index from `find`; panics for any other.
     pub fn material(&self, found: usize) -> &tobj::Material {
         &self.materials[found]
     }
 
-    /// Returns the texture of a material.
+    /// Returns the texture of the material of that name; `None` where it has none that can be used.
     pub fn map(&self, material: &str) -> Option<&ObjTexture> {
         self.maps.get(material)
     }
@@ -135,7 +135,7 @@ impl<'a> MaterialLibraries<'a> {
     }
 }
 
-/// Returns the pictures that a library shows; empty where it can't be read.
+/// Returns the pictures that a library's `map_Kd` lines name, beside it; empty where it can't be read.
 pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = read_plain(library, MOST_BYTES) else { return Vec::new() };
     let text = decoded(bytes);
@@ -179,7 +179,8 @@ impl<'a> ObjTextureLine<'a> {
         self.file.replace('\\', "/")
     }
 
-    /// Parses a line. Options come first; the rest is the file, whose name may have spaces.
+    /// Parses the arguments of `map_Kd`. Options come first; the rest is the file, whose name may have spaces. Options
+    /// that change what is shown and are not supported are recorded.
     fn parse(rest: &'a str) -> ObjTextureLine<'a> {
         let mut unused = Vec2::ZERO;
         let mut line = ObjTextureLine {
@@ -217,7 +218,7 @@ impl<'a> ObjTextureLine<'a> {
     }
 }
 
-/// Splits off the first word.
+/// Splits off the first word, and returns it with the rest, both without leading spaces; `None` where there is no word.
 fn next_word(text: &str) -> Option<(&str, &str)> {
     let text = text.trim_start();
     let end = text.find(char::is_whitespace).unwrap_or(text.len());
@@ -228,7 +229,8 @@ fn skip(text: &str, count: usize) -> &str {
     (0..count).fold(text, |text, _| next_word(text).map_or("", |(_, after)| after))
 }
 
-/// Parses up to three numbers, and stores the first two in `into`; returns the rest.
+/// Parses up to three numbers at the start of `text`, stores the first two in `into` where they are finite, and returns
+/// the rest. The last word is never taken, as it is the file's name.
 fn numbers<'a>(mut text: &'a str, into: &mut Vec2) -> &'a str {
     for axis in 0..3 {
         // A number with nothing after it is the file's name, which may begin with digits.
@@ -262,7 +264,8 @@ pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Mater
     }
 }
 
-/// Returns the line in plain form, if it is one that is read and nothing is wrong with it.
+/// Returns a library's line in plain form, if it begins a material or sets a colour, gloss or opacity that is read,
+/// with as many finite numbers as needed; `None` for any other line.
 fn usable_line(line: &str) -> Option<String> {
     let (keyword, rest) = line.trim().split_once(char::is_whitespace)?;
     let count = match keyword {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::AddAssign;
 
-/// The content of an OBJ file; indices count from 0 and are in range.
+/// The content of an OBJ file; indices count from 0 and are in range, polygons are not yet triangles.
 #[derive(Debug, Default, PartialEq)]
 pub struct ObjContents {
     /// Positions, all finite.
@@ -27,7 +27,7 @@ pub struct ObjContents {
     pub statements: Vec<(usize, ObjStatement)>,
 }
 
-/// A corner of a face.
+/// A corner of a face, by indices counted from 0; `None` where it has no texture coordinates or normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ObjCorner {
     pub vertex: u32,
@@ -35,7 +35,7 @@ pub struct ObjCorner {
     pub normal: Option<u32>,
 }
 
-/// A statement that applies to the faces that follow.
+/// A statement of an OBJ file that applies to the faces that follow.
 #[derive(Debug, PartialEq)]
 pub enum ObjStatement {
     /// `o` or `g`; empty where it gives no name.
@@ -46,7 +46,7 @@ pub enum ObjStatement {
     Library(String),
 }
 
-/// What is wrong with a line.
+/// What is wrong with a line of an OBJ file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ObjLineProblem {
     /// Number of the line, counted from 1.
@@ -99,7 +99,8 @@ fn read_in_parts(raw: &str, size: usize) -> Result<ObjContents, ObjLineProblem> 
     Ok(joined)
 }
 
-/// Splits the text into pieces that end at the end of a line that is not continued.
+/// Splits the text into pieces of at least `size` bytes (the last may be shorter), each of which ends at the end of a
+/// line that is not continued by a backslash.
 fn parts(raw: &str, size: usize) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut rest = raw;
@@ -149,7 +150,8 @@ impl ObjCounts {
     }
 }
 
-/// Returns lines with their numbers, counted from 0; a backslash at the end joins the next one.
+/// Returns lines with the number of their first line, counted from 0; a backslash at a line's end joins the next one to
+/// it with a space.
 fn lines(part: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut rest = part.lines().enumerate();
     std::iter::from_fn(move || {
@@ -177,7 +179,7 @@ fn split_keyword(line: &str) -> (&str, &str) {
     halves.map_or((line.trim(), ""), |(keyword, rest)| (keyword, rest.trim()))
 }
 
-/// Returns the words before a comment.
+/// Returns the words of a line, separated by white space, up to one that begins with `#`, a comment.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_plain = text.is_ascii();
     let plain = is_plain.then(|| text.split_ascii_whitespace());
@@ -226,12 +228,13 @@ impl ObjChunk {
 }
 
 impl ObjContents {
-    /// Returns the texture coordinates of a corner, if they can be used.
+    /// Returns the texture coordinates of a corner; `None` where it has none, or they can't be used.
     pub fn place_of(&self, corner: &ObjCorner) -> Option<Vec2> {
         self.places[corner.place? as usize]
     }
 
-    /// Adds a face of a part of a file, with the counts before the part and in the whole file.
+    /// Adds a face of a part of a file, with the counts of vertices before the part and in the whole file, to which its
+    /// indices refer. An error where it has fewer than three corners or an index is out of range.
     fn add_face(&mut self, rest: &str, before: ObjCounts, all: ObjCounts) -> Result<(), String> {
         let here = ObjCounts {
             vertices: before.vertices + self.positions.len(),
@@ -254,7 +257,8 @@ impl ObjContents {
     }
 }
 
-/// Parses the three numbers of a `v` or `vn` line.
+/// Parses the first three numbers of a `v` or `vn` line, further ones are ignored; an error where there are fewer, or
+/// one is not finite (for `vn`, in single precision).
 fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
     let (what, most) = if keyword == "v" { ("vertex", f64::MAX) } else { ("normal", f64::from(f32::MAX)) };
     let mut three = words(rest);
@@ -273,14 +277,16 @@ fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
     Ok(vector)
 }
 
-/// Parses the texture coordinates of a `vt` line, if they can be used; the second is 0 unless given.
+/// Parses the first two numbers of a `vt` line, the second is 0 unless given; `None` where they are no numbers or can't
+/// be used.
 fn place(rest: &str) -> Option<Vec2> {
     let mut numbers = words(rest).map(|word| word.parse().ok());
     let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
     is_usable_uv(&place).then_some(place)
 }
 
-/// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+/// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. An index that is out of range is an error, except one of texture
+/// coordinates, which then counts as none.
 fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, String> {
     let mut parts = word.split('/');
     let (vertex, place, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
@@ -300,7 +306,8 @@ fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, St
     Ok(ObjCorner { vertex, place, normal })
 }
 
-/// Parses an index, counted from 0; in the file from 1, and negative ones count back from the line.
+/// Parses an index of an OBJ file, where 1 is the first and −1 the last before the line (`before` of them), and returns
+/// it counted from 0; an error where it is not below `all`. `what` and `plural` are words for the error.
 fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Result<u32, String> {
     let given: i64 = word.parse().map_err(|_| format!("{} is no {what} index: give a whole number", quoted(word)))?;
     let back = usize::try_from(given.unsigned_abs()).unwrap_or(usize::MAX);

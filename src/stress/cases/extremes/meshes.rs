@@ -23,7 +23,8 @@ pub const ALL: &[StressCase] = &[
     UNDRAWN,
 ];
 
-/// Returns a scene of these casters over the usual floor.
+/// Returns a scene of these casters over the usual floor, with one point light and the camera of this module's cases.
+/// The floor is object 0.
 fn over_floor(casters: Vec<Object>) -> Result<Scene, MeshError> {
     let mut objects = vec![floor(3.0)?];
     objects.extend(casters);
@@ -216,7 +217,8 @@ const BESIDE_DEGENERATE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// Returns an object of one triangle whose three corners lie in a line; `alike` of them are equal: none, two or three.
+/// Returns an object of one triangle without area: its corners lie in a line where `alike` is 0; two of them are the
+/// same vertex where it is 2, all three for any other number.
 fn line(alike: f64) -> Result<Object, MeshError> {
     let points = [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
     let triangle = match alike as u32 {

@@ -6,6 +6,7 @@ use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, KnownFailure, StressCase};
 use glam::DVec3;
 
+/// The sweep in which a directional light sinks towards the floor's plane, from 10 degrees to 1e-4.
 pub const GRAZING: StressCase = StressCase {
     name: "grazing",
     lesson: "the light sinks towards the floor's plane: shadows grow without end, and a bias without limit",
@@ -40,6 +41,8 @@ const ACNE: KnownFailure =
     fails(UNBIASED, "acne", "without a bias every surface is as deep as its own texels, and half of them are nearer")
         .at_most(0.06);
 
+/// The sweep in which the sun sinks towards a floor with a board just over it that is not drawn, so that the shadow's
+/// edge falls where light grazes.
 pub const GRAZING_EDGE: StressCase = StressCase {
     name: "grazing-edge",
     lesson: "the sun sinks towards a floor with a board just over it: the shadow's edge falls where light grazes",
@@ -58,8 +61,8 @@ pub const GRAZING_EDGE: StressCase = StressCase {
     ..PLAIN
 };
 
-/// Returns a scene in which a board's shadow lies two metres from it, at any height of the sun in degrees; `form`
-/// changes the board.
+/// Returns a scene with a board whose shadow begins two metres from it at any height of the sun: the lower the sun (in
+/// degrees over the floor), the lower the board. `form` changes the board.
 fn beside_a_board(degrees: f64, form: fn(Object) -> Object) -> Result<Scene, MeshError> {
     let slope = degrees.to_radians().tan();
     let board = form(Object::of("board", shapes::quad([2.0, 1.0])?).at([0.0, 2.0 * slope, 1.5]));
@@ -67,6 +70,7 @@ fn beside_a_board(degrees: f64, form: fn(Object) -> Object) -> Result<Scene, Mes
     Ok(scene([0.3, 2.0, 4.0], [0.0; 3], sun, vec![floor(3.0)?, board]))
 }
 
+/// The same sweep as [`GRAZING_EDGE`] with the board drawn, whose depth is as near to the floor's as the light is low.
 pub const GRAZING_BOARD: StressCase = StressCase {
     name: "grazing-board",
     lesson: "the same with the board in view: it has a depth of its own, as near to the floor's as the light is low",
@@ -91,7 +95,8 @@ pub const GRAZING_BOARD: StressCase = StressCase {
     ..GRAZING_EDGE
 };
 
-/// Returns the failures `alike` for each technique that counts shadow volumes, followed by the `others`.
+/// Returns the failures `alike` once for each of z-fail, auto, z-pass and z-pass-plus, followed by the `others`. `ALL`
+/// must be `4 * N + 3`.
 const fn of_volumes<const N: usize, const ALL: usize>(
     alike: [KnownFailure; N],
     others: [KnownFailure; 3],

@@ -17,6 +17,8 @@ const HOLE: KnownFailure = fails(
 .at(|pixels| pixels <= 1e-4)
 .at_most(0.001);
 
+/// The sweep in which the seams of two touching sheets' shadows come nearer to the centres of pixels, where rounding
+/// leaves holes. Techniques with texels are left out.
 pub const SEAM: StressCase = StressCase {
     name: "seam",
     lesson: "two sheets that touch, turned and raised in a hundred ways, and seams of their shadows that come to the middles \
@@ -80,6 +82,8 @@ const MOVED_END: KnownFailure = fails(
 .at(|metres| metres >= 1e6)
 .at_most(0.02);
 
+/// The sweep in which strips over a floor get longer, from 10 metres to a thousand kilometres: the GPU cuts them at the
+/// picture's border and rounds by their length. Techniques with texels are left out.
 pub const LONG_EDGE: StressCase = StressCase {
     name: "long-edge",
     lesson: "strips over a floor under a near lamp, longer and longer: the GPU cuts them where the picture ends, and rounds \
