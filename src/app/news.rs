@@ -80,7 +80,7 @@ pub enum Exported {
     Failed(String),
 }
 
-/// Wakes the event loop that draws the panels; does nothing after it has ended.
+/// Sends news to the event loop that draws the panels, from any thread, and wakes it; does nothing after it has ended.
 pub type Notify = Arc<dyn Fn(WindowNews) + Send + Sync>;
 
 /// An event of the window's loop that does not come from the system.

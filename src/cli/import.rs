@@ -98,8 +98,9 @@ impl ImportTarget {
     }
 }
 
-/// Returns text about the written folder: its size, how many draws leave the same values when run again here, which
-/// lights were found, and what histories can't know.
+/// Returns text about the stored frame: picture size, numbers of passes and draws, how many draws leave the same values
+/// when run again here and how the others differ, for each light whether it was found, what histories can't know,
+/// limits of the import, and what was left out.
 fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
     let [width, height] = capture.size;
     let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();

@@ -92,7 +92,8 @@ impl GpuContext {
         Ok(())
     }
 
-    /// Runs `work` between a start and an end of capture for an attached graphics debugger, such as RenderDoc.
+    /// Runs `work` between a start and an end of capture for an attached graphics debugger, such as RenderDoc, and
+    /// returns its result; without one it just runs. `work` must wait for all that it submits.
     pub(super) fn bracketed<T>(&self, work: impl FnOnce() -> T) -> T {
         self.start_debugger_capture();
         let result = work();

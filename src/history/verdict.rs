@@ -12,7 +12,8 @@ use crate::plan::{CountBits, CountedSide, DecidedBy};
 use crate::technique::{CountOperations, VolumeSettings};
 use crate::truth::PixelLabel::{self, Background, FacesAway, Lit, Shadow};
 
-/// Whether a light reaches the surface at a pixel, and the evidence for why.
+/// What a light's mask says of a pixel (lit, in shadow, facing away, background), and the evidence for why. It is what
+/// the technique decided, not the ray-traced truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// Index of the light.

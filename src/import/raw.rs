@@ -109,7 +109,7 @@ impl RawFormat {
         self.largest_depth().is_some() || matches!(self, RawFormat::D32F | RawFormat::D32FS8)
     }
 
-    /// Returns whether a texel has stencil.
+    /// Returns whether a texel has stencil that can be read; false for [`RawFormat::Other`], whatever its name says.
     pub fn has_stencil(&self) -> bool {
         matches!(self, RawFormat::D24S8 | RawFormat::D32FS8 | RawFormat::S8)
     }

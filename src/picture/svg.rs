@@ -42,6 +42,8 @@ fn tree(svg: &str) -> Result<Tree, SvgError> {
 }
 
 /// Renders an SVG with `scale` pixels a point, its size rounded up. Where it draws nothing the picture is black.
+///
+/// # Errors An SVG that is not valid; a side of 0 or of more than 16 384 pixels, which is [`SvgError::TooLarge`] too.
 pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
     let tree = tree(svg)?;
     let size = [tree.size().width(), tree.size().height()].map(|side| (side * scale).ceil());

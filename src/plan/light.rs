@@ -61,7 +61,8 @@ impl PlanMap {
     pub const MOST_FACES: usize = 64;
 }
 
-/// How a shader compares a fragment with a shadow map.
+/// How a shader looks a fragment up in a depth map: which texels it reads, and with which depth it compares them.
+/// Constant and slope bias are not here: the draws that make the map have them, in their raster state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapLookup {
     /// Depth of texels that no caster covers; 0 where depth is reversed.

@@ -4,7 +4,8 @@ use crate::capture::Capture;
 use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 
-/// Returns the view ray through the centre of a pixel, relative to the eye.
+/// Returns the view ray through the centre of a pixel (column, row; row 0 is the top), relative to the eye: add the
+/// eye's position for world space. Its direction is no unit vector: the part along the view's axis is 1.
 pub fn ray(capture: &Capture, at: [u32; 2]) -> Ray {
     ray_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }

@@ -78,7 +78,7 @@ impl PictureKind {
     }
 }
 
-/// Which layer of a light's map is shown.
+/// Which layers of a light's map are shown: all side by side, or one. One whose index is too large shows all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceChoice {
     /// All layers, side by side.

@@ -374,8 +374,8 @@ fn wide(value: [f32; 4]) -> DVec4 {
     DVec4::from_array(value.map(f64::from))
 }
 
-/// Returns a number with at most four decimals as text, without zeros at the end, and without a sign where it rounds to
-/// 0.
+/// Returns a number with at most four decimals as text to be read, not parsed: without zeros at the end, with `−`
+/// (U+2212) where it is negative, and without a sign where it rounds to 0.
 pub fn digits(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

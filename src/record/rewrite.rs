@@ -222,7 +222,8 @@ impl FunctionCode<'_> {
         self.expressions.append(expression, Span::UNDEFINED)
     }
 
-    /// Appends an expression to the function, and to the end of its body the statement that evaluates it.
+    /// Appends an expression to the function, and to the end of its body the statement that evaluates it. Only for
+    /// expressions that are evaluated: arguments, constants and the like use [`FunctionCode::plain`].
     fn emitted(&mut self, expression: Expression) -> Handle<Expression> {
         let before = self.expressions.len();
         let handle = self.plain(expression);

@@ -174,8 +174,9 @@ fn wrong_percent(row: &ReportRow) -> String {
     if row.error.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
 }
 
-/// Returns how many digits after the point the shortest frame needs, the same for all so that points align; fewer where
-/// the longest takes seconds, whose numbers are wide already.
+/// Returns how many digits after the point all times get, so that points align: 3 where the shortest median frame is
+/// below 0.2 ms and the longest below a second, else 2. Frames that were not timed (0) don't count. Spreads use one
+/// less, so it is never 0.
 fn decimals(rows: &[ReportRow]) -> usize {
     let times = || rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0);
     let (shortest, longest) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));

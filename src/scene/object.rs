@@ -148,7 +148,8 @@ impl Pose {
         Pose { translate, rotate_degrees: DVec3::new(x, y, z).map(f64::to_degrees), scale }
     }
 
-    /// Returns the pose at the same position, rotated so that what was its z axis is up.
+    /// Returns the pose at the same position, rotated by −90° about the world's x axis: what pointed along the world's
+    /// z axis points up (y). For a pose without rotation that is the object's own z axis. Called again it rotates on.
     pub fn with_z_up(&self) -> Pose {
         self.rotated_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
     }

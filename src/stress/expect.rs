@@ -159,7 +159,7 @@ pub fn texels(technique: Technique) -> Option<(FailureSymptom, &'static str)> {
 }
 
 impl ExpectedResult {
-    /// Returns the result's name in JSON and tables: `right`, or that of the failure.
+    /// Returns the result's name in JSON and tables: `right`, or that of the failure, whether it must show or only may.
     pub fn name(self) -> &'static str {
         self.symptom().map_or("right", |symptom| symptom.name)
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use wgpu::BindingResource as Resource;
 use wgpu::custom::{BindGroupInterface, BindGroupLayoutInterface, PipelineLayoutInterface};
 
-/// A wrapped bind group layout: the real one, and what a recording needs to know of it.
+/// A wrapped bind group layout: only the real one; a recording needs to know nothing more of it.
 #[derive(Debug)]
 pub struct BindGroupLayout {
     pub inner: wgpu::BindGroupLayout,

@@ -225,7 +225,8 @@ impl CameraRays {
         Ray { from: self.world_from_view * from, along: self.world_from_view * along }
     }
 
-    /// Returns the world direction of the view's axis.
+    /// Returns the unit direction, world space, in which the camera looks, away from the eye. Distances of rays are
+    /// measured along it; the rays of an oblique view are not parallel to it.
     pub fn axis(&self) -> DVec3 {
         -self.world_from_view.z_axis
     }

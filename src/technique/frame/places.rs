@@ -97,8 +97,9 @@ impl FrameBuilder<'_> {
         self.plan.left_out.extend(list.iter().map(named));
     }
 
-    /// Returns a piece for each group of the object that is placed next, with its material and texture; textures that
-    /// are new are added to the plan. The common setting `shading` overrides the materials'.
+    /// Returns a piece for each group of the object that is placed next, in the groups' order, with its material (the
+    /// object's where the group has none) and texture; textures that are new are added to the plan. The common setting
+    /// `shading` replaces only the materials' shading model.
     fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<SurfacePiece> {
         let (shading, index) = (self.common.shading, self.placed.len());
         let piece = |group: &MeshGroup| SurfacePiece {

@@ -156,8 +156,11 @@ impl VolumePlan {
     }
 }
 
-/// Makes the volume of a caster with far vertices that the CPU extrudes away from the light, with the parts that must
-/// be counted. Adds nothing to the plan.
+/// Makes the volume of a caster with far vertices that the CPU extrudes away from the light, with the parts that count.
+/// Parts may have no triangles, and caps that `options.caps` leaves out are among them: the caller sorts both out. Adds
+/// nothing to the plan.
+///
+/// # Errors Returns what to record where the caster needs no volume.
 ///
 /// # Errors
 /// Returns what to record where the caster needs no volume.
