@@ -216,7 +216,7 @@ fn a_folder_has_pictures_text_and_document_and_is_replaced_only_on_request() {
         pixels.chunks_exact(3).filter(|pixel| wrong.iter().any(|color| color == pixel)).count()
     };
     assert!(colors("regions.png") > 100);
-    assert_eq!(colors("mended.png"), 0, "the mend leaves nothing wrong");
+    assert_eq!(colors("mended.png"), 0, "the fix leaves nothing wrong");
 
     let again = diagnose(folder.path(), &arguments);
     assert!(again.0 == Some(2) && again.2.contains("--overwrite"), "{}", again.2);

@@ -238,7 +238,7 @@ impl Cause {
             Cause::F32Limit => {
                 "Single precision is too coarse: the light lies nearly in a triangle's plane, a volume's side meets the \
                  surface in the very middle of a pixel, or a triangle reaches many kilometres beyond the picture's \
-                 border. No setting mends it: move the light, the triangle or the eye, or split what is so long."
+                 border. No setting fixes it: move the light, the triangle or the eye, or split what is so long."
             }
             Cause::SubpixelEdges => {
                 "The caster's edges are two pixels long or less. The GPU moves corners to the nearest 1/256 of a pixel, \

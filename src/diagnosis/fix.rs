@@ -238,7 +238,7 @@ impl Fix {
             .to_owned()
         }));
         words.extend(self.larger.map(|times| format!("draw the picture {times} times as large")));
-        if words.is_empty() { "nothing mends it".to_owned() } else { words.join(", ") }
+        if words.is_empty() { "nothing fixes it".to_owned() } else { words.join(", ") }
     }
 }
 

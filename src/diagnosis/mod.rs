@@ -248,7 +248,7 @@ impl Advice {
     /// Makes the advice to apply `fix`, which leaves `wrong_left` pixels wrong of `wrong_now`.
     pub(crate) fn new(fix: &Fix, wrong_left: u64, wrong_now: u64) -> Advice {
         let outcome = outcome(wrong_left);
-        let sentence = format!("To mend it, {fix}: {outcome}, of {} now.", numbers::count(wrong_now));
+        let sentence = format!("To fix it, {fix}: {outcome}, of {} now.", numbers::count(wrong_now));
         Advice { fix: fix.clone(), wrong_left, sentence, staying: None }
     }
 

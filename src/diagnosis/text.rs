@@ -77,7 +77,7 @@ impl Diagnosis {
         let ruled_out: Vec<&str> =
             region.causes.iter().filter(|cause| !is_listed(cause)).map(|found| found.cause.name()).collect();
         if !ruled_out.is_empty() {
-            out += &format!("   ruled out by running their mends: {}\n", ruled_out.join(", "));
+            out += &format!("   ruled out by running their fixes: {}\n", ruled_out.join(", "));
         }
         if region.causes.is_empty() {
             let [x, y] = region.at;
@@ -109,7 +109,7 @@ impl Diagnosis {
                 let better = better.map_or_else(String::new, |better| format!(" {better}."));
                 format!("{}{run}{better}", advice.sentence)
             }
-            (None, Some(better)) => format!("no single change mends it, but {better}"),
+            (None, Some(better)) => format!("no single change fixes it, but {better}"),
             (None, None) => {
                 "nothing that was tried helps; `pixel SCENE --at X,Y` tells how a pixel came about".to_owned()
             }
@@ -174,7 +174,7 @@ fn as_before(region: &RegionFound, like: usize) -> String {
 
 /// Returns words for a cause's fix, with its command-line options where it has any, and for what running it has shown.
 fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
-    let Some(fix) = fix else { return "no mend to run".to_owned() };
+    let Some(fix) = fix else { return "no fix to run".to_owned() };
     let options = fix.options();
     let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
     let left = pixels_left.unwrap_or(0);
@@ -183,7 +183,7 @@ fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
         Proof::Part | Proof::NotIt => format!("{} of these stay wrong", pixels(left)),
         Proof::NotRun => "not run".to_owned(),
     };
-    format!("to mend it: {fix}{options}; run so, {outcome}")
+    format!("to fix it: {fix}{options}; run so, {outcome}")
 }
 
 fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> String {

@@ -240,7 +240,7 @@ impl DocumentReader {
         note(draw.fill != "Solid", "triangles are drawn as lines or points, which are not followed");
         note(
             draw.blend.as_ref().is_some_and(|blend| blend.logic),
-            "colours meet by a logic operation, which is not told",
+            "colours meet by a logic operation, which is not read",
         );
         Ok(RawDraw {
             topology: geometry.topology,

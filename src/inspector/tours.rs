@@ -171,11 +171,11 @@ pub const TOURS: [Tour; 10] = [
             ),
             stop(
                 "Held against the truth",
-                "The hatched pixels are wrong. Pick one: the ladder starts at the near plane with 0, although the eye is in shadow already. The Diagnosis tab says so in words, and proves the mend.",
+                "The hatched pixels are wrong. Pick one: the ladder starts at the near plane with 0, although the eye is in shadow already. The Diagnosis tab says so in words, and proves the fix.",
                 &[Last, Picture(PictureKind::Error), PickWrong, TourMove::Panel(Pixel)],
             ),
             stop(
-                "The mend: count from the other end",
+                "The fix: count from the other end",
                 "z-fail counts the faces behind the surface instead. No near plane lies there, so nothing is cut off, if the volumes are closed. The same scene, and no pixel is wrong.",
                 &[TourMove::Technique(Technique::ZFail), Last, Picture(PictureKind::Error), TourMove::Panel(Pixel)],
             ),
@@ -224,7 +224,7 @@ pub const TOURS: [Tour; 10] = [
     },
     Tour {
         technique: Technique::ZPassPlus,
-        promise: "How z-pass is mended at the near plane",
+        promise: "How z-pass is fixed at the near plane",
         stops: &[
             stop(
                 "What was cut off",

@@ -88,7 +88,7 @@ fn findings(topology: &Topology) -> Vec<(String, &'static str)> {
             topology.split_vertices.count,
             format::counted(topology.split_vertices.count as u64, "split vertex pair"),
             "Vertices that nearly coincide leave slits: the edges between them are open, though nobody sees it. No \
-             technique mends that; by-topology takes the mesh for open.",
+             technique fixes that; by-topology takes the mesh for open.",
         ),
         (
             topology.flat_triangles.count,

@@ -111,7 +111,7 @@ pub enum SessionError {
     #[error("another picture came meanwhile: diagnose again when it is the one you want")]
     OtherFrame,
     /// There is no frame to ask about.
-    #[error("the open scene was not rendered: mend what the error says, then ask again")]
+    #[error("the open scene was not rendered: fix what the error says, then ask again")]
     NoFrame,
     /// The answer needs lights that were not found.
     #[error("another program drew this frame, and no shadow volumes tell where its light is")]

@@ -162,7 +162,7 @@ impl Session {
                 let others: Vec<&str> = one.together_with.iter().map(|cause| cause.name()).collect();
                 let alone = one.left.unwrap_or(0);
                 one.suspicion.evidence.push_str(&format!(
-                    "; mended alone it leaves {alone} wrong pixels, together with {} none",
+                    "; fixed alone it leaves {alone} wrong pixels, together with {} none",
                     others.join(" and ")
                 ));
                 (one.proof, one.left) = (Proof::Proven, Some(left));

@@ -146,7 +146,7 @@ const CLAIMS: &[Claim] = &[
     (Technique::ZPass, "Held against the truth", "The hatched pixels are wrong", |shown| {
         shown.wrong().iter().sum::<u64>() > 0
     }),
-    (Technique::ZPass, "The mend: count from the other end", "The same scene, and no pixel is wrong", |shown| {
+    (Technique::ZPass, "The fix: count from the other end", "The same scene, and no pixel is wrong", |shown| {
         shown.capture.technique == "z-fail" && shown.scene.name == "inside" && shown.wrong() == [0, 0]
     }),
     (Technique::ZFail, "What every pixel shows", "First the scene in ambient light, with its depths", |shown| {

@@ -294,7 +294,7 @@ fn what_exceeds_the_memory_budget_is_reported_and_not_tried() {
     let diagnosis = diagnose(&mut session, &provoked);
     let found = found(&diagnosis).expect("a region");
     assert_eq!((found.cause, found.proof), (Cause::Aliasing, Proof::Proven), "{}", summary(&diagnosis));
-    assert_eq!(found.fix.expect("a mend").technique, Some(Technique::ZFail));
+    assert_eq!(found.fix.expect("a fix").technique, Some(Technique::ZFail));
     assert!(found.evidence.contains("(set size = 256 can't be run"), "{}", found.evidence);
     assert!(!found.evidence.contains("size = 128 can't"), "{}", found.evidence);
 }

@@ -71,7 +71,7 @@ pub fn found() -> Diagnosis {
         advice: Some(Advice {
             fix: z_fail(),
             wrong_left: 0,
-            sentence: "To mend it, use z-fail.".to_owned(),
+            sentence: "To fix it, use z-fail.".to_owned(),
             staying: None,
         }),
     }
@@ -148,13 +148,13 @@ fn a_region_goes_to_its_pixel_its_history_and_the_step_that_decided() {
     assert_eq!(harness.state().inspector.model.selection.pick, Some([9, 4]));
     harness.get_by_label("evidence of split-vertices");
     harness.get_by_label("12 pixels stay wrong");
-    harness.get_by_label("To mend it in the scene: weld the vertices of box");
+    harness.get_by_label("To fix it in the scene: weld the vertices of box");
 }
 
 #[test]
 fn causes_have_their_evidence_proof_and_meaning() {
     let harness = with_regions();
-    for words in ["eye-in-volume", "proven", "evidence of eye-in-volume", "not it", "To mend it, use z-fail."] {
+    for words in ["eye-in-volume", "proven", "evidence of eye-in-volume", "not it", "To fix it, use z-fail."] {
         harness.get_by_label(words);
     }
     harness.get_by_label(Cause::EyeInVolume.meaning());
@@ -165,17 +165,17 @@ fn causes_have_their_evidence_proof_and_meaning() {
 fn a_fix_is_applied_and_shown_before_and_after() {
     let mut harness = with_regions();
     harness.state_mut().actions.clear();
-    click_button(&mut harness, "Apply the mend: use z-fail");
+    click_button(&mut harness, "Apply the fix: use z-fail");
     let technique = |harness: &Harness<Seen>| match harness.state().actions.last() {
         Some(Action::Run(request)) => request.choice.technique(),
         other => panic!("{other:?}"),
     };
     assert_eq!(technique(&harness), Technique::ZFail);
-    harness.get_by_label("shown: after, with the mend");
+    harness.get_by_label("shown: after, with the fix");
     harness.get_by_label_contains("(not as it is shown now)");
     click_button(&mut harness, "Show before");
     assert_eq!(technique(&harness), Technique::ZPass);
-    harness.get_by_label("shown: before, without the mend");
+    harness.get_by_label("shown: before, without the fix");
     click_button(&mut harness, "Show after");
     assert_eq!(technique(&harness), Technique::ZFail);
 }
@@ -258,7 +258,7 @@ fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
     show_tab(&mut harness, "Diagnosis");
     let stay =
         harness.get_by_role_and_label(Role::Button, "Stay with shadow-map, 1 pixel left: set bias-slope = 4").rect();
-    let change = harness.get_by_role_and_label(Role::Button, "Apply the mend: use z-fail").rect();
+    let change = harness.get_by_role_and_label(Role::Button, "Apply the fix: use z-fail").rect();
     assert!(stay.top() < change.top());
     click_button(&mut harness, "Stay with shadow-map, apply all: set bias-slope = 4");
     let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };

@@ -69,7 +69,7 @@ fn what_an_api_has_unless_reported_otherwise_is_marked_and_what_was_set_is_not()
         for line in set {
             harness.get_by_label(line);
         }
-        harness.get_by_label_contains(&format!("lines differ from what {api} has unless told otherwise"));
+        harness.get_by_label_contains(&format!("lines differ from what {api} has by default"));
         let count = harness.query_all_by_label_contains(" // default").count();
         assert!(count > 3, "{api}: {count} defaults");
     }

@@ -10,7 +10,7 @@ const EXPECTED: check::Expected = check::Expected {
     draws: 14,
     of_picture: 14,
     discarding: 14,
-    limits: &["how depth comes from distance can't be told from the vertices, so that no light is looked for"],
+    limits: &["how depth comes from distance can't be found from the vertices, so that no light is looked for"],
 };
 const SIZE: [u32; 2] = [640, 480];
 

@@ -385,9 +385,9 @@ fn carried_in_f32(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     })?;
     let (ExtrusionInF32 { misfaced, triangles, beside }, caster) = found;
     let faces = match misfaced {
-        0 => "each triangle is told to face as it does".to_owned(),
-        1 => format!("1 of {} is told to face the wrong way", amount(triangles as u64, "triangle")),
-        _ => format!("{misfaced} of {} are told to face the wrong way", amount(triangles as u64, "triangle")),
+        0 => "each triangle is found to face as it does".to_owned(),
+        1 => format!("1 of {} is found to face the wrong way", amount(triangles as u64, "triangle")),
+        _ => format!("{misfaced} of {} are found to face the wrong way", amount(triangles as u64, "triangle")),
     };
     let evidence = format!(
         "the volume of {caster} is carried by a vertex shader, in single precision: {faces}, and a vertex goes up to {} \

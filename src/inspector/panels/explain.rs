@@ -14,7 +14,7 @@ use egui::{Label, RichText, Ui};
 /// list of tours. Without a capture, only a hint to open a scene.
 pub fn ui(ui: &mut Ui, own: &mut ExplainPanel, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else {
-        ui.add(Label::new(theme::note("Open a scene: what each pass is for is told here.")).wrap());
+        ui.add(Label::new(theme::note("Open a scene: what each pass is for is explained here.")).wrap());
         return;
     };
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {

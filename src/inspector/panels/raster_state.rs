@@ -108,7 +108,7 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
     });
     let set = lines.iter().filter(|line| !is_default(line)).count();
     let differ = if set == 1 { "1 line differs" } else { &format!("{set} lines differ") };
-    let note = format!("{differ} from what {} has unless told otherwise.", own.api.name());
+    let note = format!("{differ} from what {} has by default.", own.api.name());
     ui.add(Label::new(theme::note(note)).wrap());
     if ui.button("Copy state").on_hover_text("To the clipboard, in these words").clicked() {
         ui.ctx().copy_text(lines.join("\n"));

@@ -64,7 +64,7 @@ fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene,
     let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
     let positions: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
     let surroundings = SceneBounds::of(&positions)
-        .ok_or_else(|| unusable("has no surface whose size can be told: give a model with triangles"))?;
+        .ok_or_else(|| unusable("has no surface whose size is known: give a model with triangles"))?;
     if surroundings.extent() > MOST_EXTENT {
         return Err(unusable("is too large: scale it down"));
     }

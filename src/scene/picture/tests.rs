@@ -106,7 +106,7 @@ fn what_is_no_picture_is_refused_in_a_line() {
     for (bytes, words) in cases {
         let error = load(bytes).expect_err(words).to_string();
         assert!(error.starts_with("is ") && error.contains(words) && !error.contains('\n'), "{error}");
-        assert!(error.contains(": "), "no mend: {error}");
+        assert!(error.contains(": "), "no fix: {error}");
     }
 }
 

@@ -143,7 +143,7 @@ const COUNTER: WordSetting<bool> = words(
     "where counts are kept: in eight bits, or signed in a float a pixel",
     Lesson {
         text: "`stencil` counts in eight bits. `float` counts signed, beyond eight bits, in a target of its own; it \
-             is what mends 256 nested volumes.",
+             is what fixes 256 nested volumes.",
         formula: "stencil: the count mod 256; float: the count",
         sources: &[],
     },

@@ -52,10 +52,10 @@ fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, ac
     let is_after = model.scene.as_ref().is_some_and(|scene| scene.draft.choice == applied.after);
     ui.horizontal_wrapped(|ui| {
         let (words, other) = if is_after { ("Show before", &applied.before) } else { ("Show after", &applied.after) };
-        if ui.button(words).on_hover_text("Renders without the mend, and with it again").clicked() {
+        if ui.button(words).on_hover_text("Renders without the fix, and with it again").clicked() {
             model.choose(other.clone(), actions);
         }
-        let shown = if is_after { "shown: after, with the mend" } else { "shown: before, without the mend" };
+        let shown = if is_after { "shown: after, with the fix" } else { "shown: before, without the fix" };
         ui.label(theme::note(shown));
     });
     ui.add_space(4.0);
@@ -90,7 +90,7 @@ fn cause(
         apply_button(ui, own, model, fix, &words, actions);
     }
     if let Some(fix) = &found.fix {
-        apply_button(ui, own, model, fix, "Apply the mend", actions);
+        apply_button(ui, own, model, fix, "Apply the fix", actions);
     }
 }
 
@@ -109,7 +109,7 @@ fn apply_button(
         fix.choose(&mut choice).ok().map(|()| (scene.draft.choice.clone(), choice))
     });
     let Some((before, after)) = choice else {
-        wrapped(ui, theme::note(format!("To mend it in the scene: {fix}")));
+        wrapped(ui, theme::note(format!("To fix it in the scene: {fix}")));
         return;
     };
     let is_done = before == after;

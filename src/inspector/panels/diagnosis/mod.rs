@@ -70,13 +70,13 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
             let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32);
             let width = ui.available_width().min(180.0);
             ui.add(bar.desired_width(width).desired_height(8.0)).accessible_name("Diagnosing");
-            ui.add(egui::Label::new(theme::note("following rays, and running what may mend it")).wrap());
+            ui.add(egui::Label::new(theme::note("following rays, and running what may fix it")).wrap());
         }
         None => {
             let is_new = known.is_none();
             let words = if is_new { "Diagnose" } else { "Diagnose again" };
             let button = ui.add_enabled(can_run, egui::Button::new(words));
-            if button.on_hover_text("Say where this frame is wrong, why, and what mends it").clicked() {
+            if button.on_hover_text("Say where this frame is wrong, why, and how to fix it").clicked() {
                 model.answers.start(DiagnosisOf {});
             }
             ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
@@ -99,7 +99,7 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
             }
         }
         None if can_run => {
-            "Follows rays through the scene, groups wrong pixels, and runs what may mend them: only what \
+            "Follows rays through the scene, groups wrong pixels, and runs what may fix them: only what \
                             takes them away is called proven."
                 .to_owned()
         }

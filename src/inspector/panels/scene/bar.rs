@@ -82,7 +82,7 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
     switch(ui, &mut shown.wireframe, EntryMark::Line(colors.text, 1.0), "Wireframe", hint);
     if anatomy.is_view_assumed {
-        let hint = format!("{}; sides and caps are not told apart", triangles(count(DrawPart::Side)));
+        let hint = format!("{}; sides and caps are not distinguished", triangles(count(DrawPart::Side)));
         switch(ui, &mut shown.sides, EntryMark::Square(colors.side), "Volumes", &hint);
     } else {
         let caps = [count(DrawPart::LightCap), count(DrawPart::DarkCap)].map(triangles);

@@ -72,7 +72,7 @@ impl GltfDocument {
             let length = buffer.byte_length.0;
             if (bytes.len() as u64) < length {
                 return Err(format!(
-                    "buffer {index} has {} bytes where {length} are told of: export the file again",
+                    "buffer {index} has {} bytes where {length} are declared: export the file again",
                     bytes.len()
                 ));
             }
