@@ -26,7 +26,8 @@ pub struct IncomingFragment {
     pub front_facing: bool,
 }
 
-/// The result of the tests.
+/// The result of a fragment's stencil and depth tests: which of them passed, the stencil operation that ran, and the
+/// depth and stencil that the pixel stores after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TestOutcome {
     /// True where the stencil test passed.

@@ -255,7 +255,9 @@ impl QuestionKind {
         self == QuestionKind::TimingOf
     }
 
-    /// Returns whether the next questions depend on the answer, so that all long work is interrupted for it.
+    /// Returns whether the next picture depends on the answer (walls, for walking): long work makes way for it. A truth
+    /// that is being traced is traced again later; a diagnosis and a report are given up and must be started again by
+    /// hand; films and stress cases go on after it.
     pub fn is_urgent(self) -> bool {
         self == QuestionKind::WallsOf
     }

@@ -186,8 +186,9 @@ impl SnapshotStorage {
         Ok(())
     }
 
-    /// Replaces an aspect's `current` image by the `next` one, and returns the aspect of this step. It counts as
-    /// unchanged where `next` is `None` or every texel is equal, even if a pass cleared or drew it.
+    /// Replaces an aspect's `current` image by the `next` one where a texel differs, and returns the aspect of this
+    /// step. Else, and where `next` is `None`, the image stays and the aspect is unchanged, even if a pass cleared or
+    /// drew it. Fails where the memory budget is exceeded.
     fn step_aspect(&mut self, current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Result<Aspect, GpuError> {
         let changed = match next {
             Some(next) => self.move_on(current, next)?,

@@ -210,7 +210,8 @@ impl Executor {
         answer::labels(&prepared)
     }
 
-    /// Runs all passes and returns the label mask of each light and the finished picture.
+    /// Runs all passes, waits, and returns the label mask of each light, in their order and `None` where no pass writes
+    /// it, and the finished picture. Nothing else is copied.
     pub fn answer(&self, prepared: Prepared) -> Result<LabelsAndPicture, GpuError> {
         run(&prepared, RunMode::Answer, &FrameQueries::default())?;
         Ok(LabelsAndPicture { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })

@@ -261,7 +261,10 @@ impl PixelEvent {
         self.before != self.after || (has_passed && !self.is_of_volume())
     }
 
-    /// Returns what the event was to add to the count, also where the count stopped at 0 or 255 and did not change.
+    /// Returns what a triangle was to add to the count, also where the count stopped at 0 or 255: 1 or −1 for
+    /// operations that count (1 also for inverting), 0 for keep, zero and replace. Without a stencil operation it is
+    /// the change, as in [`PixelEvent::counted`]; of a clear, or content set from outside, too: leave those out of
+    /// sums.
     pub fn step(&self) -> i32 {
         match self.operation() {
             None => self.counted(),

@@ -197,7 +197,9 @@ fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: P
     PixelValues { depth: depth.unwrap_or(values.depth), stencil: stencil.unwrap_or(values.stencil), ..values }
 }
 
-/// Returns whether a pass draws into the picture, a light's labels or a light's count.
+/// Returns what a pass draws into, by the role of its colour target: a light's labels, a light's count, or else the
+/// picture. The picture also for a pass without a colour target, such as one that counts in the stencil, and for passes
+/// of maps. Which light it is, the pass says.
 pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     match pass.color.as_ref().map(|target| plan.attachment(target.attachment).role) {
         Some(AttachmentRole::Labels(_)) => FrameTarget::Labels,

@@ -95,8 +95,8 @@ impl MapReaders {
     }
 
     /// Returns the texels that a pixel is compared with, row by row, each with the depth of the pixel's surface there
-    /// (on its plane, where the bias is by plane); beyond the map's border, the border's texel again. Empty where it
-    /// reads none.
+    /// (normalised device z, on its plane where the bias is by plane); beyond the map's border, the border's texel
+    /// again. Empty where no face sees the surface or its shader has no lookup; surfaces facing away are looked up.
     pub fn compared(&self, pixel: [u32; 2]) -> Vec<(MapTexel, f64)> {
         let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
         let found = found.and_then(|fragment| Some((fragment, self.lookup.place(&fragment)?)));

@@ -326,7 +326,8 @@ impl ReportRow {
         self.error.wrong()
     }
 
-    /// Returns whether the row has both a usable time and compared pixels.
+    /// Returns whether the row can be ranked and drawn: a pixel was compared, and error and time are finite and not
+    /// negative. A time of 0 counts as measured; [`ReportRow::problem`] says what is missing.
     pub fn is_measured(&self) -> bool {
         self.problem().is_none()
     }

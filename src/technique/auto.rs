@@ -161,8 +161,9 @@ impl AutoPolicy {
         self.view.outside(&hull.points).map(|outside| beyond(outside, VIEW_PLANES[outside.plane]))
     }
 
-    /// Decides how the volume of the caster `index` is counted if it extends to infinity; no volume, with the reason,
-    /// where it can darken nothing, lies beyond the light's range or outside the view, or in another's umbra.
+    /// Decides how the volume of the caster `index` is counted if it extends to infinity (z-pass, or z-fail with which
+    /// caps); no volume, with the reason, where the caster can darken nothing, lies beyond the light's range or in
+    /// another's umbra, or the volume lies outside the view. It leaves out only what the settings allow.
     fn without_end(&self, frame: &FrameBuilder, index: usize) -> VolumeDecision {
         let object = frame.placed[index].object;
         let allowed = |decision: Decision| frame.common.allows(decision);

@@ -18,7 +18,8 @@ pub const VIEW_PLANES: [&str; 5] = [
     "the view's upper side",
 ];
 
-/// Returns text such as `0.8 m outside the view's left side`; without the distance where that is infinite.
+/// Returns text such as `0.8 m outside the view's left side`, where `plane` is `the view's left side` (its index in
+/// `outside` is not used); without the distance where that is infinite.
 pub fn beyond(outside: OutsidePlane, plane: &str) -> String {
     match outside.distance.is_finite() {
         true => format!("{} outside {plane}", numbers::metres(outside.distance)),

@@ -77,8 +77,9 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Returns an eye that looks at a target with a field of view of 45 degrees, its near plane 5 cm away and no far
-    /// plane. Y is up, or −z where it looks straight down or up.
+    /// Returns a perspective camera at `eye` that looks at `target` (world space, metres) with a vertical field of view
+    /// of 45 degrees, its near plane 5 cm away and no far plane. Y is up, or −z within about 8 degrees of straight down
+    /// or up. That the two points differ is not checked.
     pub fn looking(eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Camera {
         let (eye, target) = (eye.into(), target.into());
         let ahead = (target - eye).normalize_or_zero();

@@ -44,8 +44,9 @@ pub fn split(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// Reads meshes for a scene file: they share the budget for pictures, and one glTF file is opened once for consecutive
-/// meshes of it.
+/// Reads the meshes that a scene file names. Their pictures and the scene file's own are read once and share one budget
+/// of texels, beyond which reading fails. A glTF file stays open for consecutive meshes of it; after another one it is
+/// opened anew.
 #[derive(Debug, Default)]
 pub struct ModelReader {
     pub pictures: ImageLoader,

@@ -312,8 +312,8 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::of(ui).text);
 }
 
-/// Returns a distance in few digits with the unit's letter: two decimals from 0.1 to 100, none up to 10 000, otherwise
-/// as a general length; `∞` where it is not finite.
+/// Returns a distance in few digits with the letter of the capture's unit: two decimals from 0.1 to below 100, none
+/// from there to below 10 000, otherwise (also below 0) as a general length; `∞` where it is not finite.
 fn short(capture: &Capture, distance: f64) -> String {
     let unit = capture.depth.unit.letter();
     match distance {

@@ -89,7 +89,8 @@ fn rounded(length: f64) -> f64 {
     if rounded.is_normal() { rounded } else { 1.0 }
 }
 
-/// Returns the name, or the name with the first number that no object has.
+/// Returns the name, or where an object has it, the name with a space and the first number from 2 that no object has;
+/// objects that were added count too.
 fn unused(name: &str, scene: &OpenScene) -> String {
     let added = scene.draft.objects.added.iter().map(|object| &object.name);
     let taken: Vec<&String> = scene.objects.iter().chain(added).collect();
