@@ -63,8 +63,9 @@ pub enum News {
     },
     /// An export of the scene ended.
     Exported(Exported),
-    /// Changes that could not be applied to a scene that was loaded again.
-    Dropped(String),
+    /// Something went otherwise than asked, and the work goes on: changes that could not be applied to a scene that was
+    /// loaded again, an adapter that gave no device.
+    Warned(String),
     /// Something failed; the text says how to fix it.
     Failed(String),
 }

@@ -404,7 +404,7 @@ impl WorkerState {
         };
         let CarriedOver { request, dropped } = request.carried_over(&before, &scene);
         let name = spec.name;
-        let dropped_news = dropped.into_iter().map(|what| News::Dropped(format!("{name} was loaded without {what}")));
+        let dropped_news = dropped.into_iter().map(|what| News::Warned(format!("{name} was loaded without {what}")));
         dropped_news.for_each(&self.notify);
         self.open_as(Box::new(scene), &request)
     }
@@ -438,7 +438,9 @@ impl WorkerState {
             Some(session) => Ok(session),
             none => {
                 (self.notify)(News::Busy("starting the GPU".to_owned()));
-                Ok(none.insert(Session::new(self.adapter.as_deref())?))
+                let session = Session::new(self.adapter.as_deref())?;
+                session.passed_over().for_each(|warning| (self.notify)(News::Warned(warning)));
+                Ok(none.insert(session))
             }
         }
     }

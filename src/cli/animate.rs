@@ -1,6 +1,6 @@
 //! `stencilscope animate`: a frame pass by pass, or a light that moves round the scene, as an animated PNG.
 
-use super::options::{FrameOptions, SceneOptions, Subject};
+use super::options::{FrameOptions, SceneOptions, Subject, open_session};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::film::{Film, FilmContent, LightRound, PLACES};
@@ -134,7 +134,7 @@ impl LazySession<'_> {
     fn get(&mut self) -> Result<&mut Session, crate::session::SessionError> {
         match &mut self.session {
             Some(session) => Ok(session),
-            none => Ok(none.insert(Session::new(self.adapter)?)),
+            none => Ok(none.insert(open_session(self.adapter)?)),
         }
     }
 }

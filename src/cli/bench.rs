@@ -1,12 +1,12 @@
 //! `stencilscope bench`: the program's own speed, as ratios.
 
-use super::options::{FrameOptions, SceneOptions};
+use super::options::{FrameOptions, SceneOptions, open_session};
 use super::{CliError, output};
 use crate::progress::Progress;
 use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, UpAxis, model_scene};
 use crate::scene::{builtin, shapes};
 use crate::session::{
-    CaptureCost, MeasuredTechnique, Measurement, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
+    CaptureCost, MeasuredTechnique, Measurement, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
 };
 use crate::technique::{Choice, Technique};
 use clap::Args;
@@ -67,7 +67,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
 /// Runs the benchmark `capture`: times each scene's frame with snapshots and without, and prints both.
 fn capture(arguments: &BenchArguments) -> Result<(), CliError> {
     let scenes = scenes(arguments, || Ok(vec![arguments.scene_options.open("tori")?, bumpy_model(62, 31)?]))?;
-    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let mut session = open_session(arguments.frame.adapter.as_deref())?;
     for scene in &scenes {
         let request = arguments.frame.request(scene)?;
         let cost = session.capture_cost(scene, &request, RUNS)?;
@@ -116,7 +116,7 @@ fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
 fn history(arguments: &BenchArguments) -> Result<(), CliError> {
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
         let request = arguments.frame.request(&scene)?;
-        let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+        let mut session = open_session(arguments.frame.adapter.as_deref())?;
         let cost = session.history_cost(&scene, &request, PIXELS)?;
         let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles().len()).sum();
         let frame = median_ms(&cost.frames).unwrap_or(f64::NAN);
@@ -150,7 +150,7 @@ fn history(arguments: &BenchArguments) -> Result<(), CliError> {
 /// z-fail.
 fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let built_in = || builtin::ALL.iter().map(|of| Ok(of.scene()?)).collect();
-    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let mut session = open_session(arguments.frame.adapter.as_deref())?;
     let choices: Vec<Choice> = Technique::rivals().into_iter().map(Choice::new).collect();
     let size = arguments.frame.picture_size();
     let everyone = Measurement { choices, size, runs: 1 };

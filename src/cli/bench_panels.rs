@@ -22,7 +22,6 @@ const LIMIT_LIGHT_MS: f64 = 150.0;
 /// Returns an error, always: a build without a window has no panels to measure.
 #[cfg(not(feature = "inspector"))]
 pub fn run(_: &[String], _: &SceneOptions, _: &FrameOptions) -> Result<(), CliError> {
-    let _ = output::note;
     Err(CliError::Window("this build has no panels to measure".to_owned()))
 }
 

@@ -1,6 +1,6 @@
 //! `stencilscope capture`: renders without a window and writes every pass to a folder.
 
-use super::options::{FrameOptions, SceneOptions};
+use super::options::{FrameOptions, SceneOptions, open_session};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::Capture;
@@ -10,7 +10,7 @@ use crate::plan::DecidedBy;
 use crate::progress::Progress;
 use crate::reading::format;
 use crate::scene::Scene;
-use crate::session::{CaptureRequest, Session};
+use crate::session::CaptureRequest;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -97,7 +97,7 @@ impl<'a> CaptureJob<'a> {
     /// Renders the scene, traces its truth where asked for, writes the folder and the page where one is named, and
     /// prints a summary.
     pub fn run(self) -> Result<(), CliError> {
-        let mut session = Session::new(self.adapter)?;
+        let mut session = open_session(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
         let CaptureOutput { folder, overwrite, truth, page } = self.writing;

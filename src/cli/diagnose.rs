@@ -1,7 +1,7 @@
 //! `stencilscope diagnose`: where shadows are wrong, why, how to fix it, and the proof.
 
 use super::fix::FixOutput;
-use super::options::{FrameOptions, SceneOptions, SceneSubject, Subject};
+use super::options::{FrameOptions, SceneOptions, SceneSubject, Subject, open_session};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
@@ -61,7 +61,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let fix =
         arguments.fix.as_deref().map(|file| FixOutput::new(file, &arguments.scene, arguments.overwrite)).transpose()?;
 
-    let mut session = Session::new(frame.adapter.as_deref())?;
+    let mut session = open_session(frame.adapter.as_deref())?;
     let diagnosis = with_bar("diagnosis", &Progress::default(), |progress| {
         session.diagnose(&scene, &request, InjectedFault::None, progress)
     })?;
@@ -99,7 +99,7 @@ fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliErro
     }
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;
-    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let mut session = open_session(arguments.frame.adapter.as_deref())?;
     let diagnosis = with_bar("diagnosis", &Progress::default(), |progress| session.diagnose_recorded(run, progress))?;
     match &arguments.json {
         Some(_) => output::deliver(&diagnosis.to_json().map_err(|error| broken(error.into()))?, json)?,

@@ -1,12 +1,12 @@
 //! `stencilscope diff`: where two frames first differ, pass by pass.
 
-use super::options::{FrameOptions, SceneOptions, picture_size, setting};
+use super::options::{FrameOptions, SceneOptions, open_session, picture_size, setting};
 use super::report_results::is_png;
 use super::{CliError, output};
 use crate::capture::{Capture, disk};
 use crate::difference::{self, Difference};
 use crate::scene::Scene;
-use crate::session::{CaptureRequest, Session};
+use crate::session::CaptureRequest;
 use clap::Args;
 use std::path::Path;
 
@@ -132,7 +132,7 @@ fn techniques(arguments: &DiffArguments) -> Result<[Capture; 2], CliError> {
              (--set-b KEY=VALUE)"
         )));
     }
-    let mut session = Session::new(arguments.adapter.as_deref())?;
+    let mut session = open_session(arguments.adapter.as_deref())?;
     let [a, b] = requests;
     Ok([session.capture(&scene, &a)?, session.capture(&scene, &b)?])
 }

@@ -1,13 +1,13 @@
 //! `stencilscope import`: a frame out of a RenderDoc capture.
 
+use super::options::open_session;
 use super::{CliError, output, progress};
 use crate::capture::disk::{self, FolderContents};
 use crate::capture::{Capture, DrawSummary, RecomputeDifference};
-use crate::import::{self, ConvertedFrame, ImportError, RawFrame, RenderDocOptions};
+use crate::import::{self, ConvertedFrame, ImportError, PYTHON, RawFrame, RenderDocOptions};
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::FoundLight;
-use crate::session::Session;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -47,7 +47,7 @@ pub struct ImportTarget {
 #[derive(Debug, Args)]
 pub struct ReaderOptions {
     /// The interpreter that has the module `renderdoc`
-    #[arg(long, value_name = "PYTHON", default_value = "python3")]
+    #[arg(long, value_name = "PYTHON", default_value = PYTHON)]
     python: String,
     /// Gibibytes of memory that RenderDoc may take to replay the frame
     #[arg(long, value_name = "GIB", default_value = "8", value_parser = clap::value_parser!(u64).range(1..=1024))]
@@ -85,7 +85,7 @@ impl ImportTarget {
         let Some(folder) = &self.output else { return Ok(()) };
         let ConvertedFrame { plan, capture, scene, lights } = import::convert(&frame, name)?;
         drop(frame);
-        let mut session = Session::new(self.adapter.as_deref())?;
+        let mut session = open_session(self.adapter.as_deref())?;
         let capture = progress::with_bar("check", &Progress::default(), |progress| {
             session.compared_with_rerun(&plan, &capture, progress)
         })?;

@@ -1,10 +1,10 @@
 //! Options that several commands have, and how their values are parsed.
 
-use super::CliError;
+use super::{CliError, output};
 use crate::capture::disk;
 use crate::import::ShippedFrame;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
-use crate::session::{CaptureRequest, MotionFrames, MovingPart, RunFrame, Session, SnapshotInterval};
+use crate::session::{CaptureRequest, MotionFrames, MovingPart, RunFrame, Session, SessionError, SnapshotInterval};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
@@ -17,6 +17,14 @@ const LARGEST: u32 = 16_384;
 const DEFAULT_TECHNIQUE: &str = "auto";
 /// Width and height of the picture in pixels where the command line names no size.
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
+
+/// Opens a session on the GPU whose name contains `adapter` (in any case), or on the fastest kind; says on standard error
+/// which adapters gave no device.
+pub fn open_session(adapter: Option<&str>) -> Result<Session, SessionError> {
+    let session = Session::new(adapter)?;
+    session.passed_over().for_each(|warning| output::note(&warning));
+    Ok(session)
+}
 
 /// How a scene is completed, seen and lit.
 #[derive(Debug, Clone, Args)]

@@ -1,12 +1,12 @@
 //! `stencilscope page`: one HTML file of a frame, which opens in any browser.
 
-use super::options::{FrameOptions, SceneOptions, Subject};
+use super::options::{FrameOptions, SceneOptions, Subject, open_session};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::page;
 use crate::progress::Progress;
 use crate::reading::format;
-use crate::session::{RunFrame, Session};
+use crate::session::RunFrame;
 use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
@@ -76,12 +76,12 @@ pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
 fn made(subject: Subject, options: &FrameOptions, truth: bool) -> Result<RunFrame, CliError> {
     let mut session = match &subject {
         Subject::Folder(frame) if !truth || frame.capture.error().is_some() => None,
-        _ => Some(Session::new(options.adapter.as_deref())?),
+        _ => Some(open_session(options.adapter.as_deref())?),
     };
     let mut frame = match (subject, &mut session) {
         (Subject::Folder(frame), _) => frame,
         (scene @ Subject::Scene(_), Some(session)) => scene.frame(session)?,
-        (scene @ Subject::Scene(_), None) => scene.frame(&mut Session::new(options.adapter.as_deref())?)?,
+        (scene @ Subject::Scene(_), None) => scene.frame(&mut open_session(options.adapter.as_deref())?)?,
     };
     if let Some(session) = session.as_mut().filter(|_| truth) {
         let scene = frame.scene()?;

@@ -1,6 +1,6 @@
 //! `stencilscope pixel`: what happened to a pixel, fragment by fragment.
 
-use super::options::{FrameOptions, SceneOptions, Subject, pixel};
+use super::options::{FrameOptions, SceneOptions, Subject, open_session, pixel};
 use super::{CliError, output};
 use crate::capture::Capture;
 use crate::history::PixelDocument;
@@ -8,7 +8,7 @@ use crate::plan::LightId;
 use crate::reading::coordinates::{PixelCoordinates, VertexPlaces};
 use crate::reading::shading::SurfaceShading;
 use crate::reading::texels_read::{TexelReaders, TexelsRead};
-use crate::session::{FrameSource, RunFrame, Session, SessionError};
+use crate::session::{FrameSource, RunFrame, SessionError};
 use clap::Args;
 use serde::Serialize;
 use std::time::Instant;
@@ -50,7 +50,7 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     }
     let file = arguments.json.as_ref().and_then(Option::as_deref);
     file.map_or(Ok(()), output::check_target)?;
-    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let mut session = open_session(arguments.frame.adapter.as_deref())?;
     let RunFrame { capture, plan, source } = subject.frame(&mut session)?;
     let has_vertices = !arguments.vertex.is_empty();
     if (arguments.coordinates || has_vertices) && capture.origin.is_some() {

@@ -1,7 +1,7 @@
 //! `stencilscope report`: how wrong each technique is, and what it costs.
 
 use super::merge::{self, MergeArguments};
-use super::options::{SceneOptions, picture_size, setting, technique_named};
+use super::options::{SceneOptions, open_session, picture_size, setting, technique_named};
 use super::progress::with_bar;
 use super::report_results::ReportResults;
 use super::{CliError, results};
@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use crate::report::{Report, ReportRow};
 use crate::scene::builtin::Builtin;
 use crate::scene::{Scene, is_scene_file, suggestion};
-use crate::session::{Measurement, MotionFrames, MovingPart, Session, Sweep, SweepBlock, report_rows};
+use crate::session::{Measurement, MotionFrames, MovingPart, Sweep, SweepBlock, report_rows};
 use crate::shards::{Shard, ShardPart};
 use crate::technique::{Choice, Technique};
 use clap::{Args, Subcommand};
@@ -82,7 +82,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let blocks = scenes.iter().zip(distinct_names(&scenes)).map(|(scene, name)| blocks(arguments, scene, name, &what));
     let blocks: Vec<(String, SweepBlock)> = blocks.collect::<Result<Vec<_>, _>>()?.concat();
-    let mut session = Session::new(arguments.adapter.as_deref())?;
+    let mut session = open_session(arguments.adapter.as_deref())?;
     let mut rows: Vec<ReportRow> = Vec::new();
     let mut places = Vec::new();
     let mut place = 0;

@@ -1,6 +1,6 @@
 //! `stencilscope stress`: every technique driven until it breaks.
 
-use super::options::{picture_size, technique_named};
+use super::options::{open_session, picture_size, technique_named};
 use super::progress::with_bar;
 use super::report_results::{is_png, page_file, plot_file};
 use super::results::{self, ResultFormat, ResultTarget};
@@ -8,7 +8,7 @@ use super::{CliError, output};
 use crate::progress::Progress;
 use crate::report::PageOrigin;
 use crate::scene::suggestion;
-use crate::session::{Session, StressSteps};
+use crate::session::StressSteps;
 use crate::shards::Shard;
 use crate::stress::{StressCase, StressResults, cases, right_because};
 use crate::technique::Technique;
@@ -69,7 +69,7 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     let is_named = !arguments.case.is_empty();
     check_that_all_run(&chosen, is_named, &only)?;
     results::check(&[&arguments.json, &arguments.markdown, &results::target(&arguments.output)], &arguments.plot)?;
-    let mut session = Session::new(arguments.adapter.as_deref())?;
+    let mut session = open_session(arguments.adapter.as_deref())?;
     let steps = StressSteps::new(&chosen, &only, arguments.size);
     let (steps, part) = match arguments.shard {
         None => (steps, None),

@@ -26,20 +26,28 @@ pub struct GpuContext {
     pub(super) queue: Queue,
     /// Nanoseconds for each tick of a timestamp query; `None` where passes can't be timed.
     pub(super) timestamp_period: Option<f32>,
+    /// The adapters before this one that gave no device, each with its reason.
+    pub passed_over: Vec<GpuError>,
 }
 
 impl GpuContext {
-    /// Opens the adapter of the fastest kind (discrete first, CPU last) among those with the required features whose
-    /// name contains `wanted`, in any case; the first of equal ones. Fails where there is none.
+    /// Opens the first adapter of the fastest kind, of those with the required features whose name contains `wanted`
+    /// (in any case) where that is given. One that gives no device is passed over for the next.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] where none has the name and the features; [`GpuError::NoDevice`] of the first where none
+    /// gives a device.
     pub fn new(wanted: Option<&str>) -> Result<GpuContext, GpuError> {
         let instance = instance(wgpu::InstanceDescriptor {
             backends: BACKENDS,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
-        let adapter = choose(adapters, wanted)?;
-        let features = REQUIRED | (adapter.features() & MEASURED);
-        GpuContext::open(adapter, features)
+        let opened = first_that_opens(candidates(adapters, wanted)?, |adapter| {
+            let features = REQUIRED | (adapter.features() & MEASURED);
+            GpuContext::open(adapter, features)
+        });
+        opened.map(|(context, passed_over)| GpuContext { passed_over, ..context })
     }
 
     /// Opens another device on the same adapter, with all features of this one and those `needed`.
@@ -68,7 +76,7 @@ impl GpuContext {
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
         let can_time = features.contains(Features::TIMESTAMP_QUERY);
         let timestamp_period = can_time.then(|| queue.get_timestamp_period());
-        Ok(GpuContext { info, adapter, device, queue, timestamp_period })
+        Ok(GpuContext { info, adapter, device, queue, timestamp_period, passed_over: Vec::new() })
     }
 
     /// Runs `work` and returns the first error that the driver reported meanwhile, in place of its result; otherwise
@@ -122,16 +130,16 @@ fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
     wgpu::Instance::new(descriptor)
 }
 
-fn choose(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Adapter, GpuError> {
+/// Returns the adapters that have the name and the features, the fastest kind first.
+fn candidates(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let is_wanted = |adapter: &Adapter| {
         let name = adapter.get_info().name.to_lowercase();
         wanted.is_none_or(|wanted| name.contains(&wanted.to_lowercase()))
     };
-    let (able, unable): (Vec<Adapter>, Vec<Adapter>) =
+    let (mut able, unable): (Vec<Adapter>, Vec<Adapter>) =
         adapters.into_iter().filter(is_wanted).partition(|adapter| adapter.features().contains(REQUIRED));
-    // The first of the fastest kind, so that the choice does not depend on the order of the rest.
-    able.into_iter().min_by_key(|adapter| speed_rank(adapter.get_info().device_type)).ok_or_else(|| {
+    if able.is_empty() {
         let found = match (unable.first(), wanted) {
             (Some(adapter), _) => format!(" ({} has no Depth32FloatStencil8)", adapter.get_info().name),
             (None, Some(wanted)) if !names.is_empty() => {
@@ -139,8 +147,27 @@ fn choose(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Adapter, GpuEr
             }
             _ => String::new(),
         };
-        GpuError::NoAdapter { found }
-    })
+        return Err(GpuError::NoAdapter { found });
+    }
+    // A stable sort: of one kind, the first stays first.
+    able.sort_by_key(|adapter| speed_rank(adapter.get_info().device_type));
+    Ok(able)
+}
+
+/// Returns what the first adapter gives that `open` succeeds with, and the errors of those before it; the first error
+/// where it succeeds with none.
+fn first_that_opens<A, T>(
+    adapters: Vec<A>,
+    open: impl Fn(A) -> Result<T, GpuError>,
+) -> Result<(T, Vec<GpuError>), GpuError> {
+    let mut errors = Vec::new();
+    for adapter in adapters {
+        match open(adapter) {
+            Ok(opened) => return Ok((opened, errors)),
+            Err(error) => errors.push(error),
+        }
+    }
+    Err(errors.into_iter().next().unwrap_or(GpuError::NoAdapter { found: String::new() }))
 }
 
 fn speed_rank(kind: DeviceType) -> u32 {
@@ -168,4 +195,32 @@ fn info_of(adapter: &Adapter) -> AdapterInfo {
 
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn open(adapter: &str) -> Result<String, GpuError> {
+        if adapter.starts_with("broken") {
+            let reason = "the driver failed".to_owned();
+            return Err(GpuError::NoDevice { adapter: adapter.to_owned(), reason });
+        }
+        Ok(adapter.to_owned())
+    }
+
+    #[test]
+    fn an_adapter_that_gives_no_device_is_passed_over() {
+        let opened = first_that_opens(vec!["broken card", "llvmpipe", "another"], open);
+        let (name, passed_over) = opened.expect("the second opens");
+        assert_eq!(name, "llvmpipe");
+        let words: Vec<String> = passed_over.iter().map(ToString::to_string).collect();
+        assert_eq!(words, ["broken card gave no device: the driver failed"]);
+    }
+
+    #[test]
+    fn where_none_gives_a_device_the_first_says_why() {
+        let error = first_that_opens(vec!["broken first", "broken second"], open).expect_err("none opens");
+        assert!(error.to_string().starts_with("broken first gave no device"), "{error}");
+    }
 }

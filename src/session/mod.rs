@@ -209,6 +209,11 @@ impl Session {
         self.limit = None;
     }
 
+    /// Returns a sentence for each adapter before this one that gave no device.
+    pub fn passed_over(&self) -> impl Iterator<Item = String> {
+        self.executor.context().passed_over.iter().map(|error| format!("{error}; using {}", self.adapter().name))
+    }
+
     /// Returns the name, backend and driver of the GPU that the session runs on.
     pub fn adapter(&self) -> &AdapterInfo {
         &self.executor.context().info
