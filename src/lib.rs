@@ -94,6 +94,8 @@ pub mod inspector;
 mod last_used;
 pub mod math;
 mod numbers;
+#[cfg(feature = "inspector")]
+pub mod offscreen;
 #[cfg(feature = "program")]
 pub mod page;
 pub mod picture;

@@ -8,9 +8,10 @@ use super::news::WindowNews;
 use super::{AppError, ViewRequest};
 use crate::ask::RunRequest;
 use crate::inspector::Inspector;
+use crate::offscreen::{OffscreenError, OffscreenPainter};
 use crate::picture::Picture;
 use egui::{Event, Key, Modifiers, Pos2, RawInput, Rect, ViewportId, pos2, vec2};
-use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -30,7 +31,7 @@ pub struct Headless {
     size: [f32; 2],
     scale: f32,
     time: f64,
-    painter: Option<Painter>,
+    painter: Option<OffscreenPainter>,
     /// Texture changes that were not drawn yet.
     textures: egui::TexturesDelta,
     shapes: Vec<egui::epaint::ClippedShape>,
@@ -179,12 +180,12 @@ impl Headless {
     pub fn picture(&mut self) -> Result<Picture, AppError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,
-            none => none.insert(Painter::new()?),
+            none => none.insert(OffscreenPainter::new(RendererOptions::default()).map_err(no_picture)?),
         };
         let pixels = self.size.map(|side| (side * self.scale).round() as u32);
         let screen = ScreenDescriptor { size_in_pixels: pixels, pixels_per_point: self.scale };
         let triangles = self.ctx.tessellate(self.shapes.clone(), self.scale);
-        painter.draw(&screen, &triangles, std::mem::take(&mut self.textures))
+        painter.draw(&screen, &triangles, std::mem::take(&mut self.textures)).map_err(no_picture)
     }
 }
 
@@ -199,90 +200,6 @@ fn is_soon(delay: &Duration) -> bool {
     *delay < Duration::from_secs(3600)
 }
 
-/// Draws egui's triangles into a texture and reads it back.
-struct Painter {
-    gpu: RenderState,
-}
-
-impl Painter {
-    fn new() -> Result<Painter, AppError> {
-        let setup = WgpuSetup::CreateNew(WgpuSetupCreateNew::without_display_handle());
-        let instance = pollster::block_on(setup.new_instance());
-        let configuration = WgpuConfiguration { wgpu_setup: setup, ..WgpuConfiguration::default() };
-        let gpu = pollster::block_on(RenderState::create(&configuration, &instance, None, RendererOptions::default()));
-        gpu.map(|gpu| Painter { gpu }).map_err(|error| AppError::NoPicture(error.to_string()))
-    }
-
-    fn draw(
-        &self,
-        screen: &ScreenDescriptor,
-        triangles: &[egui::ClippedPrimitive],
-        mut textures: egui::TexturesDelta,
-    ) -> Result<Picture, AppError> {
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let mut renderer = self.gpu.renderer.write();
-        for (id, deltas) in std::mem::take(&mut textures.set) {
-            deltas.iter().for_each(|delta| renderer.update_texture(device, queue, id, delta));
-        }
-        let [width, height] = screen.size_in_pixels;
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("panels"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: self.gpu.target_format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("panels read back"),
-            size: u64::from(stride) * u64::from(height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let before = renderer.update_buffers(device, queue, &mut encoder, triangles, screen);
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        {
-            let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("panels"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            renderer.render(&mut pass.forget_lifetime(), triangles, screen);
-        }
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
-        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), target, size);
-        queue.submit(before.into_iter().chain([encoder.finish()]));
-        for id in std::mem::take(&mut textures.free) {
-            renderer.free_texture(&id);
-        }
-        let (send, done) = channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(send.send(result)));
-        let lost = |error: &dyn std::fmt::Display| AppError::NoPicture(error.to_string());
-        device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(&error))?;
-        done.recv().map_err(|error| lost(&error))?.map_err(|error| lost(&error))?;
-        let bytes = buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
-        let is_bgra = matches!(self.gpu.target_format, wgpu::TextureFormat::Bgra8Unorm);
-        let mut picture = Picture::filled([width, height], [0; 3]);
-        for (y, row) in (0..height).zip(bytes.chunks_exact(stride as usize)) {
-            for (x, texel) in (0..width).zip(row.chunks_exact(4)) {
-                let [a, b, c] = [texel[0], texel[1], texel[2]];
-                picture.set([x, y], if is_bgra { [c, b, a] } else { [a, b, c] });
-            }
-        }
-        Ok(picture)
-    }
+fn no_picture(error: OffscreenError) -> AppError {
+    AppError::NoPicture(error.to_string())
 }

@@ -46,6 +46,11 @@ impl Picture {
         self.size
     }
 
+    /// Returns the pixels in row-major order, from the top left.
+    pub fn pixels(&self) -> &[Rgb] {
+        &self.pixels
+    }
+
     /// Returns the pixel at a column and row; `None` outside the picture.
     pub fn at(&self, [x, y]: [u32; 2]) -> Option<Rgb> {
         (x < self.size[0]).then(|| self.pixels.get(self.index([x, y])).copied()).flatten()

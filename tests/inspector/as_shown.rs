@@ -142,8 +142,8 @@ fn edges_that_count_twice_have_their_number() {
         change(&mut harness, |inspector| inspector.take_in(AnatomyOf {}, Ok(anatomy)));
         let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
         if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
-            let window = harness.render().expect("a picture");
-            window.save(Path::new(&folder).join(format!("numbers-{casters}.png"))).expect("written");
+            let window = window_picture(&mut harness);
+            save(&window, &Path::new(&folder).join(format!("numbers-{casters}.png")));
         }
         let is_letter = |pixel: Rgb| is_near(pixel, [0xd9, 0xdc, 0xe3], 24);
         let new = plain.pixels().zip(shown.pixels()).filter(|(before, now)| !is_letter(*before) && is_letter(*now));
@@ -155,7 +155,11 @@ fn edges_that_count_twice_have_their_number() {
     assert!(many == 0 && written == 0, "{many} edges, {written} pixels of letters");
 }
 
-/// Over a real frame. `INSPECTOR_PICTURES=FOLDER cargo test lines_numbers_and_names` keeps the file.
+fn save(picture: &Picture, file: &Path) {
+    std::fs::write(file, picture.to_png().expect("a PNG")).expect("written");
+}
+
+/// Over a real frame. `INSPECTOR_PICTURES=FOLDER cargo test --profile bench lines_numbers_and_names` keeps the file.
 #[test]
 fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     let mut session = common::session();
@@ -180,13 +184,13 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     let plates = shown.pixels().filter(|pixel| is_near(*pixel, [0x1b, 0x1e, 0x25], 24)).count();
     let letters = shown.pixels().filter(|pixel| is_near(*pixel, [0xd9, 0xdc, 0xe3], 16)).count();
     assert!(plates > 400 && letters > 30, "names are written: {plates}, {letters}");
-    let window = harness.render().expect("a picture");
+    let window = window_picture(&mut harness);
     change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Light);
     let light = exported(&mut harness, ExportKind::AsShown);
     assert_ne!(light.bytes, shown.bytes, "in the window's theme");
     if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
         let folder = Path::new(&folder);
-        window.save(folder.join("as-shown-window.png")).expect("written");
+        save(&window, &folder.join("as-shown-window.png"));
         change(&mut harness, |inspector| inspector.model.theme = ThemeChoice::Dark);
         let start = std::time::Instant::now();
         let Some(ExportData::AsShown(drawing)) = harness.state_mut().inspector.export(ExportKind::AsShown) else {

@@ -105,10 +105,10 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
         inspector.model.selection.pick = Some([30, 15]);
         let mut harness = harness_of(inspector);
         let canvas = rect(&harness, "Picture canvas");
-        let picture = harness.render().expect("a picture");
+        let picture = window_picture(&mut harness);
         let corner = canvas.left_bottom() + vec2(12.0, -12.0 - 5.0 * 26.0);
         let contrast = |x: f32, y: f32| {
-            let [red, green, blue, _] = picture.get_pixel(x as u32, y as u32).0;
+            let [red, green, blue] = picture.at([x as u32, y as u32]).expect("within the window");
             let light = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
             let light = 0.2126 * light(red) + 0.7152 * light(green) + 0.0722 * light(blue);
             // To a count of zero, 0x14171d.
@@ -139,7 +139,7 @@ fn the_whole_ladder_is_visible_in_windows_that_are_not_high() {
     }
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_cards` writes them.
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of_cards` writes them.
 #[test]
 fn pictures_of_cards_can_be_drawn() {
     let gallery = Gallery::open();

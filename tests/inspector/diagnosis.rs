@@ -209,7 +209,7 @@ fn a_right_frame_says_so_and_small_windows_hold_it() {
     }
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them.
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of` writes them.
 #[test]
 fn pictures_of_a_diagnosis_can_be_drawn() {
     let gallery = Gallery::open();

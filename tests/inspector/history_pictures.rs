@@ -37,7 +37,7 @@ fn click_rung(harness: &mut Harness<Seen>, number: usize) {
     harness.run_steps(3);
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_histories` writes them.
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of_histories` writes them.
 #[test]
 fn pictures_of_histories_can_be_drawn() {
     let gallery = Gallery::open();

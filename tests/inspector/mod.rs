@@ -39,15 +39,20 @@ use crate::common;
 use by_hand::{cube_map, z_fail};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, pos2, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, TestRenderer};
+use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use glam::DVec3;
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 use stencilscope::ask::{AnatomyOf, Answer, Ask, HistoryOf, PendingQuestion, Question, ReportOf, RunRequest, TruthOf};
 use stencilscope::capture::{Capture, Image, PixelFormat};
 use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector, SceneEntry};
+use stencilscope::offscreen::OffscreenPainter;
+use stencilscope::picture::Picture;
 use stencilscope::plan::DrawPart;
 use stencilscope::progress::Progress;
 use stencilscope::reading::picture_view::{PictureKind, TexelZoom};
@@ -67,6 +72,46 @@ struct Seen {
     actions: Vec<Action>,
     /// What was asked that follows from the capture, where a test answers itself.
     asked: Option<Vec<PendingQuestion>>,
+    /// Changes of egui's textures that no picture has drawn yet.
+    textures: Rc<RefCell<UndrawnTextures>>,
+    /// What pictures are drawn with, once there was one.
+    painter: Option<OffscreenPainter>,
+}
+
+/// If changes that were never drawn were dropped, egui would report a bug.
+#[derive(Default)]
+struct UndrawnTextures(egui::TexturesDelta);
+
+impl Drop for UndrawnTextures {
+    fn drop(&mut self) {
+        self.0.clear();
+    }
+}
+
+/// Gathers changes of textures from the harness, as [`window_picture`] may draw them later.
+struct TextureCollector(Rc<RefCell<UndrawnTextures>>);
+
+impl TestRenderer for TextureCollector {
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        self.0.borrow_mut().0.append(std::mem::take(delta));
+    }
+}
+
+/// A painter that draws the same everywhere.
+fn painter() -> OffscreenPainter {
+    OffscreenPainter::new(RendererOptions::PREDICTABLE).expect("a GPU")
+}
+
+/// The window as of the harness's last frame.
+fn window_picture(harness: &mut Harness<Seen>) -> Picture {
+    let scale = harness.ctx.pixels_per_point();
+    let size = harness.ctx.content_rect().size() * scale;
+    let screen =
+        ScreenDescriptor { size_in_pixels: [size.x.round() as u32, size.y.round() as u32], pixels_per_point: scale };
+    let triangles = harness.ctx.tessellate(harness.output().shapes.clone(), scale);
+    let seen = harness.state_mut();
+    let textures = std::mem::take(&mut seen.textures.borrow_mut().0);
+    seen.painter.get_or_insert_with(painter).draw(&screen, &triangles, textures).expect("a picture")
 }
 
 fn run_request(technique: Technique) -> RunRequest {
@@ -91,7 +136,9 @@ fn harness_of(inspector: Inspector) -> Harness<'static, Seen> {
 }
 
 fn harness_in(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
-    let seen = Seen { inspector, actions: Vec::new(), asked: None };
+    let textures = Rc::<RefCell<UndrawnTextures>>::default();
+    let collector = TextureCollector(Rc::clone(&textures));
+    let seen = Seen { inspector, actions: Vec::new(), asked: None, textures, painter: None };
     let ui = |ui: &mut egui::Ui, seen: &mut Seen| {
         for action in seen.inspector.ui(ui) {
             match action {
@@ -108,7 +155,8 @@ fn harness_in(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
             }
         }
     };
-    let mut harness = Harness::builder().with_size(size).with_max_steps(32).build_ui_state(ui, seen);
+    let mut harness =
+        Harness::builder().with_size(size).with_max_steps(32).renderer(collector).build_ui_state(ui, seen);
     harness.run_steps(3);
     harness
 }

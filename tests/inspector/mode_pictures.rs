@@ -63,7 +63,7 @@ fn answer(harness: &mut Harness<Seen>, session: &mut Session, frame: &RunFrame) 
     }
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_modes` writes them.
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of_modes` writes them.
 #[test]
 fn pictures_of_modes_and_overlays_can_be_drawn() {
     let gallery = Gallery::open();

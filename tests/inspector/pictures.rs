@@ -43,14 +43,14 @@ impl Gallery {
     }
 
     pub fn draw(&self, harness: &mut Harness<Seen>, name: &str, size: [u32; 2]) {
-        let picture = harness.render().expect("a picture");
+        let picture = window_picture(harness);
         if let Some(folder) = &self.folder {
-            save(&folder.join(format!("{name}-{}.png", size[0])), picture.as_raw(), size);
+            save(&folder.join(format!("{name}-{}.png", size[0])), &picture, size);
         }
     }
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them; the README's is
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of` writes them; the README's is
 /// `z-fail-stencil-1440.png`. Without the variable the panels are only drawn, small.
 #[test]
 fn pictures_of_the_panels_can_be_drawn() {
@@ -205,15 +205,10 @@ fn first_layer(harness: &mut Harness<Seen>) {
 }
 
 /// Writes the picture without its margin.
-fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
-    let stride = (width + 2 * MARGIN) as usize * 4;
-    let rows = rgba.chunks_exact(stride).skip(MARGIN as usize).take(height as usize);
-    let inner: Vec<u8> = rows.flat_map(|row| &row[MARGIN as usize * 4..][..width as usize * 4]).copied().collect();
-    let file = std::fs::File::create(file).expect("a file");
-    let mut encoder = png::Encoder::new(file, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_compression(png::Compression::High);
-    encoder.write_header().expect("a header").write_image_data(&inner).expect("the picture");
+fn save(file: &Path, picture: &Picture, [width, height]: [u32; 2]) {
+    let inner =
+        Picture::drawn([width, height], |[x, y]| picture.at([x + MARGIN, y + MARGIN]).expect("within the window"));
+    std::fs::write(file, inner.to_png().expect("a PNG")).expect("written");
 }
 
 /// Brings the panels into a state to be looked at.

@@ -4,8 +4,7 @@ use super::scene_view::{anatomy_of, ball_scene, over, show};
 use super::*;
 use crate::common::random::Random;
 use egui::epaint::Primitive;
-use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
-use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
+use egui_wgpu::RenderState;
 use glam::{DMat4, DVec4};
 use std::sync::mpsc::channel;
 use std::time::Instant;
@@ -151,7 +150,8 @@ fn place_in(rect: Rect, random: &mut Random) -> Pos2 {
 /// machine that others use too are no ground to fail.
 #[test]
 fn a_large_model_is_drawn_whole_while_it_is_rotated() {
-    let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
+    let painter = painter();
+    let gpu = painter.gpu();
     let scene = ball_scene(264, 133);
     let start = Instant::now();
     let anatomy = anatomy_of(&scene, Technique::ZFail);
@@ -159,7 +159,7 @@ fn a_large_model_is_drawn_whole_while_it_is_rotated() {
     let mut harness = harness_in(over(&scene), [1562.0, 820.0]);
     show(&mut harness);
     let middle = harness.get_by_label(FREE).rect().center();
-    let still = drawn(&harness, &gpu, |picture| (picture.geometry.clone(), picture.samples));
+    let still = drawn(&harness, gpu, |picture| (picture.geometry.clone(), picture.samples));
     let triangles: usize = anatomy.objects.iter().map(|object| object.mesh.triangles().len()).sum();
     assert_eq!(still.0.solids.len() + still.0.holders.len(), triangles);
     press_left(&mut harness, middle);
@@ -169,7 +169,7 @@ fn a_large_model_is_drawn_whole_while_it_is_rotated() {
         let start = Instant::now();
         harness.step();
         let panels = start.elapsed();
-        let moved = drawn(&harness, &gpu, |picture| (picture.geometry.clone(), picture.view));
+        let moved = drawn(&harness, gpu, |picture| (picture.geometry.clone(), picture.view));
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a GPU");
         times.push((start.elapsed(), panels, moved.1.size));
         assert!(Arc::ptr_eq(&moved.0, &still.0), "geometry stays as it is while the view turns");
@@ -182,11 +182,11 @@ fn a_large_model_is_drawn_whole_while_it_is_rotated() {
     let start = Instant::now();
     harness.step();
     println!("a frame with it: {:?}", start.elapsed());
-    drawn(&harness, &gpu, |picture| assert!(!Arc::ptr_eq(&picture.geometry, &still.0), "its geometry is another"));
+    drawn(&harness, gpu, |picture| assert!(!Arc::ptr_eq(&picture.geometry, &still.0), "its geometry is another"));
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a GPU");
     println!("drawn after {:?}", start.elapsed());
     let start = Instant::now();
-    drawn(&harness, &gpu, |_| ());
+    drawn(&harness, gpu, |_| ());
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a GPU");
     println!("and while nothing changes: {:?}", start.elapsed());
 }
@@ -195,7 +195,8 @@ fn a_large_model_is_drawn_whole_while_it_is_rotated() {
 /// certain, the point is excused; elsewhere the picture's depth is between those around the point.
 #[test]
 fn the_nearest_surface_is_the_one_a_ray_finds() {
-    let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
+    let painter = painter();
+    let gpu = painter.gpu();
     // Depths of many samples can't be read back, and only the software driver draws with one.
     let kind = gpu.adapter.get_info().device_type;
     assert_eq!(kind, wgpu::DeviceType::Cpu, "the reference adapter (Debian: mesa-vulkan-drivers)");
@@ -217,7 +218,7 @@ fn the_nearest_surface_is_the_one_a_ray_finds() {
                 harness.run_steps(1);
                 wheel(&mut harness, (random.unit() as f32 - 0.5) * 120.0);
                 let (view, origin, depths) =
-                    drawn(&harness, &gpu, |picture| (picture.view, picture.geometry.origin, depths(picture, &gpu)));
+                    drawn(&harness, gpu, |picture| (picture.view, picture.geometry.origin, depths(picture, gpu)));
                 let chunks = chunks(&anatomy, origin);
                 let clip = view.clip_from_stage.as_dmat4();
                 let [width, height] = view.size.as_dvec2().to_array();
@@ -277,7 +278,8 @@ fn share_of_view(anatomy: &Anatomy, clip_from_stage: DMat4, origin: DVec3) -> [f
 /// All of the model is in the view, and it takes a third of it at least, however large the floor is.
 #[test]
 fn the_view_is_framed_on_what_stands_on_the_floor() {
-    let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
+    let painter = painter();
+    let gpu = painter.gpu();
     let mut scenes: Vec<_> = ALL.iter().map(|builtin| builtin.scene().expect("a scene")).collect();
     let knot = OpenSpec::new("assets/models/knot.obj");
     scenes.push(open(&knot).expect("a model on a floor"));
@@ -285,7 +287,7 @@ fn the_view_is_framed_on_what_stands_on_the_floor() {
         let anatomy: Arc<Anatomy> = anatomy_of(&scene, Technique::ZFail);
         let mut harness = harness_of(over(&scene));
         show(&mut harness);
-        let (view, origin) = drawn(&harness, &gpu, |picture| (picture.view, picture.geometry.origin));
+        let (view, origin) = drawn(&harness, gpu, |picture| (picture.view, picture.geometry.origin));
         let [left, low, right, high] = share_of_view(&anatomy, view.clip_from_stage.as_dmat4(), origin);
         println!("{}: {left:.2} to {right:.2}, {low:.2} to {high:.2}", scene.name);
         assert!(left > -1.0 && right < 1.0 && low > -1.0 && high < 1.0, "{}: {left} {right} {low} {high}", scene.name);

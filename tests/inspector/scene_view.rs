@@ -58,16 +58,16 @@ pub fn farther(harness: &mut Harness<Seen>, view: &str) {
 }
 
 /// The view's texels, so that two looks can be compared.
-fn look(harness: &mut Harness<Seen>, view: &str) -> Vec<[u8; 4]> {
+fn look(harness: &mut Harness<Seen>, view: &str) -> Vec<[u8; 3]> {
     // Away from everything that answers to the pointer.
     harness.hover_at(pos2(640.0, 792.0));
     harness.run_steps(3);
     let rect = harness.get_by_label(view).rect();
-    let picture = harness.render().expect("a picture");
+    let picture = window_picture(harness);
     let columns = rect.left() as u32 + 130..rect.right() as u32 - 4;
     (rect.top() as u32 + 34..rect.bottom() as u32 - 4)
         .flat_map(|y| columns.clone().map(move |x| (x, y)))
-        .map(|(x, y)| picture.get_pixel(x, y).0)
+        .map(|(x, y)| picture.at([x, y]).expect("within the window"))
         .collect()
 }
 
@@ -138,7 +138,7 @@ fn every_part_has_a_switch_that_shows_and_hides_it() {
 fn a_wireframe_is_hidden_by_surfaces_until_they_are_switched_off() {
     let mut harness = shown();
     ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta"].iter().for_each(|name| click(&mut harness, name));
-    let changed = |a: &[[u8; 4]], b: &[[u8; 4]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+    let changed = |a: &[[u8; 3]], b: &[[u8; 3]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
     let solid = look(&mut harness, FREE);
     click(&mut harness, "Wireframe");
     let over_surfaces = changed(&solid, &look(&mut harness, FREE));
@@ -245,7 +245,7 @@ fn a_large_mesh_looks_as_a_small_one_of_its_shape() {
         looks.push(look(&mut harness, FREE));
     }
     let unlike = |one: usize, other: usize| {
-        let far = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24);
+        let far = |(a, b): &(&[u8; 3], &[u8; 3])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24);
         looks[one].iter().zip(&looks[other]).filter(far).count()
     };
     let (all, alone, ball) = (unlike(0, 3), unlike(1, 4), unlike(4, 5));
@@ -289,7 +289,7 @@ fn looked_at(session: &mut Session, frame: &RunFrame, pick: [u32; 2]) -> Inspect
     inspector
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_the_scene` writes them.
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of_the_scene` writes them.
 #[test]
 fn pictures_of_the_scene_tab_can_be_drawn() {
     let gallery = Gallery::open();

@@ -373,7 +373,7 @@ fn who_falls_off_the_world_is_set_back_and_reported() {
     assert_eq!(eye_of(&harness), start);
 }
 
-/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_walking` writes it.
+/// `INSPECTOR_PICTURES=FOLDER cargo test --profile bench pictures_of_walking` writes it.
 #[test]
 fn pictures_of_walking_can_be_drawn() {
     let gallery = Gallery::open();

@@ -1,0 +1,142 @@
+//! Panels drawn into a picture, without a window: for the README's pictures, and for tests of panels.
+
+use crate::picture::Picture;
+use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+use wgpu::{Adapter, DeviceDescriptor, DeviceType};
+
+/// Why there is no picture, in the driver's words.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct OffscreenError(String);
+
+/// Returns the first of these adapters that gives the described device, the fastest kind first; with `is_software_first`
+/// the software ones before all. `None` where none does.
+pub fn first_with_device<'a>(
+    adapters: impl IntoIterator<Item = &'a Adapter>,
+    descriptor: impl Fn(&Adapter) -> DeviceDescriptor<'static>,
+    is_software_first: bool,
+) -> Option<Adapter> {
+    let rank = |adapter: &&Adapter| match adapter.get_info().device_type {
+        DeviceType::Cpu if is_software_first => 0,
+        DeviceType::DiscreteGpu => 1,
+        DeviceType::IntegratedGpu => 2,
+        DeviceType::VirtualGpu => 3,
+        DeviceType::Other => 4,
+        DeviceType::Cpu => 5,
+    };
+    let mut adapters: Vec<&Adapter> = adapters.into_iter().collect();
+    adapters.sort_by_key(rank);
+    // The last one is not tried first: where it fails, its error is what the user reads.
+    let (last, others) = adapters.split_last()?;
+    let opens = |adapter: &&&Adapter| pollster::block_on(adapter.request_device(&descriptor(adapter))).is_ok();
+    Some((*others.iter().find(opens).unwrap_or(last)).clone())
+}
+
+/// Draws egui's triangles into a texture and reads it back.
+pub struct OffscreenPainter {
+    gpu: RenderState,
+}
+
+impl OffscreenPainter {
+    /// Opens a GPU, a software one where there is one, so that pictures are the same everywhere.
+    ///
+    /// # Errors
+    /// No GPU can be opened.
+    pub fn new(options: RendererOptions) -> Result<OffscreenPainter, OffscreenError> {
+        let mut setup = WgpuSetupCreateNew::without_display_handle();
+        let descriptor = Arc::clone(&setup.device_descriptor);
+        setup.native_adapter_selector = Some(Arc::new(move |adapters, _| {
+            let found = first_with_device(adapters, |adapter| descriptor(adapter), true);
+            found.ok_or_else(|| "no GPU gives a device".to_owned())
+        }));
+        let setup = WgpuSetup::CreateNew(setup);
+        let instance = pollster::block_on(setup.new_instance());
+        let configuration = WgpuConfiguration { wgpu_setup: setup, ..WgpuConfiguration::default() };
+        let gpu = pollster::block_on(RenderState::create(&configuration, &instance, None, options));
+        gpu.map(|gpu| OffscreenPainter { gpu }).map_err(|error| OffscreenError(error.to_string()))
+    }
+
+    /// Returns the GPU, with the renderer that [`OffscreenPainter::draw`] uses.
+    pub fn gpu(&self) -> &RenderState {
+        &self.gpu
+    }
+
+    /// Applies changes of textures, draws the triangles over black and returns the picture, `screen` pixels large.
+    ///
+    /// # Errors
+    /// The GPU failed, or was lost.
+    pub fn draw(
+        &self,
+        screen: &ScreenDescriptor,
+        triangles: &[egui::ClippedPrimitive],
+        mut textures: egui::TexturesDelta,
+    ) -> Result<Picture, OffscreenError> {
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let mut renderer = self.gpu.renderer.write();
+        for (id, deltas) in std::mem::take(&mut textures.set) {
+            deltas.iter().for_each(|delta| renderer.update_texture(device, queue, id, delta));
+        }
+        let [width, height] = screen.size_in_pixels;
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("panels"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.gpu.target_format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("panels read back"),
+            size: u64::from(stride) * u64::from(height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let before = renderer.update_buffers(device, queue, &mut encoder, triangles, screen);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        {
+            let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("panels"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            renderer.render(&mut pass.forget_lifetime(), triangles, screen);
+        }
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
+        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), target, size);
+        queue.submit(before.into_iter().chain([encoder.finish()]));
+        for id in std::mem::take(&mut textures.free) {
+            renderer.free_texture(&id);
+        }
+        let (send, done) = channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(send.send(result)));
+        let lost = |error: &dyn std::fmt::Display| OffscreenError(error.to_string());
+        device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(&error))?;
+        done.recv().map_err(|error| lost(&error))?.map_err(|error| lost(&error))?;
+        let bytes = buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
+        let is_bgra = matches!(self.gpu.target_format, wgpu::TextureFormat::Bgra8Unorm);
+        let mut picture = Picture::filled([width, height], [0; 3]);
+        for (y, row) in (0..height).zip(bytes.chunks_exact(stride as usize)) {
+            for (x, texel) in (0..width).zip(row.chunks_exact(4)) {
+                let [a, b, c] = [texel[0], texel[1], texel[2]];
+                picture.set([x, y], if is_bgra { [c, b, a] } else { [a, b, c] });
+            }
+        }
+        Ok(picture)
+    }
+}
