@@ -10,6 +10,7 @@
 //! before the window is made, so that the GPU's first frame and the window's come together.
 
 mod allocator;
+mod clipboard;
 mod controller;
 mod export;
 pub mod headless;

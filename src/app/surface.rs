@@ -1,8 +1,11 @@
 //! The system's window, and the GPU surface on which egui is drawn.
 
+use super::clipboard::SystemClipboard;
 use super::input::of_next_frame;
 use super::news::WindowNews;
 use super::{AppError, no_window};
+use crate::offscreen;
+use crate::picture;
 use crate::session::MEMORY_HINTS;
 use crate::viewport;
 use egui::{Context, ViewportId};
@@ -13,12 +16,16 @@ use std::sync::Arc;
 use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
-use winit::window::{CursorGrabMode, Window};
+#[cfg(target_os = "linux")]
+use winit::platform::wayland::WindowAttributesExtWayland;
+use winit::window::{CursorGrabMode, Icon, Window, WindowAttributes};
 
 /// The window's initial size in points, on a screen that is large enough.
 const FIRST_SIZE: [f64; 2] = [1440.0, 900.0];
 /// The window's largest share of a smaller screen: the system's own bars need the rest.
 const OF_SCREEN: f64 = 0.95;
+/// Pixels of the window's icon for each unit of its drawing, which is 128 wide.
+const ICON_SCALE: f32 = 0.5;
 /// The least size in points at which the panels fit.
 const LEAST_SIZE: [f64; 2] = [640.0, 400.0];
 
@@ -35,11 +42,34 @@ fn first_size(screen: Option<[f64; 2]>) -> [f64; 2] {
     [0, 1].map(|axis| FIRST_SIZE[axis].min((screen[axis] * OF_SCREEN).floor()))
 }
 
+/// Returns the picture that task bars show for the window; `None` where it can't be drawn, and the system shows its own.
+fn icon() -> Option<Icon> {
+    let drawn = picture::svg::picture(include_str!("../../assets/icon.svg"), ICON_SCALE).ok()?;
+    let [width, height] = drawn.size();
+    // Only its corners, on which nothing is drawn, are black.
+    let opacity = |pixel: &[u8; 3]| if *pixel == [0; 3] { 0 } else { u8::MAX };
+    let rgba = drawn.pixels().iter().flat_map(|pixel| [pixel[0], pixel[1], pixel[2], opacity(pixel)]).collect();
+    Icon::from_rgba(rgba, width, height).ok()
+}
+
+/// Gives a window the name by which a Linux desktop finds the program's menu entry and icon.
+#[cfg(target_os = "linux")]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    WindowAttributesExtWayland::with_name(attributes, "stencilscope", "stencilscope")
+}
+
+/// Returns the attributes unchanged: other systems find icons in other ways.
+#[cfg(not(target_os = "linux"))]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    attributes
+}
+
 /// A window that egui draws on.
 pub struct WindowSurface {
     window: Arc<Window>,
     painter: Painter,
     input: egui_winit::State,
+    clipboard: SystemClipboard,
     /// Events of mouse and keys that no frame has handled yet.
     events: Vec<egui::Event>,
     /// Texture changes that were not drawn yet.
@@ -48,8 +78,8 @@ pub struct WindowSurface {
     hidden: bool,
     /// The pointer is grabbed, and raw movement of the mouse is used.
     holds_pointer: bool,
-    /// Why the pointer could not be grabbed, once it was tried.
-    grab_failed: Option<String>,
+    /// What the system refused since [`WindowSurface::take_failure`] was called last, as a sentence.
+    failure: Option<String>,
 }
 
 impl WindowSurface {
@@ -61,8 +91,9 @@ impl WindowSurface {
         proxy: EventLoopProxy<WindowNews>,
         adapter: Option<&str>,
     ) -> Result<WindowSurface, AppError> {
-        let attributes = Window::default_attributes()
+        let attributes = named(Window::default_attributes())
             .with_title("stencilscope")
+            .with_window_icon(icon())
             .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop))))
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST_SIZE))
             // Assistive technology has to be set up before the window is visible.
@@ -90,12 +121,13 @@ impl WindowSurface {
             window,
             painter,
             input,
+            clipboard: SystemClipboard::new(event_loop),
             events: Vec::new(),
             textures,
             title: String::new(),
             hidden: false,
             holds_pointer: false,
-            grab_failed: None,
+            failure: None,
         })
     }
 
@@ -107,9 +139,9 @@ impl WindowSurface {
         }
     }
 
-    /// Returns why the pointer could not be grabbed, once for each failure; `None` where nothing new failed.
-    pub fn take_grab_failure(&mut self) -> Option<String> {
-        self.grab_failed.take()
+    /// Returns, once, what the system refused (to hold the pointer, to copy a text), as a sentence for the user.
+    pub fn take_failure(&mut self) -> Option<String> {
+        self.failure.take()
     }
 
     /// Asks the system for a redraw.
@@ -125,9 +157,11 @@ impl WindowSurface {
             WindowEvent::Occluded(hidden) => self.hidden = *hidden,
             _ => {}
         }
+        self.clipboard.before_event(event, &mut self.input);
         if self.input.on_window_event(&self.window, event).repaint {
             self.window.request_redraw();
         }
+        self.clipboard.after_event(event, &mut self.input);
     }
 
     /// Passes an AccessKit event (tree requested, action requested, deactivated) to egui, and asks for a redraw.
@@ -160,7 +194,10 @@ impl WindowSurface {
                 } else {
                     self.window.set_cursor_grab(CursorGrabMode::None)
                 };
-                self.grab_failed = grabbed.err().map(|error| error.to_string());
+                if let Err(error) = grabbed {
+                    let words = format!("the pointer can't be held ({error}): walking turns until it meets an edge");
+                    self.failure = Some(words);
+                }
             }
             egui::ViewportCommand::CursorVisible(is_visible) => self.window.set_cursor_visible(*is_visible),
             _ => {}
@@ -187,6 +224,9 @@ impl WindowSurface {
             self.window.request_redraw();
         }
         let output = ctx.run_ui(input, ui);
+        if let Some(failure) = self.clipboard.after_frame(&output.platform_output.commands) {
+            self.failure = Some(failure);
+        }
         self.input.handle_platform_output_with_event_loop(&self.window, event_loop, output.platform_output);
         for command in output.viewport_output.values().flat_map(|output| &output.commands) {
             self.obey(command);
@@ -214,7 +254,23 @@ impl Drop for WindowSurface {
 
 fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuConfiguration {
     let mut setup = WgpuSetupCreateNew::from_display_handle(event_loop.owned_display_handle());
-    setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
+    setup.device_descriptor = Arc::new(device_descriptor);
+    let wanted = adapter.map(str::to_lowercase);
+    setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+        let can_draw = |a: &&wgpu::Adapter| surface.is_none_or(|surface| a.is_surface_supported(surface));
+        let is_wanted =
+            |a: &&wgpu::Adapter| wanted.as_ref().is_none_or(|wanted| a.get_info().name.to_lowercase().contains(wanted));
+        let able = adapters.iter().filter(can_draw).filter(is_wanted);
+        offscreen::first_with_device(able, device_descriptor, false).ok_or_else(|| match &wanted {
+            Some(wanted) => format!("no GPU called `{wanted}` can draw on this display"),
+            None => "no GPU can draw on this display".to_owned(),
+        })
+    }));
+    WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+}
+
+fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
         label: Some("stencilscope window"),
         // Pictures may be as large as the GPU allows.
         required_limits: wgpu::Limits {
@@ -223,22 +279,17 @@ fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuCon
         },
         memory_hints: MEMORY_HINTS,
         ..Default::default()
-    });
-    if let Some(wanted) = adapter {
-        let wanted = wanted.to_lowercase();
-        setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
-            let can_draw = |a: &&wgpu::Adapter| surface.is_none_or(|surface| a.is_surface_supported(surface));
-            let is_wanted = |a: &&wgpu::Adapter| a.get_info().name.to_lowercase().contains(&wanted);
-            let found = adapters.iter().filter(can_draw).find(is_wanted);
-            found.cloned().ok_or_else(|| format!("no GPU called `{wanted}` can draw on this display"))
-        }));
     }
-    WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_icon_is_drawn() {
+        assert!(icon().is_some());
+    }
 
     #[test]
     fn the_window_fits_the_screen() {

@@ -64,9 +64,8 @@ impl App {
                 ui.ctx().request_repaint_after(WATCH);
             }
         });
-        if let Some(reason) = surface.take_grab_failure() {
-            let words = format!("the pointer can't be held ({reason}): walking turns until it meets an edge");
-            self.controller.inspector.model.push_error(words);
+        if let Some(failure) = surface.take_failure() {
+            self.controller.inspector.model.push_error(failure);
         }
         if !actions.is_empty() {
             actions.into_iter().for_each(|action| self.controller.act(action));
