@@ -8,6 +8,7 @@ mod animate;
 mod bench;
 mod bench_panels;
 mod capture;
+mod completions;
 mod diagnose;
 mod diff;
 mod error;
@@ -40,9 +41,23 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// Names of the commands that exist.
-const COMMANDS: [&str; 15] = [
-    "view", "capture", "animate", "page", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import",
-    "record", "bench", "pictures", "help",
+const COMMANDS: [&str; 16] = [
+    "view",
+    "capture",
+    "animate",
+    "page",
+    "pixel",
+    "diagnose",
+    "diff",
+    "report",
+    "stress",
+    "scenes",
+    "import",
+    "record",
+    "bench",
+    "pictures",
+    "completions",
+    "help",
 ];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
@@ -92,6 +107,8 @@ enum CliCommand {
     Bench(Box<bench::BenchArguments>),
     /// Take the README's pictures of the window, without a display
     Pictures(Box<pictures::PicturesArguments>),
+    /// Print what a shell reads to complete commands and options
+    Completions(completions::CompletionsArguments),
     /// Explain a technique, a setting, the scene file, the capture folder, JSON or a command
     Help(help::HelpArguments),
 }
@@ -125,6 +142,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         CliCommand::Record(arguments) => record::run(&arguments),
         CliCommand::Bench(arguments) => bench::run(&arguments),
         CliCommand::Pictures(arguments) => pictures::run(&arguments),
+        CliCommand::Completions(arguments) => completions::run(&arguments),
         CliCommand::Help(arguments) => help::run(&arguments),
     }
 }
