@@ -261,7 +261,7 @@ fn files_that_lie_are_refused_in_one_line() {
         ("glTF".to_owned(), "is a broken .glb (its head is too short)"),
         ("glTF\u{2}\0\0\0\u{1}\0\0\0".to_owned(), "is a broken .glb (its head is too short)"),
         (whole.replace("2.0", "1.0"), "is of glTF version `1.0`, and 2.0 is read: convert it"),
-        (triangle(nodes, "short.bin"), "buffer 0 has 8 bytes where 36 are told of"),
+        (triangle(nodes, "short.bin"), "buffer 0 has 8 bytes where 36 are declared"),
         (triangle(nodes, "none.bin"), "`none.bin` there is no such file"),
         (triangle(nodes, "/dev/zero"), "`/dev/zero` is a device: only plain files are read"),
         (triangle(nodes, "https://example.com/a.bin"), "is no file beside this one: put it there"),

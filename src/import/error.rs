@@ -20,6 +20,11 @@ pub enum ImportError {
     /// Every draw is of a kind that is not followed.
     #[error("the frame draws no triangles that could be followed: --list shows what it draws")]
     NothingDrawn,
+    /// Another system than Linux was asked to record.
+    #[error(
+        "`record` works on Linux only: take the capture in RenderDoc's own window, then `stencilscope import FILE`"
+    )]
+    RecordsOnLinux,
     /// The interpreter can't be started.
     #[error(
         "`{python}` can't be started ({source}): install python3 and python3-renderdoc, or name an interpreter with --python"

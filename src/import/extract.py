@@ -45,7 +45,9 @@ def end_with_parent():
     os.killpg(0, signal.SIGKILL)
 
 
-threading.Thread(target=end_with_parent, daemon=True).start()
+# On Windows a thread that waits for standard input would stop libraries from loading.
+if hasattr(os, "killpg"):
+    threading.Thread(target=end_with_parent, daemon=True).start()
 
 try:
     import renderdoc as rd

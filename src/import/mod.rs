@@ -33,5 +33,5 @@ pub use list::list;
 pub use raw::*;
 pub use read::read;
 #[cfg(feature = "program")]
-pub use renderdoc::{RecordingRequest, RenderDocOptions, import, record};
+pub use renderdoc::{PYTHON, RecordingRequest, RenderDocOptions, import, record};
 pub use shipped::{SHIPPED, ShippedFrame};

@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -85,6 +85,10 @@ impl ReaderProcess {
         }
         // RenderDoc's log is removed with the folder.
         command.env("RENDERDOC_TEMP", folder.path());
+        if cfg!(windows) {
+            // There, paths would come in the system's own encoding.
+            command.env("PYTHONUTF8", "1");
+        }
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
@@ -179,12 +183,20 @@ impl ReaderProcess {
             rustix::process::Signal::KILL,
         );
         let _ = self.child.kill();
-        let status = self.child.wait().ok()?;
-        #[cfg(unix)]
-        return std::os::unix::process::ExitStatusExt::signal(&status);
-        #[cfg(not(unix))]
-        return None;
+        self.child.wait().ok().and_then(signal_of)
     }
+}
+
+/// Returns the signal that ended a process; `None` where it exited by itself.
+#[cfg(unix)]
+fn signal_of(status: ExitStatus) -> Option<i32> {
+    std::os::unix::process::ExitStatusExt::signal(&status)
+}
+
+/// Returns `None`: only Unix ends processes by signals.
+#[cfg(not(unix))]
+fn signal_of(_: ExitStatus) -> Option<i32> {
+    None
 }
 
 impl Drop for ReaderProcess {
@@ -206,14 +218,20 @@ fn each_line(mut input: impl Read, mut take: impl FnMut(String) -> bool) {
         for &byte in &buffer[..read] {
             if byte != b'\n' && line.len() < LONGEST_LINE {
                 line.push(byte);
-            } else if byte == b'\n' && !take(String::from_utf8_lossy(&std::mem::take(&mut line)).into_owned()) {
+            } else if byte == b'\n' && !take(without_return(std::mem::take(&mut line))) {
                 return;
             }
         }
     }
     if !line.is_empty() {
-        take(String::from_utf8_lossy(&line).into_owned());
+        take(without_return(line));
     }
+}
+
+/// Returns a line as text, without the carriage return that ends one on Windows.
+fn without_return(line: Vec<u8>) -> String {
+    let text = String::from_utf8_lossy(&line);
+    text.strip_suffix('\r').unwrap_or(&text).to_owned()
 }
 
 fn keep(last: &Mutex<String>, line: String) -> bool {

@@ -24,9 +24,12 @@ pub struct RenderDocOptions {
     pub pictures: bool,
 }
 
+/// The usual name of a Python 3 interpreter on this system.
+pub const PYTHON: &str = if cfg!(windows) { "python" } else { "python3" };
+
 impl Default for RenderDocOptions {
     fn default() -> Self {
-        Self { python: "python3".to_owned(), seconds: 600, most_memory: 8 << 30, pictures: true }
+        Self { python: PYTHON.to_owned(), seconds: 600, most_memory: 8 << 30, pictures: true }
     }
 }
 
@@ -78,6 +81,9 @@ pub fn record(
     options: &RenderDocOptions,
     progress: &Progress,
 ) -> Result<RawFrame, ImportError> {
+    if cfg!(not(target_os = "linux")) {
+        return Err(ImportError::RecordsOnLinux);
+    }
     // The program has its own time; what RenderDoc needs to start and to write is added.
     let time = Duration::from_secs(recording.seconds.saturating_add(GRACE));
     let limits = ProcessLimits { time, memory: u64::MAX };
