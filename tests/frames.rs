@@ -51,6 +51,34 @@ fn recordings_that_are_here_are_imported() {
     }
 }
 
+/// Arrays of a capture folder, as NumPy itself reads them.
+#[test]
+fn numpy_reads_every_array() {
+    const SCRIPT: &str = "import numpy, sys\nfor file in sys.argv[1:]:\n    array = numpy.load(file, allow_pickle=False)\n    \
+                          print(array.dtype.str, *array.shape, array.size)";
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let capture = ["capture", "two-lights", "-t", "shadow-map", "--truth", "--size", "80x60", "-o"];
+    let status =
+        Command::new(env!("CARGO_BIN_EXE_stencilscope")).args(capture).arg(&out).status().expect("the program");
+    assert!(status.success());
+    let names = |ending: &str| -> Vec<_> {
+        let entries = std::fs::read_dir(&out).expect("a folder").map(|entry| entry.expect("an entry").path());
+        let mut names: Vec<_> = entries.filter(|path| path.to_string_lossy().ends_with(ending)).collect();
+        names.sort();
+        names
+    };
+    let read = |files: &[std::path::PathBuf]| {
+        let output = Command::new(PYTHON).args(["-c", SCRIPT]).args(files).output().expect("Python");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let all = names(".npy");
+    assert!(all.len() > 20 && read(&all).lines().count() == all.len());
+    assert_eq!(read(&names(".shadow.npy")), "|u1 60 80 4800\n".repeat(2));
+    assert_eq!(read(&names(".depth.npy")[..1]), "<f4 60 80 4800\n");
+}
+
 /// A list of states and vertices needs no pictures: of a frame that is too large for them, too.
 #[test]
 fn a_list_reads_no_pictures() {
