@@ -44,7 +44,7 @@ fn the_readme_names_every_technique_and_the_number_of_cases() {
 /// Cargo's own list: what a program gets that only records, beside what its wgpu brings. The features of wgpu that are
 /// needed bring four packages more, which cargo has within wgpu.
 #[test]
-fn the_readme_lists_the_packages_of_a_build_that_records() {
+fn library_md_lists_the_packages_of_a_build_that_records() {
     const OF_WGPU: [&str; 4] = ["serde", "serde_core", "serde_derive", "termcolor"];
     let arguments =
         "tree --locked --offline -e normal,build --no-default-features --features record --no-dedupe --prefix depth";
@@ -67,8 +67,8 @@ fn the_readme_lists_the_packages_of_a_build_that_records() {
         all.difference(&of_wgpu).map(|package| package[0]).filter(|name| *name != "stencilscope").collect();
     assert!(ours.len() > 10 && ours.len() + OF_WGPU.len() <= 40, "{ours:?}");
     let names: BTreeSet<&str> = ours.iter().copied().chain(OF_WGPU).collect();
-    let readme = read("README.md");
-    let list = readme
+    let page = read("assets/library.md");
+    let list = page
         .split("packages beside plain wgpu's: ")
         .nth(1)
         .and_then(|after| after.split(".\n").next())
@@ -79,7 +79,7 @@ fn the_readme_lists_the_packages_of_a_build_that_records() {
         .filter(|name| !name.is_empty())
         .collect();
     assert_eq!(listed, names);
-    assert!(readme.contains(&format!("brings {} packages beside", ours.len() + OF_WGPU.len())), "{}", ours.len());
+    assert!(page.contains(&format!("brings {} packages beside", ours.len() + OF_WGPU.len())), "{}", ours.len());
 }
 
 /// Pages that the program has written say how.
