@@ -139,7 +139,9 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         let look =
             ui.button("Look at it").on_hover_text("The eye turns to it, and comes so near that all of it is seen");
         changed |= look.clicked() && look_at(&mut scene.draft.camera, object);
-        let up = ui.button("Z is up").on_hover_text("Turns it so that what points along the z axis points up, for models of programs where z is up");
+        let up = ui.button("Z is up").on_hover_text(
+            "Turns it so that what points along the z axis points up, for models of programs where z is up",
+        );
         if up.clicked() {
             scene.place(*index, object.pose.with_z_up());
             changed = true;
