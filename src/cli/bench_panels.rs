@@ -1,7 +1,9 @@
 //! `stencilscope bench panels`: what the inspector's own frames cost, and how soon a change is seen.
 
+use super::CliError;
 use super::options::{FrameOptions, SceneOptions};
-use super::{CliError, output};
+#[cfg(feature = "inspector")]
+use super::output;
 
 /// How many frames of each tab are timed.
 #[cfg(feature = "inspector")]
