@@ -73,6 +73,7 @@ pub mod glossary {}
 mod named;
 
 pub mod accuracy;
+mod adapters;
 pub mod anatomy;
 #[cfg(feature = "inspector")]
 mod app;

@@ -1,5 +1,6 @@
 //! Panels drawn into a picture, without a window: for the README's pictures, and for tests of panels.
 
+use crate::adapters::{first_that_opens, speed_rank};
 use crate::picture::Picture;
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::sync::Arc;
@@ -18,20 +19,15 @@ pub fn first_with_device<'a>(
     descriptor: impl Fn(&Adapter) -> DeviceDescriptor<'static>,
     is_software_first: bool,
 ) -> Option<Adapter> {
-    let rank = |adapter: &&Adapter| match adapter.get_info().device_type {
-        DeviceType::Cpu if is_software_first => 0,
-        DeviceType::DiscreteGpu => 1,
-        DeviceType::IntegratedGpu => 2,
-        DeviceType::VirtualGpu => 3,
-        DeviceType::Other => 4,
-        DeviceType::Cpu => 5,
-    };
     let mut adapters: Vec<&Adapter> = adapters.into_iter().collect();
-    adapters.sort_by_key(rank);
-    // The last one is not tried first: where it fails, its error is what the user reads.
+    // Of two booleans, `false` comes first.
+    let is_late = |adapter: &Adapter| is_software_first && adapter.get_info().device_type != DeviceType::Cpu;
+    adapters.sort_by_key(|adapter| (is_late(adapter), speed_rank(adapter)));
+    // The last one is not tried: where it fails, its error is what the user reads.
     let (last, others) = adapters.split_last()?;
-    let opens = |adapter: &&&Adapter| pollster::block_on(adapter.request_device(&descriptor(adapter))).is_ok();
-    Some((*others.iter().find(opens).unwrap_or(last)).clone())
+    let open = |adapter: &&Adapter| pollster::block_on(adapter.request_device(&descriptor(adapter)));
+    let chosen = first_that_opens(others, |adapter| open(adapter).map(|_| *adapter));
+    Some(chosen.map_or(*last, |(adapter, _)| adapter).clone())
 }
 
 /// Draws egui's triangles into a texture and reads it back.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 39] = [
+const MAY_USE: [(&str, &[&str]); 40] = [
     ("named", &[]),
     ("last_used", &[]),
     ("math", &[]),
@@ -15,7 +15,8 @@ const MAY_USE: [(&str, &[&str]); 39] = [
     ("shards", &[]),
     ("picture", &["numbers"]),
     ("viewport", &[]),
-    ("offscreen", &["picture"]),
+    ("adapters", &[]),
+    ("offscreen", &["adapters", "picture"]),
     ("scene", &["math", "files", "last_used"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
@@ -27,7 +28,7 @@ const MAY_USE: [(&str, &[&str]); 39] = [
     ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress", "files"]),
     ("wrap", &[]),
-    ("gpu", &["math", "scene", "plan", "capture", "wrap", "last_used"]),
+    ("gpu", &["adapters", "math", "scene", "plan", "capture", "wrap", "last_used"]),
     ("history", &["math", "numbers", "geometry", "plan", "technique", "capture", "stencil_machine", "truth"]),
     ("difference", &["capture", "accuracy", "numbers", "picture", "truth"]),
     (

@@ -162,7 +162,7 @@ impl Controller {
             News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
             News::AnswerEnded { ticket } => self.inspector.model.answers.end(ticket),
             News::Exported(exported) => self.end_export(exported),
-            News::Warned(what) => self.inspector.model.push_error(what),
+            News::Warned(what) => self.inspector.model.push_warning(what),
             News::Failed(reason) => self.inspector.push_failure(reason),
         }
     }

@@ -1,6 +1,7 @@
 //! The adapter and its device.
 
 use super::{GpuError, features};
+use crate::adapters::{first_that_opens, speed_rank};
 use crate::capture::AdapterInfo;
 use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 
@@ -43,11 +44,12 @@ impl GpuContext {
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
-        let opened = first_that_opens(candidates(adapters, wanted)?, |adapter| {
+        let (context, passed_over) = first_that_opens(candidates(adapters, wanted)?, |adapter| {
             let features = REQUIRED | (adapter.features() & MEASURED);
             GpuContext::open(adapter, features)
-        });
-        opened.map(|(context, passed_over)| GpuContext { passed_over, ..context })
+        })
+        .map_err(|first| first.unwrap_or(GpuError::NoAdapter { found: String::new() }))?;
+        Ok(GpuContext { passed_over, ..context })
     }
 
     /// Opens another device on the same adapter, with all features of this one and those `needed`.
@@ -150,34 +152,8 @@ fn candidates(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Vec<Adapte
         return Err(GpuError::NoAdapter { found });
     }
     // A stable sort: of one kind, the first stays first.
-    able.sort_by_key(|adapter| speed_rank(adapter.get_info().device_type));
+    able.sort_by_key(speed_rank);
     Ok(able)
-}
-
-/// Returns what the first adapter gives that `open` succeeds with, and the errors of those before it; the first error
-/// where it succeeds with none.
-fn first_that_opens<A, T>(
-    adapters: Vec<A>,
-    open: impl Fn(A) -> Result<T, GpuError>,
-) -> Result<(T, Vec<GpuError>), GpuError> {
-    let mut errors = Vec::new();
-    for adapter in adapters {
-        match open(adapter) {
-            Ok(opened) => return Ok((opened, errors)),
-            Err(error) => errors.push(error),
-        }
-    }
-    Err(errors.into_iter().next().unwrap_or(GpuError::NoAdapter { found: String::new() }))
-}
-
-fn speed_rank(kind: DeviceType) -> u32 {
-    match kind {
-        DeviceType::DiscreteGpu => 0,
-        DeviceType::IntegratedGpu => 1,
-        DeviceType::VirtualGpu => 2,
-        DeviceType::Other => 3,
-        DeviceType::Cpu => 4,
-    }
 }
 
 fn info_of(adapter: &Adapter) -> AdapterInfo {
@@ -195,32 +171,4 @@ fn info_of(adapter: &Adapter) -> AdapterInfo {
 
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn open(adapter: &str) -> Result<String, GpuError> {
-        if adapter.starts_with("broken") {
-            let reason = "the driver failed".to_owned();
-            return Err(GpuError::NoDevice { adapter: adapter.to_owned(), reason });
-        }
-        Ok(adapter.to_owned())
-    }
-
-    #[test]
-    fn an_adapter_that_gives_no_device_is_passed_over() {
-        let opened = first_that_opens(vec!["broken card", "llvmpipe", "another"], open);
-        let (name, passed_over) = opened.expect("the second opens");
-        assert_eq!(name, "llvmpipe");
-        let words: Vec<String> = passed_over.iter().map(ToString::to_string).collect();
-        assert_eq!(words, ["broken card gave no device: the driver failed"]);
-    }
-
-    #[test]
-    fn where_none_gives_a_device_the_first_says_why() {
-        let error = first_that_opens(vec!["broken first", "broken second"], open).expect_err("none opens");
-        assert!(error.to_string().starts_with("broken first gave no device"), "{error}");
-    }
 }

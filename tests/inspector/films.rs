@@ -85,7 +85,7 @@ fn it_is_cancelled_where_it_says_how_far_it_is() {
     click_button(&mut harness, "Cancel");
     assert!(last_asked::<FilmOf>(&harness).progress.is_cancelled());
     assert!(harness.query_by_label("animation begins").is_none());
-    assert!(is_offered(&mut harness, STEPS) && harness.state().inspector.model.activity.errors.is_empty());
+    assert!(is_offered(&mut harness, STEPS) && harness.state().inspector.model.activity.messages.is_empty());
 }
 
 #[test]

@@ -34,14 +34,15 @@ mod shell;
 mod stress;
 mod truth;
 mod walk;
+mod window_picture;
 
 use crate::common;
 use by_hand::{cube_map, z_fail};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, pos2, vec2};
+use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use egui_kittest::{Harness, TestRenderer};
-use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use egui_wgpu::ScreenDescriptor;
 use glam::DVec3;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -59,6 +60,7 @@ use stencilscope::reading::picture_view::{PictureKind, TexelZoom};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, RunFrame, Session};
 use stencilscope::technique::{Choice, Technique};
+use window_picture::{TextureCollector, UndrawnTextures, painter, window_picture};
 
 const SIZE: [u32; 2] = [40, 30];
 /// The window that most tests look at, points.
@@ -76,42 +78,6 @@ struct Seen {
     textures: Rc<RefCell<UndrawnTextures>>,
     /// What pictures are drawn with, once there was one.
     painter: Option<OffscreenPainter>,
-}
-
-/// If changes that were never drawn were dropped, egui would report a bug.
-#[derive(Default)]
-struct UndrawnTextures(egui::TexturesDelta);
-
-impl Drop for UndrawnTextures {
-    fn drop(&mut self) {
-        self.0.clear();
-    }
-}
-
-/// Gathers changes of textures from the harness, as [`window_picture`] may draw them later.
-struct TextureCollector(Rc<RefCell<UndrawnTextures>>);
-
-impl TestRenderer for TextureCollector {
-    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
-        self.0.borrow_mut().0.append(std::mem::take(delta));
-    }
-}
-
-/// A painter that draws the same everywhere.
-fn painter() -> OffscreenPainter {
-    OffscreenPainter::new(RendererOptions::PREDICTABLE).expect("a GPU")
-}
-
-/// The window as of the harness's last frame.
-fn window_picture(harness: &mut Harness<Seen>) -> Picture {
-    let scale = harness.ctx.pixels_per_point();
-    let size = harness.ctx.content_rect().size() * scale;
-    let screen =
-        ScreenDescriptor { size_in_pixels: [size.x.round() as u32, size.y.round() as u32], pixels_per_point: scale };
-    let triangles = harness.ctx.tessellate(harness.output().shapes.clone(), scale);
-    let seen = harness.state_mut();
-    let textures = std::mem::take(&mut seen.textures.borrow_mut().0);
-    seen.painter.get_or_insert_with(painter).draw(&screen, &triangles, textures).expect("a picture")
 }
 
 fn run_request(technique: Technique) -> RunRequest {
@@ -405,7 +371,7 @@ fn many_errors_leave_space_for_the_picture_and_go_at_once() {
     harness.run_steps(4);
     assert!(harness.get_by_label("Picture canvas").rect().height() > 200.0);
     click_button(&mut harness, "Dismiss all");
-    assert!(harness.state().inspector.model.activity.errors.is_empty());
+    assert!(harness.state().inspector.model.activity.messages.is_empty());
 }
 
 #[test]
@@ -662,8 +628,21 @@ fn an_error_stays_until_dismissed_and_so_does_the_picture() {
     harness.get_by_label("nothing.obj: no such file: check the path");
     harness.get_by_label("step 3 of 3");
     click(&mut harness, "Dismiss");
-    assert!(harness.state().inspector.model.activity.errors.is_empty());
+    assert!(harness.state().inspector.model.activity.messages.is_empty());
     assert!(harness.query_by_label_contains("no such file").is_none());
+}
+
+#[test]
+fn what_went_otherwise_is_a_warning_and_the_animation_goes_on() {
+    let mut harness = harness(z_fail(SIZE));
+    change(&mut harness, |inspector| {
+        inspector.model.animation.is_running = true;
+        inspector.model.push_warning("a card gave no device; using another".to_owned());
+    });
+    harness.get_by_label("! Warning");
+    harness.get_by_label("a card gave no device; using another");
+    assert!(harness.query_by_label("× Error").is_none());
+    assert!(harness.state().inspector.model.animation.is_running);
 }
 
 #[test]

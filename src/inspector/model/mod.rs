@@ -84,8 +84,8 @@ pub struct Activity {
     pub job: Option<String>,
     /// A run was asked for, and its capture has not come yet.
     pub is_waiting: bool,
-    /// Errors that the user has not dismissed yet.
-    pub errors: Vec<String>,
+    /// Messages that the user has not dismissed yet, the latest last.
+    pub messages: Vec<Message>,
     /// The errors among them that say why a scene could not be opened or run.
     failures: BTreeSet<String>,
     /// Name of the open file, which changed: it can be loaded again.
@@ -98,8 +98,26 @@ impl Activity {
     /// Removes the errors about opening and running a scene, after one was opened or run; other errors stay.
     pub fn succeeded(&mut self) {
         let failures = std::mem::take(&mut self.failures);
-        self.errors.retain(|error| !failures.contains(error));
+        self.messages.retain(|message| !failures.contains(&message.text));
     }
+}
+
+/// What the user is told above the panels, until it is dismissed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Whether what was asked for failed.
+    pub severity: Severity,
+    /// What happened, and what to do.
+    pub text: String,
+}
+
+/// How bad a message is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// What was asked for failed.
+    Error,
+    /// It was done, otherwise than asked.
+    Warning,
 }
 
 /// What one panel asks of another: done in the same or the next frame.
@@ -169,8 +187,18 @@ impl Model {
         // What failed is not tried again automatically.
         self.restoring = None;
         self.animation.is_running = false;
-        if !self.activity.errors.contains(&error) {
-            self.activity.errors.push(error);
+        self.push_message(Severity::Error, error);
+    }
+
+    /// Shows what went otherwise than asked, until it is dismissed, once if it is shown already; work goes on.
+    pub fn push_warning(&mut self, warning: String) {
+        self.push_message(Severity::Warning, warning);
+    }
+
+    fn push_message(&mut self, severity: Severity, text: String) {
+        let message = Message { severity, text };
+        if !self.activity.messages.contains(&message) {
+            self.activity.messages.push(message);
         }
     }
 }
