@@ -1,9 +1,10 @@
 //! A light that moves once round a scene: about the vertical axis through the middle of the casters.
 
 use super::FilmError;
+use crate::math::angle;
 use crate::numbers;
 use crate::scene::{Object, Scene};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// A light nearer to the axis than this share of its distance does not move visibly.
@@ -44,7 +45,7 @@ impl LightRound {
     pub fn scene(&self, place: u32) -> Scene {
         let mut scene = self.scene.clone();
         let Some(light) = scene.lights.get_mut(self.light).filter(|_| place > 0) else { return scene };
-        let turn = DQuat::from_rotation_y(TAU * f64::from(place) / f64::from(self.places.max(1)));
+        let turn = angle::rotation(DVec3::Y, TAU * f64::from(place) / f64::from(self.places.max(1)));
         let middle = if light.is_directional() { DVec3::ZERO } else { self.middle };
         let rotated = middle + turn * (light.position.truncate() - middle);
         light.position = rotated.extend(light.position.w);

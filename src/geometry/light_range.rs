@@ -3,7 +3,7 @@
 //! What is outside of the rectangle round a light's sphere is beyond the range. Like all of `reach`, that errs
 //! to the safe side.
 
-use crate::math::AxisBox;
+use crate::math::{AxisBox, angle};
 use crate::scene::Camera;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -38,21 +38,21 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
     let right = up * width / height;
     // Seen along an axis of the picture, the sphere is a circle between two lines from the eye.
     let from_eye = |middle: f64, half: f64| {
-        let away = middle.hypot(ahead);
+        let away = angle::hypot(middle, ahead);
         if away <= radius {
             return [f64::NEG_INFINITY, f64::INFINITY];
         }
-        let (angle, spread) = (middle.atan2(ahead), (radius / away).asin());
-        [angle - spread, angle + spread].map(|angle| match angle.abs() < FRAC_PI_2 {
-            true => angle.tan() / half,
-            false => f64::INFINITY.copysign(angle),
+        let (center, spread) = (angle::atan2(middle, ahead), angle::asin(radius / away));
+        [center - spread, center + spread].map(|edge| match edge.abs() < FRAC_PI_2 {
+            true => angle::tan(edge) / half,
+            false => f64::INFINITY.copysign(edge),
         })
     };
     // Or between parallel ones, and where those are aslant it is drawn out.
     let shear = camera.projection.shear();
     let behind = ahead - (camera.target - camera.eye).length();
     let parallel = |middle: f64, shear: f64, half: f64| {
-        let (middle, reach) = (middle + shear * behind, radius * shear.hypot(1.0));
+        let (middle, reach) = (middle + shear * behind, radius * angle::hypot(shear, 1.0));
         [middle - reach, middle + reach].map(|end| end / half)
     };
     let [across, down] = match camera.is_parallel() {

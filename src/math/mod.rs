@@ -5,6 +5,7 @@
 //! it joins, target first, so that `a_from_b * b_from_c = a_from_c` reads right. A light is a
 //! homogeneous point: `w = 1` a point light, `w = 0` the direction towards a directional one.
 
+pub mod angle;
 mod axis_box;
 pub mod depth;
 mod exact;

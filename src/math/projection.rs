@@ -1,11 +1,12 @@
 //! Cameras as matrices: view rotation, perspective and parallel projection.
 
+use super::angle;
 use super::depth::DepthCurve;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// Returns clip space from view space for a perspective. `aspect` is width over height.
 pub fn perspective(fov_y_degrees: f64, aspect: f64, depth: &DepthCurve) -> DMat4 {
-    let focal = 1.0 / (fov_y_degrees.to_radians() / 2.0).tan();
+    let focal = 1.0 / angle::tan(fov_y_degrees.to_radians() / 2.0);
     frustum(focal / aspect, focal, depth)
 }
 

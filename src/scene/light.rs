@@ -1,6 +1,7 @@
 //! Lights: a homogeneous point, so that point and directional lights are one code path.
 
 use super::Motion;
+use crate::math::angle;
 use glam::{DVec3, DVec4};
 
 /// Each light is a bit of one word a triangle; the last bit is used otherwise.
@@ -58,8 +59,8 @@ impl Light {
         }
         let largest = self.position.abs().max_element();
         // In two steps: the exponent of a subnormal is beyond what one factor holds.
-        let half = (-largest.log2().floor() / 2.0).floor();
-        let rest = -largest.log2().floor() - half;
+        let half = (-angle::log2(largest).floor() / 2.0).floor();
+        let rest = -angle::log2(largest).floor() - half;
         self.position * half.exp2() * rest.exp2()
     }
 

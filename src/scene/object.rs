@@ -1,7 +1,8 @@
 //! One placed mesh, and how placed things move.
 
 use super::{Material, MaterialTexture, Mesh, MeshGroup};
-use glam::{DMat4, DQuat, DVec3, DVec4, EulerRot};
+use crate::math::angle;
+use glam::{DMat4, DQuat, DVec3, DVec4};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -143,20 +144,18 @@ impl Pose {
 
     /// Returns the pose of a scale, a rotation and a translation, applied in this order.
     pub(super) fn of(scale: DVec3, rotation: DQuat, translate: DVec3) -> Pose {
-        // About fixed x, then y, then z is the same as about moving z, then y, then x.
-        let (z, y, x) = rotation.to_euler(EulerRot::ZYX);
-        Pose { translate, rotate_degrees: DVec3::new(x, y, z).map(f64::to_degrees), scale }
+        Pose { translate, rotate_degrees: angle::fixed_angles(rotation).map(f64::to_degrees), scale }
     }
 
     /// Returns the pose at the same position, rotated by −90° about the world's x axis: what pointed along the world's
     /// z axis points up (y). For a pose without rotation that is the object's own z axis. Called again it rotates on.
     pub fn with_z_up(&self) -> Pose {
-        self.rotated_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
+        self.rotated_about(self.translate, angle::rotation(DVec3::X, -TAU / 4.0))
     }
 
     fn rotation(&self) -> DQuat {
         let [x, y, z] = self.rotate_degrees.to_array().map(f64::to_radians);
-        DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x)
+        angle::rotation(DVec3::Z, z) * angle::rotation(DVec3::Y, y) * angle::rotation(DVec3::X, x)
     }
 
     /// Returns the same scale, rotated and moved as one rigid body about a point.
@@ -236,15 +235,15 @@ impl Motion {
     /// what does not move has exactly the same bits.
     fn turn_of_swing(&self, seconds: f64) -> Option<(DVec3, DQuat)> {
         let swing = self.swing?;
-        let degrees = swing.degrees * (TAU * seconds / swing.period_seconds).sin();
-        let turn = || DQuat::from_axis_angle(swing.axis.normalize(), degrees.to_radians());
+        let degrees = swing.degrees * angle::sin(TAU * seconds / swing.period_seconds);
+        let turn = || angle::rotation(swing.axis.normalize(), degrees.to_radians());
         (degrees != 0.0).then(|| (swing.pivot, turn()))
     }
 }
 
 impl Orbit {
     fn rotation_at(&self, seconds: f64) -> DQuat {
-        DQuat::from_axis_angle(self.axis.normalize(), (self.degrees_per_second * seconds).to_radians())
+        angle::rotation(self.axis.normalize(), (self.degrees_per_second * seconds).to_radians())
     }
 
     fn point_at(&self, start: DVec3, seconds: f64) -> DVec3 {

@@ -4,6 +4,7 @@
 //! shared vertices, not equal ones. Round shapes are surfaces of revolution of profiles: a line in the half-plane
 //! (radius, height), followed so that the solid is on its left, rotated around the y axis.
 
+use crate::math::angle;
 use crate::scene::{Mesh, MeshBuilder, MeshError};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -29,7 +30,7 @@ pub fn room(size: [f64; 3]) -> Result<Mesh, MeshError> {
 /// Returns a closed ball around the origin, `around` segments along the equator and `rings` from pole to pole.
 pub fn sphere(radius: f64, around: u32, rings: u32) -> Result<Mesh, MeshError> {
     let latitude = |ring: u32| PI * (f64::from(ring) / f64::from(rings) - 0.5);
-    let between = (1..rings).map(latitude).map(|angle| DVec2::from_angle(angle) * radius);
+    let between = (1..rings).map(latitude).map(|angle| angle::direction(angle) * radius);
     let mut profile = vec![DVec2::new(0.0, -radius)];
     profile.extend(between);
     profile.push(DVec2::new(0.0, radius));
@@ -41,7 +42,7 @@ pub fn sphere(radius: f64, around: u32, rings: u32) -> Result<Mesh, MeshError> {
 pub fn torus(major: f64, minor: f64, around: u32, along_tube: u32) -> Result<Mesh, MeshError> {
     let angle = |step: u32| TAU * f64::from(step) / f64::from(along_tube);
     let profile: Vec<DVec2> =
-        (0..along_tube).map(|step| DVec2::new(major, 0.0) + DVec2::from_angle(angle(step)) * minor).collect();
+        (0..along_tube).map(|step| DVec2::new(major, 0.0) + angle::direction(angle(step)) * minor).collect();
     revolve(&profile, true, around)
 }
 
@@ -49,7 +50,7 @@ pub fn torus(major: f64, minor: f64, around: u32, along_tube: u32) -> Result<Mes
 pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
     let base_radius = radius * 8f64.sqrt() / 3.0;
     let base = (0..3).map(|corner| {
-        let (sin, cos) = (TAU * f64::from(corner) / 3.0).sin_cos();
+        let (sin, cos) = angle::sin_cos(TAU * f64::from(corner) / 3.0);
         [base_radius * sin, -radius / 3.0, base_radius * cos]
     });
     let mut positions: Vec<[f64; 3]> = base.collect();
@@ -157,7 +158,7 @@ pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
         let after = path[(index + 1).min(path.len() - 1)].0;
         let outward = (after - before).normalize_or_zero().cross(DVec3::Z);
         builder.positions.extend((0..around).map(|step| {
-            let (sin, cos) = (TAU * f64::from(step) / f64::from(around)).sin_cos();
+            let (sin, cos) = angle::sin_cos(TAU * f64::from(step) / f64::from(around));
             *point + (DVec3::Z * cos + outward * sin) * *radius
         }));
     }
@@ -224,7 +225,7 @@ impl VertexRing {
         let count = if point.x == 0.0 { 1 } else { around };
         let first = positions.len() as u32;
         positions.extend((0..count).map(|step| {
-            let (sin, cos) = (TAU * f64::from(step) / f64::from(around)).sin_cos();
+            let (sin, cos) = angle::sin_cos(TAU * f64::from(step) / f64::from(around));
             DVec3::new(point.x * sin, point.y, point.x * cos)
         }));
         VertexRing { first, count }

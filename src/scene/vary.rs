@@ -1,7 +1,8 @@
 //! Scenes with more or fewer lights, casters and triangles, for measuring what that costs.
 
 use super::{Mesh, MeshError, Object, Scene, SceneBounds};
-use glam::{DMat3, DVec3};
+use crate::math::angle;
+use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -49,7 +50,7 @@ impl Scene {
             let mut light = self.lights[index % self.lights.len()].clone();
             let turns = (index / self.lights.len()) as f64 * GOLDEN;
             let around = if light.is_directional() { DVec3::ZERO } else { middle };
-            let rotated = DMat3::from_rotation_y(turns * TAU) * (light.position.truncate() - around) + around;
+            let rotated = angle::rotation(DVec3::Y, turns * TAU) * (light.position.truncate() - around) + around;
             if turns > 0.0 {
                 light.position = rotated.extend(light.position.w);
             }
@@ -113,7 +114,7 @@ impl Scene {
 }
 
 fn sine_cosine(turns: f64) -> [f64; 2] {
-    let (sine, cosine) = (turns * TAU).sin_cos();
+    let (sine, cosine) = angle::sin_cos(turns * TAU);
     [sine, cosine]
 }
 

@@ -4,6 +4,7 @@ use super::reference::{FrameError, ReferencePictures};
 use super::{CaptureRequest, Session, SessionError, median, milliseconds};
 use crate::accuracy::ErrorCounts;
 use crate::geometry::GeometryCache;
+use crate::math::angle;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -48,7 +49,7 @@ impl MovingPart {
     /// vertical axis through the camera's target at a constant speed.
     fn at(self, scene: &Scene, seconds: f64) -> Scene {
         let mut moved = scene.at(if self == MovingPart::Scene { seconds } else { 0.0 });
-        let turn = DQuat::from_rotation_y((seconds * DEGREES_PER_SECOND).to_radians());
+        let turn = angle::rotation(DVec3::Y, (seconds * DEGREES_PER_SECOND).to_radians());
         let target = moved.camera.target;
         match self {
             MovingPart::Scene | MovingPart::Nothing => {}

@@ -3,9 +3,10 @@
 use crate::geometry::{
     CapFan, CasterPlanes, Casters, EdgeList, Extruder, Extrusion, Facings, FarEnd, silhouette, write_indices,
 };
+use crate::math::angle;
 use crate::plan::Blob;
 use crate::scene::Mesh;
-use glam::{DQuat, DVec3, DVec4};
+use glam::{DVec3, DVec4};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -97,6 +98,6 @@ fn timed<T>(times: &mut Vec<Duration>, is_timed: bool, work: impl FnOnce() -> T)
 /// side.
 fn light(run: usize, reach: f64) -> DVec4 {
     // The golden angle about one axis, any other about the next.
-    let turn = DQuat::from_rotation_y(2.399_963 * run as f64) * DQuat::from_rotation_x(0.9 * run as f64);
+    let turn = angle::rotation(DVec3::Y, 2.399_963 * run as f64) * angle::rotation(DVec3::X, 0.9 * run as f64);
     (turn * DVec3::new(0.3, 0.5, 1.0).normalize() * (reach * LIGHT_DISTANCE)).extend(1.0)
 }

@@ -3,6 +3,7 @@
 //! Two tori circle near the light and two further out, so that the inner ones' shadows cross the
 //! outer ones. The eye is in a corner of the room, where at the start no shadow reaches.
 
+use crate::math::angle;
 use crate::scene::{
     Camera, Light, Material, Mesh, MeshError, Motion, Object, Orbit, Scene, SceneBuilder, Shading, shapes,
 };
@@ -98,7 +99,7 @@ pub fn build() -> Result<Scene, MeshError> {
 
 impl Orbiting {
     fn object(&self, mesh: &Arc<Mesh>) -> Object {
-        let (sin, cos) = self.azimuth_degrees.to_radians().sin_cos();
+        let (sin, cos) = angle::sin_cos(self.azimuth_degrees.to_radians());
         let start = LIGHT + DVec3::new(self.radius * sin, self.height, self.radius * cos);
         let material = Material {
             color: self.color,

@@ -5,6 +5,7 @@
 
 pub(super) mod placement;
 
+use crate::math::angle;
 use crate::math::depth::DepthCurve;
 use crate::math::projection;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
@@ -165,7 +166,7 @@ impl Camera {
     /// parallel projection.
     pub fn half_height(&self) -> f64 {
         match self.projection {
-            Projection::Perspective => (self.fov_y_degrees.to_radians() / 2.0).tan(),
+            Projection::Perspective => angle::tan(self.fov_y_degrees.to_radians() / 2.0),
             Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } => half_height,
         }
     }
@@ -267,7 +268,7 @@ impl Projection {
     /// Returns how far to the right and up in the picture a metre of depth moves things, metres.
     pub fn shear(self) -> DVec2 {
         match self {
-            Projection::Oblique { angle_degrees, factor, .. } => DVec2::from_angle(angle_degrees.to_radians()) * factor,
+            Projection::Oblique { angle_degrees, factor, .. } => angle::direction(angle_degrees.to_radians()) * factor,
             Projection::Perspective | Projection::Orthographic { .. } => DVec2::ZERO,
         }
     }

@@ -4,6 +4,7 @@
 //! the picture's height. The light stands above and to the other side in front, so that lit parts, shadowed ones and
 //! those that face away all show and the shadow falls to where the eye sees the floor.
 
+use crate::math::angle;
 use crate::scene::{Camera, Light};
 use glam::DVec3;
 
@@ -75,7 +76,7 @@ impl SceneBounds {
         let right = DVec3::Y.cross(back).normalize();
         let up = back.cross(right);
         let target = self.middle();
-        let half_height = (FOV_Y_DEGREES / 2.0).to_radians().tan() * HEIGHT_FILLED;
+        let half_height = angle::tan((FOV_Y_DEGREES / 2.0).to_radians()) * HEIGHT_FILLED;
         let half_width = half_height * WIDTH_OVER_HEIGHT;
         let distance_for = |point: &DVec3| {
             let offset = *point - target;

@@ -2,6 +2,7 @@
 //! planes. The value of the case is the seed, so any of them can be examined.
 
 use super::who::{BY_VERTEX_SHADER, FACING_IN_F32, PLAIN};
+use crate::math::angle;
 use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene, shapes};
 use crate::stress::{CaseNumber, LeastShares, StressCase};
 use crate::technique::Technique;
@@ -76,7 +77,7 @@ fn scene(seed: f64) -> Result<Scene, MeshError> {
         // Often inside the soup.
         _ => Light::point(random.within(2.5)),
     };
-    let near = 10.0_f64.powf(random.unit() * 2.5 - 2.5);
+    let near = angle::pow(10.0, random.unit() * 2.5 - 2.5);
     let camera = Camera {
         eye,
         target: random.within(0.7),

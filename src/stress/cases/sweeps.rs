@@ -6,6 +6,7 @@ mod rounding;
 
 use super::stage::{carried, enlarged, floor, scene, still_life};
 use super::who::*;
+use crate::math::angle;
 use crate::scene::{Light, MeshError, Object, shapes};
 use crate::stress::{CaseNumber, ExpectedTrend, FailureSymptom, KnownFailure, LeastShares, StressCase, WrongPixelKind};
 use crate::technique::Technique;
@@ -359,13 +360,13 @@ const SUBPIXEL_EDGES: StressCase = StressCase {
     drives: CaseNumber::Scene(|pixels| {
         let smooth = shapes::sphere(1.0, 220, 110)?;
         let bump = |p: &DVec3| {
-            (*p * (1.0 + 0.35 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).sin() * (6.0 * p.z).cos())).to_array()
+            (*p * (1.0 + 0.35 * angle::sin(5.0 * p.x) * angle::sin(4.0 * p.y + 1.0) * angle::cos(6.0 * p.z))).to_array()
         };
         let points: Vec<[f64; 3]> = smooth.positions().iter().map(bump).collect();
         let ball = Object::of("ball", shapes::triangles(&points, smooth.triangles())?).at([0.0, 1.3, 0.0]);
         // Two metres are this many of 240 rows. One of some five hundred views from around, which shows it at 30.
-        let distance = 240.0 / (pixels * 22.5_f64.to_radians().tan());
-        let (sin, cos) = (12.0 * 137.50776_f64).to_radians().sin_cos();
+        let distance = 240.0 / (pixels * angle::tan(22.5_f64.to_radians()));
+        let (sin, cos) = angle::sin_cos((12.0 * 137.50776_f64).to_radians());
         let towards = DVec3::new(0.3 * cos + 0.8 * sin, 0.45, 0.8 * cos - 0.3 * sin).normalize();
         let target = DVec3::new(0.0, 0.8, 0.0);
         let light = Light::point([1.5, 4.5, 1.0]);
@@ -455,7 +456,7 @@ const LIGHT_ORBIT: StressCase = StressCase {
     parameter: "degrees",
     values: &ORBIT_STEPS,
     drives: CaseNumber::Motion(|degrees| {
-        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (sin, cos) = angle::sin_cos(degrees.to_radians());
         let torus = Object::of("torus", shapes::torus(0.5, 0.2, 24, 12)?).at([0.0, 0.9, 0.0]);
         let light = Light::point([1.5 * cos, 3.5, 1.5 * sin]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, torus]))

@@ -12,7 +12,7 @@
 //! followed from there: sides and count then agree. The shadow's border moves by some millionths of the scene; where
 //! many edges are in doubt, by more, at most by a fiftieth of the distance to an edge.
 
-use crate::math::{Sign, side_of_triangle};
+use crate::math::{Sign, angle, side_of_triangle};
 use crate::scene::{Camera, Projection};
 use glam::{DVec2, DVec3, DVec4};
 
@@ -62,7 +62,7 @@ impl FarPoint {
         let widest = |light: DVec4| edges.iter().filter_map(|edge| self.doubt(light, *edge)).max_by(f64::total_cmp);
         let Some(doubt) = widest(light) else { return light };
         let beside = |index: u32| {
-            let way = DVec2::from_angle(f64::from(index) * GOLDEN_ANGLE) * FIRST_STEP * GROWTH.powi(index as i32);
+            let way = angle::direction(f64::from(index) * GOLDEN_ANGLE) * FIRST_STEP * GROWTH.powi(index as i32);
             light + ((self.across[0] * way.x + self.across[1] * way.y) * doubt).extend(0.0)
         };
         (0..MOST_TRIES).map(beside).find(|place| widest(*place).is_none()).unwrap_or(light)

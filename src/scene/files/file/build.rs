@@ -6,6 +6,7 @@ use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, ObjectTable, OrbitTable, SceneTable, SpannedNumber,
     SpannedText, SpannedTriple, SwingTable, TechniqueTable,
 };
+use crate::math::angle;
 use crate::scene::camera::placement::SceneBounds;
 use crate::scene::files::model::{self, ModelReader};
 use crate::scene::files::read_text::{quoted, stem};
@@ -77,7 +78,7 @@ fn camera(table: &CameraTable) -> Result<Camera, SceneFileProblem> {
         target,
         up: table.up.as_ref().map_or(Ok(DVec3::Y), finite)?,
         // Unless given, the height at the target is that of a perspective camera.
-        projection: projection(table, eye.distance(target) * (fov_y_degrees.to_radians() / 2.0).tan())?,
+        projection: projection(table, eye.distance(target) * angle::tan(fov_y_degrees.to_radians() / 2.0))?,
         fov_y_degrees,
         near: number(&table.near, eye.distance(target) * DEFAULT_NEAR)?,
         far: table.far.as_ref().map(finite_number).transpose()?,

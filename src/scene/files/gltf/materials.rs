@@ -47,7 +47,7 @@ impl GltfTexture {
     /// corner.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         let scaled = uv * self.scale;
-        let (sin, cos) = self.turn.sin_cos();
+        let (sin, cos) = libm::sincosf(self.turn);
         let rotated = Vec2::new(cos * scaled.x + sin * scaled.y, cos * scaled.y - sin * scaled.x);
         let Vec2 { x, y } = rotated + self.offset;
         Vec2::new(x, 1.0 - y)

@@ -7,6 +7,7 @@
 use super::document::{GltfDocument, GltfResult};
 use super::named;
 use super::nodes::{GltfNodes, pose_of, unit};
+use crate::math::angle;
 use crate::scene::files::read_text::quoted;
 use crate::scene::not_taken::UnsupportedList;
 use crate::scene::{Motion, Orbit, Pose};
@@ -99,7 +100,7 @@ impl NodeRotations {
         let fits = |motion: &Motion| {
             (1..=SAMPLES).all(|sample| {
                 let degrees = 360.0 * sample as f64 / (SAMPLES + 1) as f64;
-                let wanted = DQuat::from_axis_angle(turn.axis, degrees.to_radians()) * rotation(&still);
+                let wanted = angle::rotation(turn.axis, degrees.to_radians()) * rotation(&still);
                 let found = rotation(&motion.apply(&still, degrees / turn.degrees_per_second));
                 wanted.angle_between(found).min(wanted.angle_between(-found)) <= BESIDE
             })

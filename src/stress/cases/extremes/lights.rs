@@ -1,11 +1,12 @@
 //! Extremes of where the light is, and of how many there are.
 
 use super::ulps;
+use crate::math::angle;
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{CaseNumber, KnownFailure, LeastShares, StressCase};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// The stress cases with extreme lights.
@@ -72,7 +73,7 @@ const FLIPPED_SHEET: StressCase = StressCase {
     lesson: "the same with the sheet turned: no coordinate of its corners or of the light is alike",
     drives: CaseNumber::Scene(|distance| {
         let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).rotated([30.0, 0.0, 0.0]).at([0.0, 1.0, 0.0]);
-        let over = DMat3::from_rotation_x(30.0_f64.to_radians()) * DVec3::new(0.1, 0.8 * distance, 0.15);
+        let over = angle::rotation(DVec3::X, 30.0_f64.to_radians()) * DVec3::new(0.1, 0.8 * distance, 0.15);
         let light = Light::point(DVec3::Y + over);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
     }),
@@ -199,8 +200,10 @@ const CASTER_AROUND_LIGHT: StressCase = StressCase {
     lesson: "a lamp shade around the light, open above and below: it is on every side, and behind the light too",
     drives: CaseNumber::Scene(|_| {
         let rim = |height: f64| (0..24).map(move |step| (f64::from(step) / 24.0 * TAU, height));
-        let points: Vec<[f64; 3]> =
-            rim(0.7).chain(rim(1.1)).map(|(angle, height)| [0.5 * angle.cos(), height, 0.5 * angle.sin()]).collect();
+        let points: Vec<[f64; 3]> = rim(0.7)
+            .chain(rim(1.1))
+            .map(|(angle, height)| [0.5 * angle::cos(angle), height, 0.5 * angle::sin(angle)])
+            .collect();
         let sides = (0..24_u32).flat_map(|a| {
             let b = (a + 1) % 24;
             [[a, a + 24, b + 24], [a, b + 24, b]]
@@ -249,7 +252,7 @@ const LIGHT_COUNT: StressCase = StressCase {
 fn ring_of_lights(count: f64) -> Result<Scene, MeshError> {
     let mut scene = still_life()?;
     let place = |index: u32| {
-        let (sin, cos) = (f64::from(index) / 16.0 * TAU).sin_cos();
+        let (sin, cos) = angle::sin_cos(f64::from(index) / 16.0 * TAU);
         if index % 4 == 3 {
             Light::directional(DVec3::new(cos, 1.5, sin))
         } else {

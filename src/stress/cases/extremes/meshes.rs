@@ -1,5 +1,6 @@
 //! Extremes of a mesh's topology.
 
+use crate::math::angle;
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{cuboid, floor, scene};
 use crate::stress::cases::who::*;
@@ -39,7 +40,7 @@ const BOTH_SIDES: StressCase = StressCase {
     drives: CaseNumber::Scene(|degrees| {
         let sheet = Object::of("sheet", shapes::quad([1.0; 2])?).rotated([70.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]);
         let mut scene = over_floor(vec![sheet])?;
-        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (sin, cos) = angle::sin_cos(degrees.to_radians());
         scene.camera.eye = DVec3::new(1.5 * cos + 5.0 * sin, 3.0, 5.0 * cos - 1.5 * sin);
         Ok(scene)
     }),
@@ -75,8 +76,8 @@ const MOBIUS: StressCase = StressCase {
         let at = |step: u32, side: f64| {
             let around = f64::from(step) / f64::from(steps) * TAU;
             let twist = f64::from(step) / f64::from(steps) * PI;
-            let radius = 0.6 + side * 0.25 * twist.cos();
-            [radius * around.cos(), side * 0.25 * twist.sin(), radius * around.sin()]
+            let radius = 0.6 + side * 0.25 * angle::cos(twist);
+            [radius * angle::cos(around), side * 0.25 * angle::sin(twist), radius * angle::sin(around)]
         };
         let points: Vec<[f64; 3]> = (0..steps).flat_map(|step| [at(step, -1.0), at(step, 1.0)]).collect();
         let quads = (0..steps).flat_map(|step| {
@@ -97,7 +98,7 @@ const FINS: StressCase = StressCase {
     lesson: "three fins on one edge: it has three triangles, and two of them can't cancel for the third",
     drives: CaseNumber::Scene(|_| {
         let fin = |index: u32| {
-            let (sin, cos) = (f64::from(index) / 3.0 * TAU + 0.3).sin_cos();
+            let (sin, cos) = angle::sin_cos(f64::from(index) / 3.0 * TAU + 0.3);
             [[0.5 * cos, 0.3, 0.5 * sin], [0.5 * cos, -0.3, 0.5 * sin]]
         };
         let mut points = vec![[0.0, 0.3, 0.0], [0.0, -0.3, 0.0]];

@@ -1,5 +1,6 @@
 //! Light at grazing angles.
 
+use crate::math::angle;
 use crate::scene::{Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene, still_life};
 use crate::stress::cases::who::*;
@@ -13,7 +14,7 @@ pub const GRAZING: StressCase = StressCase {
     parameter: "degrees above the floor",
     values: &[10.0, 3.0, 1.0, 1e-1, 1e-2, 1e-3, 1e-4],
     drives: CaseNumber::Scene(|degrees| {
-        let (sin, cos) = degrees.to_radians().sin_cos();
+        let (sin, cos) = angle::sin_cos(degrees.to_radians());
         let mut scene = still_life()?;
         scene.lights = vec![Light::directional(DVec3::new(0.8 * cos, sin, 0.6 * cos))];
         scene.objects[1].pose.translate.y = 0.3;
@@ -64,7 +65,7 @@ pub const GRAZING_EDGE: StressCase = StressCase {
 /// Returns a scene with a board whose shadow begins two metres from it at any height of the sun: the lower the sun (in
 /// degrees over the floor), the lower the board. `form` changes the board.
 fn beside_a_board(degrees: f64, form: fn(Object) -> Object) -> Result<Scene, MeshError> {
-    let slope = degrees.to_radians().tan();
+    let slope = angle::tan(degrees.to_radians());
     let board = form(Object::of("board", shapes::quad([2.0, 1.0])?).at([0.0, 2.0 * slope, 1.5]));
     let sun = Light::directional(DVec3::new(0.0, slope, 1.0));
     Ok(scene([0.3, 2.0, 4.0], [0.0; 3], sun, vec![floor(3.0)?, board]))

@@ -1,5 +1,6 @@
 //! What rounding to 24 bits affects: the middle of a seam, and the ends of very long edges.
 
+use crate::math::angle;
 use crate::scene::{Camera, Light, MeshError, Object, Scene, shapes};
 use crate::stress::cases::stage::{floor, scene};
 use crate::stress::cases::who::*;
@@ -49,7 +50,7 @@ fn seams(pixels: f64) -> Result<Scene, MeshError> {
         // Spread evenly, and no two alike.
         let [turn, height, tilt] =
             [0.754_877_666, 0.569_840_291, 0.618_033_989].map(|step: f64| (step * index as f64).fract());
-        let along = DVec3::new((turn * PI).cos(), 0.0, (turn * PI).sin());
+        let along = DVec3::new(angle::cos(turn * PI), 0.0, angle::sin(turn * PI));
         let across = along.cross(DVec3::Y);
         let way = rays.through((middle / SIZE * 2.0 - 1.0) * DVec2::new(1.0, -1.0)).along;
         let width = 2.0 * camera.half_height_at(-camera.eye.y / way.y) / SIZE.y;
