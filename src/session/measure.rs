@@ -9,7 +9,7 @@ use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::technique::{self, Choice, PlanRequest};
-use glam::DQuat;
+use glam::DVec3;
 use std::time::{Duration, Instant};
 
 /// Bytes of GPU memory that choices may take together while others are timed. A software GPU's memory is this program's

@@ -58,6 +58,11 @@ impl SceneBounds {
         self.low.y
     }
 
+    /// Returns whether the vertical line through the origin meets the bounding box, its border included.
+    pub fn surrounds_origin(&self) -> bool {
+        self.low.x <= 0.0 && 0.0 <= self.high.x && self.low.z <= 0.0 && 0.0 <= self.high.z
+    }
+
     /// Returns the centre of the bounding box.
     pub fn middle(&self) -> DVec3 {
         self.low / 2.0 + self.high / 2.0

@@ -89,11 +89,15 @@ fn completed(name: &str, mut objects: Vec<Object>, floor: bool) -> Result<Scene,
     })
 }
 
-/// Returns a square floor a little below the model, facing up, with the model's own origin above its middle.
+/// Returns a square floor a little below the model, facing up. Its middle is under the model's own origin, as a model's
+/// author sees it, or under the middle of its bounds where the origin lies outside them, as in scans, parts of
+/// assemblies and places on a map: there the model's shadow would miss it.
 fn floor_under(model: &SceneBounds) -> Result<Object, SceneError> {
+    let DVec3 { x, z, .. } = if model.surrounds_origin() { DVec3::ZERO } else { model.middle() };
     let half = FLOOR_REACH * model.extent();
     let y = model.lowest() - FLOOR_GAP * model.extent();
-    let corners = [[-half, y, half], [half, y, half], [half, y, -half], [-half, y, -half]];
+    let corners =
+        [[x - half, y, z + half], [x + half, y, z + half], [x + half, y, z - half], [x - half, y, z - half]];
     let builder = MeshBuilder {
         positions: corners.map(DVec3::from_array).to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
