@@ -15,7 +15,7 @@ fn arriving(surface: Surface) -> vec4f {
             return vec4f(lit_part(face, pushed_off(face, clip, surface), along_x, along_y));
         }
     }
-    // Outside the map: no caster lies in this direction.
+    // Outside the map nothing is known to be in the way.
     return vec4f(1.0);
 }
 

@@ -6,6 +6,5 @@ fn fs_label(surface: Surface) -> @location(0) u32 {
         discard;
     }
     let label = select(draw.label, SHADOW, arriving(surface).a < 0.5);
-    let is_beyond_range = falloff(length(light.position.xyz - surface.relative * light.position.w)) == 0.0;
-    return select(label, AWAY, faces_away(surface.sides) || is_beyond_range);
+    return select(label, AWAY, is_out_of_reach(surface));
 }

@@ -84,6 +84,12 @@ fn faces_away(surface_sides: u32) -> bool {
     return (surface_sides & (1u << light.index)) != 0u;
 }
 
+// Out of the light's reach: facing away from it, or beyond its range.
+fn is_out_of_reach(surface: Surface) -> bool {
+    let to_light = light.position.xyz - surface.relative * light.position.w;
+    return faces_away(surface.sides) || falloff(length(to_light)) == 0.0;
+}
+
 struct LightOn {
     // Lambert's, or wrapped.
     diffuse: vec3f,

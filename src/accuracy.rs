@@ -9,6 +9,7 @@
 //! over its receiver's edge into the air, and one that is blended twice. It also counts what is meant to differ from
 //! hard shadows of opaque casters: soft edges, and light that translucent casters let through.
 
+use crate::numbers;
 use crate::truth::{LIT, SHADOW, Tracer, Truth};
 use rayon::prelude::*;
 
@@ -118,6 +119,96 @@ impl std::iter::Sum for ErrorCounts {
             wrong_surface: sum.wrong_surface + one.wrong_surface,
             edge_band: sum.edge_band + one.edge_band,
         })
+    }
+}
+
+/// How far a technique's visibility of a light, from 0 (dark) to 1 (lit), is from the truth's, over the compared pixels.
+/// With several lights, means over all their compared pixels.
+///
+/// Labels count a pixel as lit or as dark, so that one whose filter mixes in a third of shadow is right or wrong as a
+/// whole. This counts the third.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct VisibilityError {
+    /// Pixels that are lit or in shadow in truth.
+    pub compared: u64,
+    /// Mean of the light that is missing where the truth is lit, 0 to 1.
+    pub darkened: f64,
+    /// Mean of the light that arrives where the truth is in shadow, 0 to 1.
+    pub lightened: f64,
+    /// Pixels that are lit in truth, and where some of the light is missing.
+    pub partly_dark: u64,
+    /// Pixels that are in shadow in truth, and where some of the light arrives.
+    pub partly_lit: u64,
+}
+
+impl VisibilityError {
+    /// Returns the mean of the differences between the technique's visibility and the truth's, 0 to 1.
+    pub fn mean(&self) -> f64 {
+        self.darkened + self.lightened
+    }
+
+    /// Returns the error in words, without a stop: `light missing where it arrives in truth: 1.2 % (300 pixels); light
+    /// where it is dark in truth: 0 % (0 pixels)`.
+    pub fn in_words(&self) -> String {
+        let part = |mean: f64, pixels: u64| {
+            let pixels = numbers::counted(pixels, "pixel");
+            format!("{} % ({pixels})", numbers::digits(mean * 100.0))
+        };
+        format!(
+            "light missing where it arrives in truth: {}; light where it is dark in truth: {}",
+            part(self.darkened, self.partly_dark),
+            part(self.lightened, self.partly_lit)
+        )
+    }
+
+    /// Compares a technique's visibility with the truth's labels, in the same order.
+    ///
+    /// # Panics
+    /// If they are not equally many.
+    pub fn of(labels: &[u8], visibility: &[f32]) -> VisibilityError {
+        assert_eq!(labels.len(), visibility.len(), "pixels with a visibility");
+        let mut error = VisibilityError::default();
+        for (label, share) in labels.iter().zip(visibility) {
+            let share = f64::from(*share);
+            match *label {
+                LIT => {
+                    error.darkened += 1.0 - share;
+                    error.partly_dark += u64::from(share < 1.0);
+                }
+                SHADOW => {
+                    error.lightened += share;
+                    error.partly_lit += u64::from(share > 0.0);
+                }
+                _ => continue,
+            }
+            error.compared += 1;
+        }
+        error.scaled(1.0 / (error.compared.max(1) as f64))
+    }
+
+    /// Returns the error of several lights together, or of several frames; `None` for none.
+    pub fn of_all(errors: Vec<VisibilityError>) -> Option<VisibilityError> {
+        (!errors.is_empty()).then(|| errors.into_iter().sum())
+    }
+
+    fn scaled(self, by: f64) -> VisibilityError {
+        VisibilityError { darkened: self.darkened * by, lightened: self.lightened * by, ..self }
+    }
+}
+
+impl std::iter::Sum for VisibilityError {
+    fn sum<I: Iterator<Item = VisibilityError>>(errors: I) -> VisibilityError {
+        let sums = errors.fold(VisibilityError::default(), |sum, one| {
+            let of_one = one.scaled(one.compared as f64);
+            VisibilityError {
+                compared: sum.compared + one.compared,
+                darkened: sum.darkened + of_one.darkened,
+                lightened: sum.lightened + of_one.lightened,
+                partly_dark: sum.partly_dark + one.partly_dark,
+                partly_lit: sum.partly_lit + one.partly_lit,
+            }
+        });
+        sums.scaled(1.0 / (sums.compared.max(1) as f64))
     }
 }
 
@@ -307,6 +398,19 @@ mod tests {
                 assert_eq!(Finding::of(truth, answer), expected[usize::from(truth)][usize::from(answer)]);
             }
         }
+    }
+
+    #[test]
+    fn partly_dark_pixels_are_counted_by_their_shares() {
+        let labels = [LIT, LIT, SHADOW, SHADOW, FACES_AWAY, LIT];
+        let error = VisibilityError::of(&labels, &[1.0, 0.75, 0.0, 0.5, 0.0, 0.25]);
+        let expected = VisibilityError { compared: 5, darkened: 0.2, lightened: 0.1, partly_dark: 2, partly_lit: 1 };
+        assert_eq!(error, expected);
+        assert!((error.mean() - 0.3).abs() < 1e-15);
+        let none = VisibilityError::of(&[LIT; 5], &[1.0; 5]);
+        let both: VisibilityError = [error, none].into_iter().sum();
+        assert_eq!((both.compared, both.partly_dark), (10, 2));
+        assert!((both.darkened - 0.1).abs() < 1e-15 && (both.lightened - 0.05).abs() < 1e-15);
     }
 
     /// Two regions of false shadow that touch at a corner are one; missing shadow beside it is another.

@@ -14,6 +14,11 @@ pub fn count(value: u64) -> String {
     text
 }
 
+/// Returns a number with its noun in singular or plural: `1 draw`, `2 draws`.
+pub fn counted(value: u64, noun: &str) -> String {
+    format!("{} {noun}{}", count(value), if value == 1 { "" } else { "s" })
+}
+
 /// Returns whether a count is not 0 but reads as 0 in eight bits.
 pub fn reads_zero_in_eight_bits(count: f32) -> bool {
     count != 0.0 && (count.round() as i64).rem_euclid(256) == 0

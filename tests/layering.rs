@@ -19,7 +19,7 @@ const MAY_USE: [(&str, &[&str]); 40] = [
     ("offscreen", &["adapters", "picture"]),
     ("scene", &["math", "files", "last_used"]),
     ("truth", &["math", "scene", "progress"]),
-    ("accuracy", &["truth"]),
+    ("accuracy", &["numbers", "truth"]),
     ("geometry", &["math", "scene", "last_used"]),
     ("plan", &["math", "scene", "geometry", "numbers"]),
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),

@@ -13,7 +13,7 @@ export function viewOf(capture, { view, step, draw }) {
   if (view !== "auto") return view;
   const state = capture.state(step, draw);
   if (state.kind === "map") return "map";
-  if (state.target !== "picture") return state.target === "labels" ? "mask" : "count";
+  if (state.target !== "picture") return state.target === "count" ? "count" : "mask";
   const { draws } = capture.passes[step];
   const isDrawn = (draw === null ? draws : [draws[draw]]).some(({ raster }) => raster.color !== "None");
   return state.stencil === null || draws.length === 0 || isDrawn ? "color" : "stencil";

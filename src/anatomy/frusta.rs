@@ -46,7 +46,7 @@ fn is_reversed(map: &PlanMap) -> bool {
 fn reading(plan: &FramePlan, light: usize) -> Option<Visibility> {
     let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
     passes.flat_map(|pass| &pass.draws).find_map(|draw| match draw.program {
-        Program::Light(how) | Program::Label(how) if how.reads_map() => Some(how),
+        Program::Light(how) | Program::Label(how) | Program::Arriving(how) if how.reads_map() => Some(how),
         _ => None,
     })
 }

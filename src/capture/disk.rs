@@ -199,11 +199,13 @@ fn write_step(
     let stem = format!("{index:03}-{}", slug(&step.name));
     let files = match &step.snapshot {
         Snapshot::Map { light, face } => map_files(capture, *light, *face),
-        Snapshot::Frame(frame) => StateFiles {
-            labels: step.light.filter(|_| frame.target == FrameTarget::Labels).map(shadow_file),
-            count: step.light.filter(|_| frame.target == FrameTarget::Count).map(count_file),
-            ..frame_files(folder, &stem, frame, written)?
-        },
+        Snapshot::Frame(frame) => {
+            let files = frame_files(folder, &stem, frame, written)?;
+            match step.light.and_then(|light| target_file(light, frame.target)) {
+                Some(file) => files.with_target(frame.target, file),
+                None => files,
+            }
+        }
     };
     Ok(PassEntry {
         index,
@@ -277,15 +279,15 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         count_of: light.count_of,
         ..LightEntry::new(index, light.position)
     };
-    if let Some(shadow) = &light.shadow {
-        entry.shadow = Some(shadow_file(index));
-        files::write_image(&folder.join(shadow_file(index)), shadow)?;
-    }
-    if let Some(count) = &light.count {
-        entry.count = Some(count_file(index));
-        entry.wrapped_pixels = light.wrapped_pixels();
-        files::write_image(&folder.join(count_file(index)), count)?;
-    }
+    let write = |target: FrameTarget| {
+        let Some((file, image)) = target_file(index, target).zip(light.target(target)) else { return Ok(None) };
+        files::write_image(&folder.join(&file), image)?;
+        Ok::<_, CaptureError>(Some(file))
+    };
+    entry.shadow = write(FrameTarget::Labels)?;
+    entry.count = write(FrameTarget::Count)?;
+    entry.visibility = write(FrameTarget::Visibility)?;
+    entry.wrapped_pixels = light.wrapped_pixels();
     if let Some(truth) = &light.truth {
         entry.truth = Some(format!("light{index}.truth.npy"));
         entry.error_picture = Some(format!("light{index}.error.npy"));
@@ -295,6 +297,12 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         entry.error = Some(truth.error);
         entry.findings = Finding::ALL.iter().map(|finding| finding.name().to_owned()).collect();
         entry.worst_region = truth.worst;
+        if let Some(visibility) = &truth.visibility {
+            let file = format!("light{index}.truth-visibility.npy");
+            files::write_image(&folder.join(&file), &visibility.image)?;
+            entry.truth_visibility = Some(file);
+            entry.visibility_error = Some(visibility.error);
+        }
     }
     if let Some(map) = &light.map {
         let file = if map.holds_colors() { textures_file(index) } else { map_file(index) };
@@ -309,12 +317,15 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
     Ok(entry)
 }
 
-fn shadow_file(light: usize) -> String {
-    format!("light{light}.shadow.npy")
-}
-
-fn count_file(light: usize) -> String {
-    format!("light{light}.count.npy")
+/// Returns the name of the file of a light's target; `None` for the picture.
+fn target_file(light: usize, target: FrameTarget) -> Option<String> {
+    let what = match target {
+        FrameTarget::Picture => return None,
+        // A contract since before the target had a name.
+        FrameTarget::Labels => "shadow",
+        FrameTarget::Count | FrameTarget::Visibility => target.name(),
+    };
+    Some(format!("light{light}.{what}.npy"))
 }
 
 fn map_file(light: usize) -> String {

@@ -86,7 +86,7 @@ fn write_arrays<'a>(
     let [width, height] = first.size();
     let mut shape = [outer, &[u64::from(height), u64::from(width)]].concat();
     match first.format() {
-        PixelFormat::Depth32F | PixelFormat::Count32F => npy::write_header::<f32>(out, &shape)?,
+        PixelFormat::Depth32F | PixelFormat::Value32F => npy::write_header::<f32>(out, &shape)?,
         format => {
             if format != PixelFormat::U8 {
                 shape.push(format.texel_bytes() as u64);
@@ -115,7 +115,7 @@ fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
 pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, CaptureError> {
     let read = match format {
         PixelFormat::Rgba8Srgb => read_png(path),
-        PixelFormat::Depth32F | PixelFormat::Count32F => read_floats(path, format, 2),
+        PixelFormat::Depth32F | PixelFormat::Value32F => read_floats(path, format, 2),
         PixelFormat::U8 | PixelFormat::Rgba8 => read_bytes(path, format, 2),
     };
     let one = read.map(|mut images| images.pop()).map_err(|reason| broken(path, reason))?;

@@ -18,7 +18,7 @@ pub enum PixelFormat {
     /// One little-endian `f32`: a stored depth.
     Depth32F,
     /// One little-endian `f32`: a signed count.
-    Count32F,
+    Value32F,
     /// One byte: a stencil count or a label.
     U8,
 }
@@ -27,7 +27,7 @@ impl PixelFormat {
     /// Returns the number of bytes of one texel: 1 or 4.
     pub fn texel_bytes(self) -> usize {
         match self {
-            PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 | PixelFormat::Depth32F | PixelFormat::Count32F => 4,
+            PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 | PixelFormat::Depth32F | PixelFormat::Value32F => 4,
             PixelFormat::U8 => 1,
         }
     }
@@ -217,10 +217,16 @@ impl Image {
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
-    /// Returns the signed count at a texel; `None` outside the picture, or where its format is not
-    /// [`PixelFormat::Count32F`].
-    pub fn count_at(&self, at: [u32; 2]) -> Option<f32> {
-        let texel = (self.format == PixelFormat::Count32F).then(|| self.texel(at)).flatten()?;
+    /// Returns all values, row by row; empty where its format is not [`PixelFormat::Value32F`].
+    pub fn values(&self) -> Vec<f32> {
+        let rows = self.rows().filter(|_| self.format == PixelFormat::Value32F);
+        rows.flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned).collect()
+    }
+
+    /// Returns the signed count or the share of light at a texel; `None` outside the picture, or where its format is not
+    /// [`PixelFormat::Value32F`].
+    pub fn value_at(&self, at: [u32; 2]) -> Option<f32> {
+        let texel = (self.format == PixelFormat::Value32F).then(|| self.texel(at)).flatten()?;
         Some(bytemuck::pod_read_unaligned(texel))
     }
 

@@ -2,8 +2,8 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, Capture, DrawSummary, Origin, Timing};
-use crate::accuracy::{ErrorCounts, WrongRegion};
+use super::{AdapterInfo, Capture, DrawSummary, FrameTarget, Origin, Timing};
+use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
 use crate::math::depth::DepthCurve;
 use crate::plan::{CountOf, CountedSide, DecidedBy, DrawPart, LeftOut};
 use crate::scene::Camera;
@@ -85,6 +85,9 @@ pub(super) struct StateFiles {
     /// File of the counts that a volume pass adds up, where they are not in the stencil.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<String>,
+    /// File of which share of the light arrives, that a visibility pass writes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visibility: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
     /// The face of the map that it drew; without one, the file is that face alone.
@@ -118,6 +121,9 @@ pub(super) struct LightEntry {
     /// Pixels whose count is not 0 but reads as 0 in eight bits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wrapped_pixels: Option<u64>,
+    /// File of which share of it arrives at each pixel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visibility: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
     /// File of the light that passes each receiver's texture or caster's silhouette: (layers, size, size, 4).
@@ -132,6 +138,12 @@ pub(super) struct LightEntry {
     pub truth: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorCounts>,
+    /// File of the truth's visibility, where the technique knows shares.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth_visibility: Option<String>,
+    /// How far the technique's visibility is from the truth's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visibility_error: Option<VisibilityError>,
     /// File of findings, one byte a pixel, as numbered in `findings`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_picture: Option<String>,
@@ -148,6 +160,34 @@ pub(super) struct MatricesEntry {
     pub light_from_world: [[f64; 4]; 4],
     /// Clip space of each face from light space.
     pub clip_from_light: Vec<[[f64; 4]; 4]>,
+}
+
+impl StateFiles {
+    /// Returns what the pass or draw drew into, by the file that is named.
+    pub fn target(&self) -> FrameTarget {
+        let named = |target: &FrameTarget| self.of_target(*target).is_some();
+        FrameTarget::ALL.into_iter().find(named).unwrap_or_default()
+    }
+
+    /// Returns the file of a light's target; `None` where none is named, and for the picture, which has three.
+    pub fn of_target(&self, target: FrameTarget) -> Option<&String> {
+        match target {
+            FrameTarget::Picture => None,
+            FrameTarget::Labels => self.labels.as_ref(),
+            FrameTarget::Count => self.count.as_ref(),
+            FrameTarget::Visibility => self.visibility.as_ref(),
+        }
+    }
+
+    /// Returns these files, with that of a light's target; unchanged for the picture.
+    pub fn with_target(self, target: FrameTarget, file: String) -> StateFiles {
+        match target {
+            FrameTarget::Picture => self,
+            FrameTarget::Labels => StateFiles { labels: Some(file), ..self },
+            FrameTarget::Count => StateFiles { count: Some(file), ..self },
+            FrameTarget::Visibility => StateFiles { visibility: Some(file), ..self },
+        }
+    }
 }
 
 impl Manifest {

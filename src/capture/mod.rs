@@ -17,8 +17,8 @@ pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 
-use crate::accuracy::{ErrorCounts, WrongRegion};
-use crate::plan::{CountOf, DecidedBy, DrawPart, LeftOut};
+use crate::accuracy::{ErrorCounts, VisibilityError, WrongRegion};
+use crate::plan::{AttachmentRole, CountOf, DecidedBy, DrawPart, LeftOut, LightId};
 use crate::truth::{LIT, SHADOW};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -191,6 +191,58 @@ named_enum! {
         Labels = "labels",
         /// The light's count ([`CapturedLight::count`]).
         Count = "count",
+        /// Which share of the light arrives ([`CapturedLight::visibility`]).
+        Visibility = "visibility",
+    }
+}
+
+impl FrameTarget {
+    /// Returns whether what is drawn into it only says what the technique finds, for comparing it: labels and
+    /// visibility. (Labels that a light pass reads are part of the frame all the same.)
+    pub fn is_beside(self) -> bool {
+        matches!(self, FrameTarget::Labels | FrameTarget::Visibility)
+    }
+
+    /// Returns the target that an attachment of this role is, and its light; `None` for the picture and for maps.
+    pub(crate) fn of(role: AttachmentRole) -> Option<(FrameTarget, LightId)> {
+        match role {
+            AttachmentRole::Labels(light) => Some((FrameTarget::Labels, light)),
+            AttachmentRole::Count(light) => Some((FrameTarget::Count, light)),
+            AttachmentRole::Visibility(light) => Some((FrameTarget::Visibility, light)),
+            AttachmentRole::Color | AttachmentRole::DepthStencil | AttachmentRole::Map(_) => None,
+        }
+    }
+
+    /// Returns the format of its images.
+    pub fn format(self) -> PixelFormat {
+        match self {
+            FrameTarget::Picture => PixelFormat::Rgba8Srgb,
+            FrameTarget::Labels => PixelFormat::U8,
+            FrameTarget::Count | FrameTarget::Visibility => PixelFormat::Value32F,
+        }
+    }
+}
+
+/// What passes left in the targets of one light.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct LightTargets {
+    /// As [`CapturedLight::shadow`].
+    pub labels: Option<Arc<Image>>,
+    /// As [`CapturedLight::count`].
+    pub count: Option<Arc<Image>>,
+    /// As [`CapturedLight::visibility`].
+    pub visibility: Option<Arc<Image>>,
+}
+
+impl LightTargets {
+    /// Returns where the image of a target is stored; `None` for the picture, which is of no light.
+    pub fn get_mut(&mut self, target: FrameTarget) -> Option<&mut Option<Arc<Image>>> {
+        match target {
+            FrameTarget::Picture => None,
+            FrameTarget::Labels => Some(&mut self.labels),
+            FrameTarget::Count => Some(&mut self.count),
+            FrameTarget::Visibility => Some(&mut self.visibility),
+        }
     }
 }
 
@@ -218,6 +270,9 @@ pub struct CapturedLight {
     pub shadow: Option<Arc<Image>>,
     /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
     pub count: Option<Arc<Image>>,
+    /// Which share of it arrives at each pixel, from 0 (dark) to 1 (lit), where the technique knows shares: 0 where a
+    /// surface faces away and where there is none.
+    pub visibility: Option<Arc<Image>>,
     /// Its shadow map, or textures of the light that passes.
     pub map: Option<CapturedMap>,
     /// The ground truth, where it was asked for.
@@ -232,6 +287,16 @@ impl CapturedMap {
 }
 
 impl CapturedLight {
+    /// Returns the image of one of the light's targets; `None` where no pass writes it, and for the picture.
+    pub fn target(&self, target: FrameTarget) -> Option<&Arc<Image>> {
+        match target {
+            FrameTarget::Picture => None,
+            FrameTarget::Labels => self.shadow.as_ref(),
+            FrameTarget::Count => self.count.as_ref(),
+            FrameTarget::Visibility => self.visibility.as_ref(),
+        }
+    }
+
     /// Returns the number of pixels of surfaces that face the light whose count is a multiple of 256 other than 0,
     /// which eight bits read as 0; `None` where the count is not known.
     pub fn wrapped_pixels(&self) -> Option<u64> {
@@ -254,6 +319,17 @@ pub struct CapturedTruth {
     pub error: ErrorCounts,
     /// The largest connected wrong region.
     pub worst: Option<WrongRegion>,
+    /// The truth's visibility, and how far the technique's is from it, where the technique knows shares of the light.
+    pub visibility: Option<VisibilityTruth>,
+}
+
+/// The true visibility of a light, and the technique's error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VisibilityTruth {
+    /// 1 where the light arrives, 0 elsewhere, also where there is no surface.
+    pub image: Arc<Image>,
+    /// How far the technique's visibility is from it.
+    pub error: VisibilityError,
 }
 
 /// The ground truth of a frame: computed for a capture, and added to it by [`Capture::with_truth`].
@@ -368,6 +444,13 @@ impl Capture {
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
     }
 
+    /// Returns how far the visibilities of all lights together are from the truth's; `None` where no truth was asked
+    /// for, or the technique knows no shares of any light.
+    pub fn visibility_error(&self) -> Option<VisibilityError> {
+        let of_light = |light: &CapturedLight| Some(light.truth.as_ref()?.visibility.as_ref()?.error);
+        VisibilityError::of_all(self.lights.iter().filter_map(of_light).collect())
+    }
+
     /// Returns a copy with each light's truth replaced by that of `truth`, in order (also by `None`). A count of
     /// `truth` replaces the light's count; where it has none, the light's own stays.
     pub fn with_truth(&self, truth: &FrameTruth) -> Capture {
@@ -407,9 +490,11 @@ impl Capture {
             states.flat_map(DrawState::aspects).for_each(|aspect| visit(&aspect.image));
         }
         for light in &self.lights {
-            light.shadow.iter().chain(&light.count).for_each(&mut visit);
+            FrameTarget::ALL.into_iter().filter_map(|target| light.target(target)).for_each(&mut visit);
             light.map.iter().flat_map(|map| &map.faces).for_each(&mut visit);
-            light.truth.iter().flat_map(|truth| [&truth.labels, &truth.findings]).for_each(&mut visit);
+            let truth = light.truth.iter();
+            truth.clone().flat_map(|truth| [&truth.labels, &truth.findings]).for_each(&mut visit);
+            truth.filter_map(|truth| truth.visibility.as_ref()).for_each(|visibility| visit(&visibility.image));
         }
     }
 }

@@ -149,6 +149,10 @@ fn summary(capture: &Capture, folder: &Path) -> String {
             error.edge_band,
         )
     });
+    let visibility = capture.visibility_error().map_or_else(String::new, |error| format!("{}\n", error.in_words()));
     let wrapped = wrapped_line(capture);
-    format!("{}: {scene}, {technique}, {width}x{height}, {passes} passes\n{judged}{wrapped}", folder.display())
+    format!(
+        "{}: {scene}, {technique}, {width}x{height}, {passes} passes\n{judged}{visibility}{wrapped}",
+        folder.display()
+    )
 }

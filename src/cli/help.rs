@@ -316,7 +316,8 @@ mod tests {
                 let words = match spec.values {
                     SettingValues::OneOf(words)
                     | SettingValues::WordOr { words, .. }
-                    | SettingValues::SomeOf(words) => words,
+                    | SettingValues::SomeOf(words)
+                    | SettingValues::WordOrFrustum(words) => words,
                     SettingValues::Integer(..) | SettingValues::Number(..) => &[],
                 };
                 for word in words {

@@ -111,7 +111,7 @@ fn texel(image: &Image, at: [u32; 2]) -> Option<Texel> {
     match image.format() {
         PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 => image.rgba_at(at).map(Texel::Color),
         PixelFormat::Depth32F => image.depth_at(at).map(Texel::Float),
-        PixelFormat::Count32F => image.count_at(at).map(Texel::Float),
+        PixelFormat::Value32F => image.value_at(at).map(Texel::Float),
         PixelFormat::U8 => image.byte_at(at).map(Texel::Byte),
     }
 }

@@ -137,6 +137,8 @@ pub enum AspectKind {
     Labels,
     /// A light's count, in floats.
     Count,
+    /// Which share of a light arrives.
+    Visibility,
     /// Face of a light's shadow map, by its index.
     Map(usize),
     /// Layer of the textures of light that passes, by its index.
@@ -250,6 +252,16 @@ impl AspectDifference {
 }
 
 impl AspectKind {
+    /// Returns the kind of a light's target; `None` for the picture, which has three.
+    fn of_target(target: FrameTarget) -> Option<AspectKind> {
+        match target {
+            FrameTarget::Picture => None,
+            FrameTarget::Labels => Some(AspectKind::Labels),
+            FrameTarget::Count => Some(AspectKind::Count),
+            FrameTarget::Visibility => Some(AspectKind::Visibility),
+        }
+    }
+
     /// Returns its name in JSON, without the face or layer.
     pub fn name(self) -> &'static str {
         match self {
@@ -258,6 +270,7 @@ impl AspectKind {
             AspectKind::Stencil => "stencil",
             AspectKind::Labels => "labels",
             AspectKind::Count => "count",
+            AspectKind::Visibility => "visibility",
             AspectKind::Map(_) => "map",
             AspectKind::Textures(_) => "textures",
             AspectKind::Truth => "truth",
@@ -370,12 +383,9 @@ fn after_step<'a>(capture: &'a Capture, step: &'a Step) -> ComparedState<'a> {
     match &step.snapshot {
         Snapshot::Frame(frame) => {
             let light = step.light.and_then(|light| capture.lights.get(light));
-            let target = light.and_then(|light| match frame.target {
-                FrameTarget::Picture => None,
-                FrameTarget::Labels => Some((AspectKind::Labels, light.shadow.as_ref()?)),
-                FrameTarget::Count => Some((AspectKind::Count, light.count.as_ref()?)),
-            });
-            state.extend(target.map(|(kind, image)| (kind, (image, false))));
+            let kind = AspectKind::of_target(frame.target);
+            let image = light.and_then(|light| light.target(frame.target));
+            state.extend(kind.zip(image).map(|(kind, image)| (kind, (image, false))));
         }
         Snapshot::Map { light, face } => {
             let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
@@ -389,11 +399,11 @@ fn after_step<'a>(capture: &'a Capture, step: &'a Step) -> ComparedState<'a> {
 fn after_draw<'a>(step: &Step, after: &'a DrawState) -> ComparedState<'a> {
     let mut state = of_snapshot(&after.snapshot);
     let kind = |image: &Image| match &step.snapshot {
-        Snapshot::Map { face, .. } => layer(image, *face),
-        Snapshot::Frame(frame) if frame.target == FrameTarget::Count => AspectKind::Count,
-        Snapshot::Frame(_) => AspectKind::Labels,
+        Snapshot::Map { face, .. } => Some(layer(image, *face)),
+        Snapshot::Frame(frame) => AspectKind::of_target(frame.target),
     };
-    state.extend(after.target.iter().map(|target| (kind(&target.image), (&target.image, target.unchanged))));
+    let target = after.target.iter().filter_map(|target| Some((kind(&target.image)?, target)));
+    state.extend(target.map(|(kind, target)| (kind, (&target.image, target.unchanged))));
     state
 }
 
@@ -423,8 +433,9 @@ fn of_light(pictures: &mut ImageComparisons, light: usize, a: &CapturedLight, b:
 
 fn at_the_end(light: &CapturedLight) -> ComparedState<'_> {
     let mut state = ComparedState::new();
-    state.extend(light.shadow.iter().map(|image| (AspectKind::Labels, (image, false))));
-    state.extend(light.count.iter().map(|image| (AspectKind::Count, (image, false))));
+    let targets =
+        FrameTarget::ALL.into_iter().filter_map(|target| AspectKind::of_target(target).zip(light.target(target)));
+    state.extend(targets.map(|(kind, image)| (kind, (image, false))));
     let faces = light.map.iter().flat_map(|map| map.faces.iter().enumerate());
     state.extend(faces.map(|(index, image)| (layer(image, index), (image, false))));
     if let Some(truth) = &light.truth {

@@ -110,9 +110,12 @@ fn color(aspect: AspectKind, image: &Image, at: [u32; 2], [low, high]: [f32; 2])
             }
             _ => DIFFERS,
         },
-        PixelFormat::Count32F => {
+        PixelFormat::Value32F if aspect == AspectKind::Visibility => {
+            image.value_at(at).map_or(colors::NOTHING, colors::visibility)
+        }
+        PixelFormat::Value32F => {
             // As eight bits would count; the window's colour beyond 127 is not needed to see a difference.
-            colors::stencil(image.count_at(at).map_or(0, |count| (count.round() as i64).rem_euclid(256) as u8))
+            colors::stencil(image.value_at(at).map_or(0, |count| (count.round() as i64).rem_euclid(256) as u8))
         }
         PixelFormat::U8 => {
             let value = image.byte_at(at).unwrap_or_default();

@@ -6,7 +6,8 @@ use super::grazing::{has_edge_on, move_grazing_last};
 use super::planar::FlattenedCaster;
 use super::{
     Blob, CapFan, CasterPlanes, Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings,
-    FarEnd, SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
+    FarEnd, SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, silhouette_of_shared_corners,
+    solid, write_indices,
 };
 use crate::last_used::LastUsed;
 use crate::scene::{Mesh, PoseBits, Shading};
@@ -74,6 +75,9 @@ pub enum SilhouetteBy {
     Adjacency,
     /// By searching a list for every edge's reverse, anew for each light.
     Search,
+    /// Between triangles that share corners by the file's own numbers: edges of one triangle have no side, so that
+    /// volumes may stay open. For showing what that does.
+    SharedCorners,
 }
 
 /// The input for the indices of a shadow volume ([`GeometryCache::volume_indices`]).
@@ -145,12 +149,14 @@ impl GeometryCache {
         let triangles = caster.mesh.triangles();
         let planes = self.planes(caster);
         let edges = (of.by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
+        let is_of_shared_corners = of.by == SilhouetteBy::SharedCorners;
         planes.facings(caster.world, triangles, light, &mut self.facings);
         self.facings.keep_casting(of.casters);
         self.facings.leave_out(of.hidden);
         let found = &mut self.silhouette;
         match &edges {
             Some(edges) => silhouette(edges, &self.facings, found),
+            None if is_of_shared_corners => silhouette_of_shared_corners(caster.mesh, &self.facings, found),
             None => silhouette_by_search(triangles, &self.facings, found),
         }
         let grazing = if of.is_drawn { move_grazing_last(found, caster, light, edges.as_deref()) } else { 0 };

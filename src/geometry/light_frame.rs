@@ -1,4 +1,5 @@
-//! Where a shadow map looks from a light, fitted to what casts.
+//! Where a shadow map looks from a light, fitted to what casts; or, as engines do, to what the camera sees, or by given
+//! numbers ([`LightFrustum`]).
 //!
 //! What can darken a point lies on the ray from the light to it, so a map that covers every caster
 //! answers for every receiver: outside it, nothing stands between. A point light whose casters fit
@@ -7,11 +8,13 @@
 //! far end lie behind every caster: they are compared, not clipped.
 
 use crate::math::depth::{DepthCurve, DepthMapping};
-use crate::math::{AxisBox, Sign, projection, side_of_triangle};
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use crate::math::{AxisBox, Sign, angle, projection, side_of_triangle};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// Half the opening angle, in degrees, of the widest cone that one map covers.
 const WIDEST_HALF_ANGLE: f64 = 60.0;
+/// The widest field of view of a given frustum, degrees: a picture on a plane can't be wider than a half space.
+const WIDEST_GIVEN: f64 = 179.0;
 /// The share of its picture's half width that a silhouette with a border reaches.
 const SILHOUETTE_FILL: f64 = 0.98;
 /// Margin around the casters, in texels, so that no edge falls on the border.
@@ -52,6 +55,41 @@ pub struct MapStorage {
     pub epsilon: f64,
 }
 
+/// What a shadow map covers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LightFrustum {
+    /// All that casts: nothing that can darken a point is outside.
+    Casters,
+    /// What the camera sees.
+    View {
+        /// Whether a directional light's map has the same size for all directions of the view and moves by whole texels
+        /// only, and a point light's is a cube, so that edges of shadows stand still while the camera moves.
+        is_snapped: bool,
+    },
+    /// A frustum of given numbers that looks at the middle of what casts.
+    Given {
+        /// The field of view of a point light's map in degrees, the same both ways; the width of a directional light's
+        /// in metres.
+        fov: f64,
+        /// Distance of the near plane, metres: nothing nearer to the light casts. A directional light's camera stands
+        /// where the middle of what casts is midway between the planes.
+        near: f64,
+        /// Distance of the far plane, metres: nothing farther casts.
+        far: f64,
+    },
+}
+
+/// What a map is fitted to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapCover<'a> {
+    /// The triangles that cast, world space.
+    pub casters: &'a [[DVec3; 3]],
+    /// The corners of what the camera sees, world space: those of the near rectangle, then those of the far one.
+    pub view: [DVec3; 8],
+    /// Which of them the map covers.
+    pub frustum: LightFrustum,
+}
+
 impl MapStorage {
     /// Returns the mapping for casters between two distances from the light along the map's axis.
     fn curve(&self, nearest: f64, farthest: f64) -> DepthCurve {
@@ -59,54 +97,116 @@ impl MapStorage {
     }
 }
 
-/// Fits a shadow map's frame to the triangles that cast (world space): orthographic for a directional light, else one
-/// perspective face or a cube. `None` where nothing casts.
-pub fn fit(casters: &[[DVec3; 3]], light: DVec4, storage: &MapStorage) -> Option<LightFrame> {
+/// Makes a shadow map's frame: orthographic for a directional light, else one perspective face or a cube. `None` where
+/// nothing casts.
+pub fn fit(cover: &MapCover, light: DVec4, storage: &MapStorage) -> Option<LightFrame> {
+    let MapCover { casters, view, frustum } = *cover;
     if casters.is_empty() {
         return None;
     }
     let border = 1.0 + 2.0 * BORDER_TEXELS / f64::from(storage.size);
+    let is_reversed = storage.depth.is_reversed();
     if light.w == 0.0 {
-        return Some(orthographic(casters, light.truncate(), border, storage.depth.is_reversed()));
+        let sun = Sun::new(casters, light.truncate());
+        return Some(match frustum {
+            LightFrustum::Casters => sun.around_casters(border, is_reversed),
+            LightFrustum::View { is_snapped: false } => sun.around_view(&view, border, is_reversed),
+            LightFrustum::View { is_snapped: true } => sun.around_view_snapped(&view, storage.size, is_reversed),
+            LightFrustum::Given { fov, near, far } => sun.given(fov, far - near, is_reversed),
+        });
     }
     let eye = light.truncate();
     let relative: Vec<[DVec3; 3]> = casters.iter().map(|corners| corners.map(|corner| corner - eye)).collect();
-    Some(perspective(&relative, eye, border, storage).unwrap_or_else(|| cube(&relative, eye, storage)))
+    let corners: Vec<DVec3> = relative.iter().flatten().copied().collect();
+    let cube = || cube(&relative, eye, storage);
+    Some(match frustum {
+        LightFrustum::Casters => {
+            let one = Cone::around(&corners).map(|cone| {
+                let distances = || corners.iter().map(|point| -(cone.rotation * *point).z);
+                let nearest = distances().fold(f64::INFINITY, f64::min);
+                let depth = storage.curve(nearest * 0.99, distances().fold(0.0, f64::max));
+                cone.frame(eye, border, &depth)
+            });
+            one.unwrap_or_else(cube)
+        }
+        LightFrustum::View { is_snapped: false } => {
+            let one = Cone::around(&view.map(|corner| corner - eye)).map(|cone| {
+                let (near, farthest) = depth_range(&relative, cone.secant());
+                cone.frame(eye, border, &storage.curve(near, farthest))
+            });
+            one.unwrap_or_else(cube)
+        }
+        LightFrustum::View { is_snapped: true } => cube(),
+        LightFrustum::Given { fov, near, far } => {
+            let bounds = AxisBox::around(corners.iter().copied());
+            let axis = ((bounds.low + bounds.high) / 2.0).try_normalize().unwrap_or(DVec3::NEG_Y);
+            let slope = angle::tan(fov.min(WIDEST_GIVEN).to_radians() / 2.0);
+            let [low, high] = [-slope, slope].map(DVec2::splat);
+            Cone { rotation: towards(axis), low, high }.frame(eye, 1.0, &DepthCurve::between(storage.depth, near, far))
+        }
+    })
 }
 
-/// Fits one perspective face around casters' triangles, relative to a point light at `eye`; `border` widens it on all
-/// sides. `None` without triangles, or where they do not fit into the widest cone.
-fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64, storage: &MapStorage) -> Option<LightFrame> {
-    let points = || relative.iter().flatten().copied();
-    let directions = || points().map(DVec3::normalize_or_zero);
-    let low = directions().reduce(DVec3::min)?;
-    let high = directions().reduce(DVec3::max)?;
-    let axis = (low + high).try_normalize()?;
-    let narrowest = directions().map(|direction| direction.dot(axis)).fold(1.0, f64::min);
-    if narrowest <= WIDEST_HALF_ANGLE.to_radians().cos() {
-        return None;
+/// Returns the rotation into the space of a camera that looks along `axis`.
+fn towards(axis: DVec3) -> DMat3 {
+    projection::view_from_world_rotation(axis, projection::some_up_for(axis))
+}
+
+/// A view from a point light through a rectangle.
+struct Cone {
+    /// Light space from world directions.
+    rotation: DMat3,
+    /// The rectangle at distance 1: lowest and highest x and y.
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Cone {
+    /// Fits a view around points, relative to the light. `None` without points, or where they do not fit into the widest
+    /// cone.
+    fn around(points: &[DVec3]) -> Option<Cone> {
+        let directions = || points.iter().map(|point| point.normalize_or_zero());
+        let low = directions().reduce(DVec3::min)?;
+        let high = directions().reduce(DVec3::max)?;
+        let axis = (low + high).try_normalize()?;
+        let narrowest = directions().map(|direction| direction.dot(axis)).fold(1.0, f64::min);
+        if narrowest <= angle::cos(WIDEST_HALF_ANGLE.to_radians()) {
+            return None;
+        }
+        let rotation = towards(axis);
+        let slopes = || points.iter().map(|point| rotation * *point).map(|p| (p / -p.z).truncate());
+        Some(Cone { rotation, low: slopes().reduce(DVec2::min)?, high: slopes().reduce(DVec2::max)? })
     }
-    let rotation = projection::view_from_world_rotation(axis, projection::some_up_for(axis));
-    let slopes = || points().map(|point| rotation * point).map(|p| (p / -p.z).truncate());
-    let (low, high) = (slopes().reduce(glam::DVec2::min)?, slopes().reduce(glam::DVec2::max)?);
-    let distances = || points().map(|point| -(rotation * point).z);
-    let nearest = distances().fold(f64::INFINITY, f64::min);
-    let depth = storage.curve(nearest * 0.99, distances().fold(0.0, f64::max));
-    let middle = (low + high) / 2.0;
-    let half = ((high - low) / 2.0).max(glam::DVec2::splat(1e-6)) * border;
-    // An off-centre frustum: x/−z runs from middle − half to middle + half.
-    let mut clip_from_light = projection::frustum(1.0 / half.x, 1.0 / half.y, &depth);
-    clip_from_light.z_axis.x = middle.x / half.x;
-    clip_from_light.z_axis.y = middle.y / half.y;
-    Some(frame(eye, rotation, vec![clip_from_light]))
+
+    /// Returns how many times farther along its ray a point in the view can be than along the view's axis.
+    fn secant(&self) -> f64 {
+        self.low.abs().max(self.high.abs()).extend(1.0).length()
+    }
+
+    /// Returns the frame of a map of this view from a light at `eye`, widened by the factor `border`.
+    fn frame(&self, eye: DVec3, border: f64, depth: &DepthCurve) -> LightFrame {
+        let middle = (self.low + self.high) / 2.0;
+        let half = ((self.high - self.low) / 2.0).max(DVec2::splat(1e-6)) * border;
+        // An off-centre frustum: x/−z runs from middle − half to middle + half.
+        let mut clip_from_light = projection::frustum(1.0 / half.x, 1.0 / half.y, depth);
+        clip_from_light.z_axis.x = middle.x / half.x;
+        clip_from_light.z_axis.y = middle.y / half.y;
+        frame(eye, self.rotation, vec![clip_from_light])
+    }
+}
+
+/// Returns the distances between which a map stores depth, along its axis: the near plane is before all casters, whose
+/// rays are at most `secant` times as long as their distances along the axis. A caster that touches the light leaves a
+/// sliver of 1e-6 of the scene unseen.
+fn depth_range(relative: &[[DVec3; 3]], secant: f64) -> (f64, f64) {
+    let farthest = relative.iter().flatten().map(|point| point.length()).fold(0.0, f64::max);
+    let nearest = relative.iter().map(|corners| distance_to_triangle(*corners)).fold(f64::INFINITY, f64::min);
+    ((nearest / secant * 0.99).max(farthest * 1e-6).max(f64::MIN_POSITIVE), farthest)
 }
 
 fn cube(relative: &[[DVec3; 3]], eye: DVec3, storage: &MapStorage) -> LightFrame {
-    let farthest = relative.iter().flatten().map(|point| point.length()).fold(0.0, f64::max);
-    let nearest = relative.iter().map(|corners| distance_to_triangle(*corners)).fold(f64::INFINITY, f64::min);
-    // A point at distance d is at least d/√3 along the axis of its face. A caster that touches the
-    // light leaves a sliver of 1e-6 of the scene unseen.
-    let near = (nearest / 3f64.sqrt() * 0.99).max(farthest * 1e-6).max(f64::MIN_POSITIVE);
+    // A point at distance d is at least d/√3 along the axis of its face.
+    let (near, farthest) = depth_range(relative, 3f64.sqrt());
     let lens = projection::frustum(1.0, 1.0, &storage.curve(near, farthest));
     let face = |(_, forward, up): &(&str, DVec3, DVec3)| {
         lens * DMat4::from_mat3(projection::view_from_world_rotation(*forward, *up))
@@ -114,20 +214,63 @@ fn cube(relative: &[[DVec3; 3]], eye: DVec3, storage: &MapStorage) -> LightFrame
     frame(eye, DMat3::IDENTITY, CUBE_FACES.iter().map(face).collect())
 }
 
-fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed: bool) -> LightFrame {
-    let points = || casters.iter().flatten().copied();
-    let forward = -towards;
-    let rotation = projection::view_from_world_rotation(forward, projection::some_up_for(forward));
-    let AxisBox { low, high } = AxisBox::around(points().map(|point| rotation * point));
-    let origin = rotation.transpose() * ((low + high) / 2.0);
-    let half = (high - low) / 2.0;
-    let least = half.max_element().max(f64::MIN_POSITIVE) * 1e-6;
-    let half = half.max(DVec3::splat(least));
-    // Far is behind the casters by half their depth, so that no bias pushes one to the value of
-    // texels without a caster.
-    let (near, far) = (-half.z * 1.01, half.z * 2.0);
-    let clip = projection::orthographic([half.x * border, half.y * border], near, far, is_reversed);
-    frame(origin, rotation, vec![clip])
+/// A directional light, and what casts in its own axes: x and y across the light, z towards it.
+struct Sun {
+    rotation: DMat3,
+    casters: AxisBox,
+}
+
+impl Sun {
+    fn new(casters: &[[DVec3; 3]], towards_light: DVec3) -> Sun {
+        let rotation = towards(-towards_light);
+        Sun { rotation, casters: AxisBox::around(casters.iter().flatten().map(|point| rotation * *point)) }
+    }
+
+    fn around_casters(&self, border: f64, is_reversed: bool) -> LightFrame {
+        let AxisBox { low, high } = self.casters;
+        self.covering((low + high).truncate() / 2.0, (high - low).truncate() / 2.0, border, is_reversed)
+    }
+
+    fn around_view(&self, view: &[DVec3; 8], border: f64, is_reversed: bool) -> LightFrame {
+        let AxisBox { low, high } = AxisBox::around(view.iter().map(|corner| self.rotation * *corner));
+        self.covering((low + high).truncate() / 2.0, (high - low).truncate() / 2.0, border, is_reversed)
+    }
+
+    /// Covers the ball around the view, whose size does not depend on where the camera looks, and which is placed on a
+    /// grid of texels.
+    fn around_view_snapped(&self, view: &[DVec3; 8], size: u32, is_reversed: bool) -> LightFrame {
+        let middle = view.iter().sum::<DVec3>() / 8.0;
+        let radius = view.iter().map(|corner| corner.distance(middle)).fold(f64::MIN_POSITIVE, f64::max);
+        // In steps, so that no rounding changes the size from frame to frame.
+        let step = angle::log2(radius).floor().exp2() / 4.0;
+        let half = (radius / step).ceil() * step;
+        // A texel of margin, as the middle is up to one away from its place.
+        let texel = 2.0 * half / f64::from(size.saturating_sub(2).max(1));
+        let place = (self.rotation * middle).truncate();
+        let half = DVec2::splat(texel * f64::from(size) / 2.0);
+        self.covering((place / texel).floor() * texel, half, 1.0, is_reversed)
+    }
+
+    /// A box `width` wide and `depth` deep around the middle of what casts.
+    fn given(&self, width: f64, depth: f64, is_reversed: bool) -> LightFrame {
+        let origin = self.rotation.transpose() * ((self.casters.low + self.casters.high) / 2.0);
+        let clip = projection::orthographic([width / 2.0; 2], -depth / 2.0, depth / 2.0, is_reversed);
+        frame(origin, self.rotation, vec![clip])
+    }
+
+    /// Covers a rectangle across the light, `border` times as large, and along the light all that casts.
+    fn covering(&self, middle: DVec2, half: DVec2, border: f64, is_reversed: bool) -> LightFrame {
+        let AxisBox { low, high } = self.casters;
+        let origin = self.rotation.transpose() * middle.extend((low.z + high.z) / 2.0);
+        let half = half.extend((high.z - low.z) / 2.0);
+        let least = half.max_element().max(f64::MIN_POSITIVE) * 1e-6;
+        let half = half.max(DVec3::splat(least));
+        // Far is behind the casters by half their depth, so that no bias pushes one to the value of
+        // texels without a caster.
+        let (near, far) = (-half.z * 1.01, half.z * 2.0);
+        let clip = projection::orthographic([half.x * border, half.y * border], near, far, is_reversed);
+        frame(origin, self.rotation, vec![clip])
+    }
 }
 
 /// How the picture of a caster's silhouette is framed.
@@ -259,6 +402,10 @@ mod tests {
         vec![[a, b, c], [a, c, d]]
     }
 
+    fn around(casters: &[[DVec3; 3]]) -> MapCover<'_> {
+        MapCover { casters, view: [DVec3::ZERO; 8], frustum: LightFrustum::Casters }
+    }
+
     fn project(frame: &LightFrame, face: usize, point: DVec3) -> DVec3 {
         let clip = frame.clip_from_light[face] * frame.light_from_world * point.extend(1.0);
         clip.truncate() / clip.w
@@ -267,7 +414,7 @@ mod tests {
     #[test]
     fn a_narrow_caster_fills_one_perspective_map() {
         let casters = quad(DVec3::new(1.0, 0.0, -2.0), 0.5);
-        let frame = fit(&casters, DVec4::new(0.0, 5.0, 1.0, 1.0), &storage(1024)).expect("a frame");
+        let frame = fit(&around(&casters), DVec4::new(0.0, 5.0, 1.0, 1.0), &storage(1024)).expect("a frame");
         assert_eq!(frame.clip_from_light.len(), 1);
         let seen: Vec<DVec3> = casters.iter().flatten().map(|point| project(&frame, 0, *point)).collect();
         for axis in 0..2 {
@@ -282,7 +429,7 @@ mod tests {
     fn casters_all_round_need_a_cube_and_every_point_is_in_its_face() {
         let mut casters = quad(DVec3::new(3.0, 0.0, 0.0), 0.5);
         casters.extend(quad(DVec3::new(-3.0, 0.0, 0.0), 0.5));
-        let frame = fit(&casters, DVec4::new(0.0, 0.1, 0.0, 1.0), &storage(512)).expect("a frame");
+        let frame = fit(&around(&casters), DVec4::new(0.0, 0.1, 0.0, 1.0), &storage(512)).expect("a frame");
         assert_eq!(frame.clip_from_light.len(), 6);
         for (face, (_, forward, _)) in CUBE_FACES.iter().enumerate() {
             let seen = project(&frame, face, DVec3::new(0.0, 0.1, 0.0) + *forward * 2.0);
@@ -293,7 +440,7 @@ mod tests {
     #[test]
     fn a_directional_light_gets_a_box_around_the_casters() {
         let casters = quad(DVec3::new(7.0, 2.0, 1.0), 0.5);
-        let frame = fit(&casters, DVec4::new(0.3, 1.0, 0.2, 0.0), &storage(1024)).expect("a frame");
+        let frame = fit(&around(&casters), DVec4::new(0.3, 1.0, 0.2, 0.0), &storage(1024)).expect("a frame");
         for point in casters.iter().flatten() {
             let seen = project(&frame, 0, *point);
             assert!(seen.x.abs() < 1.0 && seen.y.abs() < 1.0 && seen.z > 0.0 && seen.z < 1.0);

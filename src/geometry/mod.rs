@@ -42,7 +42,9 @@ pub use intersection::self_meeting;
 pub use light_range::{RangeInView, beyond_range, range_in_view, reached};
 pub use reach::{NearClipVolume, OutsidePlane, ViewVolume};
 pub use receiver_texture::ReceiverParallelogram;
-pub use silhouette::{MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search};
+pub use silhouette::{
+    MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search, silhouette_of_shared_corners,
+};
 pub use topology::Topology;
 pub use volume::{DarkCap, Extruder, Extrusion, FarEnd, VolumeParts, write_indices};
 pub use winding::winding_number;

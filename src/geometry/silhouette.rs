@@ -2,6 +2,7 @@
 
 use super::{Edge, EdgeList, Facings};
 use crate::math::{Sign, side_of_triangle};
+use crate::scene::Mesh;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -80,6 +81,37 @@ pub fn silhouette_by_search(triangles: &[[u32; 3]], facings: &Facings, out: &mut
         last.multiplicity += if is_same { next.multiplicity } else { 0 };
         is_same
     });
+}
+
+/// Finds the edges that bound the shadow between triangles that share two corners by the numbers that the mesh's file
+/// gives them. An edge of one triangle alone is none, though it bounds the shadow: where corners are split, and at
+/// T-junctions, sides are missing.
+pub fn silhouette_of_shared_corners(mesh: &Mesh, facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
+    let corners = mesh.file_corners();
+    let count = corners.as_flattened().iter().max().map_or(0, |last| *last as usize + 1);
+    let edges = EdgeList::new(corners, count);
+    let mut welded = vec![0; count];
+    for (of_file, of_mesh) in corners.as_flattened().iter().zip(mesh.triangles().as_flattened()) {
+        welded[*of_file as usize] = *of_mesh;
+    }
+    out.clear();
+    edges.for_each_unbalanced(0..edges.blocks(), facings, |index, multiplicity| {
+        if edges.incident(index).count() < 2 {
+            return;
+        }
+        let Edge { low, high } = edges.edges()[index];
+        let [from, to] = [low, high].map(|corner| welded[corner as usize]);
+        let multiplicity = if from < to { multiplicity } else { -multiplicity };
+        out.push(SilhouetteEdge { edge: Edge { low: from.min(to), high: from.max(to) }, multiplicity });
+    });
+    // Two edges of the file may be one in space.
+    out.sort_unstable();
+    out.dedup_by(|next, last| {
+        let is_same = next.edge == last.edge;
+        last.multiplicity += if is_same { next.multiplicity } else { 0 };
+        is_same
+    });
+    out.retain(|edge| edge.multiplicity != 0);
 }
 
 #[cfg(test)]

@@ -1,28 +1,27 @@
-//! What a frame is judged by, where no more of its run is stored: the labels of its lights, and the finished picture.
+//! What a frame is judged by, where no more of its run is stored: labels and visibility of its lights, and the finished
+//! picture.
 
 use super::GpuError;
 use super::collect::{SnapshotMemory, SnapshotStorage, after};
 use super::prepared::Prepared;
 use super::readback::{TargetChange, color_change};
-use crate::capture::{Image, PixelFormat};
+use crate::capture::{FrameTarget, Image, LightTargets, PixelFormat};
 use crate::plan::{AttachmentRole, FramePlan, LightId, Pass};
 use std::sync::Arc;
 
-/// The label masks and the finished picture of a frame, as [`Executor::answer`](super::Executor::answer) returns them.
+/// What a frame is judged by, as [`Executor::answer`](super::Executor::answer) returns it.
 #[derive(Debug)]
-pub struct LabelsAndPicture {
-    /// The label mask of each light, by its index; `None` for a light whose labels no pass writes.
-    pub labels: Vec<Option<Arc<Image>>>,
+pub struct FrameAnswer {
+    /// For each light, by its index, its labels, and its visibility where the technique knows shares.
+    pub of_lights: Vec<LightTargets>,
     /// The picture after the last pass that changes it.
     pub picture: Arc<Image>,
 }
 
-/// Returns the light whose label mask is the pass's colour target; `None` where its target is another or it has none.
-pub(super) fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
-    match plan.attachment(pass.color.as_ref()?.attachment).role {
-        AttachmentRole::Labels(light) => Some(light),
-        _ => None,
-    }
+/// Returns the light, and which of its targets a pass draws into; `None` where the pass's colour target is another or
+/// it has none.
+pub(super) fn target_of_light(plan: &FramePlan, pass: &Pass) -> Option<(FrameTarget, LightId)> {
+    FrameTarget::of(plan.attachment(pass.color.as_ref()?.attachment).role)
 }
 
 /// Returns the index of the last pass that changes the picture; `None` where no pass does.
@@ -34,20 +33,22 @@ pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
     plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != TargetChange::Unchanged)
 }
 
-/// Returns the label mask of each light, read back from the GPU after the passes have run; `None` for a light whose
-/// mask no pass writes.
-pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
+/// Returns what passes have left in those targets of each light that are `wanted`, read back from the GPU.
+pub(super) fn of_lights(prepared: &Prepared, wanted: &[FrameTarget]) -> Result<Vec<LightTargets>, GpuError> {
     let plan = prepared.plan;
     let mut storage = SnapshotStorage { memory: SnapshotMemory::Mapped, budget: prepared.budget };
-    let mut labels = vec![None; plan.lights.len()];
+    let mut of_lights = vec![LightTargets::default(); plan.lights.len()];
     for (index, pass) in plan.passes.iter().enumerate() {
-        if let Some(light) = labelled(plan, pass) {
-            let staged = prepared.staged(index)?;
-            let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-            storage.keep(&mut labels[light.0], left)?;
+        let Some((target, light)) = target_of_light(plan, pass).filter(|(target, _)| wanted.contains(target)) else {
+            continue;
+        };
+        let staged = prepared.staged(index)?;
+        let left = after(&color_change(plan, pass), &staged.color, target.format(), plan.size)?;
+        if let Some(known) = of_lights[light.0].get_mut(target) {
+            storage.keep(known, left)?;
         }
     }
-    Ok(labels)
+    Ok(of_lights)
 }
 
 /// Returns the finished picture (sRGB), read back from the GPU after the passes have run; all zero where no pass draws

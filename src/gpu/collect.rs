@@ -4,7 +4,9 @@ use super::GpuError;
 use super::budget::MemoryBudget;
 use super::prepared::Prepared;
 use super::readback::{StagingCopy, TargetChange, color_change, depth_change, stencil_change};
-use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use crate::capture::{
+    Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, LightTargets, PixelFormat, Snapshot, Step,
+};
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass};
 use std::sync::Arc;
 
@@ -15,10 +17,8 @@ pub struct ExecutorOutput {
     pub steps: Vec<Step>,
     /// For each pass, what it left in its own colour target; `None` where it draws into the picture or has none.
     pub targets: Vec<Option<Arc<Image>>>,
-    /// The label mask of each light; `None` where no pass writes one.
-    pub labels: Vec<Option<Arc<Image>>>,
-    /// For each light, the count that its shadow volumes left; `None` where it has none.
-    pub counts: Vec<Option<Arc<Image>>>,
+    /// For each light, what passes left in its own targets: labels, count and visibility.
+    pub of_lights: Vec<LightTargets>,
     /// For each light, the depths of each face of its shadow map, left-out faces at their clear value; `None` where it
     /// has no map.
     pub maps: Vec<Option<Vec<Arc<Image>>>>,
@@ -57,14 +57,13 @@ impl Collector {
     pub fn new(plan: &FramePlan, from_cache: Vec<bool>, storage: SnapshotStorage) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
-        let none = vec![None; plan.lights.len()];
-        let maps = empty_maps(plan);
+        let (of_lights, maps) = (vec![LightTargets::default(); plan.lights.len()], empty_maps(plan));
         let (steps, targets) = (Vec::new(), Vec::new());
         Collector {
             color: zero(PixelFormat::Rgba8Srgb),
             depth: zero(PixelFormat::Depth32F),
             stencil: zero(PixelFormat::U8),
-            output: ExecutorOutput { steps, targets, labels: none.clone(), counts: none, maps, from_cache },
+            output: ExecutorOutput { steps, targets, of_lights, maps, from_cache },
             storage,
         }
     }
@@ -95,20 +94,16 @@ impl Collector {
             _ => {
                 let change = color_change(plan, pass);
                 let (mut color_after, mut own) = (None, None);
-                let target = match color_role.map(|(role, _)| role) {
-                    Some(AttachmentRole::Labels(light)) => {
-                        let labels = after(&change, &staged.color, PixelFormat::U8, plan.size)?;
-                        storage.keep(&mut output.labels[light.0], labels)?;
-                        own.clone_from(&output.labels[light.0]);
-                        FrameTarget::Labels
+                let target = match color_role.and_then(|(role, _)| FrameTarget::of(role)) {
+                    Some((target, light)) => {
+                        let image = after(&change, &staged.color, target.format(), plan.size)?;
+                        if let Some(known) = output.of_lights[light.0].get_mut(target) {
+                            storage.keep(known, image)?;
+                            own.clone_from(known);
+                        }
+                        target
                     }
-                    Some(AttachmentRole::Count(light)) => {
-                        let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
-                        storage.keep(&mut output.counts[light.0], count)?;
-                        own.clone_from(&output.counts[light.0]);
-                        FrameTarget::Count
-                    }
-                    _ => {
+                    None => {
                         color_after = after(&change, &staged.color, PixelFormat::Rgba8Srgb, plan.size)?;
                         FrameTarget::Picture
                     }

@@ -1,7 +1,7 @@
 //! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted; more than one
 //! where those copies are many.
 
-use super::answer::{self, LabelsAndPicture};
+use super::answer::{self, FrameAnswer};
 use super::budget::MemoryBudget;
 use super::collect::{Collector, ExecutorOutput, SnapshotMemory, SnapshotStorage};
 use super::log_pipelines::LogCache;
@@ -10,7 +10,7 @@ use super::prepared::{PlanResources, Prepared, PreparedDraw};
 use super::queries::{DrawSamples, FrameQueries, PassTimestamps};
 use super::readback::{StagedPass, StagingCopy};
 use super::{GpuContext, GpuError, features, start};
-use crate::capture::Image;
+use crate::capture::{FrameTarget, Image};
 use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ enum RunMode {
     Snapshots,
     /// All passes run, and only the lights' label masks are copied.
     Labels,
-    /// All passes run, and only the lights' label masks and the finished picture are copied.
+    /// All passes run, and only the lights' labels, their visibility and the finished picture are copied.
     Answer,
     /// All passes run, and a snapshot is copied after each.
     Everything,
@@ -207,14 +207,16 @@ impl Executor {
     /// so that the largest maps cost no memory twice.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, RunMode::Labels, &FrameQueries::default())?;
-        answer::labels(&prepared)
+        let of_lights = answer::of_lights(&prepared, RunMode::Labels.targets())?;
+        Ok(of_lights.into_iter().map(|light| light.labels).collect())
     }
 
-    /// Runs all passes, waits, and returns the label mask of each light, in their order and `None` where no pass writes
-    /// it, and the finished picture. Nothing else is copied.
-    pub fn answer(&self, prepared: Prepared) -> Result<LabelsAndPicture, GpuError> {
+    /// Runs all passes, waits, and returns labels and visibility of each light, in their order and `None` where no pass
+    /// writes them, and the finished picture. Nothing else is copied.
+    pub fn answer(&self, prepared: Prepared) -> Result<FrameAnswer, GpuError> {
         run(&prepared, RunMode::Answer, &FrameQueries::default())?;
-        Ok(LabelsAndPicture { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
+        let of_lights = answer::of_lights(&prepared, RunMode::Answer.targets())?;
+        Ok(FrameAnswer { of_lights, picture: answer::picture(&prepared)? })
     }
 }
 
@@ -234,12 +236,24 @@ impl RunMode {
         pass.timed || matches!(self, RunMode::Labels | RunMode::Answer | RunMode::Everything)
     }
 
+    /// Returns which of the lights' targets the mode copies, where it does not copy all that its passes write.
+    fn targets(self) -> &'static [FrameTarget] {
+        match self {
+            RunMode::Labels => &[FrameTarget::Labels],
+            RunMode::Answer => &[FrameTarget::Labels, FrameTarget::Visibility],
+            RunMode::Frame | RunMode::Snapshots | RunMode::Everything => &[],
+        }
+    }
+
     fn copies(self, plan: &FramePlan, index: usize) -> bool {
         let pass = &plan.passes[index];
         match self {
             RunMode::Frame => false,
-            RunMode::Labels => answer::labelled(plan, pass).is_some(),
-            RunMode::Answer => answer::labelled(plan, pass).is_some() || answer::last_of_picture(plan) == Some(index),
+            RunMode::Labels | RunMode::Answer => {
+                let target = answer::target_of_light(plan, pass).map(|(target, _)| target);
+                let is_picture = self == RunMode::Answer && answer::last_of_picture(plan) == Some(index);
+                is_picture || target.is_some_and(|target| self.targets().contains(&target))
+            }
             RunMode::Snapshots | RunMode::Everything => self.runs(pass),
         }
     }

@@ -370,7 +370,7 @@ fn described(plan: &FramePlan, id: AttachmentId) -> wgpu::TextureDescriptor<'_> 
     let other = match attachment.role {
         AttachmentRole::Map(_) | AttachmentRole::Count(_) => TextureUsages::TEXTURE_BINDING,
         AttachmentRole::Labels(_) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
-        AttachmentRole::Color | AttachmentRole::DepthStencil => TextureUsages::empty(),
+        AttachmentRole::Color | AttachmentRole::DepthStencil | AttachmentRole::Visibility(_) => TextureUsages::empty(),
     };
     let is_started = |pass: &Pass| {
         let has_start = pass.recorded.as_ref().is_some_and(|recorded| recorded.start.is_some());

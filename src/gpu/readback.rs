@@ -30,7 +30,7 @@ pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> TargetChange {
     let is_drawn = pass.image.is_some() || pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
     let texel = |value: [f64; 4]| match plan.attachment(target.attachment).role {
         AttachmentRole::Labels(_) => vec![value[0] as u8],
-        AttachmentRole::Count(_) => (value[0] as f32).to_le_bytes().to_vec(),
+        AttachmentRole::Count(_) | AttachmentRole::Visibility(_) => (value[0] as f32).to_le_bytes().to_vec(),
         AttachmentRole::Map(_) => value.map(|channel| (channel * 255.0).round() as u8).to_vec(),
         _ => vec![srgb_byte(value[0]), srgb_byte(value[1]), srgb_byte(value[2]), (value[3] * 255.0).round() as u8],
     };
@@ -151,12 +151,12 @@ impl StagingCopy {
 }
 
 /// Returns the format of a copied aspect of a texture; depth (`Depth32F`) for every texture format that is not one of
-/// the program's colours, counts or labels.
+/// the program's colours, counts, visibilities or labels.
 fn format_of(texture: &Texture, aspect: TextureAspect) -> PixelFormat {
     match (texture.format(), aspect) {
         (wgpu::TextureFormat::Rgba8UnormSrgb, _) => PixelFormat::Rgba8Srgb,
         (wgpu::TextureFormat::Rgba8Unorm, _) => PixelFormat::Rgba8,
-        (wgpu::TextureFormat::R32Float, _) => PixelFormat::Count32F,
+        (wgpu::TextureFormat::R32Float, _) => PixelFormat::Value32F,
         (wgpu::TextureFormat::R8Uint, _) | (_, TextureAspect::StencilOnly) => PixelFormat::U8,
         _ => PixelFormat::Depth32F,
     }

@@ -50,7 +50,7 @@ impl ShaderKey {
             Program::Position if self.form == ShaderInputs::Extruded => 2,
             Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
-            Program::Light(_) | Program::Label(_) | Program::Through => 4,
+            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through => 4,
         }
     }
 }
@@ -115,6 +115,9 @@ fn plain(program: Program) -> ProgramSource {
             (surface_files(file!("through.wgsl"), Visibility::Projected), "vs_surface", Some("fs_through"))
         }
         Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", Some("fs_label")),
+        Program::Arriving(visibility) => {
+            (surface_files(file!("visibility.wgsl"), visibility), "vs_surface", Some("fs_visibility"))
+        }
     };
     joined(&files, vertex, fragment)
 }

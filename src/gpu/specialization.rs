@@ -44,7 +44,7 @@ impl Specialization {
                 wraps: wraps_diffuse,
                 ..of_surface
             },
-            Program::Label(_) => of_surface,
+            Program::Label(_) | Program::Arriving(_) => of_surface,
             Program::Through => Specialization { wraps: wraps_diffuse, fades: false, ..of_surface },
             Program::Ambient { .. } => Specialization { has_checks, ..Specialization::default() },
             Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => {
@@ -66,7 +66,7 @@ impl Specialization {
             ("is_depth_clamped", is_depth_clamped),
         ];
         let count = match program {
-            Program::Light(_) | Program::Label(_) | Program::Through => of_surface.len(),
+            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through => of_surface.len(),
             Program::Ambient { .. } => 1,
             Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => 0,
         };

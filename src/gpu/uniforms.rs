@@ -6,7 +6,7 @@
 //! (`specialization.rs`), or chosen with `select`. Programs that look up maps branch on their light: for them it is
 //! storage, which lavapipe does not look into, but whose values it fetches pixel by pixel.
 
-use crate::plan::{Carry, Draw, FramePlan, Pass, PlanLight, PlanMap, Program};
+use crate::plan::{Carry, Draw, FramePlan, Pass, PlanLight, PlanMap};
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
@@ -134,7 +134,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
     let carry = carry.unwrap_or_default();
     let [x, y, z] = carry.offset;
     let material = &draw.constants.material;
-    let is_label = matches!(draw.program, Program::Label(_));
+    let is_label = draw.program.runs_in_reverse();
     DrawUniform {
         color: material.color,
         specular: material.specular,

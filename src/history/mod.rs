@@ -320,10 +320,9 @@ impl PixelHistory {
     fn tested_count(&self, light: usize) -> PixelValues {
         let of_light = || self.events.iter().filter(|event| event.light == Some(light));
         let last = of_light().rfind(|event| event.is_of_volume());
-        let tests = |event: &&PixelEvent| {
-            event.triangle().is_some_and(|one| one.lights.is_some() || event.target == FrameTarget::Labels)
-        };
-        let tested = || of_light().filter(tests).min_by_key(|event| event.target == FrameTarget::Labels);
+        let tests =
+            |event: &&PixelEvent| event.triangle().is_some_and(|one| one.lights.is_some() || event.target.is_beside());
+        let tested = || of_light().filter(tests).min_by_key(|event| event.target.is_beside());
         last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
     }
 
@@ -371,7 +370,7 @@ fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<C
         let counts = |index: usize| frame_counts(plan, capture, index);
         let light =
             counts(pass).filter(|light| !(pass + 1..plan.passes.len()).any(|later| counts(later) == Some(*light)));
-        let count = light.and_then(|light| capture.lights.get(light)?.count.as_ref()?.count_at(pixel));
+        let count = light.and_then(|light| capture.lights.get(light)?.count.as_ref()?.value_at(pixel));
         after.push(CapturedAfter { pass, stored: DepthStencil { depth, stencil }, count });
     }
     after

@@ -201,11 +201,8 @@ fn values_of(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], values: P
 /// picture. The picture also for a pass without a colour target, such as one that counts in the stencil, and for passes
 /// of maps. Which light it is, the pass says.
 pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
-    match pass.color.as_ref().map(|target| plan.attachment(target.attachment).role) {
-        Some(AttachmentRole::Labels(_)) => FrameTarget::Labels,
-        Some(AttachmentRole::Count(_)) => FrameTarget::Count,
-        _ => FrameTarget::Picture,
-    }
+    let role = pass.color.as_ref().map(|target| plan.attachment(target.attachment).role);
+    role.and_then(FrameTarget::of).map_or(FrameTarget::Picture, |(target, _)| target)
 }
 
 /// Returns for each light the stencil bits that its first volume draw may write, whether or not it covers this pixel;

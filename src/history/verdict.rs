@@ -75,7 +75,7 @@ impl Verdict {
         let label = captured.and_then(|light| light.shadow.as_ref()?.byte_at(at));
         let label = label.map(|byte| PixelLabel::from_byte(byte).unwrap_or(Shadow));
         let decided_by = capture.decided_by(light);
-        let in_float = captured.and_then(|light| light.count.as_ref()?.count_at(at));
+        let in_float = captured.and_then(|light| light.count.as_ref()?.value_at(at));
         let in_stencil = || tested_stencil(capture, light, at).map(VolumeCount::Stencil);
         let count = match (label, decided_by.counted_side()) {
             (None | Some(Background), _) | (_, None) => None,

@@ -102,7 +102,7 @@ impl PixelHistory {
     /// Returns what decided whether a light is added at this pixel: the count of its volumes, else flattened shadows.
     /// `None` where the light has no volume draws and no flattened triangle covers the pixel, as with shadow maps.
     pub fn why(&self, light: usize) -> Option<LightDecision> {
-        let of_light = |event: &&PixelEvent| event.light == Some(light) && event.target != FrameTarget::Labels;
+        let of_light = |event: &&PixelEvent| event.light == Some(light) && !event.target.is_beside();
         let events = || self.events.iter().filter(of_light);
         let flattened: Vec<&PixelEvent> =
             events().filter(|event| part(event) == Some(DrawPart::PlanarShadow)).collect();

@@ -117,6 +117,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<ConvertedFrame, ImportErr
         count_of: None,
         shadow: None,
         count: None,
+        visibility: None,
         map: light.map.as_ref().zip(faces.get(index)).map(|(map, faces)| CapturedMap {
             faces: faces.clone(),
             layer_names: Vec::new(),
@@ -202,5 +203,6 @@ fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
         map: (faces > 0).then_some(map),
         count: None,
         labels: AttachmentId(plan.attachments.len()),
+        visibility: None,
     }
 }

@@ -109,6 +109,18 @@ impl DepthMapping {
 }
 
 impl DepthCurve {
+    /// Returns the curve of a perspective that ends at `near` and at `far`, metres, whichever mapping it is: where the
+    /// mapping is reversed, from 1 to 0 between them, else from 0 to 1.
+    pub fn between(mapping: DepthMapping, near: f64, far: f64) -> DepthCurve {
+        let depth = far - near;
+        let (offset, scale) = if mapping.is_reversed() {
+            (-near / depth, near * far / depth)
+        } else {
+            (far / depth, -near * far / depth)
+        };
+        DepthCurve { mapping, offset, scale, is_linear: false, far: Some(far), unit: LengthUnit::Metre }
+    }
+
     /// Returns the row of z in the clip matrix: factors of view z (negative ahead) and of w.
     pub fn z_row(&self) -> DVec2 {
         if self.is_linear { DVec2::new(-self.scale, self.offset) } else { DVec2::new(-self.offset, self.scale) }
@@ -160,6 +172,15 @@ mod tests {
         for mapping in [DepthMapping::StandardFinite, DepthMapping::StandardFiniteClamp] {
             let (near, far, infinity) = ends(mapping);
             assert!(near.abs() < 1e-15 && (far - 1.0).abs() < 1e-15 && infinity > 1.0);
+        }
+    }
+
+    #[test]
+    fn a_curve_between_two_planes_ends_at_both() {
+        for mapping in DepthMapping::ALL {
+            let curve = DepthCurve::between(mapping, NEAR, FAR);
+            let [near, far] = if mapping.is_reversed() { [1.0, 0.0] } else { [0.0, 1.0] };
+            assert!((curve.depth(NEAR) - near).abs() < 1e-15 && (curve.depth(FAR) - far).abs() < 1e-15, "{mapping:?}");
         }
     }
 

@@ -234,7 +234,7 @@ fn measure(measure: DepthMeasure) -> Option<PageMeasure> {
 fn image(image: &Image, arrays: &mut PageArrays) -> ArrayIndex {
     let (word, lanes) = match image.format() {
         PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 => (ArrayWord::U8, 4),
-        PixelFormat::Depth32F | PixelFormat::Count32F => (ArrayWord::F32, 1),
+        PixelFormat::Depth32F | PixelFormat::Value32F => (ArrayWord::F32, 1),
         PixelFormat::U8 => (ArrayWord::U8, 1),
     };
     let bytes: Vec<u8> = image.rows().flatten().copied().collect();

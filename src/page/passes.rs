@@ -4,9 +4,7 @@
 use super::arrays::{ArrayIndex, ArrayLayout, ArrayWord, PageArrays};
 use crate::capture::FrameTarget;
 use crate::history;
-use crate::plan::{
-    Draw, DrawPart, FaceMasks, FramePlan, Pass, Program, RasterState, StartContent, StencilFace, Visibility,
-};
+use crate::plan::{Draw, DrawPart, FaceMasks, FramePlan, Pass, RasterState, StartContent, StencilFace, Visibility};
 use serde::Serialize;
 
 /// A pass of the plan as the page's document has it.
@@ -122,7 +120,7 @@ fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut PageArrays) -> PageDr
         mesh: draw.mesh.0,
         triangles: [draw.triangles.start, draw.triangles.end],
         base_vertex: draw.base_vertex,
-        is_reverse: matches!(draw.program, Program::Label(_)),
+        is_reverse: draw.program.runs_in_reverse(),
         faces_inwards: draw.faces_inwards,
         raster: &draw.raster,
         sides: [true, false].map(side),

@@ -74,6 +74,12 @@ pub fn finding(value: u8) -> Rgb {
 /// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
 pub const READS_ZERO: Rgb = [0xff, 0x2b, 0xf2];
 
+/// Returns the grey of a share of light, 0 black to 1 white, encoded for the screen; shares beyond are clamped.
+pub fn visibility(share: f32) -> Rgb {
+    // A share is no light that a screen emits: half of it is drawn as half of the ramp's way.
+    [(share.clamp(0.0, 1.0) * 255.0).round() as u8; 3]
+}
+
 /// Returns the colour of a count: that of the stencil's palette, whose last cycle is repeated beyond 127, except that a
 /// count that eight bits would take for zero has a colour that nothing else has.
 pub fn count(count: f32) -> Rgb {

@@ -4,7 +4,8 @@ use super::ids::LightId;
 use serde::{Deserialize, Serialize};
 use wgpu::TextureFormat;
 
-/// A texture that passes draw into: the picture, depth and stencil, a shadow map, a count, or labels.
+/// A texture that passes draw into: the picture, depth and stencil, a shadow map, a count, labels, or a light's
+/// visibility.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Attachment {
     /// Shown to people: `color`, `depth and stencil`, `light 0 map`, `light 0 labels`.
@@ -34,6 +35,8 @@ pub enum AttachmentRole {
     /// The technique's labels of a light, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 faces away from the
     /// light or is beyond its range.
     Labels(LightId),
+    /// Which share of a light arrives at each pixel's surface, 0 to 1.
+    Visibility(LightId),
 }
 
 impl Attachment {

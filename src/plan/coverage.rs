@@ -10,7 +10,7 @@
 //! triangles the GPU must be asked about, which it must cover the pixel with, and which leave no fragment: triangles
 //! that are culled, or clipped away at the near or far plane.
 
-use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
+use super::{ClipPlane, Draw, DrawPart, FramePlan, MeshId, Pass, ViewId, Viewport};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
@@ -179,8 +179,7 @@ impl CoverageSearch<'_> {
             let part = draw.part_of(mesh, indices.map(|corner| corner as u32));
             covering.push(Covering { pass, draw: draw_index, primitive, triangle, part, corners, coverage });
         };
-        if matches!(draw.program, Program::Label(_)) {
-            // Labels run in reverse order.
+        if draw.program.runs_in_reverse() {
             found.iter().rev().for_each(|triangle| look(*triangle, draw.triangles.end - 1 - triangle));
         } else {
             found.iter().for_each(|triangle| look(*triangle, triangle - draw.triangles.start));

@@ -1,7 +1,7 @@
 //! What shaders know of a light: its position, its colour, and its shadow map or textures.
 
 use super::ids::{AttachmentId, ViewId};
-use super::{CountOf, DecidedBy};
+use super::{CountOf, DecidedBy, Visibility};
 use glam::{DMat4, Mat4};
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,23 @@ pub struct PlanLight {
     pub count: Option<AttachmentId>,
     /// The attachment to which its mask pass writes labels.
     pub labels: AttachmentId,
+    /// The attachment to which its visibility pass writes the share of it that arrives; `None` where a technique knows
+    /// no shares, only lit and dark.
+    #[serde(default)]
+    pub visibility: Option<AttachmentId>,
+}
+
+impl PlanLight {
+    /// Returns whether a shader that finds as `how` says how much of the light arrives may find a share between none
+    /// and all: from textures, which are filtered, and from more than one texel of a map of depths.
+    pub fn knows_shares(&self, how: Visibility) -> bool {
+        let filter_width = self.map.as_ref().and_then(|map| map.lookup).map_or(1, |lookup| lookup.filter_width);
+        match how {
+            Visibility::Map => filter_width > 1,
+            Visibility::ReceiverTexture | Visibility::Projected => true,
+            Visibility::Everywhere | Visibility::Labels | Visibility::Count => false,
+        }
+    }
 }
 
 /// A light's texture array: the faces of a shadow map (one, or six of a cube in wgpu's order +x −x +y −y +z −z), the

@@ -26,6 +26,9 @@ pub enum Program {
     /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
     Label(Visibility),
+    /// Writes which share of the light arrives, 0 to 1: 0 where the triangle faces away from the light or is beyond its
+    /// range. Triangles run as those of a label do.
+    Arriving(Visibility),
     /// Another program's shader: vertices are clip-space positions, and go through unchanged. Its colours are not
     /// known.
     Recorded {
@@ -76,7 +79,9 @@ impl Program {
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
-        let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
+        let lit = Visibility::ALL
+            .into_iter()
+            .flat_map(|how| [Program::Light(how), Program::Label(how), Program::Arriving(how)]);
         let recorded = Program::Recorded { may_discard: ShaderEffect::No, writes_depth: ShaderEffect::No };
         flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
     }
@@ -86,7 +91,9 @@ impl Program {
     pub fn discards(self, depth: f32) -> Option<ClipPlane> {
         match self {
             Program::Ambient { from_near: true } if depth < 0.0 => Some(ClipPlane::Near),
-            Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(ClipPlane::Far),
+            Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Through if depth > 1.0 => {
+                Some(ClipPlane::Far)
+            }
             _ => None,
         }
     }
@@ -105,7 +112,7 @@ impl Program {
     /// passing through; `None` for the others.
     pub fn visibility(self) -> Option<Visibility> {
         match self {
-            Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
+            Program::Light(visibility) | Program::Label(visibility) | Program::Arriving(visibility) => Some(visibility),
             Program::Through => Some(Visibility::Projected),
             Program::Position
             | Program::Flat
@@ -114,6 +121,11 @@ impl Program {
             | Program::Ambient { .. }
             | Program::Recorded { .. } => None,
         }
+    }
+
+    /// Returns whether triangles run in reverse, so that of surfaces at one depth the first drawn is the last to write.
+    pub fn runs_in_reverse(self) -> bool {
+        matches!(self, Program::Label(_) | Program::Arriving(_))
     }
 
     /// Returns whether it is another program's shader, whose vertices are in clip space already.

@@ -99,6 +99,7 @@ impl FramePlan {
             Program::Ambient { from_near: true } => "ambient from the near plane on",
             Program::Light(_) => "light",
             Program::Label(_) => "label",
+            Program::Arriving(_) => "visibility",
             Program::Through => "darkened",
             Program::Recorded { .. } => "another program",
         };

@@ -63,6 +63,12 @@ impl CapturePoint {
         self.own(capture, FrameTarget::Count)
     }
 
+    /// Returns the index of the light whose visibility the draw writes, and the visibility after it; `None` if it writes
+    /// none.
+    pub fn visibility(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
+        self.own(capture, FrameTarget::Visibility)
+    }
+
     fn own(self, capture: &Capture, target: FrameTarget) -> Option<(usize, &Arc<Image>)> {
         let state = self.state(capture)?;
         let is_it = matches!(&state.snapshot, Snapshot::Frame(frame) if frame.target == target);

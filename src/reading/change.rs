@@ -117,7 +117,7 @@ fn change(before: &Image, after: &Image, measure: DepthMeasure) -> Option<StepCh
         PixelFormat::U8 => counts(before, after),
         PixelFormat::Depth32F => depths(before, after, measure),
         PixelFormat::Rgba8 | PixelFormat::Rgba8Srgb => colors(before, after),
-        PixelFormat::Count32F => return None,
+        PixelFormat::Value32F => return None,
     })
 }
 
@@ -155,7 +155,7 @@ fn depths(before: &Image, after: &Image, measure: DepthMeasure) -> StepChange {
             bytes.extend(by.to_le_bytes());
         }
     }
-    let image = Arc::new(Image::packed(PixelFormat::Count32F, before.size(), bytes));
+    let image = Arc::new(Image::packed(PixelFormat::Value32F, before.size(), bytes));
     StepChange { image, kind: ChangeKind::Depth, texels: sorts.iter().sum(), sorts: ChangedTexels::Depths(sorts) }
 }
 
@@ -235,7 +235,7 @@ mod tests {
         let pair = [depth([0.0, 0.5, 0.25, 0.5]), depth([0.5, 1.0, 0.25, 0.25])];
         let change = ChangeCache::default().change([&pair[0], &pair[1]], measure).expect("pictures of one kind");
         assert_eq!(change.sorts, ChangedTexels::Depths([1, 1, 1, 0]));
-        let at = |x| change.image.count_at([x, 0]).expect("a texel");
+        let at = |x| change.image.value_at([x, 0]).expect("a texel");
         assert_eq!([at(1), at(2), at(3)], [-1.0, 0.0, 2.0]);
         assert_eq!(at(0), f32::NEG_INFINITY);
     }

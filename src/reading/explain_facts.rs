@@ -3,7 +3,7 @@
 //! The kind of step is known from what it draws: surfaces in ambient light, volumes, what a light sees, flattened
 //! casters, light, or labels. Where a pixel is picked the numbers are that pixel's, else the picture's.
 
-use crate::capture::{Capture, FrameTarget, Snapshot, Step};
+use crate::capture::{Capture, Snapshot, Step};
 use crate::history::{PixelEvent, PixelEventKind, PixelHistory};
 use crate::numbers;
 use crate::plan::{CountBits, CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
@@ -64,7 +64,7 @@ pub fn facts(known: &ExplainContext) -> Vec<ExplainFact> {
         return vec![receivers(known)];
     }
     match &step.snapshot {
-        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => {
+        Snapshot::Frame(frame) if frame.target.is_beside() => {
             std::iter::once(labels(known, step)).chain(compared(known, step.light.unwrap_or(0))).collect()
         }
         Snapshot::Frame(_) if step.light.is_some() => vec![light(known, step)],

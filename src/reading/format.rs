@@ -1,11 +1,6 @@
 //! Numbers as text: thousands with a thin space, units always.
 
-pub use crate::numbers::{count, depth, digits, length, light, metres, precise};
-
-/// Returns a number with its noun in singular or plural: `1 draw`, `2 draws`.
-pub fn counted(value: u64, noun: &str) -> String {
-    format!("{} {noun}{}", count(value), if value == 1 { "" } else { "s" })
-}
+pub use crate::numbers::{count, counted, depth, digits, length, light, metres, precise};
 
 /// Returns a light's title: `Light 1` for index 0.
 pub fn light_title(index: usize) -> String {

@@ -196,11 +196,12 @@ fn places(plan: &FramePlan, light: usize) -> Vec<PlanTriangle> {
             let how = match draw.program {
                 Program::Light(Visibility::Map | Visibility::Projected | Visibility::ReceiverTexture)
                 | Program::Label(Visibility::Map | Visibility::Projected | Visibility::ReceiverTexture)
+                | Program::Arriving(Visibility::Map | Visibility::Projected | Visibility::ReceiverTexture)
                     if is_of_light =>
                 {
                     DRAWN | READS
                 }
-                Program::Light(_) | Program::Label(_) | Program::Ambient { .. } => DRAWN,
+                Program::Light(_) | Program::Label(_) | Program::Arriving(_) | Program::Ambient { .. } => DRAWN,
                 _ => continue,
             };
             let Some(mesh) = plan.meshes.get(draw.mesh.0).filter(|mesh| mesh.surface.is_some()) else { continue };

@@ -1,6 +1,6 @@
 //! Which picture is shown and how: its kind, the meaning of a texel's value, zoom and position.
 //!
-//! A capture contains up to eight kinds of picture. [`PictureView::shown`] finds the chosen kind at a step, or what is
+//! A capture contains up to ten kinds of picture. [`PictureView::shown`] finds the chosen kind at a step, or what is
 //! shown while there is none; where none is chosen, it follows the steps and shows what each writes ([`written`]).
 //! Truth and error may be chosen before they are computed: until then those of the previous frame stay, or else the
 //! picture before them.
@@ -35,6 +35,8 @@ named_enum! {
         Error = "Error" ("Where the technique and the truth differ"),
         /// How many fragments of the step reached each pixel.
         Overdraw = "Overdraw" ("How many fragments of the selected step reached every pixel"),
+        /// Which share of a light arrives, where the technique knows shares.
+        Visibility = "Visibility" ("Which share of a light arrives at every pixel"),
         /// A light's signed counts, where they are not in the stencil.
         Count = "Count" ("How many shadow volumes of a light contain the surface at every pixel"),
         /// A light's map: depth as the light sees it, or the light that casters let through.
@@ -55,9 +57,10 @@ impl PictureKind {
         }
     }
 
-    /// Returns whether only some frames have this kind: those with float counts, or with a light's map.
+    /// Returns whether only some frames have this kind: those with float counts, with shares of a light, or
+    /// with a light's map.
     pub fn is_of_some_frames(self) -> bool {
-        matches!(self, PictureKind::Count | PictureKind::Map)
+        matches!(self, PictureKind::Visibility | PictureKind::Count | PictureKind::Map)
     }
 
     /// Returns a sentence on why a step has no picture of this kind; call it only where that is so.
@@ -276,6 +279,14 @@ impl PictureView {
                     None => (capture.lights.get(light)?.shadow.clone()?, raw, title, "R8Uint"),
                 }
             }
+            PictureKind::Visibility => {
+                let light = self.light_with(capture, |light| light.visibility.is_some())?;
+                let title = format!("visibility of {}", format::light(light));
+                match at.visibility(capture).filter(|(of, _)| *of == light) {
+                    Some((_, image)) => (image.clone(), raw, after(&title), "R32Float"),
+                    None => (capture.lights.get(light)?.visibility.clone()?, raw, title, "R32Float"),
+                }
+            }
             PictureKind::Overdraw => (self.tests_of(at)?.fragments.clone(), raw, after("overdraw"), "R8Uint"),
             PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
             PictureKind::Map => return self.shown_map(capture, at),
@@ -390,6 +401,7 @@ pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
     };
     Some(match frame.target {
         FrameTarget::Labels => PictureKind::Mask,
+        FrameTarget::Visibility => PictureKind::Visibility,
         FrameTarget::Count => PictureKind::Count,
         FrameTarget::Picture if !frame.color.unchanged => PictureKind::Color,
         FrameTarget::Picture if frame.stencil.as_ref().is_some_and(|stencil| !stencil.unchanged) => {
@@ -410,6 +422,7 @@ pub fn available(capture: &Capture, at: impl Into<CapturePoint>) -> Vec<PictureK
         PictureKind::Stencil => frame.is_some_and(|frame| frame.stencil.is_some()),
         PictureKind::Count => capture.lights.iter().any(|light| light.count.is_some()),
         PictureKind::Mask => capture.lights.iter().any(|light| light.shadow.is_some()),
+        PictureKind::Visibility => capture.lights.iter().any(|light| light.visibility.is_some()),
         PictureKind::Truth | PictureKind::Error => {
             capture.lights.iter().any(|light| light.shadow.is_some() || light.truth.is_some())
         }

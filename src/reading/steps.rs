@@ -1,16 +1,17 @@
 //! The steps of a frame in the order in which a user goes through them. A mask is not one of them: it is not part of
 //! the frame, has no number, and is passed over.
 
-use crate::capture::{Capture, FrameTarget, Snapshot};
+use crate::capture::{Capture, Snapshot};
 use crate::plan::DecidedBy;
 use crate::reading::format;
 
-/// Returns whether a step is not part of the frame: a mask pass, which writes labels only for comparing techniques.
+/// Returns whether a step is not part of the frame: a mask pass or a visibility pass, which
+/// write what the technique finds only for comparing it.
 /// Labels that the light pass reads are part of the frame.
 pub fn is_beside(capture: &Capture, index: usize) -> bool {
     capture.steps.get(index).is_some_and(|step| {
-        let writes_labels = matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Labels);
-        writes_labels && step.light.is_none_or(|light| capture.decided_by(light) != DecidedBy::Labels)
+        let is_beside = matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target.is_beside());
+        is_beside && step.light.is_none_or(|light| capture.decided_by(light) != DecidedBy::Labels)
     })
 }
 

@@ -33,8 +33,22 @@ pub enum TexelContent {
     Count,
     /// A light's labels: lit, in shadow, background, facing away.
     Labels,
+    /// Which share of a light arrives, 0 to 1.
+    Visibility,
     /// Stored depths.
     Depth(DepthMeasure),
+}
+
+impl TexelContent {
+    /// Returns what the texels of a light's target mean; `None` for the picture.
+    fn of_target(target: FrameTarget) -> Option<TexelContent> {
+        match target {
+            FrameTarget::Picture => None,
+            FrameTarget::Labels => Some(TexelContent::Labels),
+            FrameTarget::Count => Some(TexelContent::Count),
+            FrameTarget::Visibility => Some(TexelContent::Visibility),
+        }
+    }
 }
 
 impl WrittenAspects {
@@ -45,6 +59,7 @@ impl WrittenAspects {
             TexelContent::Stencil => "stencil",
             TexelContent::Count => "count",
             TexelContent::Labels => "mask",
+            TexelContent::Visibility => "visibility",
             TexelContent::Depth(_) => "depth",
         };
         WrittenAspects { image: Arc::clone(image), content, name }
@@ -63,8 +78,9 @@ impl WrittenAspects {
                 FrameTarget::Picture => WrittenAspects::aspect(capture, frame),
                 FrameTarget::Count => counts::finished_by(capture, index)
                     .map(|(_, count)| WrittenAspects::new(count, TexelContent::Count)),
-                FrameTarget::Labels => {
-                    Some(WrittenAspects::new(capture.lights.get(step.light?)?.shadow.as_ref()?, TexelContent::Labels))
+                target @ (FrameTarget::Labels | FrameTarget::Visibility) => {
+                    let image = capture.lights.get(step.light?)?.target(target)?;
+                    Some(WrittenAspects::new(image, TexelContent::of_target(target)?))
                 }
             },
         }
@@ -79,8 +95,7 @@ impl WrittenAspects {
             Snapshot::Map { light, face } => Some(WrittenAspects::layer(capture, [*light, *face], target?)),
             Snapshot::Frame(frame) => match frame.target {
                 FrameTarget::Picture => WrittenAspects::aspect(capture, frame),
-                FrameTarget::Labels => Some(WrittenAspects::new(target?, TexelContent::Labels)),
-                FrameTarget::Count => Some(WrittenAspects::new(target?, TexelContent::Count)),
+                of_light => Some(WrittenAspects::new(target?, TexelContent::of_target(of_light)?)),
             },
         }
     }
@@ -120,8 +135,9 @@ impl WrittenAspects {
             TexelContent::Color => in_color(&rgb),
             TexelContent::LetThrough => in_color(&|at| rgb(at).map(colors::linear)),
             TexelContent::Stencil => in_color(&|at| image.byte_at(at).map(colors::stencil)),
-            TexelContent::Count => in_color(&|at| image.count_at(at).map(colors::count)),
+            TexelContent::Count => in_color(&|at| image.value_at(at).map(colors::count)),
             TexelContent::Labels => in_color(&|at| image.byte_at(at).map(colors::label)),
+            TexelContent::Visibility => in_color(&|at| image.value_at(at).map(colors::visibility)),
             TexelContent::Depth(measure) => {
                 let scale = DepthScale { measure, range: measure.range_of(image).unwrap_or([0.0, 1.0]) };
                 in_color(&|at| scale.place(image.depth_at(at)?).map(colors::near_far))

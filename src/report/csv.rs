@@ -4,7 +4,7 @@ use super::{Report, ReportRow};
 
 const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,false_shadow,missing_shadow,\
 wrong_surface,edge_band,wrong_fraction,wrong_color,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
-triangles,bytes,pareto,adapter,sweep,sweep_value";
+triangles,bytes,pareto,adapter,sweep,sweep_value,visibility_error";
 
 /// Returns a report as CSV: a heading line, then one line for each row in the report's order, each ended by CR LF as
 /// RFC 4180 requires.
@@ -41,6 +41,7 @@ fn line(row: &ReportRow, adapter: &str) -> String {
         field(adapter),
         field(row.sweep.as_ref().map_or("", |swept| &swept.name)),
         row.sweep.as_ref().map_or_else(String::new, |swept| swept.value.to_string()),
+        row.visibility_error.map_or_else(String::new, |error| error.mean().to_string()),
     ];
     fields.join(",")
 }
@@ -71,10 +72,10 @@ mod tests {
             BTreeMap::from([("size".to_owned(), "1024".to_owned()), ("bias-slope".to_owned(), "0".to_owned())]);
         let text = csv(&Report::new(adapter(), vec![row]));
         let lines: Vec<&str> = text.split("\r\n").collect();
-        assert_eq!(lines[0].split(',').count(), 25);
+        assert_eq!(lines[0].split(',').count(), 26);
         assert_eq!(
             lines[1],
-            "tori,shadow-map,\"1024, slope 0\",bias-slope=0;size=1024,100,10,1000,20,0,0,7,0.02,20,3.5,3.4,3.8,9,,12.5,5000,2097152,true,hand,,"
+            "tori,shadow-map,\"1024, slope 0\",bias-slope=0;size=1024,100,10,1000,20,0,0,7,0.02,20,3.5,3.4,3.8,9,,12.5,5000,2097152,true,hand,,,"
         );
         assert_eq!(lines[2], "", "the last line ends too");
     }

@@ -20,7 +20,7 @@ pub(crate) mod tests;
 
 pub use page::PageOrigin;
 
-use crate::accuracy::ErrorCounts;
+use crate::accuracy::{ErrorCounts, VisibilityError};
 use crate::capture::AdapterInfo;
 use crate::numbers;
 use crate::shards::{self, MergeError, ResultsFile, ShardPart};
@@ -77,6 +77,10 @@ pub struct ReportRow {
     /// each counts once, however many lights there are. `None` in reports from before it was measured.
     #[serde(default)]
     pub wrong_color: Option<u64>,
+    /// How far the share of the lights that arrives is from the truth's, over all lights together; `None` for
+    /// techniques that know no shares.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visibility_error: Option<VisibilityError>,
     /// Wall times of a frame without set-up, milliseconds.
     pub frame_ms: FrameTimes,
     /// Frame times including set-up, where the scene moves and every frame is set up again; `None` where it does not.
@@ -387,6 +391,7 @@ impl ReportRow {
             ),
             format!("{} triangles, {} MiB", count(self.triangles), numbers::mebibytes(self.bytes)),
         ];
+        lines.extend(self.visibility_error.map(|error| error.in_words()));
         if self.pareto {
             lines.push("Nothing here is both faster and more right.".to_owned());
         }

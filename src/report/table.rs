@@ -65,6 +65,9 @@ pub fn text(report: &Report) -> String {
         }
     }
     text += "\n* nothing else of the scene is both at least as fast and at least as right (Pareto front)\n";
+    if report.rows.iter().any(|row| row.visibility_error.is_some()) {
+        text += "light: by how much the share of the light that arrives differs from the truth's, mean over the pixels compared\n";
+    }
     text + "wrong: false shadow + missing shadow + wrong surface, % of the pixels compared\n\
             colour: pixels unlike those of the ray-traced picture, background included; frame: median, then fastest to slowest\n"
 }
@@ -121,9 +124,13 @@ fn columns_with_names(rows: &[ReportRow], longest: usize) -> Vec<ReportColumn> {
         // The spread means little over frames of a motion.
         columns.remove(9);
     }
+    if rows.iter().any(|row| row.visibility_error.is_some()) {
+        columns.insert(8, numbers("light %", &light_percent));
+    }
     if let Some(name) = swept_name(rows) {
         columns.insert(3, numbers(heading(name), &swept_text));
-        columns.insert(10, numbers("fps", &fps));
+        let frame = columns.iter().position(|column| column.heading == "frame ms").unwrap_or(columns.len() - 1);
+        columns.insert(frame + 1, numbers("fps", &fps));
     }
     columns
 }
@@ -168,6 +175,11 @@ fn wrong(row: &ReportRow) -> String {
 /// Returns the number of pixels of a wrong colour as text; a dash where that was not measured.
 fn wrong_color(row: &ReportRow) -> String {
     row.wrong_color.map_or_else(|| "-".to_owned(), count)
+}
+
+/// Returns the mean error of the share of light that arrives, in percent; a dash where the technique knows no shares.
+fn light_percent(row: &ReportRow) -> String {
+    row.visibility_error.map_or_else(|| "-".to_owned(), |error| per_hundred(error.mean()))
 }
 
 fn wrong_percent(row: &ReportRow) -> String {

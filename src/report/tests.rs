@@ -18,6 +18,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
         error: ErrorCounts { compared: 1000, false_shadow: wrong, edge_band: 7, ..ErrorCounts::default() },
         wrong_fraction: 0.0,
         wrong_color: Some(wrong),
+        visibility_error: None,
         frame_ms: FrameTimes { median: ms, min: ms - 0.1, max: ms + 0.3, runs: 9 },
         gpu_ms: None,
         moving: None,

@@ -18,6 +18,8 @@ use std::ops::Range;
 pub struct Mesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// Corners by the numbers that they were given with, where some of these were joined.
+    file_corners: Option<Vec<[u32; 3]>>,
     corner_normals: Option<Vec<[Vec3; 3]>>,
     corner_uvs: Option<Vec<Option<[Vec2; 3]>>>,
     groups: Vec<MeshGroup>,
@@ -84,6 +86,13 @@ impl Mesh {
     /// Corners as indices into [`Mesh::positions`], counter-clockwise seen from the front.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// Returns the triangles' corners by the numbers that the mesh's file or builder gave them: vertices that it splits,
+    /// as at seams of normals, have different numbers here though they are one position. As
+    /// [`Mesh::triangles`] where none is split.
+    pub fn file_corners(&self) -> &[[u32; 3]] {
+        self.file_corners.as_deref().unwrap_or(&self.triangles)
     }
 
     /// Returns the object-space normals of each triangle's corners, not necessarily of unit length; `None` where the
@@ -188,6 +197,7 @@ impl MeshBuilder {
         self.check()?;
         let mut welder = Welder::new(keeps_apart, self.positions.len());
         let mut triangles = Vec::with_capacity(self.triangles.len());
+        let mut file_corners = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
         let mut corner_uvs = Vec::with_capacity(self.corner_uvs.len());
         // How many triangles remain before each old triangle: where a group's ends move to.
@@ -199,6 +209,7 @@ impl MeshBuilder {
                 continue;
             }
             triangles.push(corners.map(|index| welder.weld(index, self.positions[index as usize])));
+            file_corners.push(*corners);
             corner_normals.extend(self.corner_normals.get(old));
             corner_uvs.extend(self.corner_uvs.get(old));
         }
@@ -214,6 +225,7 @@ impl MeshBuilder {
             hash: hash_of(&shape),
             normals_hash: hash_of(&[bytemuck::cast_slice(&corner_normals)]),
             dropped: self.triangles.len() - triangles.len(),
+            file_corners: welder.has_joined().then_some(file_corners),
             corner_normals: (!corner_normals.is_empty()).then_some(corner_normals),
             corner_uvs: corner_uvs.iter().any(Option::is_some).then_some(corner_uvs),
             not_taken: Vec::new(),
@@ -263,6 +275,11 @@ struct Welder {
 impl Welder {
     fn new(keeps_apart: bool, given: usize) -> Welder {
         Welder { keeps_apart, positions: Vec::new(), of_given: vec![None; given], index_of: HashMap::default() }
+    }
+
+    /// Returns whether two vertices that were given are one position.
+    fn has_joined(&self) -> bool {
+        self.of_given.iter().flatten().count() > self.positions.len()
     }
 
     fn weld(&mut self, given: u32, position: DVec3) -> u32 {

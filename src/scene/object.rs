@@ -147,6 +147,11 @@ impl Pose {
         Pose { translate, rotate_degrees: angle::fixed_angles(rotation).map(f64::to_degrees), scale }
     }
 
+    /// Returns whether it mirrors: its scale is negative along one axis, or along all three.
+    pub fn is_mirrored(&self) -> bool {
+        self.scale.to_array().iter().filter(|factor| **factor < 0.0).count() % 2 == 1
+    }
+
     /// Returns the pose at the same position, rotated by −90° about the world's x axis: what pointed along the world's
     /// z axis points up (y). For a pose without rotation that is the object's own z axis. Called again it rotates on.
     pub fn with_z_up(&self) -> Pose {

@@ -92,8 +92,7 @@ fn sharing(mut state: DrawState, known: &[Arc<Image>], last: &mut [Option<Arc<Im
 /// A target of a pass other than the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum OwnTarget {
-    Labels(usize),
-    Count(usize),
+    OfLight(usize, FrameTarget),
     Layer(usize, usize),
 }
 
@@ -101,11 +100,10 @@ impl OwnTarget {
     fn of(step: &Step) -> Option<OwnTarget> {
         match &step.snapshot {
             Snapshot::Map { light, face } => Some(OwnTarget::Layer(*light, *face)),
-            Snapshot::Frame(frame) => match frame.target {
-                FrameTarget::Picture => None,
-                FrameTarget::Labels => step.light.map(OwnTarget::Labels),
-                FrameTarget::Count => step.light.map(OwnTarget::Count),
-            },
+            Snapshot::Frame(frame) => {
+                let target = Some(frame.target).filter(|target| *target != FrameTarget::Picture)?;
+                Some(OwnTarget::OfLight(step.light?, target))
+            }
         }
     }
 }
@@ -214,8 +212,7 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: ExecutorOutp
     }
     for (target, image) in now.own {
         let place = match target {
-            OwnTarget::Labels(light) => joined.labels[light].as_mut(),
-            OwnTarget::Count(light) => joined.counts[light].as_mut(),
+            OwnTarget::OfLight(light, target) => joined.of_lights[light].get_mut(target).and_then(Option::as_mut),
             OwnTarget::Layer(light, face) => joined.maps[light].as_mut().and_then(|faces| faces.get_mut(face)),
         };
         place.into_iter().for_each(|place| place.clone_from(&image));

@@ -2,7 +2,7 @@
 
 use super::reference::{FrameError, ReferencePictures};
 use super::{CaptureRequest, Session, SessionError, median, milliseconds};
-use crate::accuracy::ErrorCounts;
+use crate::accuracy::{ErrorCounts, VisibilityError};
 use crate::geometry::GeometryCache;
 use crate::math::angle;
 use crate::plan::FramePlan;
@@ -93,6 +93,9 @@ pub struct MeasuredTechnique {
     pub choice: Choice,
     /// Errors of labels, summed over lights.
     pub error: ErrorCounts,
+    /// How far the lights' visibility is from the truth's, over all lights and frames together; `None` where the
+    /// technique knows no shares.
+    pub visibility: Option<VisibilityError>,
     /// Pixels whose colour differs from the picture that the truth lights in the same shading, background included: see
     /// [`wrong_colors`](crate::accuracy::wrong_colors).
     pub wrong_color: u64,
@@ -205,7 +208,8 @@ impl Session {
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             if let Some(measured) = self.first_frame(&first, what, choice, &mut reference)? {
-                let measured = MeasuredTechnique { error: ErrorCounts::default(), wrong_color: 0, ..measured };
+                let measured =
+                    MeasuredTechnique { error: ErrorCounts::default(), visibility: None, wrong_color: 0, ..measured };
                 moving.push((item, measured, GeometryCache::default()));
             }
             progress.advance();
@@ -258,9 +262,11 @@ impl Session {
                     ready
                 };
                 measured.frames.push(self.executor.time(&ready, false)?);
-                let FrameError { labels, wrong_color } =
+                let FrameError { labels, visibility, wrong_color } =
                     reference.judge(&mut self.executor, &measured.choice, ready)?;
                 measured.error = [measured.error, labels].into_iter().sum();
+                let visibilities = [measured.visibility, visibility].into_iter().flatten().collect();
+                measured.visibility = VisibilityError::of_all(visibilities);
                 measured.wrong_color += wrong_color;
                 if let Some(made) = made {
                     plans[index] = made;
@@ -291,10 +297,11 @@ impl Session {
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
-        let FrameError { labels, wrong_color } = reference.judge(&mut self.executor, choice, ready)?;
+        let FrameError { labels, visibility, wrong_color } = reference.judge(&mut self.executor, choice, ready)?;
         Ok(Some(MeasuredTechnique {
             choice: choice.clone(),
             error: labels,
+            visibility,
             wrong_color,
             frames: Vec::with_capacity(what.runs),
             gpu_ms: None,

@@ -333,14 +333,14 @@ impl Session {
     fn assemble(&self, scene: &Scene, plan: &FramePlan, output: ExecutorOutput, timing: Timing) -> Capture {
         let cached = plan.passes.iter().zip(&output.from_cache).filter(|(_, is_cached)| **is_cached);
         let left_out = plan.left_out.iter().cloned().chain(cached.map(|(pass, _)| LeftOut::cached(pass))).collect();
-        let lights =
-            scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.counts).zip(output.maps));
-        let lights = lights.map(|((light, planned), ((shadow, count), faces))| CapturedLight {
+        let lights = scene.lights.iter().zip(&plan.lights).zip(output.of_lights.into_iter().zip(output.maps));
+        let lights = lights.map(|((light, planned), (of_light, faces))| CapturedLight {
             position: light.position,
             decided_by: planned.decided_by,
             count_of: planned.count_of,
-            shadow,
-            count,
+            shadow: of_light.labels,
+            count: of_light.count,
+            visibility: of_light.visibility,
             map: faces.zip(planned.map.as_ref()).map(|(faces, map)| CapturedMap {
                 faces,
                 layer_names: map.layer_names.clone(),

@@ -2,8 +2,8 @@
 
 use super::SessionError;
 use super::truth::TracedScene;
-use crate::accuracy::{self, ErrorCounts};
-use crate::capture::Image;
+use crate::accuracy::{self, ErrorCounts, VisibilityError};
+use crate::capture::{Image, LightTargets};
 use crate::geometry::GeometryCache;
 use crate::gpu::{Executor, Prepared};
 use crate::scene::Scene;
@@ -21,6 +21,8 @@ pub(super) struct ReferencePictures<'a> {
 pub(super) struct FrameError {
     /// Errors of labels, summed over lights.
     pub labels: ErrorCounts,
+    /// How far the visibility of all lights together is from the truth's; `None` where the technique knows no shares.
+    pub visibility: Option<VisibilityError>,
     /// Pixels of another colour than the reference picture's.
     pub wrong_color: u64,
 }
@@ -41,13 +43,21 @@ impl<'a> ReferencePictures<'a> {
     ) -> Result<FrameError, SessionError> {
         let answer = executor.answer(ready)?;
         let right = self.picture(executor, choice)?;
-        let labels = answer.labels.iter().enumerate();
-        let judged = labels.filter_map(|(light, labels)| Some(self.traced.compare(light, labels.as_ref()?)));
+        let of_lights = || answer.of_lights.iter().enumerate();
+        let judged = of_lights().filter_map(|(light, of)| Some(self.traced.compare(light, of.labels.as_ref()?)));
         let (counts, findings): (Vec<_>, Vec<_>) = judged.map(|one| (one.counts, one.findings)).unzip();
         let [picture, right] = [&answer.picture, &right].map(|image| image.rows().collect::<Vec<&[u8]>>());
         let TracedScene { tracer, truth, .. } = self.traced;
         let wrong_color = accuracy::wrong_colors(tracer, truth, &findings, &picture, &right);
-        Ok(FrameError { labels: counts.into_iter().sum(), wrong_color })
+        let of_light = |(light, of): (usize, &LightTargets)| {
+            Some(VisibilityError::of(&truth.labels[light], &of.visibility.as_ref()?.values()))
+        };
+        let visibility: Vec<VisibilityError> = of_lights().filter_map(of_light).collect();
+        Ok(FrameError {
+            labels: counts.into_iter().sum(),
+            visibility: VisibilityError::of_all(visibility),
+            wrong_color,
+        })
     }
 
     /// Returns the scene lit by the truth's labels, in the shading of `choice`; cached for choices with the same

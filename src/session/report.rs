@@ -26,6 +26,7 @@ pub fn report_rows(
             error: one.error,
             wrong_fraction: 0.0,
             wrong_color: Some(one.wrong_color),
+            visibility_error: one.visibility,
             frame_ms: FrameTimes {
                 median: median_ms(&one.frames).unwrap_or(f64::NAN),
                 min: frames.iter().copied().fold(f64::NAN, f64::min),

@@ -1,11 +1,11 @@
 //! The ground truth of a scene, cached while nothing that it depends on changes.
 
 use super::{Session, SessionError};
-use crate::accuracy::{self, Accuracy};
-use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat};
+use crate::accuracy::{self, Accuracy, VisibilityError};
+use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat, VisibilityTruth};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
-use crate::truth::{Tracer, Truth};
+use crate::truth::{LIT, Tracer, Truth};
 use glam::DVec4;
 use std::sync::Arc;
 use std::thread;
@@ -70,8 +70,10 @@ impl Session {
             lights.push(light.shadow.as_ref().map(|shadow| {
                 let Accuracy { counts, findings, worst } = traced.compare(index, shadow);
                 let image = |bytes: Vec<u8>| Arc::new(Image::packed(PixelFormat::U8, size, bytes));
-                let labels = image(traced.truth.labels[index].clone());
-                CapturedTruth { labels, findings: image(findings), error: counts, worst }
+                let truth = &traced.truth.labels[index];
+                let visibility = light.visibility.as_ref().map(|visibility| visibility_truth(truth, visibility));
+                let labels = image(truth.clone());
+                CapturedTruth { labels, findings: image(findings), error: counts, worst, visibility }
             }));
         }
         // Where eight bits read a count of 256 as none, the truth alone would not explain it.
@@ -185,6 +187,16 @@ pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCos
         cost.rays = Tracer::rays(&truth);
     }
     Ok(cost)
+}
+
+/// Returns the true visibility for the truth's labels of a light, and how far a technique's is from it.
+fn visibility_truth(labels: &[u8], visibility: &Image) -> VisibilityTruth {
+    let share = |label: &u8| f32::from(u8::from(*label == LIT)).to_le_bytes();
+    let bytes: Vec<u8> = labels.iter().flat_map(share).collect();
+    VisibilityTruth {
+        image: Arc::new(Image::packed(PixelFormat::Value32F, visibility.size(), bytes)),
+        error: VisibilityError::of(labels, &visibility.values()),
+    }
 }
 
 impl TracedScene {

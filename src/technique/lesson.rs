@@ -50,6 +50,8 @@ pub(super) mod cited {
     );
     /// Blinn 1988, on planar shadows.
     pub const BLINN: Citation = source("Blinn", 1988, "Me and My (Fake) Shadow");
+    /// Brabec, Annen and Seidel 2002, on maps fitted to what the camera sees.
+    pub const BRABEC: Citation = source("Brabec, Annen and Seidel", 2002, "Practical Shadow Mapping");
     /// Brennan 2002, on shadow volumes that a vertex shader extrudes.
     pub const BRENNAN: Citation = source("Brennan", 2002, "Shadow Volume Extrusion using a Vertex Shader");
     /// Carmack 2000, on counting behind the surface.
@@ -111,6 +113,10 @@ pub(super) mod cited {
     /// Shewchuk 1997, on exact signs of geometric predicates.
     pub const SHEWCHUK: Citation =
         source("Shewchuk", 1997, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates");
+    /// Thorne 2005, on worlds whose origin is the eye.
+    pub const THORNE: Citation = source("Thorne", 2005, "Using a Floating Origin to Improve Fidelity and Performance");
+    /// Valient 2008, on maps that move by whole texels.
+    pub const VALIENT: Citation = source("Valient", 2008, "Stable Rendering of Cascaded Shadow Maps");
     /// Wang and Molnar 1994, on shadow maps of back faces.
     pub const WANG_MOLNAR: Citation = source("Wang and Molnar", 1994, "Second-Depth Shadow Mapping");
     /// Whitted 1980, on ray tracing.

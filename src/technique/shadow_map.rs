@@ -11,7 +11,7 @@ use super::description::{ComparisonRole, TechniqueDescription};
 use super::frame::{FrameBuilder, PlanRequest, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::settings::MapSettings;
-use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
+use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapCover, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
@@ -104,7 +104,9 @@ fn add_map(frame: &mut FrameBuilder, light: LightId, settings: &MapSettings) {
     let indices = darkening_casters(frame, light);
     let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
     let storage = MapStorage { size, depth: frame.common.depth, epsilon: frame.common.epsilon };
-    let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), &storage) else {
+    let all = triangles.concat();
+    let cover = MapCover { casters: &all, view: frame.view_corners(), frustum: settings.frustum };
+    let Some(light_frame) = light_frame::fit(&cover, frame.light_position(light), &storage) else {
         frame.leave_out(Decision::Map, light.name(), "nothing casts a shadow on anything");
         return;
     };

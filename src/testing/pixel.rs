@@ -109,7 +109,7 @@ impl Pixel<'_> {
     pub fn count(&self, light: usize, expected: f32) -> &Self {
         let count = self.capture.lights.get(light).and_then(|light| light.count.as_ref());
         let name = numbers::light(light);
-        match count.and_then(|count| count.count_at(self.history.pixel)) {
+        match count.and_then(|count| count.value_at(self.history.pixel)) {
             Some(found) if found == expected => self,
             Some(found) => {
                 let [found, expected] = [found, expected].map(numbers::count_in_float);

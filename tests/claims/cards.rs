@@ -116,7 +116,7 @@ impl Here<'_> {
             self.frame.capture.lights[self.light()]
                 .count
                 .as_ref()
-                .and_then(|count| count.count_at(at))
+                .and_then(|count| count.value_at(at))
                 .expect("a count")
         } else {
             self.frame.stencil(Some(self.step), at).expect("a stencil").into()

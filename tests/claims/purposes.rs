@@ -331,6 +331,19 @@ const PURPOSES: &[(&str, Check)] = &[
         },
     ),
     (
+        "Writes which share of the light arrives at every pixel, from 0 (dark) to 1 (lit): between them lie soft edges, and what a filter mixes in. It is not part of the frame; by it the error of partly dark pixels is counted, too.",
+        |frame, pass, _| {
+            let arriving = |draw: &Draw| match draw.program {
+                Program::Arriving(how) => {
+                    let light = pass.light.and_then(|light| frame.plan.lights.get(light.0));
+                    how == Visibility::Everywhere || light.is_some_and(|light| light.knows_shares(how))
+                }
+                _ => false,
+            };
+            !pass.timed && pass.draws.iter().all(arriving)
+        },
+    ),
+    (
         "Adds the light where the count is zero, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
         |_, pass, _| tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere),
     ),

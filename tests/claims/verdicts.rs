@@ -33,7 +33,7 @@ impl Here<'_> {
     fn count(&self) -> f64 {
         let light = &self.frame.capture.lights[self.light];
         if self.decided_by().counts_in_floats() {
-            return light.count.as_ref().and_then(|count| count.count_at(self.at)).expect("a count").into();
+            return light.count.as_ref().and_then(|count| count.value_at(self.at)).expect("a count").into();
         }
         self.frame.stencil(Some(self.last_volume_pass()), self.at).expect("a stencil").into()
     }
@@ -192,7 +192,7 @@ impl Here<'_> {
             let ends_right = tested.begins_elsewhere || self.turns() % 2 == usize::from(is_dark);
             inverts && ends_right && self.count() == f64::from(u8::from(is_dark))
         };
-        let stored = self.frame.capture.lights[self.light].count.as_ref().and_then(|count| count.count_at(self.at));
+        let stored = self.frame.capture.lights[self.light].count.as_ref().and_then(|count| count.value_at(self.at));
         let reads_zero = |count: f32| match tested.count {
             VolumeCount::Stencil(_) => self.count() == 0.0 && stored == Some(count),
             VolumeCount::Float(_) => self.count() == f64::from(count) && self.count() % 256.0 == 0.0,

@@ -25,6 +25,7 @@ fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wro
         },
         wrong_fraction: 0.0,
         wrong_color: Some(wrong + wrong / 8),
+        visibility_error: None,
         frame_ms: FrameTimes { median: ms, min: ms * (1.0 - spread), max: ms * (1.0 + 2.5 * spread), runs: 15 },
         gpu_ms: Some(ms * 0.93),
         moving: None,

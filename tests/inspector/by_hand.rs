@@ -95,6 +95,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
             decided_by: DecidedBy::StencilCount { side: CountedSide::Behind },
             shadow: Some(labels),
             count: None,
+            visibility: None,
             map: None,
             truth: None,
         }],
@@ -127,7 +128,7 @@ pub fn with_truth(mut capture: Capture) -> Capture {
     let error =
         ErrorCounts { compared: 1170, false_shadow: 40, missing_shadow: 1, edge_band: 20, ..ErrorCounts::default() };
     let worst = WrongRegion { pixels: 40, kind: Finding::FalseShadow, bounds: [18, 0, 19, 19], at: [18, 0] };
-    capture.lights[0].truth = Some(CapturedTruth { labels, findings, error, worst: Some(worst) });
+    capture.lights[0].truth = Some(CapturedTruth { labels, findings, error, worst: Some(worst), visibility: None });
     capture
 }
 
@@ -230,7 +231,7 @@ pub fn counted_in_floats() -> Capture {
     let mut capture = z_fail(SIZE);
     capture.settings.insert("counter".to_owned(), "float".to_owned());
     capture.lights[0].decided_by = DecidedBy::FloatCount { side: CountedSide::Behind };
-    let count = image_of(PixelFormat::Count32F, SIZE, |x, y| {
+    let count = image_of(PixelFormat::Value32F, SIZE, |x, y| {
         let count = match (x, y) {
             (0, 0) => -1.0,
             (1, 0) => 256.0,

@@ -56,7 +56,7 @@ fn of_many_counts_the_legend_lists_those_of_the_most_pixels() {
     // A pixel each of 2 to 41 in the first row, and 500 everywhere else.
     let texels = (0..40 * 30).map(|index| if index < 40 { index as f32 + 2.0 } else { 500.0_f32 });
     let bytes: Vec<u8> = texels.flat_map(f32::to_le_bytes).collect();
-    capture.lights[0].count = Some(Arc::new(Image::packed(PixelFormat::Count32F, SIZE, bytes)));
+    capture.lights[0].count = Some(Arc::new(Image::packed(PixelFormat::Value32F, SIZE, bytes)));
     let mut harness = harness(capture);
     click_button(&mut harness, "Count");
     harness.get_by_label("500");

@@ -5,14 +5,12 @@
 //! file of its own, unless it is the map's last state.
 
 use super::super::manifest::{DrawStateEntry, StateFiles};
-use super::super::{Aspect, Capture, CapturedLight, DrawState, DrawSummary, FrameTarget, PixelFormat, Snapshot, Step};
+use super::super::{Aspect, Capture, CapturedLight, DrawState, DrawSummary, PixelFormat, Snapshot, Step};
 use super::reader::FolderReader;
-use super::{CaptureError, MANIFEST, WrittenImages, count_file, frame_files, map_files, shadow_file};
+use super::{CaptureError, MANIFEST, WrittenImages, frame_files, map_files, target_file};
 use std::path::Path;
 use std::sync::Arc;
 
-const LABELS: &str = "labels";
-const COUNT: &str = "count";
 const MAP: &str = "map";
 const TEXTURES: &str = "textures";
 
@@ -61,19 +59,15 @@ fn state_files(
         Some(file) => Ok(file),
         None => written.write(folder, format!("{stem}.{name}.npy"), &target.image),
     };
-    let is_it = |image: &Option<Arc<_>>| image.as_ref().is_some_and(|image| Arc::ptr_eq(image, &target.image));
     match &state.snapshot {
         Snapshot::Frame(frame) => {
             let light = step.light.and_then(|index| Some((index, capture.lights.get(index)?)));
-            if frame.target == FrameTarget::Count {
-                let final_file = light.filter(|(_, light)| is_it(&light.count)).map(|(index, _)| count_file(index));
-                files.count = Some(write(COUNT, final_file)?);
-                unchanged(&mut files, COUNT);
-            } else {
-                let final_file = light.filter(|(_, light)| is_it(&light.shadow)).map(|(index, _)| shadow_file(index));
-                files.labels = Some(write(LABELS, final_file)?);
-                unchanged(&mut files, LABELS);
-            }
+            let is_last = |(_, light): &(usize, &CapturedLight)| {
+                light.target(frame.target).is_some_and(|image| Arc::ptr_eq(image, &target.image))
+            };
+            let final_file = light.filter(is_last).and_then(|(index, _)| target_file(index, frame.target));
+            files = files.with_target(frame.target, write(frame.target.name(), final_file)?);
+            unchanged(&mut files, frame.target.name());
         }
         Snapshot::Map { light, face } => {
             let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
@@ -124,16 +118,10 @@ impl FolderReader<'_> {
                 if frame.target != step.target || frame.stencil.is_some() != step.stencil.is_some() {
                     return Err(self.wrong(MANIFEST, "a draw left other pictures than its pass"));
                 }
-                let target = match frame.target {
-                    FrameTarget::Picture => None,
-                    FrameTarget::Labels => Some((LABELS, &files.labels, PixelFormat::U8)),
-                    FrameTarget::Count => Some((COUNT, &files.count, PixelFormat::Count32F)),
-                };
-                let target = target.and_then(|(name, file, format)| Some((name, file.as_ref()?, format)));
-                let target = target.map(|(name, file, format)| {
+                let target = files.of_target(frame.target).map(|file| {
                     Ok::<_, CaptureError>(Aspect {
-                        image: self.image(file, format)?,
-                        unchanged: is_unchanged(files, name),
+                        image: self.image(file, frame.target.format())?,
+                        unchanged: is_unchanged(files, frame.target.name()),
                     })
                 });
                 (Snapshot::Frame(frame), target.transpose()?)

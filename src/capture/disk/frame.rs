@@ -340,7 +340,8 @@ fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
                 && map.faces.len() <= plan.attachments[map.attachment.0].layers as usize
                 && map.faces.iter().flatten().all(|view| view.0 < plan.views.len())
         });
-        map && has_attachment(light.labels) && light.count.is_none_or(has_attachment)
+        let others = [light.count, light.visibility];
+        map && has_attachment(light.labels) && others.into_iter().flatten().all(has_attachment)
     };
     let is_sized = |attachment: &Attachment| {
         let is_side = |side: &u32| (1..=files::LARGEST).contains(side);
@@ -349,7 +350,10 @@ fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
     };
     let of_light = |role: AttachmentRole| match role {
         AttachmentRole::Color | AttachmentRole::DepthStencil => None,
-        AttachmentRole::Map(light) | AttachmentRole::Count(light) | AttachmentRole::Labels(light) => Some(light),
+        AttachmentRole::Map(light)
+        | AttachmentRole::Count(light)
+        | AttachmentRole::Labels(light)
+        | AttachmentRole::Visibility(light) => Some(light),
     };
     let steps = (plan.passes.len(), plan.lights.len(), plan.size);
     let texels = |pass: &crate::plan::Pass| {

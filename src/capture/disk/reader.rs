@@ -3,7 +3,7 @@
 use super::super::manifest::{self, LightEntry, Manifest, PassEntry, StateFiles};
 use super::super::{
     Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, FrameTarget, Image, PixelFormat,
-    Snapshot, Step, files,
+    Snapshot, Step, VisibilityTruth, files,
 };
 use super::{CaptureError, MANIFEST, PLAN, SCENE, WholeFrame, frame};
 use crate::accuracy::WrongRegion;
@@ -75,11 +75,8 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
         }
         Snapshot::Frame(frame) => {
             let own = step.light.and_then(light);
-            let is_there = match frame.target {
-                FrameTarget::Picture => true,
-                FrameTarget::Labels => own.is_some_and(|light| light.shadow.is_some()),
-                FrameTarget::Count => own.is_some_and(|light| light.count.is_some()),
-            };
+            let is_there =
+                frame.target == FrameTarget::Picture || own.and_then(|light| light.target(frame.target)).is_some();
             step.light.is_none_or(|index| light(index).is_some()) && is_there
         }
     };
@@ -176,12 +173,7 @@ impl FolderReader<'_> {
         let depth = aspect("depth", &files.depth, PixelFormat::Depth32F)?;
         let has_stencil = files.stencil.is_some();
         let stencil = has_stencil.then(|| aspect("stencil", &files.stencil, PixelFormat::U8)).transpose()?;
-        let target = match (&files.labels, &files.count) {
-            (Some(_), _) => FrameTarget::Labels,
-            (None, Some(_)) => FrameTarget::Count,
-            (None, None) => FrameTarget::Picture,
-        };
-        Ok(FrameSnapshot { color, depth, stencil, target })
+        Ok(FrameSnapshot { color, depth, stencil, target: files.target() })
     }
 
     fn truth(&mut self, entry: &LightEntry) -> Result<Option<CapturedTruth>, CaptureError> {
@@ -200,13 +192,23 @@ impl FolderReader<'_> {
             findings: self.image(findings, PixelFormat::U8)?,
             error,
             worst: entry.worst_region,
+            visibility: match (&entry.truth_visibility, entry.visibility_error) {
+                (Some(file), Some(error)) => {
+                    Some(VisibilityTruth { image: self.image(file, PixelFormat::Value32F)?, error })
+                }
+                _ => None,
+            },
         }))
     }
 
     fn light(&mut self, entry: &LightEntry, technique: &str) -> Result<CapturedLight, CaptureError> {
         let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
-        let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
-        let count = entry.count.as_ref().map(|file| self.image(file, PixelFormat::Count32F)).transpose()?;
+        let mut target = |file: &Option<String>, target: FrameTarget| {
+            file.as_ref().map(|file| self.image(file, target.format())).transpose()
+        };
+        let shadow = target(&entry.shadow, FrameTarget::Labels)?;
+        let count = target(&entry.count, FrameTarget::Count)?;
+        let visibility = target(&entry.visibility, FrameTarget::Visibility)?;
         let map = match (entry.map.as_ref().or(entry.textures.as_ref()), &entry.matrices) {
             (Some(file), Some(matrices)) => {
                 let faces = files::read_layers(&self.path(file)?)?;
@@ -229,6 +231,7 @@ impl FolderReader<'_> {
             count_of: entry.count_of,
             shadow,
             count,
+            visibility,
             map,
             truth: self.truth(entry)?,
         })

@@ -1,10 +1,10 @@
 //! Capture folders of a hand-made capture: padded rows, shared aspects, a cube, a sun; no GPU.
 
 use super::*;
-use crate::accuracy::{ErrorCounts, Finding, WrongRegion};
+use crate::accuracy::{ErrorCounts, Finding, VisibilityError, WrongRegion};
 use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
-    PixelFormat, Snapshot, Step, Timing,
+    PixelFormat, Snapshot, Step, Timing, VisibilityTruth,
 };
 use crate::math::depth::DepthMapping;
 use crate::plan::{CountedSide, DecidedBy, Decision, DrawPart, LeftOut};
@@ -82,6 +82,7 @@ fn example() -> Capture {
         count_of: None,
         shadow: None,
         count: None,
+        visibility: None,
         map,
         truth: None,
     };
@@ -91,6 +92,10 @@ fn example() -> Capture {
         findings: padded(PixelFormat::U8, 2),
         error: ErrorCounts { compared: 11, false_shadow: 1, missing_shadow: 2, wrong_surface: 3, edge_band: 4 },
         worst: Some(WrongRegion { pixels: 2, kind: Finding::MissingShadow, bounds: [1, 0, 4, 2], at: [1, 2] }),
+        visibility: Some(VisibilityTruth {
+            image: padded(PixelFormat::Value32F, 4),
+            error: VisibilityError { compared: 11, darkened: 0.25, lightened: 0.125, partly_dark: 3, partly_lit: 2 },
+        }),
     };
     Capture {
         scene: "bunny \"on\" a floor".into(),
@@ -108,12 +113,17 @@ fn example() -> Capture {
             step("no stencil", Some(1), frame(None, true, FrameTarget::Picture)),
             step("texture 1", Some(2), Snapshot::Map { light: 2, face: 1 }),
             step("counts", Some(2), frame(None, true, FrameTarget::Count)),
+            step("visibility", Some(0), frame(Some(aspect(&stencil, true)), true, FrameTarget::Visibility)),
         ],
         lights: vec![
-            CapturedLight { truth: Some(truth), ..lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube)) },
+            CapturedLight {
+                truth: Some(truth),
+                visibility: Some(padded(PixelFormat::Value32F, 5)),
+                ..lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube))
+            },
             lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None),
             CapturedLight {
-                count: Some(padded(PixelFormat::Count32F, 7)),
+                count: Some(padded(PixelFormat::Value32F, 7)),
                 ..unlit(DVec4::new(0.5, 0.0, 0.0, 1.0), Some(textures))
             },
         ],
@@ -191,7 +201,9 @@ fn the_folder_is_laid_out_as_promised() {
         "light0.error.npy",
         "light0.map.npy",
         "light0.shadow.npy",
+        "light0.truth-visibility.npy",
         "light0.truth.npy",
+        "light0.visibility.npy",
         "light1.shadow.npy",
         "light2.count.npy",
         "light2.textures.npy",
@@ -216,6 +228,7 @@ fn the_folder_is_laid_out_as_promised() {
     assert!(passes[4].get("stencil").is_none());
     assert_eq!((&passes[5]["textures"], &passes[5]["texture_layer"]), (&"light2.textures.npy".into(), &1.into()));
     assert_eq!(passes[6]["count"], "light2.count.npy");
+    assert_eq!(passes[7]["visibility"], "light0.visibility.npy");
     assert_eq!(manifest["lights"][1]["kind"], "directional");
     assert_eq!(manifest["lights"][1]["towards"], serde_json::json!([0.0, 1.0, 0.0]));
     assert_eq!(manifest["lights"][0]["matrices"]["light_from_world"][0][3], 0.1);
@@ -225,6 +238,12 @@ fn the_folder_is_laid_out_as_promised() {
         {"compared": 11, "false_shadow": 1, "missing_shadow": 2, "wrong_surface": 3, "edge_band": 4}
     );
     assert_eq!(light["error"], error);
+    let visibilities = ["light0.visibility.npy", "light0.truth-visibility.npy"];
+    assert_eq!([&light["visibility"], &light["truth_visibility"]], visibilities);
+    let error = serde_json::json!(
+        {"compared": 11, "darkened": 0.25, "lightened": 0.125, "partly_dark": 3, "partly_lit": 2}
+    );
+    assert_eq!(light["visibility_error"], error);
     assert_eq!(light["worst_region"]["box"], serde_json::json!([1, 0, 4, 2]));
     assert!(manifest["lights"][1].get("error").is_none() && manifest["lights"][1].get("truth").is_none());
     assert!(manifest["lights"][2].get("shadow").is_none());

@@ -33,6 +33,8 @@ pub enum Coloring {
     Stencil,
     /// Signed counts in floats.
     Count,
+    /// Which share of a light arrives, as floats from 0 to 1.
+    Visibility,
     /// Labels of a light.
     Labels,
     /// Findings of an error picture.
@@ -64,6 +66,7 @@ impl Coloring {
             PictureKind::Stencil => Coloring::Stencil,
             PictureKind::Count => Coloring::Count,
             PictureKind::Mask | PictureKind::Truth => Coloring::Labels,
+            PictureKind::Visibility => Coloring::Visibility,
             PictureKind::Error => Coloring::Findings,
             PictureKind::Overdraw => Coloring::Overdraw,
             PictureKind::Map if shown.is_let_through() => Coloring::Linear,
@@ -87,7 +90,8 @@ impl Coloring {
             Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
             Coloring::Linear => image.rgba_at(at).map(linear),
             Coloring::Stencil => image.byte_at(at).map(palette::stencil),
-            Coloring::Count => image.count_at(at).map(palette::count),
+            Coloring::Count => image.value_at(at).map(palette::count),
+            Coloring::Visibility => image.value_at(at).map(visibility),
             Coloring::Labels => image.byte_at(at).map(palette::label),
             Coloring::Findings => image.byte_at(at).map(findings::color),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| self::depth(scale, depth)),
@@ -96,7 +100,7 @@ impl Coloring {
             Coloring::Receivers => image.byte_at(at).map(palette::receiver),
             Coloring::Overdraw => image.byte_at(at).map(palette::overdraw),
             Coloring::CountChange => image.byte_at(at).map(|by| count_color(by as i8)),
-            Coloring::DepthChange => image.count_at(at).map(depth_color),
+            Coloring::DepthChange => image.value_at(at).map(depth_color),
             Coloring::ColorChange => image.rgba_at(at).map(changed),
         }
     }
@@ -110,7 +114,8 @@ impl Coloring {
             Coloring::Stencil | Coloring::Labels | Coloring::Findings => {
                 image.byte_at(at).map(|value| value.to_string())
             }
-            Coloring::Count => image.count_at(at).map(numbers::count_in_float),
+            Coloring::Count => image.value_at(at).map(numbers::count_in_float),
+            Coloring::Visibility => image.value_at(at).map(|share| fitted(share.into(), columns)),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
                 Some(value) => fitted(value, columns),
                 None => "∞".to_owned(),
@@ -119,7 +124,7 @@ impl Coloring {
             Coloring::Overdraw => image.byte_at(at).map(|value| value.to_string()),
             Coloring::Outcomes | Coloring::Receivers => None,
             Coloring::CountChange => image.byte_at(at).and_then(|by| change::signed(by as i8)),
-            Coloring::DepthChange => image.count_at(at).filter(|by| *by != 0.0).map(|by| {
+            Coloring::DepthChange => image.value_at(at).filter(|by| *by != 0.0).map(|by| {
                 let sign = if by < 0.0 { '−' } else { '+' };
                 let size = f64::from(by.abs());
                 if size.is_finite() {
@@ -154,6 +159,11 @@ pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
 /// Returns the screen colour of a share of light in linear bytes.
 pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
     palette::opaque(colors::linear([r, g, b]))
+}
+
+/// Returns the grey of a share of light: 0 black, 1 white.
+pub fn visibility(share: f32) -> Color32 {
+    palette::opaque(colors::visibility(share))
 }
 
 /// Returns the colour of a count that went up (orange) or down (blue): deep for a change of one, lighter the larger it

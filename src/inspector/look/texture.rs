@@ -4,7 +4,7 @@
 //! frame. Images are distinguished by their `Arc`, which the cache keeps alive, so that a new image can't be taken for
 //! an old one at the same address.
 
-use crate::capture::Image;
+use crate::capture::{Image, PixelFormat};
 use crate::inspector::look::coloring::{self, Coloring};
 use crate::inspector::look::findings;
 use crate::inspector::look::palette;
@@ -171,7 +171,7 @@ impl PictureCache {
     }
 
     /// Returns how many texels of a colour picture let all light through (white), none (black), or a part (any other
-    /// colour); alpha is ignored; cached.
+    /// colour), alpha ignored; of a picture of floats, how many are 1, 0 and between; cached.
     pub fn shares(&mut self, image: &Arc<Image>) -> LightShares {
         if let Some((_, shares)) = self.shares.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
             return *shares;
@@ -255,6 +255,9 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
             Coloring::Count => {
                 pixels.extend(texels(row, 4, step).map(|t| palette::count(bytemuck::pod_read_unaligned(t))));
             }
+            Coloring::Visibility => {
+                pixels.extend(texels(row, 4, step).map(|t| coloring::visibility(bytemuck::pod_read_unaligned(t))));
+            }
             Coloring::Stencil => pixels.extend(row.iter().step_by(step).map(|value| palette::stencil(*value))),
             Coloring::Labels => pixels.extend(row.iter().step_by(step).map(|value| palette::label(*value))),
             Coloring::Findings => pixels.extend(row.iter().step_by(step).map(|value| findings::color(*value))),
@@ -333,9 +336,14 @@ fn shares_of(image: &Image) -> LightShares {
     let mut shares = LightShares::default();
     for row in image.rows() {
         for texel in row.chunks_exact(4) {
-            match texel[..3] {
-                [255, 255, 255] => shares.all += 1,
-                [0, 0, 0] => shares.none += 1,
+            let [least, most] = match image.format() {
+                PixelFormat::Value32F => [bytemuck::pod_read_unaligned(texel); 2],
+                _ => [texel[..3].iter().min(), texel[..3].iter().max()]
+                    .map(|byte| f32::from(*byte.unwrap_or(&0)) / 255.0),
+            };
+            match [least >= 1.0, most <= 0.0] {
+                [true, _] => shares.all += 1,
+                [_, true] => shares.none += 1,
                 _ => shares.part += 1,
             }
         }
@@ -350,7 +358,6 @@ fn texels(row: &[u8], bytes: usize, step: usize) -> impl Iterator<Item = &[u8]> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::capture::PixelFormat;
 
     #[test]
     fn stencil_values_take_their_palette_colours_row_by_row() {

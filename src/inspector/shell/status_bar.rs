@@ -65,7 +65,7 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
     if let Some(stencil) = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)) {
         ui.label(theme::number(format!("stencil {}", numbers::signed(stencil))));
     }
-    if let Some(count) = model.counts_to_show(capture).and_then(|(_, image)| image.count_at(at)) {
+    if let Some(count) = model.counts_to_show(capture).and_then(|(_, image)| image.value_at(at)) {
         ui.label(theme::number(format!("count {}", numbers::count_in_float(count))));
     }
 }

@@ -96,8 +96,7 @@ fn floor_under(model: &SceneBounds) -> Result<Object, SceneError> {
     let DVec3 { x, z, .. } = if model.surrounds_origin() { DVec3::ZERO } else { model.middle() };
     let half = FLOOR_REACH * model.extent();
     let y = model.lowest() - FLOOR_GAP * model.extent();
-    let corners =
-        [[x - half, y, z + half], [x + half, y, z + half], [x + half, y, z - half], [x - half, y, z - half]];
+    let corners = [[x - half, y, z + half], [x + half, y, z + half], [x + half, y, z - half], [x - half, y, z - half]];
     let builder = MeshBuilder {
         positions: corners.map(DVec3::from_array).to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],

@@ -170,9 +170,16 @@ impl FrameBuilder<'_> {
 
     /// Adds the pass that writes each pixel's label of the light (lit or in shadow) for measuring accuracy; later
     /// layers overwrite earlier ones. Draws and triangles run in reverse, so that of surfaces at one depth the first
-    /// drawn decides here too.
+    /// drawn decides here too. Where the shader may find a share of the light between none and all, its visibility pass
+    /// follows.
     pub fn mask_pass(&mut self, light: LightId, layers: &[SurfaceDrawing]) {
         self.mask_pass_with(light, layers, Vec::new());
+        let knows_shares = |layer: &SurfaceDrawing| {
+            layer.program.visibility().is_some_and(|how| self.plan.lights[light.0].knows_shares(how))
+        };
+        if layers.iter().any(knows_shares) {
+            self.visibility_pass(light);
+        }
     }
 
     /// Adds a mask pass ([`FrameBuilder::mask_pass`]) with the draws `over` after its surfaces. Objects that receive
@@ -206,6 +213,41 @@ impl FrameBuilder<'_> {
                 layer: 0,
                 clear: Some([BACKGROUND_LABEL.into(), 0.0, 0.0, 0.0]),
             }),
+            depth_stencil: Some(self.depth_stencil_of(light)),
+            draws,
+        });
+    }
+
+    /// Adds the pass that writes which share of the light arrives at each pixel, with the draws of the mask pass before
+    /// it.
+    fn visibility_pass(&mut self, light: LightId) {
+        let Some(mask) = self.plan.passes.last() else { return };
+        let arriving = |draw: &Draw| match draw.program {
+            Program::Label(how) => Draw { program: Program::Arriving(how), ..draw.clone() },
+            _ => draw.clone(),
+        };
+        let draws = mask.draws.iter().map(arriving).collect();
+        let attachment = self.add_attachment(Attachment {
+            name: format!("{} visibility", light.name()),
+            role: AttachmentRole::Visibility(light),
+            format: TextureFormat::R32Float,
+            size: self.job.size,
+            layers: 1,
+        });
+        self.plan.lights[light.0].visibility = Some(attachment);
+        let purpose = "Writes which share of the light arrives at every pixel, from 0 (dark) to 1 (lit): between them lie \
+                       soft edges, and what a filter mixes in. It is not part of the frame; by it the error of \
+                       partly dark pixels is counted, too.";
+        self.plan.passes.push(Pass {
+            name: "visibility".to_owned(),
+            image: None,
+            recorded: None,
+            scissor: None,
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: false,
+            view: ViewId(0),
+            color: Some(ColorTarget { attachment, layer: 0, clear: Some([0.0; 4]) }),
             depth_stencil: Some(self.depth_stencil_of(light)),
             draws,
         });

@@ -5,8 +5,9 @@ use crate::geometry::{ViewVolume, relative};
 use crate::math::depth::DepthCurve;
 use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, MeshId, PlanLight, PlanView};
 use crate::scene::{Material, MeshGroup, Object, Scene, Unsupported};
+use crate::technique::plan::single;
 use crate::technique::{PlanError, outside, surfaces};
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 use wgpu::TextureFormat;
 
 /// The largest coordinate relative to the eye, metres: beyond it, products of single-precision coordinates overflow.
@@ -62,6 +63,7 @@ impl FrameBuilder<'_> {
                 map: None,
                 count: None,
                 labels,
+                visibility: None,
             });
         }
         Ok(())
@@ -71,7 +73,10 @@ impl FrameBuilder<'_> {
         let scene = self.job.scene;
         self.name_not_taken(Decision::SceneFile, &scene.name, &scene.not_taken);
         for object in &self.job.scene.objects {
-            let world = object.world_positions();
+            let mut world = object.world_positions();
+            if self.common.rounds_world {
+                world.iter_mut().for_each(|position| *position = single(*position));
+            }
             let is_usable = |position: &DVec3| (*position - self.eye()).abs().max_element() <= MOST_DISTANCE;
             if !world.iter().all(is_usable) {
                 let problem = format!("{} is too large or too far from the eye for single precision", object.name);
@@ -139,6 +144,23 @@ impl FrameBuilder<'_> {
                 self.common.depth.linear_curve(camera.near, camera.near + (end - camera.near) * FAR_MARGIN)
             }
         }
+    }
+
+    /// Returns the corners of what the camera sees, world space: those of the near rectangle, then those of a rectangle
+    /// behind all that is drawn, or at the camera's far plane where it has one.
+    pub fn view_corners(&self) -> [DVec3; 8] {
+        let camera = &self.job.scene.camera;
+        let [width, height] = self.job.size.map(f64::from);
+        let rays = camera.rays(width / height);
+        let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
+        let farthest =
+            drawn.map(|position| (*position - camera.eye).dot(rays.axis())).fold(camera.near * 2.0, f64::max);
+        let distances = [camera.near, camera.far.unwrap_or(farthest)];
+        let corner = |index: usize| {
+            let at = DVec2::new(if index & 1 == 0 { -1.0 } else { 1.0 }, if index & 2 == 0 { -1.0 } else { 1.0 });
+            camera.eye + rays.through(at).at(distances[index / 4])
+        };
+        std::array::from_fn(corner)
     }
 
     /// Returns the placed objects that are drawn or cast, without those that lie wholly outside one plane of the view.

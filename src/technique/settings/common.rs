@@ -123,9 +123,25 @@ const OCCLUSION: WordSetting<bool> = words(
         sources: &[cited::BITTNER],
     },
 );
+const WORLD: WordSetting<bool> = words(
+    "world",
+    &["f64", "f32"],
+    &[false, true],
+    "the precision of world space: positions are rounded to single precision only relative to the eye, or before",
+    Lesson {
+        text: "With `f64`, positions are in double precision until the eye is subtracted, and a scene may lie anywhere. \
+             With `f32`, corners, lights and the eye are rounded to single precision in world space first, as engines do \
+             whose world is made of floats: far from the origin their grid is coarse, touching surfaces part, and cracks \
+             and steps show that move with the scene.",
+        formula: "the step of f32 at a coordinate x is 2^(floor(log2 |x|) - 23): 0.06 mm at 1 km, 4 mm at 35 km, 6 cm at 1 000 \
+             km",
+        sources: &[cited::THORNE],
+    },
+);
 /// Keys of the settings that change the brightness of lit surfaces.
 pub(in crate::technique) const SHADING_KEYS: [&str; 2] = [DIFFUSE.spec.key, SHADING.spec.key];
-const SPECS: [SettingSpec; 6] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec];
+const SPECS: [SettingSpec; 7] =
+    [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec, WORLD.spec];
 
 /// Returns the settings that every technique has, followed by a technique's `own`.
 pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
@@ -154,6 +170,8 @@ pub struct CommonSettings {
     pub shading: Option<Shading>,
     /// Whether a frame before this one finds by occlusion queries which draws show.
     pub asks_what_shows: bool,
+    /// Whether positions are rounded to single precision in world space, before the eye is subtracted.
+    pub rounds_world: bool,
     /// For each decision that may be forbidden, in the order of [`Decision::NAMES`], whether it is allowed.
     allowed: [bool; Decision::NAMES.len()],
 }
@@ -171,6 +189,7 @@ impl CommonSettings {
             wraps_diffuse: DIFFUSE.read(values),
             shading: SHADING.read(values),
             asks_what_shows: OCCLUSION.read(values),
+            rounds_world: WORLD.read(values),
             allowed,
         }
     }

@@ -48,6 +48,18 @@ pub enum SettingValues {
         /// Whether the number must be an integer.
         whole: bool,
     },
+    /// One of these words, or the numbers of a frustum, `FOV:NEAR:FAR`: a field of view above 0 and two distances, the
+    /// nearer one first and above 0.
+    WordOrFrustum(&'static [&'static str]),
+}
+
+/// Returns the three numbers of a frustum that a setting's value consists of, as [`SettingValues::WordOrFrustum`]
+/// describes them; `None` for any other text.
+pub(in crate::technique) fn frustum_numbers(value: &str) -> Option<[f64; 3]> {
+    let numbers: Vec<f64> = value.split(':').map(|number| number.parse().ok()).collect::<Option<_>>()?;
+    let [fov, near, far] = numbers.try_into().ok()?;
+    let is_usable = [fov, near, far].iter().all(|number| number.is_finite() && *number > 0.0) && near < far;
+    is_usable.then_some([fov, near, far])
 }
 
 impl SettingSpec {
@@ -175,6 +187,7 @@ impl SettingValues {
                 let fits = |n: f64| (low..=high).contains(&n) && (!whole || n.fract() == 0.0);
                 words.contains(&value) || number.is_some_and(fits)
             }
+            SettingValues::WordOrFrustum(words) => words.contains(&value) || frustum_numbers(value).is_some(),
         };
         if in_range { Ok(()) } else { Err(self.to_string()) }
     }
@@ -193,6 +206,12 @@ impl std::fmt::Display for SettingValues {
                 let number = if *whole { "a whole number" } else { "a number" };
                 write!(f, "choose {}, or {prefix} and {number} from {low} to {high}", words.join(", "))
             }
+            SettingValues::WordOrFrustum(words) => write!(
+                f,
+                "choose {}, or FOV:NEAR:FAR, a field of view in degrees (of a sun, a width in metres) and two distances in \
+                 metres, the nearer one first",
+                words.join(", ")
+            ),
         }
     }
 }

@@ -3,8 +3,10 @@
 use super::super::lesson::{Lesson, cited};
 use super::common::with_own;
 use super::face::{
-    NumberOrWordSetting, NumberSetting, SettingMap, SettingSpec, WordSetting, number, number_or, whole, words,
+    NumberOrWordSetting, NumberSetting, SettingMap, SettingSpec, SettingValues, WordSetting, frustum_numbers, number,
+    number_or, whole, words,
 };
+use crate::geometry::light_frame::LightFrustum;
 use wgpu::Face;
 
 /// The key of the setting for the number of texels along each side.
@@ -113,9 +115,28 @@ const FILTER: NumberOrWordSetting = number_or(
     },
 );
 
+const LIGHT_FRUSTUM: SettingSpec = SettingSpec {
+    key: "light-frustum",
+    values: SettingValues::WordOrFrustum(&["casters", "view", "view-snapped"]),
+    default: "casters",
+    meaning: "what a map covers: what casts, what the camera sees, or a frustum of given numbers",
+    lesson: Lesson {
+        text: "`casters` fits the map to all that casts: it stands still while the camera moves. `view` fits it to what the \
+             camera sees, as many engines do to spend their texels there: as the camera moves, edges of shadows crawl \
+             from texel to texel (the map swims). `view-snapped` has one size for all directions of the view and moves \
+             by whole texels, so that a sun's edges stand still; a lamp's map becomes a cube, which never moves. \
+             FOV:NEAR:FAR are an engine's own numbers, for a map that looks at the middle of what casts: what lies \
+             outside is in no shadow. For a sun, FOV is the map's width in metres, and the camera stands so that what \
+             casts is midway between NEAR and FAR.",
+        formula: "view-snapped: centre = t floor(centre / t) along the map's x and y, with the side t of a texel",
+        sources: &[cited::BRABEC, cited::VALIENT],
+    },
+};
+
 /// The settings of `shadow-map`, in the order in which they are shown.
-pub(super) const SHADOW_MAP: [SettingSpec; 14] = with_own([
+pub(super) const SHADOW_MAP: [SettingSpec; 16] = with_own([
     MAP_SIZE.spec,
+    LIGHT_FRUSTUM,
     CONSTANT.spec,
     SLOPE.spec,
     NORMAL.spec,
@@ -130,6 +151,8 @@ pub(super) const SHADOW_MAP: [SettingSpec; 14] = with_own([
 pub struct MapSettings {
     /// Texels along each side.
     pub size: u32,
+    /// What the map covers.
+    pub frustum: LightFrustum,
     /// Constant bias, in the smallest steps of depth: how far the map is pushed away from the light.
     pub bias_constant: i32,
     /// Slope-scaled bias: how far the map is pushed away, in units of a triangle's depth slope across one texel.
@@ -152,6 +175,14 @@ impl MapSettings {
     pub fn read(values: &SettingMap) -> MapSettings {
         MapSettings {
             size: MAP_SIZE.read(values) as u32,
+            frustum: match LIGHT_FRUSTUM.of(values) {
+                "view" => LightFrustum::View { is_snapped: false },
+                "view-snapped" => LightFrustum::View { is_snapped: true },
+                value => match frustum_numbers(value) {
+                    Some([fov, near, far]) => LightFrustum::Given { fov, near, far },
+                    None => LightFrustum::Casters,
+                },
+            },
             bias_constant: CONSTANT.read(values) as i32,
             bias_slope: SLOPE.read(values),
             bias_normal: NORMAL.read(values),
@@ -220,9 +251,9 @@ const BORDER: WordSetting<bool> = words(
 );
 
 /// The settings of `planar-texture`, in the order in which they are shown.
-pub(super) const PLANAR_TEXTURE: [SettingSpec; 8] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
+pub(super) const PLANAR_TEXTURE: [SettingSpec; 9] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
 /// The settings of `projective`, in the order in which they are shown.
-pub(super) const PROJECTIVE: [SettingSpec; 12] =
+pub(super) const PROJECTIVE: [SettingSpec; 13] =
     with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
 /// The settings of receiver textures and silhouettes, parsed.

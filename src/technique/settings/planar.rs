@@ -80,7 +80,7 @@ const CACHE: WordSetting<bool> = words(
 );
 
 /// The settings of `planar`, in the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 11] =
+pub(super) const SETTINGS: [SettingSpec; 12] =
     with_own([STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
 
 /// The settings of planar shadows, parsed.

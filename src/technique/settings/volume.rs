@@ -164,14 +164,32 @@ const LIGHT_CAPS: WordSetting<bool> = words(
 );
 const SILHOUETTE: WordSetting<SilhouetteBy> = words(
     "silhouette",
-    &["adjacency", "edge-list"],
-    &[SilhouetteBy::Adjacency, SilhouetteBy::Search],
-    "how shared edges are found: built once, or searched each time",
+    &["adjacency", "edge-list", "shared-corners"],
+    &[SilhouetteBy::Adjacency, SilhouetteBy::Search, SilhouetteBy::SharedCorners],
+    "how shared edges are found: built once, searched each time, or between triangles that share corners in the file",
     Lesson {
         text: "`edge-list` searches all edges for each edge's other triangle: a quadratic search that `adjacency` \
-             does once.",
-        formula: "with n edges: adjacency n steps a frame; edge-list n^2",
+             does once. Both ask where corners are. `shared-corners` asks for the file's own numbers of corners, and makes \
+             sides of edges that two triangles share so: where a file splits corners (seams of normals or textures), or a \
+             corner lies on another triangle's edge (a T-junction), edges have one triangle and get no side, volumes \
+             stay open, and streaks of light or shadow run through the picture.",
+        formula: "with n edges: adjacency n steps a frame; edge-list n^2; shared-corners n, of edges of two triangles or more",
         sources: &[cited::LENGYEL],
+    },
+);
+
+const MIRRORED: WordSetting<bool> = words(
+    "mirrored",
+    &["flipped", "kept"],
+    &[false, true],
+    "the winding of volumes of mirrored objects: flipped with the mirror, or kept as the mesh has it",
+    Lesson {
+        text: "A scale of negative determinant mirrors an object, and turns its front faces into back faces. `flipped` \
+             winds its volume for that. `kept` winds it as the mesh's own indices say, as engines do that find silhouettes \
+             in the object's space and forget the mirror: its volume adds where it should take away, so that it takes \
+             other casters' shadows away, and has none of its own where counts stop at 0.",
+        formula: "front faces of a volume become back faces where det(world from object) < 0",
+        sources: &[cited::EVERITT_KILGARD],
     },
 );
 
@@ -194,7 +212,7 @@ const EXTRUDED_BY: WordSetting<bool> = words(
     },
 );
 
-const OWN: [SettingSpec; 13] = [
+const OWN: [SettingSpec; 14] = [
     CASTERS.spec,
     EXTRUSION.spec,
     FAR_VERTICES.spec,
@@ -206,20 +224,21 @@ const OWN: [SettingSpec; 13] = [
     COUNTER.spec,
     LIGHT_CAPS.spec,
     SILHOUETTE.spec,
+    MIRRORED.spec,
     EXTRUDED_BY.spec,
     START.spec,
 ];
 
 /// The settings of `z-pass`, in the order in which they are shown.
-pub(super) const Z_PASS: [SettingSpec; 19] = with_own(OWN);
+pub(super) const Z_PASS: [SettingSpec; 21] = with_own(OWN);
 /// The settings of `z-fail`: those of z-pass without `start`, as a count from infinity always begins in the same way.
-pub(super) const Z_FAIL: [SettingSpec; 18] = with_own({
+pub(super) const Z_FAIL: [SettingSpec; 20] = with_own({
     let [own @ .., _] = OWN;
     own
 });
 /// The settings of `z-pass-plus`: those of z-pass without `start` and `extruded-by`, as the CPU has to know the casting
 /// triangles to draw them at the near plane.
-pub(super) const Z_PASS_PLUS: [SettingSpec; 17] = with_own({
+pub(super) const Z_PASS_PLUS: [SettingSpec; 19] = with_own({
     let [own @ .., _, _] = OWN;
     own
 });
@@ -249,6 +268,8 @@ pub struct VolumeSettings {
     pub light_caps_never_pass: bool,
     /// How shared edges are found for the silhouette: by adjacency, or by searching all edges.
     pub silhouette: SilhouetteBy,
+    /// Whether volumes of mirrored objects are wound as their meshes are, as if nothing were mirrored.
+    pub keeps_mirrored_winding: bool,
     /// Whether a vertex shader extrudes volumes instead of the CPU.
     pub by_vertex_shader: bool,
 }
@@ -275,12 +296,14 @@ pub enum CasterRule {
 
 impl VolumeSettings {
     /// Returns whether these settings make closed volumes in their right place and lose no step of the count, so that a
-    /// surface outside all volumes reads 0: both caps, tested light caps, no far vertices from the origin, no clamping
-    /// in the stencil.
+    /// surface outside all volumes reads 0: both caps, tested light caps, all silhouette edges, no mirrored winding kept,
+    /// no far vertices from the origin, no clamping in the stencil.
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
+        let is_open = self.silhouette == SilhouetteBy::SharedCorners;
         let loses_steps = self.operations == CountOperations::Clamping && !self.counts_in_float;
-        self.caps == [true; 2] && !self.light_caps_never_pass && !is_misplaced && !loses_steps
+        let is_right = self.caps == [true; 2] && !self.light_caps_never_pass && !self.keeps_mirrored_winding;
+        is_right && !is_misplaced && !is_open && !loses_steps
     }
 
     /// Returns the settings that `auto` uses: the defaults, with casters by topology unless the decision
@@ -309,6 +332,7 @@ impl VolumeSettings {
             counts_in_float: COUNTER.read(values),
             light_caps_never_pass: LIGHT_CAPS.read(values),
             silhouette: SILHOUETTE.read(values),
+            keeps_mirrored_winding: MIRRORED.read(values),
             by_vertex_shader: EXTRUDED_BY.read(values),
         }
     }

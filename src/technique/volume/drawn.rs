@@ -12,6 +12,7 @@ use crate::technique::frame::FrameBuilder;
 use crate::technique::settings::VolumeSettings;
 use glam::{DVec3, DVec4};
 use std::ops::Range;
+use wgpu::FrontFace;
 
 /// What replaces the dark cap of an infinite volume where view rays are parallel: a number that the count begins at.
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +35,9 @@ pub struct VolumePlan {
     pub counting: CountingMode,
     /// Whether the caster is a body that is proven closed, of which only light-facing triangles cast.
     pub is_body: bool,
+    /// Whether the volume is wound the other way round than it is in the world: of a mirrored object whose mesh's winding
+    /// is kept.
+    pub is_wound_backwards: bool,
     /// Whether no receiver is behind the caster, so that the volume's count is 0 at each.
     pub darkens_nothing: bool,
     pub mesh: MeshId,
@@ -141,12 +145,13 @@ impl VolumePlan {
             (_, false) if part.base_vertex != 0 => "turned dark cap",
             (_, _) => "dark cap",
         };
+        let front_face = if self.is_wound_backwards { FrontFace::Cw } else { raster.front_face };
         Draw {
             name: format!("{what} of {}", self.caster),
             caster: Some(self.caster.clone()),
             part: part.part,
             program: Program::Position,
-            raster,
+            raster: RasterState { front_face, ..raster },
             mesh: self.mesh,
             triangles: part.triangles.start as u32..part.triangles.end as u32,
             base_vertex: part.base_vertex,

@@ -36,6 +36,7 @@ pub fn colored(model: &mut Model, written: Option<WrittenAspects>) -> Option<(Ar
         TexelContent::Stencil => Coloring::Stencil,
         TexelContent::Count => Coloring::Count,
         TexelContent::Labels => Coloring::Labels,
+        TexelContent::Visibility => Coloring::Visibility,
         TexelContent::Depth(measure) => {
             let range = model.textures.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
             Coloring::Depth(DepthScale { measure, range })

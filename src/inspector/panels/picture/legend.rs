@@ -58,6 +58,7 @@ pub fn ui(
         (PictureKind::Count, _) => signed_counts(ui, model, shown),
         (PictureKind::Map, _) if shown.is_let_through() => let_through(ui, model, shown),
         (PictureKind::Mask | PictureKind::Truth, _) => labels(ui, model, shown),
+        (PictureKind::Visibility, _) => visibility(ui, model, shown),
         (PictureKind::Error, _) => error_legend::ui(ui, counts_findings, model, shown),
         _ => depth(ui, model, shown, range),
     });
@@ -184,6 +185,24 @@ fn let_through(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
         && let Some(note) = layer.note
     {
         ui.add(egui::Label::new(theme::note(note)).wrap());
+    }
+}
+
+/// Draws the legend of which share of a light arrives, and how far it is from the truth where that is known.
+fn visibility(ui: &mut Ui, model: &mut Model, shown: &ShownPicture) {
+    theme::heading(ui, &title(shown));
+    let shares = model.textures.shares(&shown.images[0]);
+    entry(ui, Color32::WHITE, "1 all arrives", shares.all).on_hover_text("White: the surface is lit");
+    entry(ui, Color32::GRAY, "a share", shares.part)
+        .on_hover_text("Grey: a soft edge, or texels of the shadow that a filter mixes in");
+    entry(ui, Color32::BLACK, "0 none", shares.none)
+        .on_hover_text("Black: in shadow, facing away, or no surface at all");
+    let capture = model.frame.capture.as_ref();
+    let light = capture.and_then(|capture| model.view.light_with(capture, |light| light.visibility.is_some()));
+    let truth = capture.zip(light).and_then(|(capture, light)| capture.lights[light].truth.as_ref());
+    if let Some(truth) = truth.and_then(|truth| truth.visibility.as_ref()) {
+        ui.add_space(4.0);
+        ui.add(egui::Label::new(theme::note(truth.error.in_words())).wrap());
     }
 }
 

@@ -12,6 +12,7 @@ pub fn title(shown: &ShownPicture) -> String {
     let kind = match shown.kind {
         PictureKind::Count => "Count",
         PictureKind::Mask => "Mask",
+        PictureKind::Visibility => "Visibility",
         PictureKind::Truth => "Truth",
         _ => "Error",
     };

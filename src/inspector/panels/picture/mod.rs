@@ -282,6 +282,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
 fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&ShownPicture>) {
     match shown.map(|shown| shown.kind) {
         Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
+        Some(PictureKind::Visibility) => lights(ui, model, capture, |light| light.visibility.is_some()),
         Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
         Some(PictureKind::Truth | PictureKind::Error) => {
             lights(ui, model, capture, |light| light.shadow.is_some() || light.truth.is_some());

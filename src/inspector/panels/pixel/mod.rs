@@ -265,7 +265,7 @@ fn stencil_cells(ui: &mut Ui, pairs: &mut ValuePairs, stencil: u8) {
 /// known after the step.
 fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
     let Some((light, image)) = model.counts_to_show(capture) else { return };
-    let Some(count) = image.count_at(at) else { return };
+    let Some(count) = image.value_at(at) else { return };
     let is_only = capture.lights.iter().filter(|light| light.count.is_some()).count() < 2;
     let name = if is_only { "count".to_owned() } else { format!("count, {}", format::light(light)) };
     ui.label(theme::note(name));

@@ -104,7 +104,7 @@ fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, longest: usize, is_se
 }
 
 fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> RunValues {
-    let count = counts::known_after(capture, step).and_then(|(_, image)| image.count_at(at));
+    let count = counts::known_after(capture, step).and_then(|(_, image)| image.value_at(at));
     let stencil = frame.stencil.as_ref().and_then(|aspect| aspect.image.byte_at(at));
     RunValues {
         stencil: stencil.map(|value| RunValue { text: numbers::signed(value), color: Some(palette::stencil(value)) }),

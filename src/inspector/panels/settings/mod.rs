@@ -150,6 +150,7 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
             })
             .inner
         }
+        SettingValues::WordOrFrustum(words) => frustum(ui, spec.key, words, current, label, &explained),
         SettingValues::Integer(low, high) => {
             let mut value: i64 = current.parse().unwrap_or(low);
             let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
@@ -161,6 +162,38 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
             explained(ui.add(widget).labelled_by(label)).changed().then(|| value.to_string())
         }
     }
+}
+
+/// Draws the choice between words and a frustum's numbers, and fields for these where they are chosen. Returns the new
+/// value when it changed.
+fn frustum(
+    ui: &mut Ui,
+    name: &str,
+    words: &[&str],
+    current: &str,
+    label: egui::Id,
+    explained: &impl Fn(egui::Response) -> egui::Response,
+) -> Option<String> {
+    const NUMBERS: &str = "FOV:NEAR:FAR";
+    const FIRST: &str = "90:0.1:100";
+    let numbers: Vec<f64> = current.split(':').filter_map(|number| number.parse().ok()).collect();
+    let given: Option<[f64; 3]> = numbers.try_into().ok();
+    let options: Vec<&str> = words.iter().copied().chain([NUMBERS]).collect();
+    ui.horizontal_wrapped(|ui| {
+        let (response, chosen) = choose(ui, name, &options, given.map_or(current, |_| NUMBERS));
+        explained(response.labelled_by(label));
+        let chosen = chosen.map(|word| if word == NUMBERS { FIRST.to_owned() } else { word });
+        let Some(mut given) = given else { return chosen };
+        let mut is_changed = false;
+        for (number, part) in given.iter_mut().zip(["field of view", "near", "far"]) {
+            let widget = any_size(DragValue::new(number).range(1e-6..=1e9).update_while_editing(false), current);
+            let response = ui.add(widget).accessible_name(format!("{name} {part}"));
+            is_changed |= explained(response).changed();
+        }
+        let [fov, near, far] = given;
+        chosen.or(is_changed.then(|| format!("{fov}:{near}:{far}")))
+    })
+    .inner
 }
 
 /// Draws a menu of words to tick. Returns the new value when it changed: the ticked words, separated by commas, `all`
