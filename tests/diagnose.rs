@@ -2,6 +2,7 @@
 
 use crate::commands::{assert_fails, run, text};
 use crate::common::names;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use stencilscope::diagnosis::Cause;
@@ -149,6 +150,112 @@ fn maps_are_reported_how_to_stay_maps() {
         .collect();
     assert!(!numbers.is_empty(), "{found}");
     assert!(numbers.iter().all(|(bias, gap)| bias >= gap && *gap > 1e-9), "{numbers:?}");
+}
+
+/// A floor, and two sheets under the sun that are wound the other way round.
+const SHEETS: &str = r#"
+[camera]
+eye=[2.5,3.5,5]
+target=[0,0.5,0]
+[[lights]]
+kind="directional"
+towards=[1,2,0.6]
+[[objects]]
+name="floor"
+mesh={shape="quad",size=[10,10]}
+[[objects]]
+name="up"
+mesh={shape="quad",size=[1.2,1.2]}
+translate=[-1,1.2,0]
+[[objects]]
+name="down"
+mesh={shape="quad",size=[1.2,1.2]}
+rotate_degrees=[180,0,0]
+translate=[1,1.2,0]
+"#;
+
+/// A box on a floor, and a smaller one on it.
+const STACK: &str = r#"
+[camera]
+eye=[2.5,2.5,4]
+target=[0,0.5,0]
+[[lights]]
+kind="directional"
+towards=[1,2,0.6]
+[[objects]]
+name="floor"
+mesh={shape="quad",size=[8,8]}
+[[objects]]
+name="big"
+mesh={shape="box",size=[1.5,0.6,1.5]}
+translate=[0,0.3,0]
+[[objects]]
+name="small"
+mesh={shape="box",size=[0.6,0.6,0.6]}
+translate=[0,0.9,0]
+"#;
+
+/// Each cause that is proven in any region, with its fix's settings and what that leaves wrong.
+fn proven(document: &serde_json::Value) -> BTreeMap<String, Vec<(serde_json::Value, u64)>> {
+    let mut found: BTreeMap<String, Vec<(serde_json::Value, u64)>> = BTreeMap::new();
+    let regions = document["regions"].as_array().expect("regions");
+    for cause in regions.iter().flat_map(|region| region["causes"].as_array().expect("causes")) {
+        assert!(cause["evidence_holds"].is_boolean() && cause["measured"].is_array(), "{cause}");
+        if cause["proof"] == "proven" {
+            assert_eq!(cause["evidence_holds"], true, "{cause}");
+            let left = cause["pixels_left"].as_u64().expect("a number");
+            let name = cause["cause"].as_str().expect("a name").to_owned();
+            found.entry(name).or_default().push((cause["mend"]["settings"].clone(), left));
+        }
+    }
+    found
+}
+
+/// Whichever side the map leaves out, one of two sheets has no other, and no bias is to blame.
+#[test]
+fn a_sheet_whose_faces_the_map_leaves_out_is_reported_as_that() {
+    let folder = crate::commands::folder();
+    fs::write(folder.path().join("sheets.toml"), SHEETS).expect("written");
+    for (side, sheet) in [("front", "up"), ("back", "down")] {
+        let cull = format!("cull={side}");
+        let (code, found) = document(folder.path(), &["sheets.toml", "-t", "shadow-map", "--set", &cull]);
+        assert_eq!(code, Some(1), "{found}");
+        let first = &found["regions"][0];
+        assert_eq!(first["casters"], serde_json::json!([sheet]), "{found}");
+        let cause = &first["causes"][0];
+        assert_eq!((&cause["cause"], &cause["proof"]), (&"map-faces-culled".into(), &"proven".into()), "{found}");
+        assert_eq!((&cause["mend"]["settings"]["cull"], &cause["pixels_left"]), (&"none".into(), &0.into()));
+        let evidence = cause["evidence"].as_str().expect("a sentence");
+        let words = format!("leaves out {side} faces, 2 of the 2 triangles of {sheet}");
+        assert!(evidence.contains(&words), "{evidence}");
+        let proven = proven(&found);
+        assert!(!proven.contains_key("peter-panning"), "{proven:?}");
+        assert_eq!(
+            (&found["advice"]["mend"]["settings"]["cull"], &found["advice"]["wrong_left"]),
+            (&"none".into(), &0.into())
+        );
+    }
+}
+
+/// The three famous faults of maps, each by a setting of the same scene, and each alone.
+#[test]
+fn boxes_on_each_other_show_acne_peter_panning_and_stairs() {
+    let folder = crate::commands::folder();
+    fs::write(folder.path().join("stack.toml"), STACK).expect("written");
+    let faults: [(&[&str], &str); 3] = [
+        (&["bias-constant=0", "bias-slope=0"], "acne"),
+        (&["bias-slope=200"], "peter-panning"),
+        (&["size=64"], "aliasing"),
+    ];
+    for (settings, cause) in faults {
+        let set = settings.iter().flat_map(|setting| ["--set", setting]);
+        let arguments: Vec<&str> = ["stack.toml", "-t", "shadow-map"].into_iter().chain(set).collect();
+        let (code, found) = document(folder.path(), &arguments);
+        assert_eq!((code, first_causes(&found).first()), (Some(1), Some(&cause)), "{found}");
+        let proven = proven(&found);
+        assert!(proven.get(cause).is_some_and(|fixes| fixes.iter().all(|(_, left)| *left == 0)), "{proven:?}");
+        assert!(!proven.contains_key("map-faces-culled"), "{proven:?}");
+    }
 }
 
 /// The names that scripts rely on.

@@ -35,8 +35,10 @@ fn summary(diagnosis: &Diagnosis) -> String {
         for cause in &region.causes {
             let fix = cause.fix.as_ref().map_or("nothing".to_owned(), ToString::to_string);
             let (proof, left) = (cause.proof.name(), cause.pixels_left);
-            text +=
-                &format!("    {} {proof} {left:?}: {}; {fix} {:?}\n", cause.cause, cause.evidence, cause.together_with);
+            text += &format!(
+                "    {} {proof} {left:?}: {}; {fix} {:?}\n",
+                cause.cause, cause.evidence.sentence, cause.together_with
+            );
         }
     }
     text

@@ -63,6 +63,8 @@ named_enum! {
         Acne = "acne",
         /// The bias is larger than the gap between caster and receiver.
         PeterPanning = "peter-panning",
+        /// All faces of a caster between light and surface are of those that the map leaves out.
+        MapFacesCulled = "map-faces-culled",
         /// Texels are coarser than the shadow's outline.
         Aliasing = "aliasing",
         /// Surfaces lie outside what the map covers.
@@ -212,6 +214,11 @@ impl Cause {
             Cause::PeterPanning => {
                 "The bias is larger than the gap between the caster and what lies behind it, so the shadow begins too \
                  late. Lower the bias."
+            }
+            Cause::MapFacesCulled => {
+                "The map leaves out one side of all faces, a usual cure for acne (second depths, Wang and Molnár 1994), and the caster shows the light no other \
+                 here: it is thin or open, so the faces left out have none behind them within the shadow. Draw both sides \
+                 (cull = none, glDisable(GL_CULL_FACE)) and bias them, or give the caster a back."
             }
             Cause::Aliasing => {
                 "Texels of the map cover more than the detail of the shadow's outline. Use a larger map or a volume."

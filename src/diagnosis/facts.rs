@@ -2,6 +2,7 @@
 
 use super::RegionKind;
 use super::cause::Cause;
+use super::evidence::{Evidence, Quantity};
 use super::fix::Fix;
 use super::mesh_facts::MeshFacts;
 use super::regions::ConnectedRegion;
@@ -52,19 +53,17 @@ pub(crate) struct PixelSample {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SuspectedCause {
     pub cause: Cause,
-    pub evidence: String,
+    pub evidence: Evidence,
     /// Fixes in the order in which they are tried; empty where nothing helps.
     pub fixes: Vec<Fix>,
-    /// The number of samples that show it.
-    pub shown_by: usize,
     /// How specific the evidence is to this frame: between equal results, the larger is named first.
     pub weight: usize,
 }
 
 impl SuspectedCause {
-    /// Returns the suspected cause with weight 0; `None` where no sample shows it (`shown_by` is 0).
-    pub fn new(cause: Cause, evidence: String, fixes: Vec<Fix>, shown_by: usize) -> Option<SuspectedCause> {
-        (shown_by > 0).then_some(SuspectedCause { cause, evidence, fixes, shown_by, weight: 0 })
+    /// Returns the suspected cause with weight 0.
+    pub fn new(cause: Cause, evidence: Evidence, fixes: Vec<Fix>) -> SuspectedCause {
+        SuspectedCause { cause, evidence, fixes, weight: 0 }
     }
 }
 
@@ -175,6 +174,11 @@ impl RegionSamples<'_> {
 
     pub fn is_too_dark(&self) -> bool {
         self.region.key.kind == RegionKind::TooDark
+    }
+
+    /// Returns evidence that `shown_by` of the samples show: its sentence, and the numbers that must hold.
+    pub fn evidence(&self, sentence: String, shown_by: usize, quantities: impl Into<Vec<Quantity>>) -> Evidence {
+        Evidence { sentence, quantities: quantities.into(), shown_by, examined: self.samples.len() }
     }
 
     /// Returns the first value that `look` returns for a sample, and for how many samples it returns one; `None` where

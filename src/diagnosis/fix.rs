@@ -145,11 +145,13 @@ impl Fix {
     }
 
     /// Applies the fix's changes of objects, technique and settings; not those of the plan ([`Fix::edit`]) and of the
-    /// picture's size. On an error the changes before it stay.
+    /// picture's size. On an error it changes nothing.
     pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), FixError> {
+        // Objects share their meshes, so that copies are small.
+        let mut objects = scene.objects.clone();
         for SceneEdit { object, name, change } in &self.scene {
             let missing = || FixError::NoObject { object: *object, name: name.clone() };
-            let object = scene.objects.get_mut(*object).ok_or_else(missing)?;
+            let object = objects.get_mut(*object).ok_or_else(missing)?;
             match change {
                 ObjectChange::Weld => {
                     let welded = object.mesh.welded();
@@ -161,12 +163,15 @@ impl Fix {
                 ObjectChange::Visible => object.visible = true,
             }
         }
-        self.choose(choice)
+        self.choose(choice)?;
+        scene.objects = objects;
+        Ok(())
     }
 
     /// Applies the changes of technique and settings alone. A new technique keeps the settings that both have, except
-    /// `size`; its others are the defaults. The fix's own settings come last.
+    /// `size`; its others are the defaults. The fix's own settings come last. On an error it changes nothing.
     pub fn choose(&self, choice: &mut Choice) -> Result<(), FixError> {
+        let mut chosen = choice.clone();
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
             for spec in technique.settings() {
@@ -177,9 +182,10 @@ impl Fix {
                     }
                 }
             }
-            *choice = other;
+            chosen = other;
         }
-        self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+        self.settings.iter().try_for_each(|(key, value)| chosen.set(key, value))?;
+        *choice = chosen;
         Ok(())
     }
 
@@ -280,6 +286,7 @@ impl fmt::Display for Fix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Object, SceneBuilder, shapes};
 
     #[test]
     fn two_fixes_are_one_that_says_both() {
@@ -288,5 +295,28 @@ mod tests {
         assert_eq!(both.and(&both), both);
         assert!(Fix::default().is_empty() && !both.is_empty());
         assert!(both.weight() < Fix::technique(Technique::ZFail).weight());
+    }
+
+    #[test]
+    fn a_fix_that_can_not_be_applied_changes_nothing() {
+        let quad = shapes::quad([1.0; 2]).expect("a quad");
+        let floor = Object { casts: false, receives: false, ..Object::of("floor", quad) };
+        let before = SceneBuilder::new("a floor").objects(vec![floor]).build();
+        let casts = Fix::scene(0, "floor", ObjectChange::Casts);
+        let wrong = [
+            casts.and(&Fix::scene(7, "ball", ObjectChange::Receives)),
+            casts.and(&Fix::setting("casters", "all")).and(&Fix::setting("caps", "every one")),
+            casts.and(&Fix::technique(Technique::ShadowMap)).and(&Fix::setting("casters", "all")),
+        ];
+        for fix in wrong {
+            let (mut scene, mut choice) = (before.clone(), Choice::new(Technique::ZFail));
+            choice.set("casters", "light-facing").expect("a setting");
+            let choice_before = choice.clone();
+            assert!(fix.apply(&mut scene, &mut choice).is_err(), "{fix}");
+            assert!(!scene.objects[0].casts && choice == choice_before, "{fix}");
+        }
+        let (mut scene, mut choice) = (before, Choice::new(Technique::ZFail));
+        casts.apply(&mut scene, &mut choice).expect("a fix");
+        assert!(scene.objects[0].casts);
     }
 }

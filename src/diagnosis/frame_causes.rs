@@ -7,6 +7,8 @@
 //!
 //! No rule looks at the program: what is known is what was drawn.
 
+use super::evidence::{Evidence, Quantity};
+use super::json::quantity;
 use super::{Cause, Proof};
 use crate::accuracy::{ErrorCounts, WrongRegion};
 use crate::numbers;
@@ -21,9 +23,17 @@ struct FrameRule {
     cause: Cause,
     /// What the cause is and what to do, in the other program's terms; `None` where [`Cause::meaning`] applies.
     meaning: Option<&'static str>,
+    /// Causes whose fixes are contained in this one's: it is the cause only where it takes more away than they do.
+    includes: &'static [Cause],
     /// Looks for evidence in the volumes of a light at this position: returns it in numbers, with the plan in which
     /// only this is changed.
-    look: fn(&CountingDraws, DVec4) -> Option<(String, FramePlan)>,
+    look: fn(&CountingDraws, DVec4) -> Option<FrameFinding>,
+}
+
+/// Evidence of a cause, with the plan in which only this is changed.
+struct FrameFinding {
+    evidence: Evidence,
+    fixed: FramePlan,
 }
 
 /// The rules for the causes that can be seen in raster states and volumes. Other causes can't be found, as scene and
@@ -35,6 +45,7 @@ const RULES: [FrameRule; 10] = [
             "The far plane cuts shadow volumes away that z-fail counts. Use a projection to infinity, or depth \
              clamping (GL_DEPTH_CLAMP, depthClampEnable) for the volumes.",
         ),
+        includes: &[],
         look: |draws, _| draws.clipped(true),
     },
     FrameRule {
@@ -43,34 +54,38 @@ const RULES: [FrameRule; 10] = [
             "The near plane cuts shadow volumes open that z-pass counts. Count from behind with z-fail and closed \
              volumes; depth clamping saves what lies in front of the eye.",
         ),
+        includes: &[],
         look: |draws, _| draws.clipped(false),
     },
     FrameRule {
         cause: Cause::FiniteExtrusion,
         meaning: Some("The shadow volumes end before they reach the surface. Extrude them to infinity (w = 0)."),
+        includes: &[Cause::FarClip, Cause::NearPlaneCut],
         look: |draws, position| draws.finite(position),
     },
-    FrameRule { cause: Cause::FaceCulled, meaning: None, look: |draws, _| draws.culled() },
+    FrameRule { cause: Cause::FaceCulled, meaning: None, includes: &[], look: |draws, _| draws.culled() },
     FrameRule {
         cause: Cause::Clamped,
         meaning: Some(
             "The stencil operations stop at 0 and 255. Use those that wrap (GL_INCR_WRAP, INCREMENT_AND_WRAP): \
              then the order of faces does not matter.",
         ),
+        includes: &[],
         look: |draws, _| draws.clamped(),
     },
-    FrameRule { cause: Cause::VolumesWriteDepth, meaning: None, look: |draws, _| draws.writes_depth() },
-    FrameRule { cause: Cause::StencilNotCleared, meaning: None, look: |draws, _| draws.not_cleared() },
-    FrameRule { cause: Cause::StencilMask, meaning: None, look: |draws, _| draws.mask_hides() },
+    FrameRule { cause: Cause::VolumesWriteDepth, meaning: None, includes: &[], look: |draws, _| draws.writes_depth() },
+    FrameRule { cause: Cause::StencilNotCleared, meaning: None, includes: &[], look: |draws, _| draws.not_cleared() },
+    FrameRule { cause: Cause::StencilMask, meaning: None, includes: &[], look: |draws, _| draws.mask_hides() },
     FrameRule {
         cause: Cause::CapFighting,
         meaning: Some(
             "A volume's cap lies on the surface that throws the shadow. Z-fail must count it: let only nearer \
              fragments pass the depth test of the volumes (less, not less or equal).",
         ),
+        includes: &[],
         look: |draws, _| draws.cap_fighting(),
     },
-    FrameRule { cause: Cause::OpenVolume, meaning: None, look: |draws, _| draws.open() },
+    FrameRule { cause: Cause::OpenVolume, meaning: None, includes: &[], look: |draws, _| draws.open() },
 ];
 
 fn meaning(cause: Cause) -> &'static str {
@@ -83,7 +98,9 @@ pub struct FrameSuspicion {
     /// The suspected cause.
     pub cause: Cause,
     /// The evidence, in numbers.
-    pub evidence: String,
+    pub evidence: Evidence,
+    /// Causes whose fixes are contained in this one's.
+    pub includes: &'static [Cause],
     /// The frame's plan with the cause removed.
     pub fixed: FramePlan,
 }
@@ -96,7 +113,7 @@ pub struct FrameCauseFound {
     /// The light whose shadows it is about.
     pub light: LightId,
     /// The evidence, in numbers.
-    pub evidence: String,
+    pub evidence: Evidence,
     /// What the run without the cause has shown.
     pub proof: Proof,
     /// Number of the light's pixels that are still wrong without the cause.
@@ -174,7 +191,7 @@ impl FrameDiagnosis {
         }
         let (helping, others): (Vec<_>, Vec<_>) = self.causes.iter().partition(|found| found.proof != Proof::NotIt);
         for found in &helping {
-            text += &format!("\n{}\n  {}\n  {}\n", found.title(), found.evidence, found.meaning());
+            text += &format!("\n{}\n  {}\n  {}\n", found.title(), found.evidence.sentence, found.meaning());
         }
         let is_joined = |one: &FrameCauseFound| {
             helping.iter().any(|found| found.light == one.light && found.together_with.contains(&one.cause))
@@ -205,7 +222,9 @@ impl FrameDiagnosis {
             json!({
                 "cause": found.cause.name(),
                 "meaning": found.meaning(),
-                "evidence": found.evidence,
+                "evidence": found.evidence.sentence,
+                "evidence_holds": found.evidence.holds(),
+                "measured": found.evidence.quantities.iter().map(quantity).collect::<Vec<_>>(),
                 "mend": null,
                 "proof": found.proof.name(),
                 "pixels_left": found.pixels_left,
@@ -250,8 +269,8 @@ pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Fram
 /// this cause.
 pub fn suspicion(cause: Cause, plan: &FramePlan, light: LightId, position: DVec4) -> Option<FrameSuspicion> {
     let rule = RULES.iter().find(|rule| rule.cause == cause)?;
-    let (evidence, fixed) = (rule.look)(&CountingDraws { plan, light }, position)?;
-    Some(FrameSuspicion { cause, evidence, fixed })
+    let FrameFinding { evidence, fixed } = (rule.look)(&CountingDraws { plan, light }, position)?;
+    Some(FrameSuspicion { cause, evidence, includes: rule.includes, fixed })
 }
 
 /// The draws of a plan that count one light's volumes.
@@ -293,7 +312,7 @@ impl CountingDraws<'_> {
         plan
     }
 
-    fn clipped(&self, is_far: bool) -> Option<(String, FramePlan)> {
+    fn clipped(&self, is_far: bool) -> Option<FrameFinding> {
         // Counted behind the surface, cuts at the far end lose faces; counted in front of it, those at the near end.
         let is_meant = |raster: &RasterState| sides(raster)[usize::from(!is_far)] && !raster.unclipped_depth;
         let is_reversed = self.plan.depth.mapping.is_reversed();
@@ -306,15 +325,16 @@ impl CountingDraws<'_> {
             return None;
         }
         let plane = if is_far { "far" } else { "near" };
-        let evidence = format!(
+        let sentence = format!(
             "{} corners of the volumes lie beyond the {plane} plane, and depth clamping is off",
             numbers::count(cut as u64)
         );
         let unclipped = |raster: &mut RasterState| raster.unclipped_depth |= is_meant(raster);
-        Some((evidence, self.with_states(unclipped)))
+        let corners = Quantity::at_least("corners of volumes beyond the plane", cut as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, corners), fixed: self.with_states(unclipped) })
     }
 
-    fn finite(&self, position: DVec4) -> Option<(String, FramePlan)> {
+    fn finite(&self, position: DVec4) -> Option<FrameFinding> {
         let mut plan = self.with_states(|raster| raster.unclipped_depth = true);
         let (mut moved, mut all) = (0, 0);
         for (pass, draw) in self.draws() {
@@ -337,13 +357,14 @@ impl CountingDraws<'_> {
         if moved == 0 {
             return None;
         }
+        let far_ends = Quantity::at_least("corners that are a far end at a finite distance", moved as f64, 1.0);
         let [moved, all] = [moved, all].map(|count| numbers::count(count as u64));
-        let evidence =
+        let sentence =
             format!("no corner of the volumes is at infinity: {moved} of {all} are a far end at a finite distance");
-        Some((evidence, plan))
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, far_ends), fixed: plan })
     }
 
-    fn culled(&self) -> Option<(String, FramePlan)> {
+    fn culled(&self) -> Option<FrameFinding> {
         let is_one_sided = |raster: &RasterState| {
             let ops = |face: &crate::plan::StencilFace| [face.depth_fail_op, face.pass_op].into_iter().any(counts);
             raster.cull.is_some() && ops(&raster.stencil.front) && ops(&raster.stencil.back)
@@ -355,11 +376,13 @@ impl CountingDraws<'_> {
         if culled == 0 || is_whole {
             return None;
         }
-        let evidence = format!("{culled} draws of volumes count on both faces, and cull one of them");
-        Some((evidence, self.with_states(|raster| raster.cull = None)))
+        let sentence = format!("{culled} draws of volumes count on both faces, and cull one of them");
+        let draws = Quantity::at_least("draws that cull a face that counts", culled as f64, 1.0);
+        let fixed = self.with_states(|raster| raster.cull = None);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed })
     }
 
-    fn clamped(&self) -> Option<(String, FramePlan)> {
+    fn clamped(&self) -> Option<FrameFinding> {
         let wrapped = |operation: &mut Operation| {
             *operation = match *operation {
                 Operation::IncrementClamp => Operation::IncrementWrap,
@@ -383,30 +406,38 @@ impl CountingDraws<'_> {
                 wrapped(&mut face.pass_op);
             }
         });
-        Some((format!("{draws} draws of volumes count with operations that stop"), plan))
+        let sentence = format!("{draws} draws of volumes count with operations that stop");
+        let draws = Quantity::at_least("draws whose operations stop", draws as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed: plan })
     }
 
-    fn writes_depth(&self) -> Option<(String, FramePlan)> {
+    fn writes_depth(&self) -> Option<FrameFinding> {
         let draws = self.draws().filter(|(_, draw)| draw.raster.depth_write).count();
-        let plan = || self.with_states(|raster| raster.depth_write = false);
-        (draws > 0).then(|| (format!("{draws} draws of volumes write depth"), plan()))
+        (draws > 0).then(|| {
+            let writing = Quantity::at_least("draws of volumes that write depth", draws as f64, 1.0);
+            let evidence = Evidence::of_frame(format!("{draws} draws of volumes write depth"), writing);
+            FrameFinding { evidence, fixed: self.with_states(|raster| raster.depth_write = false) }
+        })
     }
 
-    fn not_cleared(&self) -> Option<(String, FramePlan)> {
+    fn not_cleared(&self) -> Option<FrameFinding> {
         let index = self.plan.passes.iter().position(|pass| self.is_of_light(pass))?;
         let upto = self.plan.passes.iter().take(index + 1).filter(|pass| self.plan.is_of_picture(pass));
         let is_cleared = |pass: &Pass| pass.depth_stencil.as_ref().is_some_and(|target| target.clear_stencil.is_some());
         let counts_before = |pass: &Pass| pass.draws.iter().any(|draw| draw.raster.writes_stencil());
-        let (mut is_clean, mut holds) = (false, 0);
+        let (mut is_clean, mut holds, mut before) = (false, 0, 0);
         for pass in upto {
             let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.stencil.as_ref());
             if let Some(start) = start {
                 holds = start.data().iter().filter(|value| **value != 0).count();
                 is_clean = holds == 0;
             }
-            is_clean |= is_cleared(pass);
+            if is_cleared(pass) {
+                (is_clean, holds, before) = (true, 0, 0);
+            }
             if counts_before(pass) && !self.is_of_light(pass) {
                 is_clean = false;
+                before += pass.draws.iter().filter(|draw| draw.raster.writes_stencil()).count();
             }
         }
         if is_clean {
@@ -418,14 +449,19 @@ impl CountingDraws<'_> {
             recorded.start.iter_mut().for_each(|start| start.stencil = None);
         }
         pass.depth_stencil.iter_mut().for_each(|target| target.clear_stencil = Some(0));
-        let evidence = format!(
+        let sentence = format!(
             "nothing clears the stencil before the light's volumes; {} pixels held another value than 0 as the frame began",
             numbers::count(holds as u64)
         );
-        Some((evidence, plan))
+        let left = Quantity::at_least(
+            "pixels that held another value than 0, and draws that wrote the stencil before",
+            (holds + before) as f64,
+            1.0,
+        );
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, left), fixed: plan })
     }
 
-    fn mask_hides(&self) -> Option<(String, FramePlan)> {
+    fn mask_hides(&self) -> Option<FrameFinding> {
         let written = self.draws().fold(0, |all, (_, draw)| {
             [true, false].iter().fold(all, |all, is_front| all | draw.raster.face(*is_front).1.write)
         });
@@ -443,14 +479,16 @@ impl CountingDraws<'_> {
                 draw.raster.back = None;
             }
         }
-        let evidence = format!("volumes count in the bits {written:#04x}, and the light's test compares {read:#04x}");
-        Some((evidence, plan))
+        let sentence = format!("volumes count in the bits {written:#04x}, and the light's test compares {read:#04x}");
+        let hidden = f64::from((written & !read).count_ones());
+        let bits = Quantity::at_least("bits that are counted in and not compared", hidden, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, bits), fixed: plan })
     }
 
     /// Looks for volume draws that count behind the surface with a less-or-equal or greater-or-equal depth test, so
     /// that equal depth passes; returns the evidence and the plan with the strict test in them. `None` where there is
     /// none.
-    fn cap_fighting(&self) -> Option<(String, FramePlan)> {
+    fn cap_fighting(&self) -> Option<FrameFinding> {
         use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
         let is_meant =
             |raster: &RasterState| sides(raster)[0] && matches!(raster.depth_compare, LessEqual | GreaterEqual);
@@ -463,15 +501,15 @@ impl CountingDraws<'_> {
                 raster.depth_compare = if raster.depth_compare == LessEqual { Less } else { Greater };
             }
         });
-        Some((
-            format!("{draws} draws of volumes that are counted behind the surface pass where they are as deep as it"),
-            plan,
-        ))
+        let sentence =
+            format!("{draws} draws of volumes that are counted behind the surface pass where they are as deep as it");
+        let draws = Quantity::at_least("draws that pass at equal depth", draws as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, draws), fixed: plan })
     }
 
     /// Looks for open edges in the volumes that are counted behind the surface; returns the evidence and a plan with
     /// one more draw, appended to the first such draw's pass, whose caps close them. `None` where no cap is missing.
-    fn open(&self) -> Option<(String, FramePlan)> {
+    fn open(&self) -> Option<FrameFinding> {
         let draws = || self.draws().filter(|(_, draw)| sides(&draw.raster)[0]);
         let open = OpenEdges::of(self.plan, draws().map(|(_, draw)| draw));
         let caps = open.caps();
@@ -486,10 +524,11 @@ impl CountingDraws<'_> {
             Draw { raster, mesh, triangles: 0..triangles, base_vertex: 0, name: "caps".to_owned(), ..draw.clone() };
         let index = self.plan.passes.iter().position(|one| std::ptr::eq(one, pass))?;
         plan.passes[index].draws.push(cap);
-        let evidence = format!(
+        let sentence = format!(
             "{} edges of the volumes that are counted behind the surface are of one triangle",
             numbers::count(open.count() as u64)
         );
-        Some((evidence, plan))
+        let edges = Quantity::at_least("edges of one triangle", open.count() as f64, 1.0);
+        Some(FrameFinding { evidence: Evidence::of_frame(sentence, edges), fixed: plan })
     }
 }

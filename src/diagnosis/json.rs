@@ -1,6 +1,6 @@
 //! A diagnosis as JSON: pixels, lights and regions count from 0. `assets/help/json.md` says what each field means.
 
-use super::{CauseFound, Diagnosis, Fix, FlagFound, MeshFinding, Proof, RegionFound, TechniqueFit};
+use super::{CauseFound, Diagnosis, Fix, FlagFound, MeshFinding, Proof, Quantity, RegionFound, TechniqueFit};
 use crate::technique::Technique;
 use serde_json::{Map, Value, json};
 
@@ -66,12 +66,21 @@ fn cause(found: &CauseFound) -> Value {
     json!({
         "cause": found.cause.name(),
         "meaning": found.cause.meaning(),
-        "evidence": found.evidence,
+        "evidence": found.evidence.sentence,
+        "evidence_holds": found.evidence.holds(),
+        "measured": found.evidence.quantities.iter().map(quantity).collect::<Vec<_>>(),
+        "shown_by": found.evidence.shown_by,
+        "examined": found.evidence.examined,
         "mend": found.fix.as_ref().map(fix),
         "proof": Proof::name(found.proof),
         "pixels_left": found.pixels_left,
         "together_with": found.together_with.iter().map(|cause| cause.name()).collect::<Vec<_>>(),
     })
+}
+
+/// Returns a measured number as a JSON object: what it is of, the number, and what it is held against.
+pub(super) fn quantity(Quantity { what, value, threshold }: &Quantity) -> Value {
+    json!({"what": what, "value": value, "must_be": threshold.words(), "bound": threshold.number()})
 }
 
 /// Returns a fix as a JSON object: only what it changes, and always the same in words (`words`). Edits of objects are

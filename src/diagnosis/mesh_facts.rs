@@ -5,10 +5,10 @@
 
 use super::cause::Cause;
 use super::{MeshDefect, MeshFinding};
-use crate::geometry::{EdgeList, Topology, winding_number};
+use crate::geometry::{Edge, EdgeList, Topology, winding_number};
 use crate::scene::{Mesh, Object};
 use glam::{DVec3, DVec4};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// Vertices nearer to each other than this, relative to the mesh's size, look like one vertex.
@@ -38,15 +38,53 @@ pub(crate) struct MeshFacts {
     pub is_inside_out: bool,
     world: Arc<[DVec3]>,
     triangles: Arc<[[u32; 3]]>,
+    edges: Arc<EdgeList>,
+    /// What the edges of one triangle are, by their indices.
+    lone: BTreeMap<usize, LoneEdge>,
+}
+
+/// What an edge of one triangle is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LoneEdge {
+    /// No other edge lies beside it.
+    Open,
+    /// Another such edge has its ends at the very same positions.
+    Split,
+    /// Another such edge has its ends within a small part of the mesh's size.
+    Near,
+}
+
+/// A part of a mesh whose triangles are connected by edges of two triangles that agree on which side is out: how often
+/// it ends, and at what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct WoundPart {
+    /// Edges of one triangle, by what they are.
+    pub open: usize,
+    pub split: usize,
+    pub near: usize,
+    /// Edges of more than two triangles.
+    pub non_manifold: usize,
+    /// Edges of two triangles that disagree on which side is out.
+    pub inconsistent: usize,
+    /// Whether it ends nowhere and faces inwards.
+    pub is_inside_out: bool,
 }
 
 impl MeshFacts {
     /// Measures an object's mesh for defects: open, split, near, non-manifold and inconsistent edges, flat and dropped
     /// triangles, duplicates, slivers and whether a whole mesh is inside out. Places are in world space.
-    pub fn new(object: &Object, edges: &EdgeList, topology: &Topology) -> MeshFacts {
+    pub fn new(object: &Object, edges: Arc<EdgeList>, topology: &Topology) -> MeshFacts {
         let mesh = &object.mesh;
         let world = object.world_positions();
-        let [open, split, near] = sort_open_edges(mesh, &world, edges);
+        let lone = lone_edges(mesh, &edges);
+        let middles = |kind: LoneEdge| -> Vec<DVec3> {
+            let of_kind = lone.iter().filter(|(_, one)| **one == kind);
+            of_kind
+                .map(|(edge, _)| edges.edges()[*edge])
+                .map(|edge| (world[edge.low as usize] + world[edge.high as usize]) / 2.0)
+                .collect()
+        };
+        let [open, split, near] = [LoneEdge::Open, LoneEdge::Split, LoneEdge::Near].map(middles);
         let is_whole = open.is_empty() && topology.is_oriented() && topology.connectivity.non_manifold_edges.count == 0;
         let matrix = object.pose.world_from_object();
         let placed = |found: &crate::geometry::FoundPlaces| {
@@ -54,12 +92,7 @@ impl MeshFacts {
         };
         let corners = |of: &[u32; 3]| of.map(|vertex| world[vertex as usize]);
         let middle = |of: &[u32; 3]| corners(of).iter().sum::<DVec3>() / 3.0;
-        let volume: f64 = mesh
-            .triangles()
-            .iter()
-            .map(corners)
-            .map(|[a, b, c]| (a - world[0]).dot((b - world[0]).cross(c - world[0])))
-            .sum();
+        let volume = six_times_volume(&world, mesh.triangles().iter());
         MeshFacts {
             name: object.name.clone(),
             is_inside_out: is_whole && !mesh.triangles().is_empty() && volume < 0.0,
@@ -74,6 +107,61 @@ impl MeshFacts {
             slivers: mesh.triangles().iter().filter(|of| is_sliver(corners(of))).map(middle).collect(),
             triangles: mesh.triangles().into(),
             world: world.into(),
+            edges,
+            lone,
+        }
+    }
+
+    /// Returns the part of the mesh around a triangle within which triangles agree on which side is out; `None` where
+    /// the mesh has no such triangle.
+    pub fn part_around(&self, triangle: usize) -> Option<WoundPart> {
+        self.triangles.get(triangle)?;
+        let mut part = WoundPart::default();
+        let mut members = BTreeSet::from([triangle]);
+        let mut waiting = vec![triangle];
+        while let Some(triangle) = waiting.pop() {
+            let [a, b, c] = self.triangles[triangle];
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                let edge = Edge { low: from.min(to), high: from.max(to) };
+                let Ok(index) = self.edges.edges().binary_search(&edge) else { continue };
+                let incident: Vec<(usize, i32)> = self.edges.incident(index).collect();
+                match (&incident[..], self.lone.get(&index)) {
+                    ([_], Some(LoneEdge::Open)) => part.open += 1,
+                    ([_], Some(LoneEdge::Split)) => part.split += 1,
+                    ([_], Some(LoneEdge::Near)) => part.near += 1,
+                    ([(one, way), (other, other_way)], _) if way != other_way => {
+                        for next in [*one, *other] {
+                            if members.insert(next) {
+                                waiting.push(next);
+                            }
+                        }
+                    }
+                    ([_, _], _) => part.inconsistent += 1,
+                    _ => part.non_manifold += 1,
+                }
+            }
+        }
+        let ends_nowhere = part == WoundPart::default();
+        let triangles = members.iter().map(|triangle| &self.triangles[*triangle]);
+        part.is_inside_out = ends_nowhere && six_times_volume(&self.world, triangles) < 0.0;
+        Some(part)
+    }
+
+    /// Returns the length of each edge in metres, each edge once.
+    pub fn edge_lengths(&self) -> Vec<f64> {
+        let length = |edge: &Edge| self.world[edge.low as usize].distance(self.world[edge.high as usize]);
+        self.edges.edges().iter().map(length).collect()
+    }
+
+    /// Returns how often the whole mesh ends, and at what.
+    pub fn whole(&self) -> WoundPart {
+        WoundPart {
+            open: self.open.len(),
+            split: self.split.len(),
+            near: self.near.len(),
+            non_manifold: self.non_manifold.0,
+            inconsistent: self.inconsistent.0,
+            is_inside_out: self.is_inside_out,
         }
     }
 
@@ -164,14 +252,18 @@ impl MeshFacts {
     }
 }
 
-/// Returns the world-space middles of the edges that have one triangle, in three lists: open; split (another such edge
-/// has its ends at the same positions); near (another's ends are within a small part of the mesh's size).
-fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3>; 3] {
+/// Returns six times the volume that triangles enclose, negative where they face inwards; 0 without any.
+fn six_times_volume<'t>(world: &[DVec3], triangles: impl Iterator<Item = &'t [u32; 3]>) -> f64 {
+    let from_first = |vertex: u32| world[vertex as usize] - world[0];
+    triangles.map(|corners| corners.map(from_first)).map(|[a, b, c]| a.dot(b.cross(c))).sum()
+}
+
+/// Returns what each edge of one triangle is, by its index.
+fn lone_edges(mesh: &Mesh, edges: &EdgeList) -> BTreeMap<usize, LoneEdge> {
     let positions = mesh.positions();
-    let lone: Vec<[u32; 2]> = (0..edges.edges().len())
-        .filter(|edge| edges.incident(*edge).count() == 1)
-        .map(|edge| [edges.edges()[edge].low, edges.edges()[edge].high])
-        .collect();
+    let indices: Vec<usize> = (0..edges.edges().len()).filter(|edge| edges.incident(*edge).count() == 1).collect();
+    let lone: Vec<[u32; 2]> =
+        indices.iter().map(|edge| [edges.edges()[*edge].low, edges.edges()[*edge].high]).collect();
     let size = mesh.bounds().map_or(0.0, |(low, high)| (high - low).length());
     let near = (size * NEAR).max(f64::MIN_POSITIVE);
     let middle = |[a, b]: [u32; 2]| (positions[a as usize] + positions[b as usize]) / 2.0;
@@ -185,7 +277,7 @@ fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3
         let far = |p: u32, q: u32| positions[p as usize].distance(positions[q as usize]);
         far(a, c).max(far(b, d)).min(far(a, d).max(far(b, c)))
     };
-    let mut sorted = [Vec::new(), Vec::new(), Vec::new()];
+    let mut sorted = BTreeMap::new();
     for (index, edge) in lone.iter().enumerate() {
         let [low, high] = [middle(*edge) - near, middle(*edge) + near].map(cell);
         let mut least = f64::INFINITY;
@@ -197,8 +289,12 @@ fn sort_open_edges(mesh: &Mesh, world: &[DVec3], edges: &EdgeList) -> [Vec<DVec3
                 }
             }
         }
-        let which = if least == 0.0 { 1 } else { usize::from(least <= near) * 2 };
-        sorted[which].push((world[edge[0] as usize] + world[edge[1] as usize]) / 2.0);
+        let kind = match least {
+            0.0 => LoneEdge::Split,
+            apart if apart <= near => LoneEdge::Near,
+            _ => LoneEdge::Open,
+        };
+        sorted.insert(indices[index], kind);
     }
     sorted
 }
@@ -222,4 +318,53 @@ fn is_sliver([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     let twice_area = (b - a).cross(c - a).length();
     twice_area > 0.0 && longest * longest > SLIVER * twice_area
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::GeometryCache;
+    use crate::scene::MeshBuilder;
+
+    fn facts(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> MeshFacts {
+        let mesh = MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh");
+        let mut cache = GeometryCache::default();
+        let (edges, topology) = (cache.edges(&mesh), cache.topology(&mesh));
+        MeshFacts::new(&Object::of("mesh", mesh), edges, &topology)
+    }
+
+    /// What lies elsewhere on a mesh is no evidence about a triangle.
+    #[test]
+    fn a_part_of_a_mesh_ends_only_where_it_ends() {
+        let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+        // Two triangles that agree; then, apart from them, two that disagree.
+        let quad =
+            |left: f64| [at(left, 0.0, 0.0), at(left + 1.0, 0.0, 0.0), at(left + 1.0, 1.0, 0.0), at(left, 1.0, 0.0)];
+        let positions = [quad(0.0), quad(5.0)].concat();
+        let facts = facts(positions, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 7, 6]]);
+        let open = WoundPart { open: 4, ..WoundPart::default() };
+        assert_eq!(facts.part_around(0), Some(open));
+        assert_eq!(facts.part_around(3), Some(WoundPart { open: 2, inconsistent: 1, ..WoundPart::default() }));
+        assert_eq!(facts.part_around(4), None);
+        assert_eq!(facts.whole(), WoundPart { open: 8, inconsistent: 1, ..WoundPart::default() });
+    }
+
+    #[test]
+    fn a_closed_part_may_face_inwards() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let outwards = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let inwards = outwards.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+        let is_inside_out = |triangles| facts(corners.clone(), triangles).part_around(0).map(|part| part.is_inside_out);
+        assert_eq!(is_inside_out(outwards), Some(false));
+        assert_eq!(is_inside_out(inwards), Some(true));
+    }
+
+    /// The first edge of each triangle says nothing about the others.
+    #[test]
+    fn every_edge_has_its_length_once() {
+        let corners = vec![DVec3::ZERO, DVec3::X * 8.0, DVec3::new(8.0, 1.0, 0.0), DVec3::Y];
+        let mut lengths = facts(corners, vec![[0, 1, 2], [2, 3, 0]]).edge_lengths();
+        lengths.sort_by(f64::total_cmp);
+        assert_eq!(lengths, [1.0, 1.0, 8.0, 8.0, 65.0f64.sqrt()]);
+    }
 }

@@ -6,11 +6,12 @@
 //!
 //! Wrong pixels are grouped into connected regions. Every [`Cause`] has a rule that looks for its evidence in numbers:
 //! in the scene, in the plan as it was run, and in what the GPU left. Each cause that fits is fixed, and the frame is
-//! run again (`Session::diagnose`): only what takes the wrong pixels away is called proven. No rule knows how a fault
-//! was caused.
+//! run again (`Session::diagnose`): only a cause whose evidence holds in numbers ([`Evidence::holds`]), and whose fix
+//! takes the wrong pixels away, is called proven. No rule knows how a fault was caused.
 
 mod cause;
 mod error_picture;
+mod evidence;
 pub(crate) mod facts;
 mod fix;
 pub mod frame_causes;
@@ -24,6 +25,7 @@ mod text;
 
 pub use cause::Cause;
 pub use error_picture::wrong_pixels;
+pub use evidence::{Evidence, Quantity, Threshold};
 pub use fix::{Fix, FixError, ObjectChange, PlanEdit, SceneEdit};
 pub use suited::TechniqueFit;
 
@@ -135,8 +137,8 @@ impl RegionKind {
 pub struct CauseFound {
     /// The cause.
     pub cause: Cause,
-    /// What was measured, in a sentence without its stop.
-    pub evidence: String,
+    /// What was measured, and whether it carries the cause's name.
+    pub evidence: Evidence,
     /// The fix; `None` where nothing helps.
     pub fix: Option<Fix>,
     /// What running the frame with the fix has shown.
@@ -162,9 +164,9 @@ pub struct FixWithinTechnique {
 named_enum! {
     /// What running the frame with a fix has shown about a suspected cause.
     pub enum Proof {
-        /// No pixel of the region is wrong any more.
+        /// The evidence holds, and no pixel of the region is wrong any more.
         Proven = "proven",
-        /// Some of the region's pixels are right now.
+        /// Some of the region's pixels are right now; or all of them, but the evidence does not hold.
         Part = "part",
         /// None of the region's pixels is right now.
         NotIt = "not it",

@@ -66,7 +66,7 @@ impl TriedCause {
         (
             proof,
             self.left.unwrap_or(0),
-            std::cmp::Reverse(self.suspicion.shown_by),
+            std::cmp::Reverse(self.suspicion.evidence.shown_by),
             std::cmp::Reverse(self.suspicion.weight),
             self.fix.as_ref().map_or(0, Fix::weight),
             self.suspicion.cause,

@@ -68,7 +68,7 @@ impl Diagnosis {
         let mut out = String::new();
         let is_listed = |cause: &&CauseFound| cause.proof != Proof::NotIt;
         for found in region.causes.iter().filter(is_listed) {
-            out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence);
+            out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence.sentence);
             if explained.insert(found.cause) {
                 out += &format!("     {}\n", found.cause.meaning());
             }
@@ -168,18 +168,23 @@ fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
 /// them. `like` counts from 0, the text from 1.
 fn as_before(region: &RegionFound, like: usize) -> String {
     let first = region.causes.first();
-    let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
+    let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence.sentence));
     format!("   as {}{evidence}\n", like + 1)
 }
 
 /// Returns words for a cause's fix, with its command-line options where it has any, and for what running it has shown.
-fn proof(CauseFound { fix, proof, pixels_left, .. }: &CauseFound) -> String {
+fn proof(CauseFound { evidence, fix, proof, pixels_left, .. }: &CauseFound) -> String {
     let Some(fix) = fix else { return "no fix to run".to_owned() };
     let options = fix.options();
     let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
     let left = pixels_left.unwrap_or(0);
     let outcome = match proof {
         Proof::Proven => "none of these pixels is wrong any more".to_owned(),
+        Proof::Part if left == 0 => {
+            let why_not =
+                evidence.why_not().map_or_else(String::new, |why_not| format!(", which proves nothing: {why_not}"));
+            format!("none of these pixels is wrong any more{why_not}")
+        }
         Proof::Part | Proof::NotIt => format!("{} of these stay wrong", pixels(left)),
         Proof::NotRun => "not run".to_owned(),
     };

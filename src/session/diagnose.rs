@@ -22,8 +22,9 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// The number of pixels of a region that are examined closely.
+/// The number of pixels of a region that are examined closely: with their histories, and by rays alone.
 const SAMPLES: usize = 3;
+const SAMPLES_BY_RAYS: usize = 64;
 /// The most objects whose flags are examined; each costs a truth.
 const MOST_FLAGS: usize = 8;
 
@@ -166,7 +167,7 @@ impl Session {
                 return Err(SessionError::Cancelled);
             }
             let edges = self.geometry.edges(&object.mesh);
-            Ok(MeshFacts::new(object, &edges, &self.geometry.topology(&object.mesh)))
+            Ok(MeshFacts::new(object, edges, &self.geometry.topology(&object.mesh)))
         };
         scene.objects.iter().map(one).collect()
     }
@@ -177,7 +178,8 @@ impl Session {
         let light = region.light;
         let has_events = facts.counts_volumes(light) || facts.draws(light, DrawPart::PlanarShadow).next().is_some();
         let mut samples = Vec::new();
-        for pixel in region.samples(facts.plan.size, SAMPLES) {
+        let most = if has_events { SAMPLES } else { SAMPLES_BY_RAYS };
+        for pixel in region.samples(facts.plan.size, most) {
             let history = match has_events {
                 true => Some(self.history(facts.plan, facts.capture, pixel)?),
                 false => None,
@@ -243,8 +245,8 @@ fn key_of(facts: &FrameFacts, light: usize, kind: RegionKind, pixel: [u32; 2]) -
     if let Some(look) = map::look(facts, light, kind, &seen) {
         return RegionKey { caster: look.caster, hint: Some(look.cause), ..plain };
     }
-    if let Some((cause, caster, _)) = projective::look(facts, light, kind, &seen) {
-        return RegionKey { caster, hint: Some(cause), ..plain };
+    if let Some(look) = projective::look(facts, light, kind, &seen) {
+        return RegionKey { caster: Some(look.caster), hint: Some(look.cause), ..plain };
     }
     match kind {
         RegionKind::Wrong(Finding::MissingShadow) => {

@@ -50,13 +50,20 @@ impl Session {
                 left if left < wrong.min(same) => Proof::Part,
                 _ => Proof::NotIt,
             };
-            let mut of_light = Vec::new();
-            for FrameSuspicion { cause, evidence, fixed } in suspicions(plan, id, light.position) {
+            let mut of_light: Vec<FrameCauseFound> = Vec::new();
+            let mut suspected = suspicions(plan, id, light.position);
+            // What a fix contains of others is tried before it.
+            suspected.sort_by_key(|suspicion| suspicion.includes.len());
+            for FrameSuspicion { cause, evidence, includes, fixed } in suspected {
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
                 let pixels_left = judge(self, &fixed)?;
-                let proof = proof_of(pixels_left);
+                let contained = of_light.iter().filter(|found| includes.contains(&found.cause));
+                let without_it = contained.map(|found| found.pixels_left).min();
+                // Where what it contains takes as much away, its own part takes nothing.
+                let adds = without_it.is_none_or(|left| pixels_left < left);
+                let proof = if adds { evidence.proof(proof_of(pixels_left)) } else { Proof::NotIt };
                 of_light.push(FrameCauseFound {
                     cause,
                     light: id,
@@ -110,10 +117,11 @@ impl Session {
                     best = Some((left, found));
                 }
             }
-            let Some((left, FrameSuspicion { cause, evidence, fixed: plan })) = best else { break };
-            (joined.pixels_left, joined.proof, fixed) = (left, proof_of(left), plan);
+            let Some((left, FrameSuspicion { cause, evidence, fixed: plan, .. })) = best else { break };
+            joined.evidence.sentence += &format!("; {}", evidence.sentence);
+            joined.evidence.quantities.extend(evidence.quantities);
+            (joined.pixels_left, joined.proof, fixed) = (left, joined.evidence.proof(proof_of(left)), plan);
             joined.together_with.push(cause);
-            joined.evidence = format!("{}; {evidence}", joined.evidence);
         }
         Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
     }

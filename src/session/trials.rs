@@ -88,7 +88,7 @@ impl Session {
                 let (proof, left) = match self.run_once(runs, &fix)? {
                     Ok(after) => judge(region, before, &after, size),
                     Err(because) => {
-                        suspicion.evidence.push_str(&format!(" ({fix} can't be run: {because})"));
+                        suspicion.evidence.sentence.push_str(&format!(" ({fix} can't be run: {because})"));
                         continue;
                     }
                 };
@@ -107,10 +107,13 @@ impl Session {
             let is_other = best.as_ref().is_some_and(|(best, ..)| best.technique.is_some());
             let staying = small.filter(|_| is_other).map(|(fix, pixels_left)| FixWithinTechnique { fix, pixels_left });
             if let Some(FixWithinTechnique { fix, pixels_left }) = &staying {
-                suspicion.evidence.push_str(&format!("; to {fix} leaves {pixels_left} of {}", region.pixels.len()));
+                suspicion
+                    .evidence
+                    .sentence
+                    .push_str(&format!("; to {fix} leaves {pixels_left} of {}", region.pixels.len()));
             }
             let (fix, proof, left) = match best {
-                Some((fix, proof, left)) => (Some(fix), proof, Some(left)),
+                Some((fix, run, left)) => (Some(fix), suspicion.evidence.proof(run), Some(left)),
                 None => (None, Proof::NotRun, None),
             };
             tried.push(TriedCause { suspicion, fix, proof, left, staying, together_with: Vec::new() });
@@ -132,8 +135,11 @@ impl Session {
     ) -> Result<(), SessionError> {
         let helps = |one: &&TriedCause| one.proof == Proof::Part;
         let least = if tried.iter().filter(helps).count() > 1 { Proof::Part } else { Proof::NotIt };
-        let mut members: Vec<usize> =
-            (0..tried.len()).filter(|index| tried[*index].fix.is_some() && tried[*index].proof <= least).collect();
+        // What takes all pixels away by itself, without evidence that holds, needs no other fix.
+        let may_join = |one: &TriedCause| {
+            one.fix.is_some() && one.proof <= least && one.left != Some(0) && one.suspicion.evidence.numbers_hold()
+        };
+        let mut members: Vec<usize> = (0..tried.len()).filter(|index| may_join(&tried[*index])).collect();
         members.sort_by_key(|index| (tried[*index].proof, tried[*index].left));
         members.truncate(MOST_TOGETHER);
         let fix_of = |index: &usize| tried[*index].fix.clone().unwrap_or_default();
@@ -161,7 +167,7 @@ impl Session {
                 one.together_with = causes.iter().copied().filter(|cause| *cause != one.suspicion.cause).collect();
                 let others: Vec<&str> = one.together_with.iter().map(|cause| cause.name()).collect();
                 let alone = one.left.unwrap_or(0);
-                one.suspicion.evidence.push_str(&format!(
+                one.suspicion.evidence.sentence.push_str(&format!(
                     "; fixed alone it leaves {alone} wrong pixels, together with {} none",
                     others.join(" and ")
                 ));

@@ -23,16 +23,79 @@ pub struct Provocation {
     pub fault: Option<PlanFault>,
 }
 
-/// The causes of wrong pixels that can be provoked.
-pub const CAUSES: [Cause; 36] = {
-    let mut causes = [Cause::EyeInVolume; 36];
-    let mut index = 0;
-    while index < causes.len() {
-        causes[index] = Cause::ALL[index];
-        index += 1;
+/// How a cause can be shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Occasion {
+    /// A scene with a setting, or with a plan made wrong. Other causes may be proven there too, each for a reason.
+    Scene(&'static [AlsoThere]),
+    /// A flag of the scene, which the truth honours: no pixel is wrong.
+    Flag,
+    /// The frame of another program alone.
+    ForeignFrame,
+}
+
+/// A cause that is truly there beside another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AlsoThere {
+    pub cause: Cause,
+    /// Why it is there, for whoever reads the table.
+    pub because: &'static str,
+}
+
+/// Returns how a cause can be shown. No cause is left out: a new one does not compile without a line here.
+pub fn occasion(cause: Cause) -> Occasion {
+    match cause {
+        Cause::EyeInVolume
+        | Cause::NearPlaneCut
+        | Cause::NearPlaneCrack
+        | Cause::MissingDarkCap
+        | Cause::MissingLightCap
+        | Cause::FarClip
+        | Cause::FiniteExtrusion
+        | Cause::LightNotAdded
+        | Cause::OpenMesh
+        | Cause::NonManifold
+        | Cause::InconsistentWinding
+        | Cause::SplitVertices
+        | Cause::NearVertices
+        | Cause::LightInside
+        | Cause::Clamped
+        | Cause::Wrap256
+        | Cause::FewBits
+        | Cause::Parity
+        | Cause::OperationOrder
+        | Cause::CapFighting
+        | Cause::DoubleBlend
+        | Cause::ZFighting
+        | Cause::OffReceiver
+        | Cause::AntiShadow
+        | Cause::FalseShadow
+        | Cause::NotPlanar
+        | Cause::Acne
+        | Cause::PeterPanning
+        | Cause::MapFacesCulled
+        | Cause::Aliasing
+        | Cause::OutsideMap
+        | Cause::ReverseProjection
+        | Cause::Between
+        | Cause::EdgeSmear
+        | Cause::SelfShadow
+        | Cause::F32Limit
+        | Cause::SubpixelEdges
+        | Cause::CarriedInF32 => Occasion::Scene(&[]),
+        Cause::NotReceiving | Cause::NotCasting | Cause::Undrawn => Occasion::Flag,
+        Cause::FaceCulled
+        | Cause::VolumesWriteDepth
+        | Cause::StencilNotCleared
+        | Cause::StencilMask
+        | Cause::OpenVolume => Occasion::ForeignFrame,
     }
-    causes
-};
+}
+
+/// Returns the causes of wrong pixels that scenes can show.
+pub fn causes() -> Vec<Cause> {
+    Cause::ALL.into_iter().filter(|cause| matches!(occasion(*cause), Occasion::Scene(_))).collect()
+}
 
 pub fn cuboid(name: &str, at: [f64; 3], size: [f64; 3]) -> Object {
     Object::of(name, shapes::cuboid(size).expect("a box")).at(at)
@@ -220,6 +283,7 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             let slope = format!("{:.0}", dice.between(100.0, 400.0));
             (dice.any_scene(), choice(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
         }
+        Cause::MapFacesCulled => (under_a_pane(dice), choice(Technique::ShadowMap, &[("cull", "front")]), None),
         Cause::Aliasing => {
             let size = ["16", "32", "64"][dice.one_of(3)];
             let technique = [Technique::ShadowMap, Technique::Projective, Technique::PlanarTexture][dice.one_of(3)];
@@ -233,7 +297,8 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::Between => (shelf_between(dice), choice(Technique::Projective, &[("size", "2048")]), None),
         Cause::SelfShadow => (ring_alone(dice), choice(Technique::Projective, &[("size", "2048")]), None),
         Cause::SubpixelEdges => (far_mesh(), choice(Technique::ZFail, &[]), None),
-        _ => (low_sun(dice), choice(Technique::ZFail, &[]), None),
+        Cause::F32Limit => (low_sun(dice), choice(Technique::ZFail, &[]), None),
+        cause => panic!("no scene shows {cause}: {:?}", occasion(cause)),
     };
     let mut scene = scene;
     // A floor is a mesh with an edge too, and a silhouette that falls on what stands on it.
@@ -436,6 +501,14 @@ fn lone_sphere(dice: &mut Dice) -> Scene {
     let flat =
         Object { receives: false, ..Object::of("board", shapes::quad([0.8, 0.5]).expect("a board")).at(dice.place()) };
     scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), flat.rotated(dice.degrees())])
+}
+
+/// A sheet that shows the light its front, and a box whose back is in the map whatever faces that keeps.
+fn under_a_pane(dice: &mut Dice) -> Scene {
+    let pane = Object::of("pane", shapes::quad([dice.between(0.6, 1.0); 2]).expect("a pane")).at(dice.place());
+    let tilted = pane.rotated([dice.between(-20.0, 20.0), 0.0, dice.between(-20.0, 20.0)]);
+    let crate_of = cuboid("crate", [dice.between(1.2, 1.6), 0.6, dice.between(-1.0, 0.0)], [0.4; 3]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), tilted, crate_of])
 }
 
 fn wall_behind_lamp(dice: &mut Dice) -> Scene {

@@ -1,6 +1,6 @@
 //! A hundred things made wrong at random: the first named cause is the true one.
 
-use super::provoke::{CAUSES, Provocation, provoke};
+use super::provoke::{Provocation, causes, provoke};
 use super::{diagnose, first, session, summary};
 use crate::common::apart;
 use stencilscope::session::Session;
@@ -34,9 +34,10 @@ fn of_a_hundred_random_provocations_the_first_named_cause_is_the_true_one() {
 fn name_a_hundred_provocations() {
     let mut session = session();
     let (mut missed, mut drawn_again) = (Vec::new(), 0);
+    let causes = causes();
     for index in 0..COUNT {
-        let cause = CAUSES[index % CAUSES.len()];
-        let mut seed = FIRST_SEED + 100 * (index / CAUSES.len()) as u64;
+        let cause = causes[index % causes.len()];
+        let mut seed = FIRST_SEED + 100 * (index / causes.len()) as u64;
         let diagnosis = loop {
             let provoked = provoke(cause, seed);
             assert_eq!(provoked.cause, cause);

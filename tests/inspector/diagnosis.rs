@@ -5,13 +5,18 @@ use super::*;
 use stencilscope::accuracy::{ErrorCounts, Finding};
 use stencilscope::ask::DiagnosisOf;
 use stencilscope::diagnosis::{
-    Advice, Cause, CauseFound, Diagnosis, Fix, FixWithinTechnique, MeshDefect, MeshFinding, ObjectChange, Proof,
-    RegionFound, RegionKind, RemainingRegions,
+    Advice, Cause, CauseFound, Diagnosis, Evidence, Fix, FixWithinTechnique, MeshDefect, MeshFinding, ObjectChange,
+    Proof, Quantity, RegionFound, RegionKind, RemainingRegions,
 };
 use stencilscope::session::InjectedFault;
 
 fn cause(cause: Cause, fix: Fix, proof: Proof, left: u64) -> CauseFound {
-    let evidence = format!("evidence of {cause}");
+    let evidence = Evidence {
+        sentence: format!("evidence of {cause}"),
+        quantities: vec![Quantity::at_least("volumes around the eye", 1.0, 1.0)],
+        shown_by: 3,
+        examined: 3,
+    };
     CauseFound {
         cause,
         evidence,

@@ -1,6 +1,7 @@
 //! Faults of counting in eight bits.
 
 use crate::diagnosis::cause::Cause;
+use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount};
 use crate::diagnosis::fix::Fix;
 use crate::history::{LightDecision, VolumeCount};
@@ -40,13 +41,22 @@ fn clamped(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
         let (limit, lost) = first_lost(sample, light)?;
         (limit == u8::MAX).then_some((lost, true_count(sample, light), stored(sample, light)?))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "{} found the count at 255 and {} lost: in truth {count} are left, stored are {stored}",
         amount(lost, "face"),
         if lost == 1 { "was" } else { "were" },
     );
     let fixes = vec![Fix::setting("operations", "wrap"), Fix::setting("counter", "float")];
-    SuspectedCause::new(Cause::Clamped, evidence, fixes, shown_by)
+    let quantities = lost_steps(lost, count, stored);
+    Some(SuspectedCause::new(Cause::Clamped, case.evidence(sentence, shown_by, quantities), fixes))
+}
+
+/// Returns the numbers of a count that stopped: how many steps were lost, and how far what is stored is off for that.
+fn lost_steps(lost: u64, count: i32, stored: u8) -> [Quantity; 2] {
+    [
+        Quantity::at_least("steps that a limit of the count swallowed", lost as f64, 1.0),
+        Quantity::at_least("how far the stored count is off", count.abs_diff(stored.into()).into(), 1.0),
+    ]
 }
 
 fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -55,7 +65,7 @@ fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
         let (limit, lost) = first_lost(sample, light)?;
         (limit == 0).then_some((lost, true_count(sample, light), stored(sample, light)?))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "{} that {} away came while the count was 0 and {} lost: in truth {count} are left, stored are {stored}",
         amount(lost, "face"),
         if lost == 1 { "takes" } else { "take" },
@@ -66,7 +76,8 @@ fn operation_order(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
     if facts.volumes().is_some_and(|settings| settings.two_pass && settings.takes_away_first) {
         fixes.push(Fix::setting("order", "add-first"));
     }
-    SuspectedCause::new(Cause::OperationOrder, evidence, fixes, shown_by)
+    let quantities = lost_steps(lost, count, stored);
+    Some(SuspectedCause::new(Cause::OperationOrder, case.evidence(sentence, shown_by, quantities), fixes))
 }
 
 fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -79,8 +90,18 @@ fn wrap_256(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
     })?;
     let of = facts.capture.lights.get(light).and_then(|light| light.count_of);
     let what = of.map_or("volumes", CountOf::what);
-    let evidence = format!("{count} {what} are counted here, a multiple of 256: eight bits hold 0");
-    SuspectedCause::new(Cause::Wrap256, evidence, vec![Fix::setting("counter", "float")], shown_by)
+    let sentence = format!("{count} {what} are counted here, a multiple of 256: eight bits hold 0");
+    let quantities = reads_as_none(count, 256);
+    let evidence = case.evidence(sentence, shown_by, quantities);
+    Some(SuspectedCause::new(Cause::Wrap256, evidence, vec![Fix::setting("counter", "float")]))
+}
+
+/// Returns the numbers of a count that reads as none: how large it is, and what is left of it modulo `modulus`.
+fn reads_as_none(count: i32, modulus: i32) -> [Quantity; 2] {
+    [
+        Quantity::at_least("the count, whatever its sign", count.unsigned_abs().into(), modulus.into()),
+        Quantity::at_most("what the bits of the count hold", count.rem_euclid(modulus).into(), 0.0),
+    ]
 }
 
 /// Looks for counts in fewer than eight stencil bits that are a multiple of their modulus other than 0 and read as 0,
@@ -97,13 +118,14 @@ fn few_bits(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         let reads_none = stored(sample, light)? == 0 && first_lost(sample, light).is_none();
         (count != 0 && count % bits.modulus() == 0 && reads_none).then_some(count)
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "a count of {count} is left here, a multiple of {}: {bits} {} 0",
         bits.modulus(),
         if bits.modulus() == 2 { "holds" } else { "hold" }
     );
     let fixes = vec![Fix::setting("stencil-bits", "8"), Fix::setting("counter", "float")];
-    SuspectedCause::new(Cause::FewBits, evidence, fixes, shown_by)
+    let evidence = case.evidence(sentence, shown_by, reads_as_none(count, bits.modulus()));
+    Some(SuspectedCause::new(Cause::FewBits, evidence, fixes))
 }
 
 fn parity(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -113,8 +135,9 @@ fn parity(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
         let count = sample.between.iter().filter(|hit| facts.casts(light, hit)).count();
         (count != 0 && count % 2 == 0 && stored(sample, light)? == 0).then_some(count)
     })?;
-    let evidence =
+    let sentence =
         format!("{count} volumes contain the surface, an even number, and the one bit that faces turn over ends at 0");
     let fixes = vec![Fix::setting("operations", "wrap")];
-    SuspectedCause::new(Cause::Parity, evidence, fixes, shown_by)
+    let evidence = case.evidence(sentence, shown_by, reads_as_none(count as i32, 2));
+    Some(SuspectedCause::new(Cause::Parity, evidence, fixes))
 }

@@ -1,22 +1,34 @@
 //! Shadow maps: compares what the texel stores with what it should store.
 //!
-//! The texel's own ray is followed through the truth's scene: its first hit is the depth that the map would store
-//! without a bias. If the pixel is wrong with that depth as well, the texel is too coarse; else the bias is too small
-//! or too large.
+//! The texel's own ray is followed through the truth's scene, along which the map stores the first of the faces that it
+//! draws. If the pixel is wrong with that depth as well, the texel is too coarse; else the bias is too small or too
+//! large, by numbers that are held against each other. Where all faces between light and surface are of those that the
+//! map leaves out, no texel can be right.
 
 use super::planar::larger;
 use crate::accuracy::Finding;
+use crate::capture::Image;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
-use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
+use crate::diagnosis::evidence::Quantity;
+use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
 use crate::diagnosis::fix::{Fix, PlanEdit};
+use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{DrawPart, PlanMap};
+use crate::plan::{DrawPart, MapLookup, PlanMap};
 use crate::technique::{MapSettings, Technique};
-use crate::truth::SeenSurface;
+use crate::truth::{OccluderHit, SeenSurface};
 use glam::{DMat4, DVec2, DVec3};
+use wgpu::Face;
 
-pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, aliasing, outside_map];
+pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, map_faces_culled, aliasing, outside_map];
+
+/// Distances below this part of the map's depth range are rounding.
+const ROUNDING: f64 = 1e-6;
+/// Parts of a normal offset after each of which it is examined whether a point has left the shadow.
+const OFFSET_STEPS: u32 = 8;
+/// Biases that are enough for nearly any surface: constant and slope.
+const USUAL_BIAS: (i32, f64) = (16, 2.0);
 
 /// How a shadow map compares at a wrong surface point: the texel, the bias, and the cause that follows.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,26 +40,32 @@ pub(crate) struct MapComparison {
     texel: f64,
     /// How much farther from the light the receiver gets within one texel, metres.
     slope: f64,
-    /// How far the receiver's plane lies behind the first surface that the texel's ray hits, metres; for peter-panning,
-    /// how far the surface lies behind the caster.
+    /// How far the first face that the texel's ray meets lies before the surface that is compared with it, metres.
     gap: f64,
-    /// How far the bias moves the map's depth from the true one, metres.
+    /// How far the bias moves the map's depth from the true one, or the lookup towards the light, metres.
     bias: f64,
+    /// How far a bias may be off by rounding, metres.
+    rounding: f64,
     /// Distance from the middle of the map's face, 1 at its border.
     place: f64,
+    /// The number of points of the texel where the truth is not what it is at the pixel.
+    unlike: usize,
+    /// Triangles between light and surface of faces that the map leaves out, and of those that it keeps.
+    left_out: usize,
+    kept: usize,
 }
 
 /// Compares a shadow map with the truth at a wrong surface point and returns the cause with its numbers;
-/// [`Cause::OutsideMap`] where no face contains the point. `None` for other techniques, or where the light reads no
-/// map.
+/// [`Cause::OutsideMap`] where no face contains the point. `None` for other techniques, where the light reads no map,
+/// or where the numbers show no cause.
 pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapComparison> {
     if facts.technique() != Technique::ShadowMap {
         return None;
     }
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
-    map.lookup?;
+    let lookup = map.lookup?;
     let relative = seen.point - facts.scene.camera.eye;
-    let Some((face, device)) = find_face(map, relative) else {
+    let Some(face) = find_face(map, relative) else {
         let caster = facts.tracer.between(light, seen).last().map(|hit| hit.place.object);
         return Some(MapComparison {
             cause: Cause::OutsideMap,
@@ -56,19 +74,22 @@ pub(crate) fn look(facts: &FrameFacts, light: usize, kind: RegionKind, seen: &Se
             slope: 0.0,
             gap: 0.0,
             bias: 0.0,
+            rounding: 0.0,
             place: farthest(map, relative),
+            unlike: 0,
+            left_out: 0,
+            kept: 0,
         });
     };
-    texel_look(facts, light, kind, seen, map, face, device)
+    FaceReading::new(facts, light, seen, map, lookup, face)?.compare(kind)
 }
 
-/// Returns the first face of a map that a point (relative to the eye) is on, and its normalized device coordinates
-/// there; its depth is not checked. `None` where no face contains it.
-fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
-    map.clip_from_relative.iter().enumerate().find_map(|(face, matrix)| {
+/// Returns the first face of a map that a point (relative to the eye) is on; its depth is not checked. `None` where no
+/// face contains it.
+fn find_face(map: &PlanMap, relative: DVec3) -> Option<usize> {
+    map.clip_from_relative.iter().position(|matrix| {
         let clip = matrix.as_dmat4() * relative.extend(1.0);
-        let is_on = clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w;
-        is_on.then(|| (face, clip.truncate() / clip.w))
+        clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w
     })
 }
 
@@ -82,74 +103,254 @@ fn farthest(map: &PlanMap, relative: DVec3) -> f64 {
     off.fold(f64::INFINITY, f64::min)
 }
 
-fn texel_look(
-    facts: &FrameFacts,
+/// Returns whether the map draws the side of a triangle that its light sees.
+fn keeps(cull: Option<Face>, hit: &OccluderHit) -> bool {
+    match cull {
+        None => true,
+        Some(Face::Front) => !hit.faces_light,
+        Some(Face::Back) => hit.faces_light,
+    }
+}
+
+/// One face of a map, read for one surface point.
+struct FaceReading<'a> {
+    facts: &'a FrameFacts<'a>,
     light: usize,
-    kind: RegionKind,
-    seen: &SeenSurface,
-    map: &PlanMap,
-    face: usize,
+    seen: &'a SeenSurface,
+    lookup: MapLookup,
+    image: std::sync::Arc<Image>,
+    /// Texels along each side.
+    size: f64,
+    clip_from_world: DMat4,
+    world_from_clip: DMat4,
+    /// Where the point is looked up, normalized device coordinates of the face.
     device: DVec3,
-) -> Option<MapComparison> {
-    let image = facts.capture.lights.get(light)?.map.as_ref()?.faces.get(face)?.clone();
-    let size = f64::from(image.size()[0]);
-    let texel =
-        ((device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * size).floor().clamp(DVec2::ZERO, DVec2::splat(size - 1.0));
-    let stored = f64::from(image.depth_at([texel.x as u32, texel.y as u32])?);
-    let clip_from_world: DMat4 = *map.clip_from_light.get(face)? * map.light_from_world;
-    let world_from_clip = clip_from_world.inverse();
-    let center = ((texel + 0.5) / size - 0.5) * DVec2::new(2.0, -2.0);
-    let unproject = |x: f64, y: f64, z: f64| world_from_clip.project_point3(DVec3::new(x, y, z));
-    let target = unproject(center.x, center.y, device.z);
-    let beside = unproject(center.x + 2.0 / size, center.y, device.z);
-    let width = (beside - target).length();
-    let origin_side = facts.tracer.light_distance(light, target);
-    let drawn = |name: &str| facts.draws(light, DrawPart::Map).any(|draw| draw.caster.as_deref() == Some(name));
-    // Hits in order, from the light on.
-    let mut hits = facts.tracer.along(light, target);
-    hits.retain(|hit| hit.towards_light < origin_side && drawn(facts.tracer.name(hit.place)));
-    let first = hits.last();
-    let towards = facts.tracer.towards(light, target);
-    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
-    let cosine = normal.dot(towards).abs().max(1e-9);
-    let slope = width * (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
-    // Where the texel's ray hits the receiver's plane, towards the light from the target.
-    let receiver = normal.dot(seen.point - target) / normal.dot(towards);
-    let is_reversed = map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0);
-    let clear = map.lookup.map_or(0.0, |lookup| f64::from(lookup.clear_depth));
-    let height_of = |z: f64| facts.tracer.towards(light, target).dot(unproject(center.x, center.y, z) - target);
-    let bias = first.filter(|_| stored != clear).map_or(0.0, |first| first.towards_light - height_of(stored));
-    let gap = first.map_or(0.0, |first| first.towards_light - receiver);
-    let filter = map.lookup.map_or(1, |lookup| lookup.filter_width).max(1);
-    let cause = match (kind, first) {
-        (RegionKind::Wrong(Finding::FalseShadow), Some(first)) => {
-            let is_own = first.place.object == seen.place.object;
-            let reach = (slope + width) * 1.5 * f64::from(filter) + 1e-6 * origin_side.min(1e6);
-            if is_own && gap.abs() <= reach { Cause::Acne } else { Cause::Aliasing }
+    /// The normal offset that the lookup is moved by, metres; zero without one.
+    offset: DVec3,
+    /// How far that raises the point towards the light, metres.
+    raised: f64,
+    /// The receiver's unit normal.
+    normal: DVec3,
+    cull: Option<Face>,
+}
+
+/// A texel that answers for a surface point.
+struct TexelReading {
+    /// Its middle, normalized device coordinates.
+    center: DVec2,
+    /// What it stores, and what is compared with it.
+    stored: f64,
+    compared: f64,
+}
+
+impl<'a> FaceReading<'a> {
+    /// Reads a face for a point; `None` where the capture has no such face.
+    fn new(
+        facts: &'a FrameFacts<'a>,
+        light: usize,
+        seen: &'a SeenSurface,
+        map: &PlanMap,
+        lookup: MapLookup,
+        face: usize,
+    ) -> Option<FaceReading<'a>> {
+        let image = facts.capture.lights.get(light)?.map.as_ref()?.faces.get(face)?.clone();
+        let size = f64::from(image.size()[0]);
+        let clip_from_world: DMat4 = *map.clip_from_light.get(face)? * map.light_from_world;
+        let towards = facts.tracer.towards(light, seen.point);
+        let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+        let to_eye = if normal.dot(facts.scene.camera.eye - seen.point) < 0.0 { -normal } else { normal };
+        let from_relative = map.clip_from_relative.get(face)?.as_dmat4();
+        let relative = seen.point - facts.scene.camera.eye;
+        let clip = from_relative * relative.extend(1.0);
+        let sine = (1.0 - to_eye.dot(towards).powi(2)).max(0.0).sqrt();
+        let texel = 2.0 * clip.w / (from_relative.row(0).truncate().length() * size);
+        let offset = to_eye * (f64::from(lookup.bias_normal) * texel * sine);
+        let clip = from_relative * (relative + offset).extend(1.0);
+        Some(FaceReading {
+            facts,
+            light,
+            seen,
+            lookup,
+            image,
+            size,
+            clip_from_world,
+            world_from_clip: clip_from_world.inverse(),
+            device: clip.truncate() / clip.w,
+            offset,
+            raised: offset.dot(towards),
+            normal,
+            cull: facts.map().cull,
+        })
+    }
+
+    fn unproject(&self, place: DVec2, depth: f64) -> DVec3 {
+        self.world_from_clip.project_point3(place.extend(depth))
+    }
+
+    /// Returns how far the receiver's plane lies above a point, towards the light, metres.
+    fn receiver_above(&self, point: DVec3) -> f64 {
+        let towards = self.facts.tracer.towards(self.light, point);
+        self.normal.dot(self.seen.point - point) / self.normal.dot(towards)
+    }
+
+    /// Returns the texels that are compared for the point, the nearest to it first.
+    fn texels(&self) -> Vec<TexelReading> {
+        let place = (self.device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * self.size;
+        let width = self.lookup.filter_width.max(1);
+        let first = (place - 0.5 * f64::from(width - 1)).floor();
+        let steps = (0..width).flat_map(|row| (0..width).map(move |column| DVec2::new(column.into(), row.into())));
+        let mut texels: Vec<DVec2> =
+            steps.map(|step| (first + step).clamp(DVec2::ZERO, DVec2::splat(self.size - 1.0))).collect();
+        let apart = |texel: &DVec2| (*texel + 0.5 - place).length_squared();
+        texels.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let read = |texel: DVec2| {
+            let stored = f64::from(self.image.depth_at([texel.x as u32, texel.y as u32])?);
+            let center = ((texel + 0.5) / self.size - 0.5) * DVec2::new(2.0, -2.0);
+            let compared = if self.lookup.bias_receiver_plane {
+                let point = self.unproject(center, self.device.z);
+                let towards = self.facts.tracer.towards(self.light, point);
+                let on_plane = point + towards * (self.receiver_above(point) + self.raised);
+                self.clip_from_world.project_point3(on_plane).z
+            } else {
+                self.device.z
+            };
+            Some(TexelReading { center, stored, compared })
+        };
+        texels.into_iter().filter_map(read).collect()
+    }
+
+    fn is_clear(&self, texel: &TexelReading) -> bool {
+        texel.stored == f64::from(self.lookup.clear_depth)
+    }
+
+    fn says_lit(&self, texel: &TexelReading) -> bool {
+        let is_reversed = self.lookup.clear_depth == 0.0;
+        let is_nearer = if is_reversed { texel.compared >= texel.stored } else { texel.compared <= texel.stored };
+        self.is_clear(texel) || is_nearer
+    }
+
+    /// Returns the faces of drawn casters that the map keeps on the ray through a point, between it and the light and
+    /// behind it, the nearest to the light last.
+    fn kept_along(&self, point: DVec3) -> Vec<OccluderHit> {
+        let (tracer, light) = (self.facts.tracer, self.light);
+        let to_light = tracer.light_distance(light, point);
+        let mut hits = tracer.along(light, point);
+        hits.retain(|hit| hit.towards_light < to_light && self.is_drawn(hit) && keeps(self.cull, hit));
+        hits
+    }
+
+    fn is_drawn(&self, hit: &OccluderHit) -> bool {
+        let name = self.facts.tracer.name(hit.place);
+        self.facts.draws(self.light, DrawPart::Map).any(|draw| draw.caster.as_deref() == Some(name))
+    }
+
+    /// Returns the number of nine points of a texel, its border included, at which the truth is not what it is at the
+    /// pixel: dark for a false shadow, lit for a missing one. Faces within `reach` of the receiver's plane that are its
+    /// own object's do not count.
+    fn unlike(&self, texel: &TexelReading, is_false: bool, reach: f64) -> usize {
+        let steps = [-1.0, 0.0, 1.0];
+        let offsets = steps.into_iter().flat_map(|x| steps.map(|y| DVec2::new(x, y)));
+        let is_dark = |offset: DVec2| {
+            let point = self.unproject(texel.center + offset / self.size, texel.compared);
+            let plane = self.receiver_above(point);
+            let is_before = |hit: &OccluderHit| {
+                let above = hit.towards_light - plane;
+                let is_own = hit.place.object == self.seen.place.object;
+                above > if is_own { reach } else { 0.0 }
+            };
+            self.kept_along(point).iter().any(is_before)
+        };
+        offsets.filter(|offset| is_dark(*offset) == is_false).count()
+    }
+
+    /// Returns how far along the normal offset the point leaves the shadow, metres; `None` where it does not, where it is
+    /// in none, or without an offset. Faces within `rounding` of the receiver's plane throw none.
+    fn moved_out(&self, rounding: f64) -> Option<f64> {
+        let is_dark = |part: f64| {
+            let point = self.seen.point + self.offset * part;
+            let plane = self.receiver_above(point);
+            self.kept_along(point).iter().any(|hit| hit.towards_light > plane.max(0.0) + rounding)
+        };
+        let steps = 1..=OFFSET_STEPS;
+        let is_moved = self.offset != DVec3::ZERO && is_dark(0.0);
+        let mut parts = steps.map(|step| f64::from(step) / f64::from(OFFSET_STEPS));
+        is_moved.then(|| parts.find(|part| !is_dark(*part)))?.map(|part| part * self.offset.length())
+    }
+
+    /// Returns the cause with its numbers, as far as they hold; `None` where none does.
+    fn compare(&self, kind: RegionKind) -> Option<MapComparison> {
+        let (facts, light, seen) = (self.facts, self.light, self.seen);
+        let RegionKind::Wrong(finding) = kind else { return None };
+        let is_false = match finding {
+            Finding::FalseShadow => true,
+            Finding::MissingShadow => false,
+            _ => return None,
+        };
+        let texels = self.texels();
+        // The texel nearest to the point that answers as the picture does.
+        let texel = texels.iter().find(|texel| self.says_lit(texel) != is_false).or(texels.first())?;
+        let target = self.unproject(texel.center, texel.compared);
+        let beside = self.unproject(texel.center + DVec2::new(2.0 / self.size, 0.0), texel.compared);
+        let width = (beside - target).length();
+        let towards = facts.tracer.towards(light, target);
+        let height_of = |depth: f64| towards.dot(self.unproject(texel.center, depth) - target);
+        let cosine = self.normal.dot(towards).abs().max(1e-9);
+        let slope = width * (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
+        let to_light = facts.tracer.light_distance(light, target);
+        let range = if to_light.is_finite() { to_light } else { (height_of(1.0) - height_of(0.0)).abs() };
+        let rounding = ROUNDING * range;
+        let hits = self.kept_along(target);
+        let first = hits.last();
+        let bias = first.filter(|_| !self.is_clear(texel)).map(|first| first.towards_light - height_of(texel.stored));
+        let filter = f64::from(self.lookup.filter_width.max(1));
+        let reach = (slope + width) * 1.5 * filter + rounding;
+        let between = facts.tracer.between(light, seen);
+        let drawn = between.iter().filter(|hit| self.is_drawn(hit));
+        let (kept, left_out): (Vec<&OccluderHit>, Vec<&OccluderHit>) = drawn.partition(|hit| keeps(self.cull, hit));
+        let mut found = MapComparison {
+            cause: Cause::Aliasing,
+            caster: first.map(|first| first.place.object),
+            texel: width,
+            slope,
+            gap: first.map_or(0.0, |first| first.towards_light + self.raised),
+            bias: bias.unwrap_or(0.0) + self.raised,
+            rounding,
+            place: self.device.truncate().abs().max_element(),
+            unlike: 0,
+            left_out: left_out.len(),
+            kept: kept.len(),
+        };
+        let is_own = |first: &OccluderHit| {
+            let above = first.towards_light - self.receiver_above(target);
+            first.place.object == seen.place.object && above.abs() <= reach
+        };
+        let hides = |first: &OccluderHit| first.towards_light > 0.0;
+        let moved_out = self.moved_out(rounding).filter(|_| !first.is_some_and(hides));
+        found.cause = match (is_false, first, bias) {
+            (true, Some(first), Some(_)) if is_own(first) && found.gap > found.bias => Cause::Acne,
+            (false, ..) if kept.is_empty() && !left_out.is_empty() => {
+                found.caster = left_out.last().map(|hit| hit.place.object);
+                Cause::MapFacesCulled
+            }
+            (false, Some(first), Some(_)) if hides(first) && found.bias + rounding >= found.gap => Cause::PeterPanning,
+            (false, ..) if moved_out.is_some() => {
+                (found.bias, found.gap) = (self.offset.length(), moved_out.unwrap_or(0.0));
+                found.caster = kept.last().map(|hit| hit.place.object);
+                Cause::PeterPanning
+            }
+            _ => Cause::Aliasing,
+        };
+        if found.cause == Cause::Aliasing {
+            found.unlike = self.unlike(texel, is_false, reach);
+            if found.caster.is_none() {
+                found.caster = kept.last().map(|hit| hit.place.object);
+            }
+            if found.unlike == 0 {
+                return None;
+            }
         }
-        (RegionKind::Wrong(Finding::MissingShadow), Some(first)) => {
-            let point = seen.point;
-            let unbiased = clip_from_world.project_point3(target + towards * first.towards_light).z;
-            let here = clip_from_world.project_point3(point).z;
-            let is_nearer = if is_reversed { unbiased > here } else { unbiased < here };
-            if is_nearer { Cause::PeterPanning } else { Cause::Aliasing }
-        }
-        _ => Cause::Aliasing,
-    };
-    // A missing shadow was looked up at the target, which the bias has to pass.
-    let gap = match (cause, first) {
-        (Cause::PeterPanning, Some(first)) => first.towards_light,
-        _ => gap,
-    };
-    Some(MapComparison {
-        cause,
-        caster: first.map(|first| first.place.object),
-        texel: width,
-        slope,
-        gap,
-        bias,
-        place: device.truncate().abs().max_element(),
-    })
+        Some(found)
+    }
 }
 
 /// Returns the map comparison at the first sample whose cause is `cause`, and at how many samples it is; `None` where
@@ -170,23 +371,27 @@ fn bias(constant: i32, slope: f64) -> Fix {
 
 fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let (look, shown_by) = shown(facts, case, Cause::Acne)?;
-    let evidence = format!(
-        "a texel is {} wide here, over which the surface gets {} farther from the light; the bias is {}",
+    let sentence = format!(
+        "a texel is {} wide here, over which the surface gets {} farther from the light: what the texel shows lies {} \
+         before the surface here, and the bias is {}",
         numbers::metres(look.texel),
         numbers::metres(look.slope),
+        numbers::metres(look.gap),
         numbers::metres(look.bias.max(0.0))
     );
-    let steps = [(16, 2.0), (64, 4.0), (256, 8.0)];
+    let enough = Quantity::less_than("the bias, in metres", look.bias, look.gap);
+    let steps = [USUAL_BIAS, (64, 4.0), (256, 8.0)];
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
     let mut fixes: Vec<Fix> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
     fixes.push(Fix::technique(Technique::ZFail));
-    SuspectedCause::new(Cause::Acne, evidence, fixes, shown_by)
+    Some(SuspectedCause::new(Cause::Acne, case.evidence(sentence, shown_by, [enough]), fixes))
 }
 
 fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let (look, shown_by) = shown(facts, case, Cause::PeterPanning)?;
-    let evidence = match facts.map().bias_normal {
+    let MapSettings { bias_constant: constant, bias_slope: slope, bias_normal: normal, cull, .. } = facts.map();
+    let sentence = match normal {
         texels if texels > 0.0 => format!(
             "the surface is looked up {} of {} along its normal, and the caster is only {} before it",
             texels,
@@ -199,15 +404,53 @@ fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
             numbers::metres(look.gap)
         ),
     };
-    let steps = [(16, 2.0), (16, 1.0), (4, 0.5)];
-    let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
+    let too_much = Quantity::at_least("the bias, in metres", look.bias, look.gap - look.rounding);
+    let steps = [USUAL_BIAS, (16, 1.0), (4, 0.5)];
     let less = steps.into_iter().filter(|(c, s)| *c < constant || *s < slope);
     let mut fixes: Vec<Fix> = less.map(|(c, s)| bias(c.min(constant), s.min(slope))).collect();
-    if facts.map().bias_normal != 0.0 {
+    if normal != 0.0 {
         fixes = vec![Fix::setting("bias-normal", "0")];
     }
+    // Where the faces that the light sees are left out, those that are kept may touch the surface.
+    if cull.is_some() {
+        fixes.push(Fix::setting("cull", "none"));
+    }
     fixes.push(Fix::technique(Technique::ZFail));
-    SuspectedCause::new(Cause::PeterPanning, evidence, fixes, shown_by)
+    Some(SuspectedCause::new(Cause::PeterPanning, case.evidence(sentence, shown_by, [too_much]), fixes))
+}
+
+fn map_faces_culled(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    let (look, shown_by) = shown(facts, case, Cause::MapFacesCulled)?;
+    let MapSettings { bias_constant: constant, bias_slope: slope, cull, .. } = facts.map();
+    let cull = cull?;
+    let object = facts.scene.objects.get(look.caster?)?;
+    let (world, light) = (object.world_positions(), facts.tracer.light_position(case.light()));
+    let culled = if cull == Face::Front { Sign::Positive } else { Sign::Negative };
+    let triangles = object.mesh.triangles();
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| world[vertex as usize]);
+    let of_caster = triangles.iter().filter(|triangle| side_of_triangle(corners(triangle), light) == culled).count();
+    let side = if cull == Face::Front { "front" } else { "back" };
+    let sentence = format!(
+        "the map leaves out {side} faces, {of_caster} of the {} of {}: {} between light and surface, and no other face \
+         of any caster",
+        amount(triangles.len() as u64, "triangle"),
+        object.name,
+        match look.left_out {
+            1 => "1 of them lies".to_owned(),
+            count => format!("{count} faces so left out lie"),
+        }
+    );
+    let quantities = [
+        Quantity::at_least("triangles between light and surface that the map leaves out", look.left_out as f64, 1.0),
+        Quantity::at_most("triangles between light and surface that the map keeps", look.kept as f64, 0.0),
+    ];
+    let (usual, usual_slope) = USUAL_BIAS;
+    let mut fixes = vec![Fix::setting("cull", "none")];
+    // Faces that the light sees need a bias, which a map without them may do without.
+    if constant < usual || slope < usual_slope {
+        fixes.push(Fix::setting("cull", "none").and(&bias(constant.max(usual), slope.max(usual_slope))));
+    }
+    Some(SuspectedCause::new(Cause::MapFacesCulled, case.evidence(sentence, shown_by, quantities), fixes))
 }
 
 fn aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -217,12 +460,15 @@ fn aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         let pixels = look.texel / facts.pixel_width(facts.tracer.depth_of(seen.point));
         (look.cause == Cause::Aliasing).then_some((look, pixels))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "a texel is {} wide here, {} pixels of the picture, and the outline of the shadow runs through it",
         numbers::metres(look.texel),
         numbers::digits(pixels)
     );
-    SuspectedCause::new(Cause::Aliasing, evidence, larger(facts.texels(), 8192.0), shown_by)
+    let runs_through =
+        Quantity::at_least("of nine points of the texel, those where the truth is another", look.unlike as f64, 1.0);
+    let fixes = larger(facts.texels(), 8192.0);
+    Some(SuspectedCause::new(Cause::Aliasing, case.evidence(sentence, shown_by, [runs_through]), fixes))
 }
 
 fn outside_map(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -231,7 +477,8 @@ fn outside_map(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCaus
         true => format!("{} times as far from the map's middle as its border", numbers::digits(look.place)),
         false => "behind what the map looks at".to_owned(),
     };
-    let evidence = format!("the surface lies {place}, where nothing is looked up");
+    let sentence = format!("the surface lies {place}, where nothing is looked up");
+    let beyond = Quantity::more_than("the distance from the map's middle, where its border is at 1", look.place, 1.0);
     let fixes = vec![Fix::plan(PlanEdit::Refit), Fix::technique(Technique::ZFail)];
-    SuspectedCause::new(Cause::OutsideMap, evidence, fixes, shown_by)
+    Some(SuspectedCause::new(Cause::OutsideMap, case.evidence(sentence, shown_by, [beyond]), fixes))
 }

@@ -1,7 +1,8 @@
 //! One rule for each cause: it returns evidence in numbers, or nothing.
 //!
 //! Several causes share a fix (z-fail fixes many), so a rule without evidence would be proven for nothing. Each
-//! examines the region's samples, and returns nothing where they do not show its cause.
+//! examines the region's samples, and returns nothing where they do not show its cause; else the numbers it decided by
+//! come with it, and decide whether a fix that helps proves it ([`Evidence::holds`](crate::diagnosis::Evidence::holds)).
 
 pub(crate) mod count;
 pub(crate) mod map;
@@ -9,6 +10,7 @@ pub(crate) mod mesh;
 pub(crate) mod number;
 pub(crate) mod planar;
 pub(crate) mod projective;
+mod texels;
 pub(crate) mod volume;
 
 use super::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};

@@ -1,6 +1,7 @@
 //! Faults of single precision and of subpixel snapping.
 
 use crate::diagnosis::cause::Cause;
+use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
 use crate::diagnosis::fix::Fix;
 use crate::math::side_of_triangle;
@@ -60,14 +61,15 @@ fn grazed(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
         let height = sine.min(1.0).asin().to_degrees();
         (pixels >= PIXELS).then(|| (facts.tracer.name(seen.place).to_owned(), height, rounding, pixels))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "the light stands {}° over the plane of {name}: rounding positions to 24 bits, {} here, moves a shadow's edge \
          by {} pixels",
         numbers::digits(height),
         numbers::metres(rounding),
         numbers::digits(moved)
     );
-    SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by)
+    let far = Quantity::at_least("how far rounding moves the shadow's edge, in pixels", moved, PIXELS);
+    Some(SuspectedCause::new(Cause::F32Limit, case.evidence(sentence, shown_by, [far]), Vec::new()))
 }
 
 /// How many roundings there are between a corner and the depths that are compared: position, place in the picture, the
@@ -89,15 +91,19 @@ fn side_through_middle(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspe
         let (name, pixels, rounding) = sides.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some((name, sample.pixel, pixels, rounding))
     })?;
-    let near = if pixels < 1e-6 { "less than 1e-6".to_owned() } else { numbers::digits(pixels) };
+    let words = if pixels < 1e-6 { "less than 1e-6".to_owned() } else { numbers::digits(pixels) };
     let [column, row] = at;
-    let evidence = format!(
-        "a side of {name}'s volume passes {near} pixels, measured across the light, from the middle of pixel \
+    let sentence = format!(
+        "a side of {name}'s volume passes {words} pixels, measured across the light, from the middle of pixel \
          {column},{row}, and rounding positions to 24 bits moves it by {} each time",
         numbers::digits(rounding)
     );
+    let near =
+        Quantity::at_most("the side's distance from the pixel's middle, in pixels", pixels, ROUNDINGS * rounding);
     // By chance one pixel of many is at such a place: a whole wrong region has another cause.
-    (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
+    let is_everywhere = shown_by == case.samples.len();
+    let evidence = case.evidence(sentence, shown_by, [near]);
+    is_everywhere.then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new()))
 }
 
 /// Looks for miscounted casters with edges so long that clipping at the picture's border is rounded by at least the
@@ -117,14 +123,17 @@ fn cut_at_border(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
         (away <= moved).then_some((name, length, away, sample.pixel, moved))
     })?;
     let [column, row] = at;
-    let evidence = format!(
+    let sentence = format!(
         "edges of {name} are up to {} long: where the picture ends, {} pixels from the middle of pixel {column},{row}, they \
          are cut, and rounding to 24 bits moves the cut by {} pixels",
         numbers::metres(length),
         numbers::digits(away),
         numbers::digits(moved)
     );
-    (shown_by == case.samples.len()).then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new(), shown_by))?
+    let far = Quantity::at_least("how far rounding moves the cut, in pixels", moved, away);
+    let is_everywhere = shown_by == case.samples.len();
+    let evidence = case.evidence(sentence, shown_by, [far]);
+    is_everywhere.then(|| SuspectedCause::new(Cause::F32Limit, evidence, Vec::new()))
 }
 
 fn longest_edge(object: &Object) -> f64 {
@@ -210,26 +219,27 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
     }
     let ((name, edge), shown_by) = case.shown(|sample| {
         let (name, ..) = sample.miscounted(facts, light).into_iter().next()?;
-        let (_, object) = facts.object(&name)?;
-        let edge = usual_edge(facts, object)?;
+        let (index, _) = facts.object(&name)?;
+        let edge = usual_edge(facts, index)?;
         (edge <= SHORT_EDGE).then_some((name, edge))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "half of the edges of {name} are shorter than {} pixels from here, and corners snap to 1/256 of a pixel",
         numbers::digits(edge)
     );
     let fits = |times: &u32| facts.plan.size.iter().all(|side| side * times <= MOST_SIDE);
     let fixes = LARGER.into_iter().filter(fits).map(Fix::larger).collect();
-    SuspectedCause::new(Cause::SubpixelEdges, evidence, fixes, shown_by)
+    let short =
+        Quantity::at_most("the length that half of the caster's edges are shorter than, in pixels", edge, SHORT_EDGE);
+    Some(SuspectedCause::new(Cause::SubpixelEdges, case.evidence(sentence, shown_by, [short]), fixes))
 }
 
-/// Returns the median of the first edges of an object's triangles in pixels, as at the depth of its nearest corner.
-/// `None` without triangles, or where a corner is at or behind the eye.
-fn usual_edge(facts: &FrameFacts, object: &Object) -> Option<f64> {
-    let world = object.world_positions();
+/// Returns the median length of the edges of an object (its index in the scene) in pixels, as at the depth of its nearest
+/// corner. `None` without edges, or where a corner is at or behind the eye.
+fn usual_edge(facts: &FrameFacts, object: usize) -> Option<f64> {
+    let world = facts.scene.objects.get(object)?.world_positions();
     let nearest = world.iter().map(|point| facts.tracer.depth_of(*point)).fold(f64::INFINITY, f64::min);
-    let corners = object.mesh.triangles().iter();
-    let mut lengths: Vec<f64> = corners.map(|[a, b, _]| world[*a as usize].distance(world[*b as usize])).collect();
+    let mut lengths = facts.meshes.get(object)?.edge_lengths();
     let middle = lengths.len() / 2;
     let (_, median, _) = (middle < lengths.len()).then(|| lengths.select_nth_unstable_by(middle, f64::total_cmp))?;
     (nearest > 0.0).then(|| *median / facts.pixel_width(nearest))

@@ -1,14 +1,16 @@
 //! Faults of casters that are flattened onto planes, or drawn into their textures.
 
+use super::texels::TextureLayer;
 use crate::capture::{Aspect, Capture, Snapshot};
 use crate::diagnosis::cause::Cause;
+use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
 use crate::diagnosis::fix::Fix;
 use crate::geometry::planar::FlattenClip;
 use crate::history::{FragmentOutcome, PixelEvent, TestResult, TriangleEvent};
 use crate::math::{Plane, Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{ColorWrite, Draw, DrawPart, FramePlan, Pass};
+use crate::plan::{ColorWrite, Decision, Draw, DrawPart, FramePlan, LeftOut, LightId, Pass};
 use crate::technique::{PlanarSettings, Technique};
 use crate::truth::SeenSurface;
 use glam::{DVec3, DVec4};
@@ -17,8 +19,6 @@ use std::collections::BTreeSet;
 pub(crate) const RULES: &[CauseRule] =
     &[double_blend, z_fighting, off_receiver, anti_shadow, false_shadow, not_planar, texture_aliasing];
 
-/// The most flat pieces that get shadows.
-const MOST_PIECES: usize = 64;
 /// How far a surface may be off its own plane, relative to its distance from the eye.
 const OFF_PLANE: f64 = 1e-3;
 /// Planes count as parallel if the cosine between their normals is larger.
@@ -87,11 +87,12 @@ fn double_blend(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         let passing = flattened(sample, light).filter(|(_, one)| one.outcome.passed()).count();
         (passing > 1).then_some(passing)
     })?;
-    let evidence = format!("{count} flattened triangles cover this pixel, and each darkens it");
+    let sentence = format!("{count} flattened triangles cover this pixel, and each darkens it");
+    let twice = Quantity::at_least("flattened triangles that darken the pixel", count as f64, 2.0);
     let mut fix = Fix::setting("blend", "once");
     fix.settings.insert("stencil".to_owned(), "on".to_owned());
     let fixes = vec![Fix::setting("blend", "once"), fix];
-    SuspectedCause::new(Cause::DoubleBlend, evidence, fixes, shown_by)
+    Some(SuspectedCause::new(Cause::DoubleBlend, case.evidence(sentence, shown_by, [twice]), fixes))
 }
 
 /// Returns the events at a sample, with their triangles, of a light's flattened shadows drawn into the picture; those
@@ -104,12 +105,6 @@ fn flattened(sample: &PixelSample, light: usize) -> impl Iterator<Item = (&Pixel
             && one.part == DrawPart::PlanarShadow
             && event.target == crate::capture::FrameTarget::Picture
     })
-}
-
-/// Returns the world-space plane of a flattened triangle; `None` where its corners define none. Corners may be at
-/// infinity.
-fn plane_of(facts: &FrameFacts, one: &TriangleEvent) -> Option<Plane> {
-    through(one.corners, facts.scene.camera.eye)
 }
 
 /// Returns the world-space plane, with unit normal, through three homogeneous corners that are relative to the eye.
@@ -126,11 +121,26 @@ fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
     })
 }
 
-/// Returns the distance in metres, never negative, of a visible surface point from a flattened triangle's plane; `None`
-/// where it is within the tolerance, or where the triangle defines no plane.
-fn off_plane(facts: &FrameFacts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
-    let off = plane_of(facts, one)?.at(seen.point.extend(1.0)).abs();
-    (off > OFF_PLANE * (seen.point - facts.scene.camera.eye).length()).then_some(off)
+/// The distance of a visible surface point from the plane of a flattened triangle.
+#[derive(Clone, Copy)]
+struct PlaneDistance {
+    /// Metres, never negative.
+    metres: f64,
+    /// The distance up to which a point counts as in the plane, metres.
+    tolerance: f64,
+}
+
+impl PlaneDistance {
+    /// Measures the distance of a point from the plane of a flattened triangle, whose homogeneous corners are relative to
+    /// the eye; `None` where the triangle defines no plane, and nothing lies in it or off it.
+    fn of(corners: [[f32; 4]; 3], eye: DVec3, point: DVec3) -> Option<PlaneDistance> {
+        let metres = through(corners, eye)?.at(point.extend(1.0)).abs();
+        Some(PlaneDistance { metres, tolerance: OFF_PLANE * (point - eye).length() })
+    }
+
+    fn is_off(self) -> bool {
+        self.metres > self.tolerance
+    }
 }
 
 fn off_receiver(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -140,39 +150,47 @@ fn off_receiver(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
     let light = case.light();
     let ((name, off), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
-        let has_plane = |one: &TriangleEvent| plane_of(facts, one).is_some();
-        let passing = flattened(sample, light).filter(|(_, one)| one.outcome.passed() && has_plane(one));
-        let passing: Vec<_> = passing.collect();
-        let offs: Vec<(String, f64)> = passing
-            .iter()
-            .filter_map(|(_, one)| Some((one.draw_name.clone(), off_plane(facts, one, &seen)?)))
-            .collect();
-        (offs.len() == passing.len()).then(|| offs.into_iter().next()).flatten()
+        // What defines no plane is neither on it nor off it.
+        let distance = |one: &TriangleEvent| PlaneDistance::of(one.corners, facts.scene.camera.eye, seen.point);
+        let passing = flattened(sample, light).filter(|(_, one)| one.outcome.passed());
+        let passing = passing.filter_map(|(_, one)| Some((one.draw_name.clone(), distance(one)?)));
+        let passing: Vec<(String, PlaneDistance)> = passing.collect();
+        let are_off = passing.iter().all(|(_, distance)| distance.is_off());
+        passing.into_iter().next().filter(|_| are_off)
     })?;
-    let evidence =
-        format!("the {name} darkens a surface that lies {} off the plane it is flattened onto", numbers::metres(off));
-    SuspectedCause::new(Cause::OffReceiver, evidence, vec![Fix::setting("stencil", "on")], shown_by)
+    let sentence = format!(
+        "the {name} darkens a surface that lies {} off the plane it is flattened onto",
+        numbers::metres(off.metres)
+    );
+    let beside = Quantity::more_than("the surface's distance from that plane, in metres", off.metres, off.tolerance);
+    let evidence = case.evidence(sentence, shown_by, [beside]);
+    Some(SuspectedCause::new(Cause::OffReceiver, evidence, vec![Fix::setting("stencil", "on")]))
 }
 
 fn z_fighting(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
-    let ((name, shadow, surface), shown_by) = case.shown(|sample| {
+    let ((name, shadow, surface, off), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
         let fails =
             |outcome: FragmentOutcome| matches!(outcome, FragmentOutcome::Tested { depth: TestResult::Failed, .. });
-        let mut failing = flattened(sample, light).filter(|(_, one)| fails(one.outcome));
-        let (event, one) = failing.find(|(_, one)| off_plane(facts, one, &seen).is_none())?;
-        Some((one.draw_name.clone(), one.depth, event.before.depth))
+        let failing = flattened(sample, light).filter(|(_, one)| fails(one.outcome));
+        let mut measured = failing.filter_map(|(event, one)| {
+            let off = PlaneDistance::of(one.corners, facts.scene.camera.eye, seen.point)?;
+            Some((one.draw_name.clone(), one.depth, event.before.depth, off))
+        });
+        measured.find(|(.., off)| !off.is_off())
     })?;
     let steps = (i64::from(shadow.to_bits()) - i64::from(surface.to_bits())).unsigned_abs();
-    let evidence = format!(
+    let sentence = format!(
         "the {name} lies in the surface's plane, but its depth is {} here and the surface's {}: {} behind it",
         numbers::depth(shadow),
         numbers::depth(surface),
         amount(steps, "step")
     );
     let fixes = vec![Fix::setting("z-fighting", "depth-off"), Fix::setting("z-fighting", "polygon-offset")];
-    SuspectedCause::new(Cause::ZFighting, evidence, fixes, shown_by)
+    let in_plane =
+        Quantity::at_most("the surface's distance from the shadow's plane, in metres", off.metres, off.tolerance);
+    Some(SuspectedCause::new(Cause::ZFighting, case.evidence(sentence, shown_by, [in_plane]), fixes))
 }
 
 /// Returns the cause that a single pixel of planar shadows suggests: an anti-shadow where a caster on the light's line
@@ -280,23 +298,29 @@ fn anti_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCaus
         return None;
     }
     let light = case.light();
-    let (evidence, shown_by) = case.shown(|sample| {
+    let ((sentence, beyond), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
         let beyond = on_the_line(facts, light, &seen).0.into_iter().next().map(|(name, far)| {
-            let far = numbers::metres(far);
-            format!("nothing lies between light and surface, but {name} lies on their line, {far} beyond the light")
+            let words = numbers::metres(far);
+            let sentence = format!(
+                "nothing lies between light and surface, but {name} lies on their line, {words} beyond the light"
+            );
+            (sentence, far)
         });
         beyond.or_else(|| {
             let (name, under, over) = spans_the_light(facts, light, &seen)?;
-            Some(format!(
+            let sentence = format!(
                 "nothing lies between light and surface, but a triangle of {name} reaches from {} under the light's \
                  height to {} over it, and its corners, flattened one by one, span the surface",
                 numbers::metres(under),
                 numbers::metres(over)
-            ))
+            );
+            Some((sentence, over))
         })
     })?;
-    SuspectedCause::new(Cause::AntiShadow, evidence, vec![Fix::setting("clip", "on")], shown_by)
+    let beyond = Quantity::more_than("how far the caster reaches beyond the light, in metres", beyond, 0.0);
+    let evidence = case.evidence(sentence, shown_by, [beyond]);
+    Some(SuspectedCause::new(Cause::AntiShadow, evidence, vec![Fix::setting("clip", "on")]))
 }
 
 fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -307,11 +331,13 @@ fn false_shadow(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCau
         let (beyond, below) = on_the_line(facts, case.light(), &sample.seen?);
         below.into_iter().next().filter(|_| beyond.is_empty())
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "nothing lies between light and surface, but {name} lies on their line, {} under the surface",
         numbers::metres(far)
     );
-    SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")], shown_by)
+    let under = Quantity::more_than("how far the caster lies under the surface, in metres", far, 0.0);
+    let evidence = case.evidence(sentence, shown_by, [under]);
+    Some(SuspectedCause::new(Cause::FalseShadow, evidence, vec![Fix::setting("clip", "on")]))
 }
 
 /// Returns how many connected flat pieces an object has, by the exact planes of its triangles; `None` where no object
@@ -357,15 +383,16 @@ fn is_served(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
     }
 }
 
-/// Returns whether a surface draw of this light that reads a receiver texture draws the visible triangle (the same
-/// object and corners, within rounding).
-fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
+/// Returns the layer of the receiver texture that a surface draw of this light reads on the visible triangle (the same
+/// object and corners, within rounding); `None` where it reads none.
+fn texture_layer(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<usize> {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
     let is_of_piece = |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
     let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
     let eye = facts.scene.camera.eye;
-    light_passes.filter(|draw| draw.part == DrawPart::Surface).filter(is_of_piece).any(|draw| {
+    let mut pieces = light_passes.filter(|draw| draw.part == DrawPart::Surface).filter(is_of_piece);
+    let piece = pieces.find(|draw| {
         let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
         draw.triangles.clone().any(|index| {
             (0..3).all(|corner| {
@@ -381,7 +408,8 @@ fn has_texture(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> bool {
                 })
             })
         })
-    })
+    });
+    piece?.constants.layer.map(|layer| layer as usize)
 }
 
 fn not_planar(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -392,19 +420,34 @@ fn not_planar(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
     }
     let (name, shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
-        let serves = if is_texture { has_texture(facts, light, &seen) } else { is_served(facts, light, &seen) };
+        let serves =
+            if is_texture { texture_layer(facts, light, &seen).is_some() } else { is_served(facts, light, &seen) };
         let is_lit_side = side_of_triangle(seen.corners, facts.tracer.light_position(light)) != Sign::Zero;
         (!serves && is_lit_side).then(|| facts.tracer.name(seen.place).to_owned())
     })?;
     let pieces = flat_pieces(facts, &name)? as u64;
     let casters = case.samples.iter().flat_map(|sample| facts.names(&sample.between)).collect::<BTreeSet<_>>();
-    let evidence = format!(
-        "{name} is no plane but {}, of which the {MOST_PIECES} largest of the scene have a shadow: none of {} is \
-         flattened onto the one here",
+    let of_light = LightId(light).name();
+    let is_small = |left: &&LeftOut| {
+        left.decision == Some(Decision::SmallReceivers) && (left.of == of_light || left.of == "the frame")
+    };
+    let small: Vec<&LeftOut> = facts.plan.left_out.iter().filter(is_small).collect();
+    let count: u64 = small.iter().filter_map(|left| left.count).sum();
+    let because = &small.first()?.because;
+    let sentence = format!(
+        "{name} is no plane but {}, and none of {} is flattened onto the one here: {} of the scene's get no shadow \
+         ({because})",
         amount(pieces, "flat piece"),
-        listed(&casters)
+        listed(&casters),
+        numbers::count(count)
     );
-    SuspectedCause::new(Cause::NotPlanar, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
+    let without = Quantity::at_least("flat pieces that get no shadow", count as f64, 1.0);
+    let mut fixes = vec![Fix::technique(Technique::ZFail)];
+    // With marks, pieces get shadows that are too small for them without.
+    if settings(facts).is_some_and(|settings| !settings.marks) {
+        fixes.insert(0, Fix::setting("stencil", "on"));
+    }
+    Some(SuspectedCause::new(Cause::NotPlanar, case.evidence(sentence, shown_by, [without]), fixes))
 }
 
 fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -412,13 +455,42 @@ fn texture_aliasing(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
         return None;
     }
     let light = case.light();
-    let (_, shown_by) = case.shown(|sample| {
-        let seen = sample.seen?;
-        (case.is_false() || (case.is_missing() && has_texture(facts, light, &seen))).then_some(())
-    })?;
+    let map = facts.plan.lights.get(light)?.map.as_ref()?;
     let size = facts.texels();
-    let evidence = format!("the receiver's texture has {size} texels a side, and the outline runs between two of them");
-    SuspectedCause::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
+    let (unlike, shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let layer = TextureLayer { map, layer: texture_layer(facts, light, &seen)?, texels: size };
+        let unlike = unlike_texels(facts, light, &seen, layer, case.is_false())?;
+        (case.is_false() || case.is_missing()).then_some(unlike).filter(|unlike| *unlike > 0)
+    })?;
+    let sentence = format!("the receiver's texture has {size} texels a side, and the outline runs between two of them");
+    let quantity = differing_texels(unlike);
+    Some(SuspectedCause::new(Cause::Aliasing, case.evidence(sentence, shown_by, [quantity]), larger(size, 4096.0)))
+}
+
+/// Returns how many of the texels around a point lie where the truth is not what it is at the pixel, which must be some.
+pub(super) fn differing_texels(unlike: usize) -> Quantity {
+    Quantity::at_least("of nine texels around the point, those where the truth is another", unlike as f64, 1.0)
+}
+
+/// Returns how many of the nine texels around a point of a receiver lie where rays find the light (or, for a false
+/// shadow, do not); `None` behind the light.
+fn unlike_texels(
+    facts: &FrameFacts,
+    light: usize,
+    seen: &SeenSurface,
+    layer: TextureLayer,
+    is_false: bool,
+) -> Option<usize> {
+    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+    let points = layer.points_around(layer.place_of(seen.point)?, seen.point, normal);
+    // The receiver itself lies in its plane, and so does what throws no shadow on it.
+    let in_plane = OFF_PLANE * 1e-3 * (seen.point - facts.scene.camera.eye).length();
+    let is_dark = |point: &DVec3| {
+        let steepness = normal.dot(facts.tracer.towards(light, *point)).abs();
+        facts.tracer.between_points(light, *point).iter().any(|hit| hit.towards_light * steepness > in_plane)
+    };
+    Some(points.iter().filter(|point| is_dark(point) == is_false).count())
 }
 
 /// Returns fixes for coarse texels, in order: setting `size` to twice, then four times `size` (at most `most`; those
@@ -432,4 +504,22 @@ pub(crate) fn larger(size: f64, most: f64) -> Vec<Fix> {
     }
     let grow = sizes[1..].iter().map(|larger| Fix::setting("size", &format!("{larger}")));
     grow.chain([Fix::technique(Technique::ZFail)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three corners on a line have no plane: a surface is not in it, and is not off it.
+    #[test]
+    fn a_triangle_without_area_has_no_distance() {
+        let eye = DVec3::new(0.0, 2.0, 0.0);
+        let point = DVec3::new(0.5, 0.0, 0.0);
+        let corner = |x: f32, z: f32| [x, -2.0, z, 1.0];
+        let flat = PlaneDistance::of([corner(0.0, 0.0), corner(1.0, 0.0), corner(3.0, 0.0)], eye, point);
+        assert!(flat.is_none());
+        let floor = [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)];
+        let off = |up: f64| PlaneDistance::of(floor, eye, point + DVec3::Y * up).map(PlaneDistance::is_off);
+        assert_eq!((off(0.0), off(0.1)), (Some(false), Some(true)));
+    }
 }

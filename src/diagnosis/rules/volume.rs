@@ -1,6 +1,7 @@
 //! Faults of where volumes are counted from, and of volumes that are not closed.
 
 use crate::diagnosis::cause::Cause;
+use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, PixelSample, RegionSamples, SuspectedCause, amount, listed};
 use crate::diagnosis::fix::{Fix, PlanEdit};
 use crate::geometry::{Extruder, Extrusion, ViewVolume};
@@ -60,17 +61,22 @@ fn eye_in_volume(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
         return None;
     }
     let (eye_in, volumes) = holding(facts, light, facts.scene.camera.eye);
-    let (_, shown_by) = case.shown(|sample| {
-        let (near_in, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
-        (count > 0 && near_in.intersection(&eye_in).next().is_some()).then_some(())
+    let (missed, shown_by) = case.shown(|sample| {
+        let (near_in, _) = holding(facts, light, facts.tracer.near_point(sample.center()));
+        missed_by_z_pass(facts, light, sample, |name| near_in.contains(name) && eye_in.contains(name))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "the eye is inside {} of {} ({}), which z-pass does not count",
         amount(volumes, "shadow volume"),
         numbers::light(light),
         listed(&eye_in)
     );
-    SuspectedCause::new(Cause::EyeInVolume, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
+    let quantities = [
+        Quantity::at_least("volumes that contain the eye", volumes as f64, 1.0),
+        Quantity::at_least("volumes around the near plane that the count misses", missed.into(), 1.0),
+    ];
+    let evidence = case.evidence(sentence, shown_by, quantities);
+    Some(SuspectedCause::new(Cause::EyeInVolume, evidence, vec![Fix::technique(Technique::ZFail)]))
 }
 
 fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -85,23 +91,27 @@ fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
             let (_, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
             (count != start).then_some(count)
         })?;
-        let evidence = format!(
+        let sentence = format!(
             "the count begins with {} around {}, and the near plane, {} ahead, is in {count} here",
             amount(start, "shadow volume"),
             camera.counting_place_name(),
             numbers::metres(facts.scene.camera.near),
         );
-        return SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by);
+        let apart =
+            Quantity::at_least("volumes by which the count begins beside its place", count.abs_diff(start) as f64, 1.0);
+        let evidence = case.evidence(sentence, shown_by, [apart]);
+        return Some(SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)]));
     }
     let is_of_eye = |near_in: &BTreeSet<String>| {
         !facts.scene.camera.is_parallel() && near_in.intersection(&eye_in).next().is_some()
     };
-    let ((near_in, count), shown_by) = case.shown(|sample| {
+    let ((near_in, count, missed), shown_by) = case.shown(|sample| {
         let (near_in, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
-        (count > 0 && !is_of_eye(&near_in)).then_some((near_in, count))
+        let missed = missed_by_z_pass(facts, light, sample, |name| near_in.contains(name))?;
+        (count > 0 && !is_of_eye(&near_in)).then_some((near_in, count, missed))
     })?;
     let meeting = meeting_near_clip(facts, light);
-    let evidence = format!(
+    let sentence = format!(
         "the near plane, {} ahead, cuts {} of {} open here: {} of the {} that meet the space between near plane and light",
         numbers::metres(facts.scene.camera.near),
         amount(count, "shadow volume"),
@@ -109,7 +119,25 @@ fn near_plane_cut(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
         near_in.len(),
         amount(meeting.len() as u64, "caster"),
     );
-    SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
+    let quantities = [
+        Quantity::at_least("volumes that contain the near plane here", count as f64, 1.0),
+        Quantity::at_least("volumes around the near plane that the count misses", missed.into(), 1.0),
+    ];
+    let evidence = case.evidence(sentence, shown_by, quantities);
+    Some(SuspectedCause::new(Cause::NearPlaneCut, evidence, vec![Fix::technique(Technique::ZFail)]))
+}
+
+/// Returns by how many volumes the count at a sample differs from the truth, of the casters that `is_meant` names;
+/// `None` where it does not.
+fn missed_by_z_pass(
+    facts: &FrameFacts,
+    light: usize,
+    sample: &PixelSample,
+    is_meant: impl Fn(&String) -> bool,
+) -> Option<u32> {
+    let miscounted = sample.miscounted(facts, light).into_iter().filter(|(name, ..)| is_meant(name));
+    let missed: u32 = miscounted.map(|(_, counted, expected)| counted.abs_diff(expected)).sum();
+    (missed > 0).then_some(missed)
 }
 
 /// Returns the names of casting objects whose vertices are not all outside one plane of the light's near-clip volume:
@@ -143,19 +171,23 @@ fn near_plane_crack(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
         (low < near && near < high).then_some((name, low, high))
     });
     let crossing: Vec<(String, f64, f64)> = crossing.collect();
-    let (name, low, high) = crossing.first()?;
-    let (_, shown_by) = case.shown(|sample| {
+    let ((name, low, high), shown_by) = case.shown(|sample| {
         let wrong = sample.miscounted(facts, light);
-        (sample.history.is_none() || !wrong.is_empty()).then_some(())
+        crossing.iter().find(|(name, ..)| wrong.iter().any(|(miscounted, ..)| miscounted == name))
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "{name} reaches from {} to {} along the view and crosses the near plane at {}, where the light's picture and \
          the camera's are cut and round apart",
         numbers::metres(*low),
         numbers::metres(*high),
         numbers::metres(near)
     );
-    SuspectedCause::new(Cause::NearPlaneCrack, evidence, vec![Fix::technique(Technique::ZFail)], shown_by)
+    let quantities = [
+        Quantity::less_than("where the caster begins along the view, in metres", *low, near),
+        Quantity::more_than("where the caster ends along the view, in metres", *high, near),
+    ];
+    let evidence = case.evidence(sentence, shown_by, quantities);
+    Some(SuspectedCause::new(Cause::NearPlaneCrack, evidence, vec![Fix::technique(Technique::ZFail)]))
 }
 
 /// Returns the draws of a part of a caster's volume.
@@ -192,12 +224,14 @@ fn missing_dark_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
             && !is_excused(facts, caster, Decision::DarkCap)
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, lacks)?;
-    let evidence = format!(
+    let sentence = format!(
         "the volume of {caster} has no dark cap in this frame, and z-fail needs one: it counts {counted} here where \
          {} between light and surface",
         lie(expected)
     );
-    SuspectedCause::new(Cause::MissingDarkCap, evidence, vec![draw_caps(facts, 1, PlanEdit::DrawDarkCaps)], shown_by)
+    let evidence = case.evidence(sentence, shown_by, [miscount(counted, expected)]);
+    let fixes = vec![draw_caps(facts, 1, PlanEdit::DrawDarkCaps)];
+    Some(SuspectedCause::new(Cause::MissingDarkCap, evidence, fixes))
 }
 
 fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -213,29 +247,33 @@ fn missing_light_cap(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspect
             && !is_excused(facts, caster, Decision::LightCap)
     };
     if let Some(((caster, counted, expected), shown_by)) = lacking(facts, case, lacks) {
-        let evidence = format!(
+        let sentence = format!(
             "the volume of {caster} has no light cap in this frame, and z-fail needs one: it counts {counted} here \
              where {} between light and surface",
             lie(expected)
         );
-        return SuspectedCause::new(
-            Cause::MissingLightCap,
-            evidence,
-            vec![draw_caps(facts, 0, PlanEdit::DrawLightCaps)],
-            shown_by,
-        );
+        let evidence = case.evidence(sentence, shown_by, [miscount(counted, expected)]);
+        let fixes = vec![draw_caps(facts, 0, PlanEdit::DrawLightCaps)];
+        return Some(SuspectedCause::new(Cause::MissingLightCap, evidence, fixes));
     }
     let is_untested = |caster: &str| {
         let never = wgpu::CompareFunction::Never;
         part_of(facts, light, caster, DrawPart::LightCap).any(|draw| draw.raster.depth_compare == never)
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, is_untested)?;
-    let evidence = format!(
+    let sentence = format!(
         "the light cap of {caster} is drawn but never passes the depth test, though it is in front of the surface \
          here: it counts {counted} where {} between",
         lie(expected)
     );
-    SuspectedCause::new(Cause::MissingLightCap, evidence, vec![Fix::setting("light-caps", "tested")], shown_by)
+    let evidence = case.evidence(sentence, shown_by, [miscount(counted, expected)]);
+    let fixes = vec![Fix::setting("light-caps", "tested")];
+    Some(SuspectedCause::new(Cause::MissingLightCap, evidence, fixes))
+}
+
+/// Returns by how much a caster's count is off, which must be something.
+fn miscount(counted: i32, expected: i32) -> Quantity {
+    Quantity::at_least("how far the count of the caster's volume is off", counted.abs_diff(expected).into(), 1.0)
 }
 
 /// Returns the end of a sentence about `count` triangles, with its verb: `none of its triangles lies`, `1 of its
@@ -276,10 +314,11 @@ fn far_clip(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         }
     })?;
     let place = far.map_or_else(|| "at infinity".to_owned(), |far| format!("{} away", numbers::metres(far)));
-    let evidence =
+    let sentence =
         format!("{what} beyond the far plane, {place}, and {} cut away", if count == 1 { "is" } else { "are" });
     let fixes = vec![Fix::setting("depth", "reversed-infinite"), Fix::setting("depth", "standard-finite-clamp")];
-    SuspectedCause::new(Cause::FarClip, evidence, fixes, shown_by)
+    let cut = Quantity::at_least("faces or surfaces that the far plane cuts away here", count as f64, 1.0);
+    Some(SuspectedCause::new(Cause::FarClip, case.evidence(sentence, shown_by, [cut]), fixes))
 }
 
 /// Looks for surfaces at or beyond the far plane (`far` metres along the view's axis) under clamped depth, which get
@@ -289,14 +328,19 @@ fn beyond_clamped(facts: &FrameFacts, case: &RegionSamples, far: f64) -> Option<
         let distance = facts.tracer.depth_of(sample.seen?.point);
         (distance >= far).then_some(distance)
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "the surface lies {} away, beyond the far plane at {}, where clamped depth is that of nothing and nothing is \
          drawn",
         numbers::metres(distance),
         numbers::metres(far)
     );
-    SuspectedCause::new(Cause::FarClip, evidence, vec![Fix::setting("depth", "reversed-infinite")], shown_by)
+    let beyond = Quantity::at_least("the distance of the surface along the view, in metres", distance, far);
+    let evidence = case.evidence(sentence, shown_by, [beyond]);
+    Some(SuspectedCause::new(Cause::FarClip, evidence, vec![Fix::setting("depth", "reversed-infinite")]))
 }
+
+/// How much nearer the middle of a volume's flat end may be than its corners are carried.
+const FLAT_END: f64 = 1.02;
 
 fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
     let light = case.light();
@@ -321,14 +365,17 @@ fn finite_extrusion(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspecte
         });
         let best = reaches.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
         // The end is flat, so its middle may be nearer than the corners are carried.
-        (best.1 < best.2 * 1.02).then_some(best)
+        (best.1 < best.2 * FLAT_END).then_some(best)
     })?;
-    let evidence = format!(
+    let sentence = format!(
         "the volume of {caster} goes on for {} behind it, and the surface lies {} behind it",
         numbers::metres(reach),
         numbers::metres(needed)
     );
-    SuspectedCause::new(Cause::FiniteExtrusion, evidence, vec![Fix::setting("extrusion", "infinite")], shown_by)
+    let short =
+        Quantity::less_than("how far the volume goes on behind its caster, in metres", reach, needed * FLAT_END);
+    let evidence = case.evidence(sentence, shown_by, [short]);
+    Some(SuspectedCause::new(Cause::FiniteExtrusion, evidence, vec![Fix::setting("extrusion", "infinite")]))
 }
 
 /// Single-precision errors in a volume that a vertex shader extrudes.
@@ -389,12 +436,21 @@ fn carried_in_f32(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
         1 => format!("1 of {} is found to face the wrong way", amount(triangles as u64, "triangle")),
         _ => format!("{misfaced} of {} are found to face the wrong way", amount(triangles as u64, "triangle")),
     };
-    let evidence = format!(
+    let sentence = format!(
         "the volume of {caster} is carried by a vertex shader, in single precision: {faces}, and a vertex goes up to {} \
          radians beside its way",
         numbers::digits(beside)
     );
-    SuspectedCause::new(Cause::CarriedInF32, evidence, vec![Fix::setting("extruded-by", "cpu")], shown_by)
+    let off = match misfaced {
+        0 => Quantity::more_than(
+            "the angle by which a vertex goes beside its way, radians",
+            beside,
+            facts.pixel_angle() / 2.0,
+        ),
+        _ => Quantity::at_least("triangles that are found to face the wrong way", misfaced as f64, 1.0),
+    };
+    let evidence = case.evidence(sentence, shown_by, [off]);
+    Some(SuspectedCause::new(Cause::CarriedInF32, evidence, vec![Fix::setting("extruded-by", "cpu")]))
 }
 
 fn light_not_added(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
@@ -404,14 +460,20 @@ fn light_not_added(facts: &FrameFacts, case: &RegionSamples) -> Option<Suspected
         return None;
     }
     let light = position.truncate() / position.w;
-    let (caster, shown_by) = case.shown(|sample| Some(sample.miscounted(facts, case.light()).into_iter().next()?.0))?;
-    let evidence = format!(
+    let ((caster, width), shown_by) = case.shown(|sample| {
+        let (caster, ..) = sample.miscounted(facts, case.light()).into_iter().next()?;
+        Some((caster, facts.pixel_width(facts.tracer.depth_of(sample.seen?.point))))
+    })?;
+    let sentence = format!(
         "far vertices of {caster} are {} times the way from the light, from the world's origin on: they lie {} from \
          their place, as far as the light lies from the origin",
         numbers::digits(factor + 1.0),
         numbers::metres(light.length())
     );
-    SuspectedCause::new(Cause::LightNotAdded, evidence, vec![Fix::setting("far-vertices", "from-light")], shown_by)
+    // What moves far vertices by less than a pixel leaves every pixel as it is.
+    let away = Quantity::at_least("how far far vertices lie from their place, in metres", light.length(), width);
+    let evidence = case.evidence(sentence, shown_by, [away]);
+    Some(SuspectedCause::new(Cause::LightNotAdded, evidence, vec![Fix::setting("far-vertices", "from-light")]))
 }
 
 /// Returns the length in metres of the diagonal of an object's bounding box.
@@ -438,12 +500,14 @@ fn cap_fighting(_: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> 
         differs.then(|| (cap.caster.clone().unwrap_or_default(), cap.depth, event.before.depth))
     })?;
     let steps = (i64::from(cap.to_bits()) - i64::from(surface.to_bits())).unsigned_abs();
-    let evidence = format!(
+    let sentence = format!(
         "the light cap of {caster} is the very triangle that is seen, but its depth is {} here and the surface's {}: \
          {} apart",
         numbers::depth(cap),
         numbers::depth(surface),
         amount(steps, "step")
     );
-    SuspectedCause::new(Cause::CapFighting, evidence, vec![Fix::plan(PlanEdit::SurfaceOrder)], shown_by)
+    let apart = Quantity::at_least("steps of depth between the cap and the surface that it is", steps as f64, 1.0);
+    let evidence = case.evidence(sentence, shown_by, [apart]);
+    Some(SuspectedCause::new(Cause::CapFighting, evidence, vec![Fix::plan(PlanEdit::SurfaceOrder)]))
 }

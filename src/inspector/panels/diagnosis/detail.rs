@@ -79,7 +79,7 @@ fn cause(
             ui.label(theme::note(format!("{} stay wrong", format::counted(left, "pixel"))));
         }
     });
-    wrapped(ui, theme::note(&found.evidence).color(theme::of(ui).text));
+    wrapped(ui, theme::note(&found.evidence.sentence).color(theme::of(ui).text));
     if is_first {
         wrapped(ui, theme::note(found.cause.meaning()));
     }

@@ -44,7 +44,7 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
     for cause in diagnosis.causes.iter().filter(|cause| cause.proof != Proof::NotIt) {
         ui.add_space(4.0);
         ui.add(egui::Label::new(RichText::new(cause.title()).strong()).wrap());
-        ui.add(egui::Label::new(format!("{}.", cause.evidence)).wrap());
+        ui.add(egui::Label::new(format!("{}.", cause.evidence.sentence)).wrap());
         ui.add(egui::Label::new(theme::note(cause.meaning())).wrap());
     }
     for (names, what) in [
