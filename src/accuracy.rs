@@ -14,7 +14,7 @@ use crate::truth::{LIT, SHADOW, Tracer, Truth};
 use rayon::prelude::*;
 
 /// How far from a pixel's centre another label excuses a disagreement, in pixels.
-const LABEL_REACH: f64 = 1.0 / 8.0;
+pub(crate) const LABEL_REACH: f64 = 1.0 / 8.0;
 /// How far from a pixel's centre another visible triangle excuses a disagreement, in pixels.
 const SURFACE_REACH: f64 = 1.0 / 256.0;
 

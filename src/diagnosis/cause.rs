@@ -33,6 +33,10 @@ named_enum! {
         SplitVertices = "split-vertices",
         /// Vertices lie within a millionth of the size of each other.
         NearVertices = "near-vertices",
+        /// A corner lies on another triangle's edge, which silhouettes from shared corners take for an open one.
+        TJunction = "t-junction",
+        /// A mirrored caster's volume is wound as if it were not mirrored.
+        Mirrored = "mirrored",
         /// The light is inside a caster, and only its light-facing triangles cast.
         LightInside = "light-inside",
         /// A count stops at 255.
@@ -69,6 +73,10 @@ named_enum! {
         Aliasing = "aliasing",
         /// Surfaces lie outside what the map covers.
         OutsideMap = "outside-map",
+        /// A caster is nearer to the light than the map begins.
+        MapNearPlane = "map-near-plane",
+        /// A caster is farther from the light than the map ends.
+        MapFarPlane = "map-far-plane",
         /// A silhouette is projected behind the light too.
         ReverseProjection = "reverse-projection",
         /// A silhouette falls on a surface between the light and its caster.
@@ -79,8 +87,12 @@ named_enum! {
         SelfShadow = "self-shadow",
         /// Single precision cannot distinguish the two sides.
         F32Limit = "f32-limit",
+        /// Positions are rounded to single precision in world space, far from the origin.
+        F32World = "f32-world",
         /// Edges of the caster are shorter than a pixel, and corners of volumes snap to parts of one.
         SubpixelEdges = "subpixel-edges",
+        /// A side of a volume is seen so nearly edge-on that a part of a pixel decides on which side of the surface it is.
+        RasteriserPrecision = "rasteriser-precision",
         /// The scene says that an object receives no shadows.
         NotReceiving = "not-receiving",
         /// The scene says that an object casts no shadow.
@@ -222,6 +234,32 @@ impl Cause {
             }
             Cause::Aliasing => {
                 "Texels of the map cover more than the detail of the shadow's outline. Use a larger map or a volume."
+            }
+            Cause::TJunction => {
+                "A corner lies in the middle of another triangle's edge. Silhouettes that ask for shared corners find no \
+                 neighbour there and make no side, so that the volume is open. Join the corners, or find edges by \
+                 positions (silhouette = adjacency)."
+            }
+            Cause::Mirrored => {
+                "A scale of negative determinant turns an object's front faces into back faces, and its volume was not \
+                 flipped with it: it takes from the count what it should add. Flip its winding (mirrored = flipped)."
+            }
+            Cause::MapNearPlane => {
+                "The map's near plane lies behind the caster, which has no part in the map. Move the plane nearer to the \
+                 light, or fit the map to what casts (light-frustum = casters)."
+            }
+            Cause::MapFarPlane => {
+                "The map's far plane lies before the caster, which has no part in the map. Move the plane away from the \
+                 light, or fit the map to what casts (light-frustum = casters)."
+            }
+            Cause::RasteriserPrecision => {
+                "Rasterisers move corners to parts of a pixel, 1/256 of one or more. A side of a volume that is seen nearly \
+                 edge-on then has another depth at the pixel's middle, before the surface instead of behind it. A larger \
+                 picture shows that; nothing else mends it."
+            }
+            Cause::F32World => {
+                "Single precision has coarse steps far from the origin, and world positions are rounded to them: surfaces \
+                 that touch part, and edges jump. Subtract the eye in double precision first (world = f64)."
             }
             Cause::OutsideMap => {
                 "These surfaces or their casters are outside what the light's map shows. Fit the map again."

@@ -70,6 +70,43 @@ pub(crate) struct WoundPart {
     pub is_inside_out: bool,
 }
 
+/// Returns the number of edges in which two triangles meet, and whose corners the mesh's file splits, so that by its
+/// numbers each triangle has an edge of its own.
+pub(crate) fn split_edges(mesh: &Mesh) -> usize {
+    let mut by_position: HashMap<[u32; 2], BTreeSet<[u32; 2]>> = HashMap::new();
+    let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    for (of_mesh, of_file) in mesh.triangles().iter().zip(mesh.file_corners()) {
+        for side in 0..3 {
+            let edge = |corners: &[u32; 3]| ordered([corners[side], corners[(side + 1) % 3]]);
+            by_position.entry(edge(of_mesh)).or_default().insert(edge(of_file));
+        }
+    }
+    by_position.values().filter(|of_file| of_file.len() > 1).count()
+}
+
+/// How far from an edge a corner lies on it, in lengths of the edge.
+const ON_EDGE: f64 = 1e-6;
+/// The most edges of one triangle, and the most of their corners, that are looked through for T-junctions.
+const MOST_LONE: usize = 4096;
+
+/// Returns the corners, object space, that lie between the ends of another triangle's edge: where triangles meet in part
+/// of an edge. Only edges of one triangle are looked at, the first few thousand.
+pub(crate) fn t_junctions(mesh: &Mesh) -> Vec<DVec3> {
+    let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
+    let lone = (0..edges.edges().len()).filter(|index| edges.incident(*index).count() == 1).take(MOST_LONE);
+    let lone: Vec<Edge> = lone.map(|index| edges.edges()[index]).collect();
+    let corners: BTreeSet<u32> = lone.iter().flat_map(|edge| [edge.low, edge.high]).take(MOST_LONE).collect();
+    let place = |corner: u32| mesh.positions()[corner as usize];
+    let is_on = |corner: u32, edge: &Edge| {
+        let (from, along) = (place(edge.low), place(edge.high) - place(edge.low));
+        let part = (place(corner) - from).dot(along) / along.length_squared();
+        let beside = (place(corner) - from - along * part).length();
+        (ON_EDGE..=1.0 - ON_EDGE).contains(&part) && beside <= ON_EDGE * along.length()
+    };
+    let lies_on_one = |corner: &u32| lone.iter().any(|edge| is_on(*corner, edge));
+    corners.into_iter().filter(lies_on_one).map(place).collect()
+}
+
 impl MeshFacts {
     /// Measures an object's mesh for defects: open, split, near, non-manifold and inconsistent edges, flat and dropped
     /// triangles, duplicates, slivers and whether a whole mesh is inside out. Places are in world space.

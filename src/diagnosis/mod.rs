@@ -119,6 +119,8 @@ pub enum RegionKind {
     Wrong(Finding),
     /// They are in shadow, and rightly so, but darkened more than once.
     TooDark,
+    /// They are lit, and rightly so, but a filter darkens them in part where no shadow is near.
+    PartlyDark,
 }
 
 impl RegionKind {
@@ -127,6 +129,7 @@ impl RegionKind {
         match self {
             RegionKind::Wrong(finding) => finding.name(),
             RegionKind::TooDark => "too_dark",
+            RegionKind::PartlyDark => "partly_dark",
         }
     }
 }

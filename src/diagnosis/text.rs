@@ -44,11 +44,18 @@ impl Diagnosis {
         let name = format!("{}, {}, {width}x{height}", self.scene, self.technique.name());
         let compared = numbers::count(error.compared);
         let excused = numbers::count(error.edge_band);
-        let twice = self.regions.iter().filter(|region| region.kind == RegionKind::TooDark);
-        let twice: u64 = twice.map(|region| region.pixels).sum();
-        let twice = if twice > 0 { format!("; {} darkened more than once", pixels(twice)) } else { String::new() };
+        let beside = [
+            (RegionKind::TooDark, "darkened more than once"),
+            (RegionKind::PartlyDark, "lit, and darkened in part by the filter"),
+        ];
+        let beside = beside.map(|(kind, what)| {
+            let of_kind = self.regions.iter().filter(|region| region.kind == kind);
+            let count: u64 = of_kind.map(|region| region.pixels).sum();
+            if count > 0 { format!("; {} {what}", pixels(count)) } else { String::new() }
+        });
+        let beside = beside.concat();
         if error.wrong() == 0 {
-            return format!("{name}: none of {compared} compared pixels is wrong{twice}; {excused} at edges excused\n");
+            return format!("{name}: none of {compared} compared pixels is wrong{beside}; {excused} at edges excused\n");
         }
         let kinds = [
             (error.missing_shadow, "lit that should be dark"),
@@ -58,7 +65,7 @@ impl Diagnosis {
         let kinds = kinds.iter().filter(|(count, _)| *count > 0);
         let kinds: Vec<String> = kinds.map(|(count, what)| format!("{} {what}", numbers::count(*count))).collect();
         format!(
-            "{name}: {} of {compared} compared pixels are wrong ({}){twice}; {excused} at edges excused\n",
+            "{name}: {} of {compared} compared pixels are wrong ({}){beside}; {excused} at edges excused\n",
             numbers::count(error.wrong()),
             kinds.join(", "),
         )
@@ -142,6 +149,7 @@ impl RegionFound {
             RegionKind::Wrong(Finding::FalseShadow) => format!("false shadow{of}{on}"),
             RegionKind::Wrong(_) => format!("wrong surface{on}"),
             RegionKind::TooDark => format!("shadow{of}{on} darkened more than once"),
+            RegionKind::PartlyDark => format!("light{on} darkened in part"),
         }
     }
 }

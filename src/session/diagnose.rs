@@ -212,7 +212,8 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
     if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(darkening) }
 }
 
-/// Returns all regions of wrong pixels, of all lights, the largest first; regions that are merely too dark come last.
+/// Returns all regions of wrong pixels, of all lights, the largest first; regions that are merely too dark, or
+/// dark in part, come last.
 fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
     let mut found = Vec::new();
@@ -228,9 +229,15 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
             keys[*index] = Some(RegionKey { kind: RegionKind::TooDark, caster: None, receiver: None, hint: None });
         }
         found.extend(regions::find(light, keys, size));
+        let in_part = &run.judged.partly_dark[light];
+        let mut keys = vec![None; findings.len()];
+        in_part.iter().for_each(|index| {
+            keys[*index] = Some(key_of(facts, light, RegionKind::PartlyDark, crate::accuracy::place(*index, size)));
+        });
+        found.extend(regions::find(light, keys, size));
     }
     found.sort_by_key(|region| {
-        (region.key.kind == RegionKind::TooDark, std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
+        (!matches!(region.key.kind, RegionKind::Wrong(_)), std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
     });
     found
 }

@@ -7,7 +7,7 @@ use crate::capture::{Capture, Image};
 use crate::diagnosis::facts::SuspectedCause;
 use crate::diagnosis::proof::{TriedCause, WrongPixels, judge, ranked};
 use crate::diagnosis::regions::ConnectedRegion;
-use crate::diagnosis::rules::planar;
+use crate::diagnosis::rules::{filter, planar};
 use crate::diagnosis::{Advice, Cause, CauseFound, Fix, FixWithinTechnique, Proof, RegionFound};
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -25,6 +25,8 @@ pub(super) struct JudgedFrame {
     pub findings: Vec<Vec<u8>>,
     /// For each light, the numbers of pixels that were darkened twice.
     pub too_dark: Vec<Vec<usize>>,
+    /// For each light, the numbers of lit pixels that its filter darkens in part.
+    pub partly_dark: Vec<Vec<usize>>,
     pub error: ErrorCounts,
     pub wrong: WrongPixels,
 }
@@ -41,11 +43,11 @@ pub(super) struct TrialRuns<'a> {
 
 impl Session {
     /// Runs the frame with a fix, and returns which pixels are still wrong, at the picture's own size. Only labels are
-    /// captured, except for techniques that darken the picture, for which a larger picture is not tried.
+    /// captured, except for techniques that darken the picture or lit surfaces in part, for which a larger picture is not tried.
     fn run_fixed(&mut self, runs: &TrialRuns, fix: &Fix) -> Result<WrongPixels, SessionError> {
         let (scene, _, plan) = self.plan_fixed(runs.scene, runs.request, runs.fault, fix)?;
         self.check_memory_budget(&plan)?;
-        if planar::darkens_in_the_picture(&plan) {
+        if planar::darkens_in_the_picture(&plan) || filter::may_darken_in_part(&plan) {
             // A larger picture does not show which pixels are too dark.
             if fix.larger.is_some() {
                 return self.run_fixed(runs, &Fix { larger: None, ..fix.clone() });
@@ -241,7 +243,7 @@ pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
 }
 
 /// Compares labels with the truth, light by light; with the capture, pixels that agree but were darkened twice in the
-/// picture count as wrong too. Lights without labels are not compared.
+/// picture, or in part by a filter, count as wrong too. Lights without labels are not compared.
 pub(super) fn judged(
     plan: &FramePlan,
     traced: &TracedScene,
@@ -249,7 +251,7 @@ pub(super) fn judged(
     capture: Option<&Capture>,
 ) -> JudgedFrame {
     let pixels = traced.truth.size.iter().map(|side| *side as usize).product();
-    let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut findings, mut too_dark, mut partly_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut error = ErrorCounts::default();
     for (light, labels) in labels.iter().enumerate() {
         let of_light = match labels {
@@ -264,10 +266,14 @@ pub(super) fn judged(
         let mut is_wrong: Vec<bool> = of_light.iter().map(is_wrong).collect();
         let dark = capture.map_or_else(Vec::new, |capture| planar::too_dark(plan, capture, light));
         let dark: Vec<usize> = dark.into_iter().filter(|index| of_light[*index] == Finding::Agrees as u8).collect();
-        dark.iter().for_each(|index| is_wrong[*index] = true);
+        let in_part = capture.map_or_else(Vec::new, |capture| {
+            filter::darkened_in_part(plan, capture, &traced.tracer, light, &traced.truth.labels[light])
+        });
+        dark.iter().chain(&in_part).for_each(|index| is_wrong[*index] = true);
         findings.push(of_light);
         too_dark.push(dark);
+        partly_dark.push(in_part);
         wrong.push(is_wrong);
     }
-    JudgedFrame { findings, too_dark, error, wrong: WrongPixels { lights: wrong } }
+    JudgedFrame { findings, too_dark, partly_dark, error, wrong: WrongPixels { lights: wrong } }
 }

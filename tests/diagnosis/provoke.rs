@@ -76,6 +76,11 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::MapFacesCulled
         | Cause::Aliasing
         | Cause::OutsideMap
+        | Cause::MapNearPlane
+        | Cause::MapFarPlane
+        | Cause::TJunction
+        | Cause::Mirrored
+        | Cause::F32World
         | Cause::ReverseProjection
         | Cause::Between
         | Cause::EdgeSmear
@@ -293,6 +298,17 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             let factor = dice.between(1.6, 3.0);
             (dice.any_scene(), choice(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
         }
+        Cause::MapNearPlane => (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:2.6:9")]), None),
+        Cause::MapFarPlane => (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:0.1:1.2")]), None),
+        Cause::TJunction => {
+            let mesh = box_with_t_junctions(dice);
+            (dice.with(mesh), choice(Technique::ZFail, &[("silhouette", "shared-corners")]), None)
+        }
+        Cause::Mirrored => (one_behind_the_other(dice), choice(Technique::ZFail, &[("mirrored", "kept")]), None),
+        Cause::F32World => {
+            let by = DVec3::new(dice.between(3e5, 6e5), 0.0, dice.between(-6e5, -3e5));
+            (moved(dice.still_life(), by), choice(Technique::ZFail, &[("world", "f32")]), None)
+        }
         Cause::ReverseProjection => (wall_behind_lamp(dice), choice(Technique::Projective, &[("reverse", "on")]), None),
         Cause::Between => (shelf_between(dice), choice(Technique::Projective, &[("size", "2048")]), None),
         Cause::SelfShadow => (ring_alone(dice), choice(Technique::Projective, &[("size", "2048")]), None),
@@ -397,6 +413,46 @@ fn walled_box(dice: &mut Dice) -> Mesh {
     }
     triangles.extend([[0, 2, 6], [0, 6, 4]]);
     rebuilt(positions, triangles)
+}
+
+/// A box whose top has a corner in the middle of two of its sides, which the triangles below do not know.
+fn box_with_t_junctions(dice: &mut Dice) -> Mesh {
+    let size = dice.between(0.6, 0.9);
+    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * size;
+    let low = [corner(0.0, 0.0, 0.0), corner(0.0, 0.0, 1.0), corner(1.0, 0.0, 1.0), corner(1.0, 0.0, 0.0)];
+    let high = low.map(|point| point + DVec3::Y * size);
+    let middles = [corner(0.5, 1.0, 1.0), corner(0.5, 1.0, 0.0)];
+    let quads = [[0, 3, 2, 1], [4, 5, 8, 9], [9, 8, 6, 7], [1, 2, 6, 5], [3, 0, 4, 7], [0, 1, 5, 4], [2, 3, 7, 6]];
+    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    rebuilt([&low[..], &high, &middles].concat(), triangles.collect())
+}
+
+/// A box between 1.3 and 2.5 metres from a lamp that stands over it.
+fn box_under_lamp(dice: &mut Dice) -> Scene {
+    let place = [dice.between(-0.3, 0.3), dice.between(1.4, 1.6), dice.between(-0.3, 0.3)];
+    let caster = cuboid("box", place, [dice.between(0.3, 0.5), 0.3, 0.4]).rotated([0.0, dice.between(0.0, 90.0), 0.0]);
+    let lamp = Light::point([place[0], place[1] + dice.between(1.6, 2.0), place[2]]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], lamp, vec![floor(), caster])
+}
+
+/// Two boxes over each other, of which the lower one is mirrored and in the shadow of the other.
+fn one_behind_the_other(dice: &mut Dice) -> Scene {
+    let place = dice.place();
+    let above = [place[0], place[1] + 0.6, place[2]];
+    let upper = cuboid("upper", above, [dice.between(0.7, 0.9), 0.2, 0.8]);
+    let mut lower = cuboid("lower", place, [dice.between(0.5, 0.7), 0.3, 0.5]).rotated(dice.degrees());
+    lower.pose.scale = DVec3::new(-1.0, 1.0, 1.0);
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), upper, lower])
+}
+
+fn moved(mut scene: Scene, by: DVec3) -> Scene {
+    scene.objects.iter_mut().for_each(|object| object.pose.translate += by);
+    for light in scene.lights.iter_mut().filter(|light| !light.is_directional()) {
+        light.position += by.extend(0.0);
+    }
+    scene.camera.eye += by;
+    scene.camera.target += by;
+    scene
 }
 
 /// Turns a part of the triangles that face a light.

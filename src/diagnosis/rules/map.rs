@@ -13,6 +13,7 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::evidence::Quantity;
 use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
 use crate::diagnosis::fix::{Fix, PlanEdit};
+use crate::geometry::light_frame::LightFrustum;
 use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
 use crate::plan::{DrawPart, MapLookup, PlanMap};
@@ -479,6 +480,9 @@ fn outside_map(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCaus
     };
     let sentence = format!("the surface lies {place}, where nothing is looked up");
     let beyond = Quantity::more_than("the distance from the map's middle, where its border is at 1", look.place, 1.0);
-    let fixes = vec![Fix::plan(PlanEdit::Refit), Fix::technique(Technique::ZFail)];
+    // A frustum that settings give is wrong by the settings, a fitted one by what became of the plan.
+    let is_fitted = facts.map().frustum == LightFrustum::Casters;
+    let fit = if is_fitted { Fix::plan(PlanEdit::Refit) } else { super::frustum::fitted() };
+    let fixes = vec![fit, Fix::technique(Technique::ZFail)];
     Some(SuspectedCause::new(Cause::OutsideMap, case.evidence(sentence, shown_by, [beyond]), fixes))
 }

@@ -5,19 +5,34 @@
 //! come with it, and decide whether a fix that helps proves it ([`Evidence::holds`](crate::diagnosis::Evidence::holds)).
 
 pub(crate) mod count;
+mod engine;
+pub(crate) mod filter;
+mod frustum;
 pub(crate) mod map;
 pub(crate) mod mesh;
 pub(crate) mod number;
 pub(crate) mod planar;
 pub(crate) mod projective;
+mod rasteriser;
 mod texels;
 pub(crate) mod volume;
 
 use super::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause};
 
 /// The rules of all families.
-pub(crate) const ALL: &[&[CauseRule]] =
-    &[volume::RULES, count::RULES, mesh::RULES, planar::RULES, map::RULES, projective::RULES, number::RULES];
+pub(crate) const ALL: &[&[CauseRule]] = &[
+    volume::RULES,
+    count::RULES,
+    mesh::RULES,
+    engine::RULES,
+    planar::RULES,
+    map::RULES,
+    frustum::RULES,
+    filter::RULES,
+    projective::RULES,
+    number::RULES,
+    rasteriser::RULES,
+];
 
 /// Returns every cause for which a rule finds evidence in a region.
 pub(crate) fn suspicions(facts: &FrameFacts, case: &RegionSamples) -> Vec<SuspectedCause> {

@@ -227,11 +227,16 @@ fn subpixel_edges(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedC
         "half of the edges of {name} are shorter than {} pixels from here, and corners snap to 1/256 of a pixel",
         numbers::digits(edge)
     );
-    let fits = |times: &u32| facts.plan.size.iter().all(|side| side * times <= MOST_SIDE);
-    let fixes = LARGER.into_iter().filter(fits).map(Fix::larger).collect();
     let short =
         Quantity::at_most("the length that half of the caster's edges are shorter than, in pixels", edge, SHORT_EDGE);
-    Some(SuspectedCause::new(Cause::SubpixelEdges, case.evidence(sentence, shown_by, [short]), fixes))
+    Some(SuspectedCause::new(Cause::SubpixelEdges, case.evidence(sentence, shown_by, [short]), larger_pictures(facts)))
+}
+
+/// Returns fixes that draw the picture larger, as far as every GPU can: what snapping of corners does to a pixel is then
+/// gone.
+pub(super) fn larger_pictures(facts: &FrameFacts) -> Vec<Fix> {
+    let fits = |times: &u32| facts.plan.size.iter().all(|side| side * times <= MOST_SIDE);
+    LARGER.into_iter().filter(fits).map(Fix::larger).collect()
 }
 
 /// Returns the median length of the edges of an object (its index in the scene) in pixels, as at the depth of its nearest

@@ -34,6 +34,8 @@ pub const ALL: &[StressCase] = &[
     near::NEAR_PLANE,
     near::NEAR_IN_VOLUME,
     LIGHT_ORBIT,
+    MAP_PLANES,
+    MAP_SWIMS,
 ];
 
 // Deviations from the specification's table. `near-far` and shadow maps: the map's near plane is fitted to the casters
@@ -97,6 +99,14 @@ const WORLD_OFFSET: StressCase = StressCase {
     parameter: "offset in metres",
     values: &[0.0, 1e2, 1e4, 1e5, 1e6, 1e7, 1e8],
     drives: CaseNumber::Scene(|offset| Ok(carried(still_life()?, DVec3::new(1.0, 0.5, -0.25) * offset))),
+    also: &[F32_WORLD],
+    failures: &[
+        fails(F32_WORLD, "f32-world", "the steps of single precision there are parts of a pixel, or many pixels")
+            .at(|offset| offset >= 1e5),
+        fails(F32_WORLD, "f32-world", "the steps of single precision there reach an eighth of a pixel")
+            .at(|offset| offset >= 1e4)
+            .perhaps(),
+    ],
     ..PLAIN
 };
 
@@ -446,6 +456,54 @@ const ORBIT_STEPS: [f64; 1000] = {
     while index < steps.len() {
         steps[index] = index as f64 * 0.02;
         index += 1;
+    }
+    steps
+};
+
+const MAP_PLANES: StressCase = StressCase {
+    name: "map-planes",
+    lesson: "a box goes from a lamp's map's far plane to its near one and beyond: what is outside has no part in the map",
+    parameter: "metres from the lamp",
+    values: &[2.2, 1.8, 1.2, 0.9, 0.7, 0.4, 0.3],
+    drives: CaseNumber::Scene(|distance| {
+        let side = 0.1 * distance;
+        let caster = Object::of("box", shapes::cuboid([2.0 * side, 0.5 * side, 2.0 * side])?);
+        let objects = vec![floor(3.0)?, caster.at([0.0, 3.0 - distance, 0.0])];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.0, 3.0, 0.0]), objects))
+    }),
+    also: &[GIVEN_PLANES],
+    failures: &[
+        fails(GIVEN_PLANES, "map-near-plane", "the box is nearer to the lamp than the map begins")
+            .at(|distance| distance < 0.5)
+            .is_missing(),
+        fails(GIVEN_PLANES, "map-far-plane", "the box is farther from the lamp than the map ends")
+            .at(|distance| distance > 1.5)
+            .is_missing(),
+    ],
+    ..PLAIN
+};
+
+const MAP_SWIMS: StressCase = StressCase {
+    name: "map-swims",
+    lesson: "the eye moves by millimetres: a map that is fitted to what it sees moves by parts of a texel, and edges crawl",
+    parameter: "metres along the view's side",
+    values: &SWIM_STEPS,
+    drives: CaseNumber::Motion(|metres| {
+        let ball = Object::of("ball", shapes::sphere(0.5, 24, 12)?).at([0.0, 0.9, 0.0]);
+        let sun = Light::directional(DVec3::new(0.4, 1.0, 0.3));
+        Ok(scene([1.5 + metres, 3.0, 5.0], [metres, 0.3, 0.0], sun, vec![floor(3.0)?, ball]))
+    }),
+    also: &[VIEW_FIT, VIEW_SNAPPED],
+    ..PLAIN
+};
+
+/// Forty moves of a millimetre.
+const SWIM_STEPS: [f64; 40] = {
+    let mut steps = [0.0; 40];
+    let mut step = 0;
+    while step < 40 {
+        steps[step] = step as f64 / 1000.0;
+        step += 1;
     }
     steps
 };

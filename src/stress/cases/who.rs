@@ -46,6 +46,19 @@ pub const FOUR_BITS: Entrant = Entrant::with(Technique::ZFail, &[("stencil-bits"
 pub const EYE_COUNT: Entrant = Entrant::with(Technique::ZPass, &[("start", "eye-count")]);
 /// Z-fail that finds the silhouette by searching a list of edges (`silhouette = edge-list`).
 pub const EDGE_LIST: Entrant = Entrant::with(Technique::ZFail, &[("silhouette", "edge-list")]);
+/// Z-fail that finds silhouettes between triangles that share corners by their file's numbers.
+pub const SHARED_CORNERS: Entrant = Entrant::with(Technique::ZFail, &[("silhouette", "shared-corners")]);
+/// Z-fail whose volumes of mirrored objects are wound as if nothing were mirrored, and whose counts stop at 0.
+pub const UNFLIPPED: Entrant =
+    Entrant::with(Technique::ZFail, &[("mirrored", "kept"), ("operations", "clamp"), ("faces", "two-pass")]);
+/// Z-fail whose positions are rounded to single precision in world space.
+pub const F32_WORLD: Entrant = Entrant::with(Technique::ZFail, &[("world", "f32")]);
+/// Shadow maps of a lamp with given near and far planes, at 0.5 and 1.5 metres.
+pub const GIVEN_PLANES: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "120:0.5:1.5")]);
+/// Shadow maps that cover what the camera sees.
+pub const VIEW_FIT: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "view")]);
+/// Shadow maps that cover what the camera sees and move by whole texels.
+pub const VIEW_SNAPPED: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "view-snapped")]);
 /// Z-fail whose volumes a vertex shader extrudes.
 pub const BY_VERTEX_SHADER: Entrant = Entrant::with(Technique::ZFail, &[("extruded-by", "vertex-shader")]);
 /// Z-fail in which only light-facing triangles cast.

@@ -57,7 +57,8 @@ const OPEN_MESH: StressCase = StressCase {
         let open: Vec<[u32; 3]> = closed.triangles().iter().filter(|corners| !is_top(corners)).copied().collect();
         over_floor(vec![Object::of("open box", shapes::triangles(&points, &open)?).at([0.0, 0.8, 0.0])])
     }),
-    also: &[LIGHT_FACING, ALL_CAST],
+    also: &[LIGHT_FACING, ALL_CAST, UNFLIPPED],
+    failures: &[fails(UNFLIPPED, "mirrored", "a mirrored volume takes away what it should add, and counts stop at 0")],
     failures: &[fails(
         LIGHT_FACING,
         "light-facing-open",
@@ -141,7 +142,12 @@ const SPLIT_VERTICES: StressCase = StressCase {
         let triangles: Vec<[u32; 3]> = (0..points.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         over_floor(vec![Object::of("cube", shapes::triangles(&points, &triangles)?).at([0.0, 0.8, 0.0])])
     }),
-    also: &[LIGHT_FACING],
+    also: &[LIGHT_FACING, SHARED_CORNERS],
+    failures: &[fails(
+        SHARED_CORNERS,
+        "split-vertices",
+        "no two triangles share a corner by number, so that no edge has a side and the volume is its caps",
+    )],
     ..PLAIN
 };
 
@@ -164,6 +170,12 @@ const T_JUNCTION: StressCase = StressCase {
             Object::of("wall", shapes::triangles(&points, &triangles)?).rotated([-20.0, 0.0, 0.0]).at([0.0, 0.8, 0.0]),
         ])
     }),
+    also: &[SHARED_CORNERS],
+    failures: &[fails(
+        SHARED_CORNERS,
+        "t-junction",
+        "edges of one triangle, at the wall's border and where a corner lies on another's edge, have no side",
+    )],
     ..PLAIN
 };
 

@@ -1,0 +1,162 @@
+//! Filtered shadow maps that darken lit surfaces in part: texels around a point show the surface itself, nearer to the
+//! light than the one depth that all of them are compared with.
+//!
+//! A texel is the surface's own where it would be lit if it were compared with the depth that the surface's plane has at
+//! that texel. A soft edge is none of that: there, texels show what stands before the plane.
+
+use crate::capture::{Capture, Image};
+use crate::diagnosis::RegionKind;
+use crate::diagnosis::cause::Cause;
+use crate::diagnosis::evidence::Quantity;
+use crate::diagnosis::facts::{CauseRule, FrameFacts, RegionSamples, SuspectedCause, amount};
+use crate::diagnosis::fix::Fix;
+use crate::numbers;
+use crate::plan::{FramePlan, MapLookup, PlanMap};
+use crate::truth::{LIT, SeenSurface, Tracer};
+use glam::{DMat4, DVec2, DVec3};
+use rayon::prelude::*;
+
+pub(crate) const RULES: &[CauseRule] = &[acne];
+
+/// Returns whether some light of a plan is read through a filter, so that surfaces may be dark in part.
+pub(crate) fn may_darken_in_part(plan: &FramePlan) -> bool {
+    plan.lights.iter().any(|light| filtered(light.map.as_ref()).is_some())
+}
+
+/// Returns how a map is read, where it is read through a filter.
+fn filtered(map: Option<&PlanMap>) -> Option<(&PlanMap, MapLookup)> {
+    let map = map?;
+    map.lookup.filter(|lookup| lookup.filter_width > 1).map(|lookup| (map, lookup))
+}
+
+/// Returns the indices of pixels, row-major, that are lit by label and by the `truth` of a light, and whose filter has
+/// texels that the surface itself darkens. Empty where the light's map has no filter, or the capture no visibility.
+pub(crate) fn darkened_in_part(
+    plan: &FramePlan,
+    capture: &Capture,
+    tracer: &Tracer,
+    light: usize,
+    truth: &[u8],
+) -> Vec<usize> {
+    let Some(captured) = capture.lights.get(light) else { return Vec::new() };
+    let (Some(visibility), Some(labels)) = (&captured.visibility, &captured.shadow) else { return Vec::new() };
+    let Some(reading) = FilterReading::new(plan, capture, light) else { return Vec::new() };
+    let shares = visibility.values();
+    let labels: Vec<u8> = labels.rows().flatten().copied().collect();
+    let is_dark = |index: &usize| {
+        if truth[*index] != LIT || labels[*index] != LIT || shares[*index] >= 1.0 {
+            return false;
+        }
+        let [x, y] = crate::accuracy::place(*index, plan.size);
+        let seen = tracer.seen_at([f64::from(x) + 0.5, f64::from(y) + 0.5]);
+        seen.and_then(|seen| reading.at(&seen)).is_some_and(|filter| filter.own > 0)
+    };
+    (0..shares.len()).into_par_iter().filter(is_dark).collect()
+}
+
+/// A light's map as a filter reads it.
+struct FilterReading<'a> {
+    map: &'a PlanMap,
+    lookup: MapLookup,
+    faces: Vec<FaceMatrices<'a>>,
+    eye: DVec3,
+}
+
+/// A face's texels, and the matrices between it and the world.
+struct FaceMatrices<'a> {
+    image: &'a Image,
+    clip_from_world: DMat4,
+    world_from_clip: DMat4,
+}
+
+/// What the filter finds at a surface point.
+struct FilteredPoint {
+    /// Texels that are compared, and those of them that the surface itself darkens.
+    all: u32,
+    own: u32,
+    /// How much nearer to the light the surface's plane is at the nearest of its own texels than at the point, metres,
+    /// and by how much the map's depth is moved away there.
+    rise: f64,
+    bias: f64,
+}
+
+impl<'a> FilterReading<'a> {
+    /// Returns the reading of a light's map; `None` where it has no filter, or its faces were not captured.
+    fn new(plan: &'a FramePlan, capture: &'a Capture, light: usize) -> Option<FilterReading<'a>> {
+        let (map, lookup) = filtered(plan.lights.get(light)?.map.as_ref())?;
+        let images = &capture.lights.get(light)?.map.as_ref()?.faces;
+        let faces = map.clip_from_light.iter().zip(images).map(|(clip_from_light, image)| {
+            let clip_from_world = *clip_from_light * map.light_from_world;
+            FaceMatrices { image, clip_from_world, world_from_clip: clip_from_world.inverse() }
+        });
+        Some(FilterReading { map, lookup, faces: faces.collect(), eye: plan.views.first()?.origin })
+    }
+
+    /// Returns whether a depth is at the stored one or nearer to the light.
+    fn is_lit(&self, depth: f64, stored: f64) -> bool {
+        if self.lookup.clear_depth == 0.0 { depth >= stored } else { depth <= stored }
+    }
+
+    /// Compares all texels of the filter at a surface point, once as the shader does, and once with the depths of the
+    /// surface's own plane; `None` outside the map, and for a surface that the light sees edge-on.
+    fn at(&self, seen: &SeenSurface) -> Option<FilteredPoint> {
+        let relative = (seen.point - self.eye).extend(1.0);
+        let on_face = |matrix: &glam::Mat4| {
+            let clip = matrix.as_dmat4() * relative;
+            clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w
+        };
+        let face = self.faces.get(self.map.clip_from_relative.iter().position(on_face)?)?;
+        let device = face.clip_from_world.project_point3(seen.point);
+        let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+        let size = f64::from(face.image.size()[0]);
+        let place = (device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * size;
+        let width = self.lookup.filter_width;
+        let first = (place - 0.5 * f64::from(width - 1)).floor();
+        let mut found = FilteredPoint { all: width * width, own: 0, rise: 0.0, bias: 0.0 };
+        for (row, column) in (0..width).flat_map(|row| (0..width).map(move |column| (row, column))) {
+            let texel = (first + DVec2::new(column.into(), row.into())).clamp(DVec2::ZERO, DVec2::splat(size - 1.0));
+            let stored = face.image.depth_at([texel.x as u32, texel.y as u32])?;
+            if stored == self.lookup.clear_depth || self.is_lit(device.z, stored.into()) {
+                continue;
+            }
+            let center = ((texel + 0.5) / size - 0.5) * DVec2::new(2.0, -2.0);
+            let [near, far] = [0.25, 0.75].map(|depth| face.world_from_clip.project_point3(center.extend(depth)));
+            let along = far - near;
+            let on_plane = near + along * (normal.dot(seen.point - near) / normal.dot(along));
+            let own = face.clip_from_world.project_point3(on_plane).z;
+            if !on_plane.is_finite() || !self.is_lit(own, stored.into()) {
+                continue;
+            }
+            found.own += 1;
+            let at_depth = |depth: f64| face.world_from_clip.project_point3(center.extend(depth));
+            let [rise, bias] = [device.z, f64::from(stored)].map(|depth| at_depth(depth).distance(on_plane));
+            if rise - bias > found.rise - found.bias {
+                (found.rise, found.bias) = (rise, bias);
+            }
+        }
+        Some(found)
+    }
+}
+
+fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
+    if case.region.key.kind != RegionKind::PartlyDark {
+        return None;
+    }
+    let reading = FilterReading::new(facts.plan, facts.capture, case.light())?;
+    let (FilteredPoint { all, own, rise, bias }, shown_by) =
+        case.shown(|sample| reading.at(&sample.seen?).filter(|filter| filter.own > 0))?;
+    let sentence = format!(
+        "{} of the {all} that the filter compares show the surface itself: over the filter's radius it gets {} nearer to \
+         the light than the one depth that they are compared with, and the bias is {}",
+        amount(own.into(), "texel"),
+        numbers::metres(rise),
+        numbers::metres(bias)
+    );
+    let too_little = Quantity::less_than("the bias, in metres", bias, rise);
+    let mut fixes = vec![Fix::setting("bias-receiver-plane", "on")];
+    let slope = facts.map().bias_slope;
+    let reach = f64::from(facts.map().filter_width) + 2.0;
+    fixes.extend((slope < reach).then(|| Fix::setting("bias-slope", &format!("{reach}"))));
+    fixes.push(Fix::setting("filter", "none"));
+    Some(SuspectedCause::new(Cause::Acne, case.evidence(sentence, shown_by, [too_little]), fixes))
+}
