@@ -26,6 +26,8 @@ pub(crate) const RULES: &[CauseRule] = &[acne, peter_panning, map_faces_culled, 
 
 /// Distances below this part of the map's depth range are rounding.
 const ROUNDING: f64 = 1e-6;
+/// How far a place may be off by rounding, in texels: places are computed in single precision, with up to 8192 texels.
+const TEXEL_ROUNDING: f64 = 0.02;
 /// Parts of a normal offset after each of which it is examined whether a point has left the shadow.
 const OFFSET_STEPS: u32 = 8;
 /// Biases that are enough for nearly any surface: constant and slope.
@@ -194,9 +196,19 @@ impl<'a> FaceReading<'a> {
         self.normal.dot(self.seen.point - point) / self.normal.dot(towards)
     }
 
-    /// Returns the texels that are compared for the point, the nearest to it first.
-    fn texels(&self) -> Vec<TexelReading> {
+    /// Returns the texel that answers as the picture does, the nearest to the point; where the point lies on a border of
+    /// texels within rounding, also of those beside it. The nearest of all where none answers so, and `None` where the
+    /// map has none.
+    fn answering(&self, is_lit: bool) -> Option<TexelReading> {
         let place = (self.device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * self.size;
+        let steps = [0.0, -TEXEL_ROUNDING, TEXEL_ROUNDING];
+        let places = steps.into_iter().flat_map(|x| steps.map(|y| place + DVec2::new(x, y)));
+        let mut answers = places.flat_map(|place| self.texels(place));
+        answers.find(|texel| self.says_lit(texel) == is_lit).or_else(|| self.texels(place).into_iter().next())
+    }
+
+    /// Returns the texels that are compared for a place in texels, the nearest to it first.
+    fn texels(&self, place: DVec2) -> Vec<TexelReading> {
         let width = self.lookup.filter_width.max(1);
         let first = (place - 0.5 * f64::from(width - 1)).floor();
         let steps = (0..width).flat_map(|row| (0..width).map(move |column| DVec2::new(column.into(), row.into())));
@@ -264,6 +276,12 @@ impl<'a> FaceReading<'a> {
         offsets.filter(|offset| is_dark(*offset) == is_false).count()
     }
 
+    /// Returns whether a constant or slope bias pushes the map's depths away from the light.
+    fn is_biased(&self) -> bool {
+        let MapSettings { bias_constant, bias_slope, .. } = self.facts.map();
+        bias_constant > 0 || bias_slope > 0.0
+    }
+
     /// Returns how far along the normal offset the point leaves the shadow, metres; `None` where it does not, where it is
     /// in none, or without an offset. Faces within `rounding` of the receiver's plane throw none.
     fn moved_out(&self, rounding: f64) -> Option<f64> {
@@ -287,9 +305,7 @@ impl<'a> FaceReading<'a> {
             Finding::MissingShadow => false,
             _ => return None,
         };
-        let texels = self.texels();
-        // The texel nearest to the point that answers as the picture does.
-        let texel = texels.iter().find(|texel| self.says_lit(texel) != is_false).or(texels.first())?;
+        let texel = &self.answering(!is_false)?;
         let target = self.unproject(texel.center, texel.compared);
         let beside = self.unproject(texel.center + DVec2::new(2.0 / self.size, 0.0), texel.compared);
         let width = (beside - target).length();
@@ -323,17 +339,26 @@ impl<'a> FaceReading<'a> {
         };
         let is_own = |first: &OccluderHit| {
             let above = first.towards_light - self.receiver_above(target);
-            first.place.object == seen.place.object && above.abs() <= reach
+            // What lies in the receiver's plane is as its own surface.
+            above.abs() <= if first.place.object == seen.place.object { reach } else { rounding }
         };
         let hides = |first: &OccluderHit| first.towards_light > 0.0;
         let moved_out = self.moved_out(rounding).filter(|_| !first.is_some_and(hides));
         found.cause = match (is_false, first, bias) {
-            (true, Some(first), Some(_)) if is_own(first) && found.gap > found.bias => Cause::Acne,
+            (true, Some(first), Some(_)) if is_own(first) && found.gap + rounding > found.bias => Cause::Acne,
             (false, ..) if kept.is_empty() && !left_out.is_empty() => {
                 found.caster = left_out.last().map(|hit| hit.place.object);
                 Cause::MapFacesCulled
             }
             (false, Some(first), Some(_)) if hides(first) && found.bias + rounding >= found.gap => Cause::PeterPanning,
+            (false, Some(first), None)
+                if hides(first) && self.is_biased() && self.unlike(texel, is_false, reach) == 0 =>
+            {
+                // Depths that are pushed past the last one become that of no caster.
+                let out = first.towards_light - height_of(texel.stored);
+                found.bias = if out.is_finite() { out.abs() } else { f64::INFINITY };
+                Cause::PeterPanning
+            }
             (false, ..) if moved_out.is_some() => {
                 (found.bias, found.gap) = (self.offset.length(), moved_out.unwrap_or(0.0));
                 found.caster = kept.last().map(|hit| hit.place.object);
@@ -377,10 +402,10 @@ fn acne(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause> {
          before the surface here, and the bias is {}",
         numbers::metres(look.texel),
         numbers::metres(look.slope),
-        numbers::metres(look.gap),
+        numbers::metres(look.gap.max(0.0)),
         numbers::metres(look.bias.max(0.0))
     );
-    let enough = Quantity::less_than("the bias, in metres", look.bias, look.gap);
+    let enough = Quantity::less_than("the bias, in metres", look.bias, look.gap + look.rounding);
     let steps = [USUAL_BIAS, (64, 4.0), (256, 8.0)];
     let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
     let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
@@ -400,9 +425,10 @@ fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
             numbers::metres(look.gap)
         ),
         _ => format!(
-            "the bias moves the caster {} away from the light, and the surface is only {} behind it",
-            numbers::metres(look.bias),
-            numbers::metres(look.gap)
+            "the bias moves the caster {} away from the light, and the surface is only {} behind it; a texel is {} wide",
+            if look.bias.is_finite() { numbers::metres(look.bias) } else { "past all depths of the map".to_owned() },
+            numbers::metres(look.gap),
+            numbers::metres(look.texel)
         ),
     };
     let too_much = Quantity::at_least("the bias, in metres", look.bias, look.gap - look.rounding);
@@ -416,7 +442,8 @@ fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
     if cull.is_some() {
         fixes.push(Fix::setting("cull", "none"));
     }
-    fixes.push(Fix::technique(Technique::ZFail));
+    // A bias is so many texels' slopes or widths: with smaller texels it is less.
+    fixes.extend(larger(facts.texels(), 8192.0));
     Some(SuspectedCause::new(Cause::PeterPanning, case.evidence(sentence, shown_by, [too_much]), fixes))
 }
 

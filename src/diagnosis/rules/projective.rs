@@ -56,7 +56,9 @@ pub(crate) fn look(
             match (behind, below) {
                 (Some(hit), _) => found(Cause::ReverseProjection, hit.place.object, hit.towards_light - distance),
                 (None, Some(hit)) => found(Cause::Between, hit.place.object, -hit.towards_light),
-                (None, None) => smearing(facts, light, seen).or_else(|| beside_outline(facts, light, seen)),
+                (None, None) => smearing(facts, light, seen)
+                    .or_else(|| beside_outline(facts, light, seen))
+                    .or_else(|| beside_reverse_outline(facts, light, seen).filter(|_| reverses)),
             }
         }
         RegionKind::Wrong(Finding::MissingShadow) => {
@@ -126,6 +128,24 @@ fn beside_outline(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Optio
         (far > 0.0).then_some(SilhouetteComparison { cause: Cause::Aliasing, caster, far })
     });
     covering.next()
+}
+
+/// Returns the caster whose outline, projected behind the light, the surface point lies beside, with how far it lies
+/// beyond the light there; `None` where there is none.
+fn beside_reverse_outline(facts: &FrameFacts, light: usize, seen: &SeenSurface) -> Option<SilhouetteComparison> {
+    let towards = facts.tracer.towards(light, seen.point);
+    (0..facts.scene.objects.len()).filter(|object| *object != seen.place.object).find_map(|caster| {
+        let layer = layer_of(facts, light, caster)?;
+        let place = layer.reverse_place_of(seen.point).filter(|place| !is_outside(*place))?;
+        let far = |point: &DVec3| {
+            let distance = facts.tracer.light_distance(light, *point);
+            let along = facts.tracer.along(light, *point);
+            let beyond = along.iter().filter(|hit| hit.place.object == caster).map(|hit| hit.towards_light - distance);
+            beyond.filter(|far| *far > 0.0).min_by(f64::total_cmp)
+        };
+        let far = layer.points_around(place, seen.point, towards).iter().find_map(far)?;
+        Some(SilhouetteComparison { cause: Cause::ReverseProjection, caster, far })
+    })
 }
 
 /// The texels around a point in a caster's picture.

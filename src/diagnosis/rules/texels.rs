@@ -19,6 +19,13 @@ impl TextureLayer<'_> {
         (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
     }
 
+    /// Returns where a projection carries a surface point behind the light to, through the point that it turns round at.
+    /// `None` before the light, or where there is no such layer.
+    pub fn reverse_place_of(&self, point: DVec3) -> Option<DVec2> {
+        let clip = *self.map.clip_from_light.get(self.layer)? * point.extend(1.0);
+        (clip.w < 0.0).then(|| clip.truncate().truncate() / clip.w)
+    }
+
     /// Returns where the light's lines through the middles of the texels around a place meet the plane through `point`
     /// with this normal. Texels are kept inside the picture; lines that do not meet the plane are left out.
     pub fn points_around(&self, place: DVec2, point: DVec3, normal: DVec3) -> Vec<DVec3> {
