@@ -29,6 +29,7 @@ pub use suited::TechniqueFit;
 
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::numbers;
+use crate::scene::Unsupported;
 use crate::technique::Technique;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -57,6 +58,8 @@ pub struct Diagnosis {
     pub rest: RemainingRegions,
     /// The best fix found; `None` where nothing is wrong or nothing helps.
     pub advice: Option<Advice>,
+    /// What the scene's files ask for and neither the frame nor the truth shows.
+    pub left_out_of_files: Vec<Unsupported>,
 }
 
 impl Diagnosis {

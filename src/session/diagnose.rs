@@ -109,6 +109,7 @@ impl Session {
             regions: listed,
             rest,
             advice,
+            left_out_of_files: scene.unsupported().into_iter().cloned().collect(),
         })
     }
 
