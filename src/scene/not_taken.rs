@@ -1,6 +1,7 @@
 //! Content of a file that is not supported, listed and in one line.
 
 use super::Scene;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Something that a model's file asks for and is not supported.
@@ -55,10 +56,9 @@ impl Scene {
     /// Returns what the scene's files ask for and is not supported: the scene's own, then each mesh's; of a mesh that
     /// several objects have, once.
     pub fn unsupported(&self) -> Vec<&Unsupported> {
-        let is_first = |(at, object): &(usize, &super::Object)| {
-            !self.objects[..*at].iter().any(|earlier| Arc::ptr_eq(&earlier.mesh, &object.mesh))
-        };
-        let meshes = self.objects.iter().enumerate().filter(is_first).map(|(_, object)| &object.mesh);
+        let mut known = HashSet::new();
+        let meshes = self.objects.iter().map(|object| &object.mesh);
+        let meshes = meshes.filter(|mesh| known.insert(Arc::as_ptr(mesh)));
         self.not_taken.iter().chain(meshes.flat_map(|mesh| mesh.not_taken())).collect()
     }
 

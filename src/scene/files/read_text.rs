@@ -79,7 +79,7 @@ pub fn number(word: &str) -> Option<f64> {
     word.parse().ok().or_else(|| foreign_number(word))
 }
 
-/// As [`number`], in single precision and rounded once.
+/// Returns what [`number`] does in single precision, rounded once.
 pub fn single_number(word: &str) -> Option<f32> {
     word.parse().ok().or_else(|| foreign_number(word).map(|number| number as f32))
 }
