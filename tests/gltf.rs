@@ -352,6 +352,19 @@ fn pictures_that_cannot_be_read_keep_no_file_from_opening() {
     }
 }
 
+/// Attributes whose names begin with an underscore are an exporter's own, and any file may have them.
+#[test]
+fn attributes_of_an_exporter_s_own_are_passed_over() {
+    let folder = folder();
+    let own = triangle(r#","nodes":[{"mesh":0}]"#, CORNERS)
+        .replace("\"POSITION\":0", "\"POSITION\":0,\"_FEATURE_ID_0\":0,\"_BATCHID\":0,\"FOO\":0");
+    fs::write(folder.path().join("a.gltf"), &own).expect("written");
+    let scene = opened(&folder.path().join("a.gltf")).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.objects[0].mesh.triangles().len(), 1);
+    fs::write(folder.path().join("a.gltf"), own.replace("\"FOO\":0", "\"FOO\":9")).expect("written");
+    assert!(opened(&folder.path().join("a.gltf")).expect_err("no accessor").to_string().contains("accessor 9"));
+}
+
 /// As an OBJ's pictures do: models of one game share a folder of textures beside theirs.
 #[test]
 fn files_may_be_in_another_folder() {

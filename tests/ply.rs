@@ -460,7 +460,7 @@ fn what_is_not_wanted_is_read_over() {
     assert_eq!(normals, [[0.0; 3], [0.0, 2.0, 0.0], [0.0, 1.0, 0.0]]);
     let not_taken: Vec<&str> = mesh.not_taken().iter().map(|one| one.what.as_str()).collect();
     let expected = [
-        "1 elements `camera`",
+        "1 element `camera`",
         "`filtered` of `face`",
         "`quality` of `vertex`",
         "colours of `vertex`",

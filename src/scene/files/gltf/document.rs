@@ -221,9 +221,11 @@ fn checked(root: &Root) -> GltfResult<()> {
     let mut first: Option<(String, Error)> = None;
     root.validate(root, JsonPath::new, &mut |path, error| {
         let path = path();
-        // Bounds of positions are computed here, and extensions were checked above.
-        let is_needless =
-            [".min", ".max"].iter().any(|end| path.as_str().ends_with(end)) && path.as_str().contains("POSITION");
+        // Bounds of positions are computed here, extensions were checked above, and of an exporter's own attributes
+        // (`_FEATURE_ID_0`) nothing is read.
+        let is_bound = [".min", ".max"].iter().any(|end| path.as_str().ends_with(end));
+        let is_own = path.as_str().contains(".attributes[") && error == Error::Invalid;
+        let is_needless = (is_bound && path.as_str().contains("POSITION")) || is_own;
         if first.is_none() && error != Error::Unsupported && !is_needless {
             first = Some((path.as_str().to_owned(), error));
         }

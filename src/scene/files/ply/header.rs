@@ -158,7 +158,8 @@ pub fn not_taken(PlyHeader { header, passed_over }: &PlyHeader, wanted: &PlyProp
     for element in header.elements.values().filter(|element| element.count > 0) {
         let name = quoted(&element.name);
         if !["vertex", "face", "tristrips"].contains(&element.name.as_str()) {
-            refusals.refuse(format!("{} elements {name}", element.count), "a mesh is of vertices, faces and strips");
+            let elements = if element.count == 1 { "element" } else { "elements" };
+            refusals.refuse(format!("{} {elements} {name}", element.count), "a mesh is of vertices, faces and strips");
             continue;
         }
         let names = element.properties.keys().map(String::as_str);
