@@ -15,7 +15,8 @@ pub fn folder() -> TempDir {
     let put = |name: &str, text: &[u8]| fs::write(folder.path().join(name), text).expect("written");
     put("triangle.obj", TRIANGLE.as_bytes());
     put("empty.obj", b"");
-    put("nan.obj", format!("{TRIANGLE}v 0 nan 0\n").as_bytes());
+    put("nan.obj", format!("{TRIANGLE}v 0 nan 0\nf 1 2 4\n").as_bytes());
+    put("scan.obj", format!("{TRIANGLE}v 0 nan 0\nf 1 2\nf 2 3\n").as_bytes());
     put("no-faces.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     put("range.obj", format!("{TRIANGLE}f 1 2 9\n").as_bytes());
     put("binary.obj", &[0x89, b'P', b'N', b'G', 0, 0xff, 0xfe]);
@@ -106,7 +107,7 @@ fn broken_input_is_refused_in_one_line_with_the_fix() {
     let cases: &[(&str, &[&str])] = &[
         ("missing.obj", &["missing.obj", "no such file", "check the path"]),
         ("empty.obj", &["empty.obj", "is empty"]),
-        ("nan.obj", &["nan.obj:5", "not a finite number", "replace it"]),
+        ("nan.obj", &["nan.obj:5", "vertex 4 is not finite", "replace NaN and infinity by numbers"]),
         ("no-faces.obj", &["no-faces.obj", "no faces", "export"]),
         ("range.obj", &["range.obj:5", "index 9 is out of range", "there are 3"]),
         ("models", &["models", "is a folder"]),
@@ -477,4 +478,33 @@ fn a_reader_that_goes_away_is_no_failure() {
     let output = program(folder.path(), &["scenes"]).stdout(full).output().expect("the program runs");
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(text(&output.stderr).lines().count(), 1);
+}
+
+/// One line on standard error where something of the scene's files is left out, and none where nothing is; standard output
+/// has results alone.
+#[test]
+fn what_is_left_out_of_files_is_said_in_one_line() {
+    let folder = folder();
+    let what = "scan.obj: left out: 1 vertex that is not finite, 2 faces of fewer than three corners; ";
+    let size = ["--size", "32x24"];
+    let said = |arguments: &[&str]| {
+        let output = run(folder.path(), &[arguments, &size].concat());
+        assert!(!text(&output.stdout).contains("left out:"), "{}", text(&output.stdout));
+        (text(&output.stderr), output)
+    };
+    let plan = Path::new("out").join("plan.txt").display().to_string();
+    assert_eq!(said(&["capture", "scan.obj", "-o", "out"]).0, format!("stencilscope: {what}see {plan}\n"));
+    let written = fs::read_to_string(folder.path().join(&plan)).expect("a plan");
+    assert!(written.contains("left out: 1 vertex that is not finite of scan: no face uses them\n"), "{written}");
+    let elsewhere = format!("stencilscope: {what}plan.txt of a capture says why\n");
+    assert_eq!(said(&["pixel", "scan.obj", "--at", "10,10"]).0, elsewhere);
+    assert_eq!(said(&["report", "scan.obj", "-t", "none", "--runs", "1"]).0, elsewhere);
+    let (line, output) = said(&["diagnose", "scan.obj", "--json", "--no-techniques"]);
+    assert!(line.starts_with(&elsewhere), "{line}");
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let first = serde_json::json!({"what": "1 vertex that is not finite", "because": "no face uses them"});
+    assert_eq!((json["left_out_of_files"].as_array().map(Vec::len), &json["left_out_of_files"][0]), (Some(2), &first));
+    for whole in ["triangle.obj", "tori"] {
+        assert_eq!(said(&["capture", whole, "-t", "none", "-o", whole.trim_end_matches(".obj")]).0, "", "{whole}");
+    }
 }

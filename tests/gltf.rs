@@ -283,8 +283,26 @@ fn files_that_lie_are_refused_in_one_line() {
         (whole.replace("VEC3", "VEC2"), "accessor 0 has 2 numbers an item, not 3"),
         (
             triangle(r#","nodes":[{"mesh":0}],"extensionsRequired":["KHR_draco_mesh_compression"]"#, CORNERS),
-            "needs the extension `KHR_draco_mesh_compression`, which is not done here",
+            "needs the extension `KHR_draco_mesh_compression`, which compresses its surfaces: export it uncompressed",
         ),
+        (
+            triangle(r#","nodes":[{"mesh":0}],"extensionsRequired":["EXT_mesh_gpu_instancing"]"#, CORNERS),
+            "needs the extension `EXT_mesh_gpu_instancing`, which is not done here: export it without",
+        ),
+        // Some exporters only say that they use it.
+        (
+            triangle(r#","nodes":[{"mesh":0}],"extensionsUsed":["KHR_draco_mesh_compression"]"#, CORNERS)
+                .replace(r#"{"bufferView":0,"#, "{"),
+            "needs the extension `KHR_draco_mesh_compression`, which compresses its surfaces",
+        ),
+        // glTF 1.0 has names where 2.0 has numbers, and need not say its version.
+        (
+            r#"{"meshes":{"a":{}},"asset":{"version":"1.0"}}"#.to_owned(),
+            "is of glTF version `1.0`, and 2.0 is read: convert",
+        ),
+        (r#"{"meshes":{"a":{}},"asset":{"version":1.1}}"#.to_owned(), "is of glTF version `1.1`, and 2.0 is read"),
+        (r#"{"meshes":{"a":{}},"accessors":{}}"#.to_owned(), "is of glTF version `1.0`, and 2.0 is read"),
+        ("glTF\u{1}\0\0\0\u{14}\0\0\0\0\0\0\0\0\0\0\0".to_owned(), "is of glTF version `1.0`, and 2.0 is read"),
     ];
     for (json, words) in cases {
         put("a.gltf", json.as_bytes());
@@ -295,6 +313,100 @@ fn files_that_lie_are_refused_in_one_line() {
     let nan = CORNERS.replace("AACAPw", "AADAfw");
     put("a.gltf", triangle(nodes, &nan).as_bytes());
     assert!(opened(&folder.path().join("a.gltf")).expect_err("a NaN").to_string().contains("is not finite"));
+}
+
+/// A shadow needs the surface alone: a picture that can't be read, in whatever format, is left out and named.
+#[test]
+fn pictures_that_cannot_be_read_keep_no_file_from_opening() {
+    let folder = folder();
+    fs::write(folder.path().join("broken.png"), b"\x89PNG\r\n\x1a\nno more").expect("written");
+    let texture = |texture: &str, more: &str| {
+        let parts = format!(
+            r#","nodes":[{{"mesh":0}}],"textures":[{texture}],"images":[{{"uri":"x.webp","mimeType":"image/webp"}},
+{{"uri":"broken.png"}},{{"uri":"data:image/ktx2;base64,q0tUWA=="}}],
+"materials":[{{"name":"leaf","pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}]{more}"#
+        );
+        triangle(&parts, CORNERS).replace("\"POSITION\":0}", "\"POSITION\":0},\"material\":0")
+    };
+    let needs = |name: &str| format!(r#","extensionsUsed":["{name}"],"extensionsRequired":["{name}"]"#);
+    let neither = "its picture is neither PNG nor JPEG: convert it";
+    let cases = [
+        (r#"{"extensions":{"EXT_texture_webp":{"source":0}}}"#, "EXT_texture_webp", neither),
+        (r#"{"extensions":{"KHR_texture_basisu":{"source":2}}}"#, "KHR_texture_basisu", neither),
+        (r#"{"extensions":{"MSFT_texture_dds":{"source":0}}}"#, "MSFT_texture_dds", neither),
+        (r#"{"source":0}"#, "EXT_texture_webp", "`x.webp` there is no such file"),
+        (r#"{"source":1}"#, "EXT_texture_webp", "`broken.png` is"),
+        (r#"{"source":2}"#, "EXT_texture_webp", "`image-3` is"),
+    ];
+    for (given, extension, because) in cases {
+        let file = folder.path().join("a.gltf");
+        fs::write(&file, texture(given, &needs(extension))).expect("written");
+        let scene = opened(&file).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.objects[0].mesh.triangles().len(), 1, "{given}");
+        let not_taken = not_taken(&scene);
+        let is_named = |what: &str, because: &str| {
+            not_taken.iter().any(|one| one.what == what && one.because.starts_with(because))
+        };
+        assert!(is_named("baseColorTexture of `leaf`", because), "{given}: {not_taken:?}");
+        assert!(is_named(&format!("`{extension}`"), "this extension is not done"), "{not_taken:?}");
+    }
+}
+
+/// Attributes whose names begin with an underscore are an exporter's own, and any file may have them.
+#[test]
+fn attributes_of_an_exporter_s_own_are_passed_over() {
+    let folder = folder();
+    let own = triangle(r#","nodes":[{"mesh":0}]"#, CORNERS)
+        .replace("\"POSITION\":0", "\"POSITION\":0,\"_FEATURE_ID_0\":0,\"_BATCHID\":0,\"FOO\":0");
+    fs::write(folder.path().join("a.gltf"), &own).expect("written");
+    let scene = opened(&folder.path().join("a.gltf")).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.objects[0].mesh.triangles().len(), 1);
+    fs::write(folder.path().join("a.gltf"), own.replace("\"FOO\":0", "\"FOO\":9")).expect("written");
+    assert!(opened(&folder.path().join("a.gltf")).expect_err("no accessor").to_string().contains("accessor 9"));
+}
+
+/// As an OBJ's pictures do: models of one game share a folder of textures beside theirs.
+#[test]
+fn files_may_be_in_another_folder() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("scenes")).expect("made");
+    fs::create_dir(folder.path().join("my buffers")).expect("made");
+    let buffer = folder.path().join("my buffers/a.bin");
+    let bytes: Vec<u8> =
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32].iter().flat_map(|n| n.to_le_bytes()).collect();
+    fs::write(&buffer, bytes).expect("written");
+    let file = folder.path().join("scenes/a.gltf");
+    let absolute = buffer.display().to_string();
+    for uri in ["../my%20buffers/a.bin", "../my buffers/a.bin", r"..\\my buffers\\a.bin", &absolute] {
+        fs::write(&file, triangle(r#","nodes":[{"mesh":0}]"#, uri)).expect("written");
+        let scene = opened(&file).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.objects[0].mesh.triangles().len(), 1, "{uri}");
+        let named = files_of(&OpenSpec::new(file.to_string_lossy()));
+        assert!(named.iter().any(|file| file.ends_with("my buffers/a.bin")), "{named:?}");
+    }
+}
+
+#[test]
+fn normals_that_are_not_finite_are_replaced_and_counted() {
+    let folder = folder();
+    let numbers = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, f32::NAN, 0.0, 1.0, 0.0, 0.0, 1.0];
+    fs::write(folder.path().join("a.bin"), numbers.map(f32::to_le_bytes).concat()).expect("written");
+    // The second is moved where no pose can, so that its normals are transformed, too.
+    let nodes = r#","nodes":[{"mesh":0},{"mesh":0,"matrix":[1,0,0,0,1,1,0,0,0,0,1,0,2,0,0,1]}]"#;
+    let text = triangle(nodes, "a.bin")
+        .replace("\"byteLength\":36", "\"byteLength\":72")
+        .replace(
+            "\"accessors\":[",
+            r#""accessors":[{"bufferView":0,"byteOffset":36,"componentType":5126,"count":3,"type":"VEC3"},"#,
+        )
+        .replace("\"POSITION\":0", "\"POSITION\":1,\"NORMAL\":0");
+    fs::write(folder.path().join("a.gltf"), text).expect("written");
+    let scene = opened(&folder.path().join("a.gltf")).unwrap_or_else(|error| panic!("{error}"));
+    for object in &scene.objects[..2] {
+        let not_taken: Vec<&str> = object.mesh.not_taken().iter().map(|one| one.what.as_str()).collect();
+        assert_eq!(not_taken, ["1 normal that is not finite"]);
+        assert_eq!(object.mesh.corner_normals().expect("normals")[0][1].to_array(), [0.0; 3]);
+    }
 }
 
 #[test]

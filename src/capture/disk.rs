@@ -23,7 +23,8 @@ pub use super::error::CaptureError;
 pub use reader::{read, read_whole};
 
 const MANIFEST: &str = "manifest.json";
-const PLAN: &str = "plan.txt";
+/// Name of the file with the frame as text.
+pub const PLAN: &str = "plan.txt";
 const SCENE: &str = "scene.toml";
 
 /// What is written to a capture folder: a capture and, where given, the plan and the scene, without which the frame

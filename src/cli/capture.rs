@@ -60,6 +60,8 @@ const TIMING_RUNS: usize = 5;
 /// A capture that is ready to run: its scene is loaded, and its options and target folder are checked.
 pub struct CaptureJob<'a> {
     started: Instant,
+    /// As on the command line.
+    name: &'a str,
     scene: Scene,
     request: CaptureRequest,
     adapter: Option<&'a str>,
@@ -82,7 +84,7 @@ impl<'a> CaptureJob<'a> {
     /// Loads the scene and checks options and target folder (not the page's file) before the GPU is opened. `name` is
     /// the scene as on the command line.
     pub fn new(
-        name: &str,
+        name: &'a str,
         scene_options: &SceneOptions,
         frame: &'a FrameOptions,
         writing: CaptureOutput<'a>,
@@ -91,7 +93,7 @@ impl<'a> CaptureJob<'a> {
         let scene = scene_options.open(name)?;
         let request = frame.request(&scene)?;
         disk::check_target(writing.folder, writing.overwrite)?;
-        Ok(CaptureJob { started, scene, request, adapter: frame.adapter.as_deref(), writing })
+        Ok(CaptureJob { started, name, scene, request, adapter: frame.adapter.as_deref(), writing })
     }
 
     /// Renders the scene, traces its truth where asked for, writes the folder and the page where one is named, and
@@ -113,6 +115,7 @@ impl<'a> CaptureJob<'a> {
             folder,
             overwrite,
         )?;
+        output::note_left_out(self.name, &self.scene, Some(&folder.join(disk::PLAN)));
         let mut said = summary(&capture, folder);
         if let Some(page) = page {
             let bytes = page::write(&capture, &Arc::new(plan), Path::new(page))?;

@@ -241,7 +241,7 @@ pub struct SceneSubject {
 }
 
 impl Subject {
-    /// Opens a scene, or a folder.
+    /// Opens a scene, or a folder. Says on standard error what is left out of the scene's files.
     ///
     /// # Errors
     /// A scene, option or folder that can't be used; a folder that contains only pictures; options that would change
@@ -252,6 +252,7 @@ impl Subject {
         let shipped = ShippedFrame::named(name).filter(|_| !is_capture);
         if !is_capture && shipped.is_none() {
             let loaded = scene.load(name)?;
+            output::note_left_out(name, &loaded, None);
             let at = loaded.at(scene.seconds()?);
             let request = frame.request(&at)?;
             return Ok(Subject::Scene(Box::new(SceneSubject { loaded, scene: at, request })));

@@ -4,7 +4,7 @@ use super::merge::{self, MergeArguments};
 use super::options::{SceneOptions, open_session, picture_size, setting, technique_named};
 use super::progress::with_bar;
 use super::report_results::ReportResults;
-use super::{CliError, results};
+use super::{CliError, output, results};
 use crate::progress::Progress;
 use crate::report::{Report, ReportRow};
 use crate::scene::builtin::Builtin;
@@ -76,6 +76,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
         None => arguments.scene_options.open(name),
     };
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
+    arguments.scenes.iter().zip(&scenes).for_each(|(name, scene)| output::note_left_out(name, scene, None));
     let targets = arguments.results.targets();
     check_no_scene(&results::files(&targets.each_ref(), &arguments.results.plot), &arguments.scenes)?;
     arguments.results.check()?;

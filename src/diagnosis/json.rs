@@ -1,6 +1,7 @@
 //! A diagnosis as JSON: pixels, lights and regions count from 0. `assets/help/json.md` says what each field means.
 
 use super::{CauseFound, Diagnosis, Fix, FlagFound, MeshFinding, Proof, Quantity, RegionFound, TechniqueFit};
+use crate::scene::Unsupported;
 use crate::technique::Technique;
 use serde_json::{Map, Value, json};
 
@@ -34,10 +35,15 @@ impl Diagnosis {
             "regions": self.regions.iter().map(region).collect::<Vec<_>>(),
             "rest": {"regions": self.rest.regions, "pixels": self.rest.pixels},
             "advice": advice,
+            "left_out_of_files": self.left_out_of_files.iter().map(unsupported).collect::<Vec<_>>(),
             "suited": suited.collect::<Vec<_>>(),
         });
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
+}
+
+fn unsupported(Unsupported { what, because }: &Unsupported) -> Value {
+    json!({"what": what, "because": because})
 }
 
 fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> Value {

@@ -31,6 +31,7 @@ pub use suited::TechniqueFit;
 
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::numbers;
+use crate::scene::Unsupported;
 use crate::technique::Technique;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -59,6 +60,8 @@ pub struct Diagnosis {
     pub rest: RemainingRegions,
     /// The best fix found; `None` where nothing is wrong or nothing helps.
     pub advice: Option<Advice>,
+    /// What the scene's files ask for and neither the frame nor the truth shows.
+    pub left_out_of_files: Vec<Unsupported>,
 }
 
 impl Diagnosis {

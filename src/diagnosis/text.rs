@@ -55,7 +55,9 @@ impl Diagnosis {
         });
         let beside = beside.concat();
         if error.wrong() == 0 {
-            return format!("{name}: none of {compared} compared pixels is wrong{beside}; {excused} at edges excused\n");
+            return format!(
+                "{name}: none of {compared} compared pixels is wrong{beside}; {excused} at edges excused\n"
+            );
         }
         let kinds = [
             (error.missing_shadow, "lit that should be dark"),

@@ -110,6 +110,7 @@ impl Session {
             regions: listed,
             rest,
             advice,
+            left_out_of_files: scene.unsupported().into_iter().cloned().collect(),
         })
     }
 
@@ -237,7 +238,12 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
         found.extend(regions::find(light, keys, size));
     }
     found.sort_by_key(|region| {
-        (!matches!(region.key.kind, RegionKind::Wrong(_)), std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
+        (
+            !matches!(region.key.kind, RegionKind::Wrong(_)),
+            std::cmp::Reverse(region.pixels.len()),
+            region.light,
+            region.pixels[0],
+        )
     });
     found
 }

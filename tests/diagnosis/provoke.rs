@@ -32,6 +32,8 @@ pub enum Occasion {
     Flag,
     /// The frame of another program alone.
     ForeignFrame,
+    /// One pixel of tens of millions, in a mesh of others that is not kept here; `.ci/strangers` fetches it.
+    InAStrangersMesh,
 }
 
 /// A cause that is truly there beside another one.
@@ -89,6 +91,7 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::SubpixelEdges
         | Cause::CarriedInF32 => Occasion::Scene(&[]),
         Cause::NotReceiving | Cause::NotCasting | Cause::Undrawn => Occasion::Flag,
+        Cause::RasteriserPrecision => Occasion::InAStrangersMesh,
         Cause::FaceCulled
         | Cause::VolumesWriteDepth
         | Cause::StencilNotCleared
@@ -298,8 +301,12 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             let factor = dice.between(1.6, 3.0);
             (dice.any_scene(), choice(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
         }
-        Cause::MapNearPlane => (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:2.6:9")]), None),
-        Cause::MapFarPlane => (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:0.1:1.2")]), None),
+        Cause::MapNearPlane => {
+            (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:2.6:9")]), None)
+        }
+        Cause::MapFarPlane => {
+            (box_under_lamp(dice), choice(Technique::ShadowMap, &[("light-frustum", "100:0.1:1.2")]), None)
+        }
         Cause::TJunction => {
             let mesh = box_with_t_junctions(dice);
             (dice.with(mesh), choice(Technique::ZFail, &[("silhouette", "shared-corners")]), None)

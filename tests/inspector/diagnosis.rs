@@ -73,6 +73,7 @@ pub fn found() -> Diagnosis {
             ),
         ],
         rest: RemainingRegions { regions: 2, pixels: 5 },
+        left_out_of_files: Vec::new(),
         advice: Some(Advice {
             fix: z_fail(),
             wrong_left: 0,

@@ -52,8 +52,7 @@ fn clipped(
         let point = seen.point + towards * hit.towards_light;
         let part = map.clip_from_light.iter().find_map(|face| part_of_depth(map, face, is_reversed, point))?;
         // Depth of a perspective map is 1 / distance, but for two numbers that the planes are at 0 and 1.
-        let distance =
-            if is_parallel { near + part * (far - near) } else { near * far / (far - part * (far - near)) };
+        let distance = if is_parallel { near + part * (far - near) } else { near * far / (far - part * (far - near)) };
         let name = facts.tracer.name(hit.place).to_owned();
         is_beyond(part).then_some(ClippedCaster { name, distance })
     };
@@ -79,7 +78,8 @@ fn near_plane(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause
         numbers::metres(distance),
         numbers::metres(near)
     );
-    let before = Quantity::less_than("the caster's distance from the light along the map's axis, in metres", distance, near);
+    let before =
+        Quantity::less_than("the caster's distance from the light along the map's axis, in metres", distance, near);
     Some(SuspectedCause::new(Cause::MapNearPlane, case.evidence(sentence, shown_by, [before]), vec![fitted()]))
 }
 
@@ -90,6 +90,7 @@ fn far_plane(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCause>
         case.shown(|sample| clipped(facts, light, sample, [near, far], |part| part > 1.0).pop())?;
     let sentence =
         format!("{name} is {} from the light, and its map ends at {}", numbers::metres(distance), numbers::metres(far));
-    let behind = Quantity::more_than("the caster's distance from the light along the map's axis, in metres", distance, far);
+    let behind =
+        Quantity::more_than("the caster's distance from the light along the map's axis, in metres", distance, far);
     Some(SuspectedCause::new(Cause::MapFarPlane, case.evidence(sentence, shown_by, [behind]), vec![fitted()]))
 }

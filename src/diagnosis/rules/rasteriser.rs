@@ -65,7 +65,8 @@ fn rasteriser_precision(facts: &FrameFacts, case: &RegionSamples) -> Option<Susp
         numbers::digits(pixels),
         numbers::digits(SNAPPING)
     );
-    let near = Quantity::at_most("how far beside the pixel's middle the face meets the surface, in pixels", pixels, SNAPPING);
+    let near =
+        Quantity::at_most("how far beside the pixel's middle the face meets the surface, in pixels", pixels, SNAPPING);
     let is_everywhere = shown_by == case.samples.len();
     let evidence = case.evidence(sentence, shown_by, [near]);
     is_everywhere.then(|| SuspectedCause::new(Cause::RasteriserPrecision, evidence, larger_pictures(facts)))

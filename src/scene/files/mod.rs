@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Files are read without trust: sizes are bounded before memory is allocated, and every error names the file, the
-//! place and how to fix it.
+//! place and how to fix it. What a shadow does not need keeps no model from being read: it is left out, and listed
+//! (`repairs`, [`Unsupported`](crate::scene::Unsupported)).
 
 pub mod file;
 #[cfg(feature = "program")]
@@ -21,6 +22,7 @@ mod open;
 mod ply;
 mod polygon;
 pub(super) mod read_text;
+mod repairs;
 
 pub use model_scene::{UpAxis, model_scene};
 pub use open::{OpenSpec, files_of, is_model, is_scene_file, open};

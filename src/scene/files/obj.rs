@@ -9,20 +9,22 @@ mod text;
 
 use super::polygon;
 use super::read_text::{quoted, read_old_text};
+use super::repairs::{Repairs, clear_unused};
 use crate::scene::mesh::is_usable_uv;
 use crate::scene::picture::ImageLoader;
 use crate::scene::{FileProblem, Mesh, MeshBuilder, MeshGroup, SceneError, Shading};
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use materials::{MaterialLibraries, ObjTexture};
 use std::path::{Path, PathBuf};
 use text::{ObjContents, ObjCorner, ObjStatement};
 
 /// Loads a model as one mesh. It has corner normals if any face of the file has them; faces
-/// without get their own.
+/// without get their own. Faces with fewer than three corners, and vertices that are not finite
+/// and that no face uses, are left out and listed ([`Mesh::not_taken`]).
 ///
 /// # Errors
-/// A missing file, a folder, a file that is not text, empty or without faces; a number that is
-/// not finite, an index out of range, a face with fewer than three corners, with its line.
+/// A missing file, a folder, a file that is not text, empty or without faces; with its line a word
+/// that is no number, a vertex that is not finite and that a face uses, a vertex's index out of range.
 pub fn load(file: &Path) -> Result<Mesh, SceneError> {
     load_among(file, &mut ImageLoader::default())
 }
@@ -53,8 +55,15 @@ fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, F
     let mut contents =
         text::read(raw).map_err(|text::ObjLineProblem { line, reason }| FileProblem::Line(line, reason))?;
     if contents.arities.is_empty() {
-        return Err(FileProblem::File("has no faces: export the surface as `f` lines".to_owned()));
+        return Err(FileProblem::File(
+            "has no faces of three corners or more: export the surface as `f` lines".to_owned(),
+        ));
     }
+    let repairs = repair(&mut contents).map_err(|vertex| {
+        let reason =
+            format!("vertex {} is not finite, and a face uses it: replace NaN and infinity by numbers", vertex + 1);
+        FileProblem::Line(text::line_of_vertex(raw, vertex), reason)
+    })?;
     let mut libraries = MaterialLibraries::new(pictures);
     let faces = assemble(&contents, folder, &mut libraries);
     let builder = MeshBuilder { positions: std::mem::take(&mut contents.positions), ..faces };
@@ -63,18 +72,30 @@ fn parse(raw: &str, folder: &Path, pictures: &mut ImageLoader) -> Result<Mesh, F
     if mesh.triangles().is_empty() {
         return Err(FileProblem::no_triangles());
     }
+    repairs.record(&mut libraries.refusals);
     Ok(mesh.without(libraries.refusals.into_list()))
+}
+
+/// Makes all numbers finite that can be without changing a surface, and returns what was repaired and left out; the error
+/// is the index of the first vertex that is not finite and that a face uses.
+fn repair(contents: &mut ObjContents) -> Result<Repairs, usize> {
+    let corners = contents.corners.iter().map(|corner| corner.vertex as usize);
+    let unused_vertices = clear_unused(&mut contents.positions, || corners)?;
+    let mut broken_normals = 0;
+    for normal in contents.normals.iter_mut().filter(|normal| !normal.is_finite()) {
+        // Zero stands for the triangle's own.
+        *normal = Vec3::ZERO;
+        broken_normals += 1;
+    }
+    let faces_without_normals = contents.faces().filter(|face| contents.lacks_normals(face)).count();
+    Ok(Repairs { unused_vertices, short_faces: contents.short_faces, faces_without_normals, broken_normals })
 }
 
 /// Returns a builder with all of the mesh but the positions: faces in order as triangles, in groups as the statements
 /// between them say. It has normals or texture coordinates where at least one whole face has them.
 fn assemble(contents: &ObjContents, folder: &Path, libraries: &mut MaterialLibraries) -> MeshBuilder {
-    let faces = || {
-        let mut rest = contents.corners.as_slice();
-        contents.arities.iter().filter_map(move |arity| rest.split_off(..*arity as usize))
-    };
-    let is_smooth = faces().any(|face| face.iter().all(|corner| corner.normal.is_some()));
-    let has_uvs = faces().any(|face| face.iter().all(|corner| contents.place_of(corner).is_some()));
+    let is_smooth = contents.faces().any(|face| face.iter().all(|corner| contents.normal_of(corner).is_some()));
+    let has_uvs = contents.faces().any(|face| face.iter().all(|corner| contents.place_of(corner).is_some()));
     let mut assembly = ObjAssembly {
         contents,
         folder,
@@ -86,7 +107,7 @@ fn assemble(contents: &ObjContents, folder: &Path, libraries: &mut MaterialLibra
         corners: Vec::new(),
     };
     let mut statements = contents.statements.iter().peekable();
-    for (at, face) in faces().enumerate() {
+    for (at, face) in contents.faces().enumerate() {
         while let Some((_, statement)) = statements.next_if(|(before, _)| *before <= at) {
             assembly.state(statement);
         }
@@ -145,7 +166,7 @@ impl ObjAssembly<'_, '_> {
     fn add(&mut self, face: &[ObjCorner]) {
         let contents = self.contents;
         let position = |corner: &ObjCorner| contents.positions[corner.vertex as usize];
-        let has_normals = face.iter().all(|corner| corner.normal.is_some());
+        let has_normals = face.iter().all(|corner| contents.normal_of(corner).is_some());
         let is_placed = face.iter().all(|corner| contents.place_of(corner).is_some());
         let map = self.part.map.as_ref();
         self.corners.clear();
@@ -154,10 +175,9 @@ impl ObjAssembly<'_, '_> {
             let corners = triangle.map(|corner| &face[corner]);
             self.builder.triangles.push(corners.map(|corner| corner.vertex));
             if self.is_smooth {
-                let given =
-                    |corner: &ObjCorner| corner.normal.map(|normal| contents.normals[normal as usize].as_vec3());
                 let own = || polygon::normal(corners.map(position));
-                let normals = corners.map(|corner| given(corner).filter(|_| has_normals).unwrap_or_else(own));
+                let given = |corner: &ObjCorner| contents.normal_of(corner).filter(|_| has_normals);
+                let normals = corners.map(|corner| given(corner).unwrap_or_else(own));
                 self.builder.corner_normals.push(normals);
             }
             if self.has_uvs {

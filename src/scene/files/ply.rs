@@ -1,26 +1,25 @@
 //! PLY models (`.ply`), as text or binary: one mesh of the elements `vertex`, `face` and `tristrips`.
 //!
-//! The header is split off first, since its comments may be in any encoding; `ply_rs_bw` reads it. It decides which
-//! properties of each element are read, types and all ([`PlyProperties`]). Then row after row becomes a vertex or the
-//! corners of a face: binary ones are read by `ply_rs_bw`, those of text here, as it accepts no `.5` and no `nan`. What
-//! else a file contains is listed ([`Unsupported`](crate::scene::Unsupported)).
+//! The header (`header`) is split off first, since its comments may be in any encoding. It decides which properties of
+//! each element are read, types and all ([`PlyProperties`]). Then row after row becomes a vertex or the corners of a face:
+//! binary ones are read by `ply_rs_bw`, those of text here, as it accepts no `.5` and no `nan`. What else a file contains
+//! is listed ([`Unsupported`](crate::scene::Unsupported)).
+
+mod header;
 
 use super::polygon;
-use super::read_text::{MOST_TEXT, decoded, quoted};
+use super::read_text::{MOST_TEXT, decoded, number, quoted};
+use super::repairs::{Repairs, clear_unused};
 use crate::files::{ReadError, read_plain};
 use crate::scene::mesh::is_usable_uv;
-use crate::scene::not_taken::UnsupportedList;
 use crate::scene::{FileProblem, Mesh, MeshBuilder, SceneError};
 use glam::{DVec2, DVec3, Vec2, Vec3};
-use ply_rs_bw::parser::{self, Parser};
-use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
-};
+use header::{PlyHeader, PlyProperties};
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Bytes within which the end of a header is searched for.
-const MOST_HEADER: usize = 1 << 20;
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 /// Names of vertices' texture coordinates, by the programs that write them.
@@ -29,157 +28,38 @@ const UVS: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]]
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 /// Name of the texture coordinates of a face's corners.
 const CORNER_UVS: &str = "texcoord";
-const COLORS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
-/// Loads a model as one mesh. It has corner normals if its vertices have them.
+/// Loads a model as one mesh. It has corner normals if its vertices have them. Faces of fewer than three corners, and
+/// vertices that are not finite and that no face uses, are left out and listed ([`Mesh::not_taken`]).
 ///
 /// # Errors
 /// A file that can't be read or has no faces; a header or an element that can't be understood, where there are lines with its
-/// line; fewer elements than the header says, a face of fewer than three corners, an index out of range, a place that is not
-/// finite.
+/// line; fewer elements than the header says, an index out of range, a vertex that is not finite and that a face uses.
 pub fn load(file: &Path) -> Result<Mesh, SceneError> {
     read(file).map_err(|problem| problem.of(file))
 }
 
 fn read(file: &Path) -> Result<Mesh, FileProblem> {
-    let bytes = read_plain(file, MOST_TEXT).map_err(|error| match error {
+    let mut bytes = read_plain(file, MOST_TEXT).map_err(|error| match error {
         ReadError::Folder => FileProblem::File("is a folder: name a PLY model in it".to_owned()),
         other => FileProblem::File(other.to_string()),
     })?;
-    let (head, payload) = split_header(&bytes).map_err(|reason| FileProblem::File(reason.to_owned()))?;
+    header::unify_line_ends(&mut bytes);
+    let (head, payload) = header::split_header(&bytes).map_err(|reason| FileProblem::File(reason.to_owned()))?;
     let head = decoded(head.to_vec());
-    let header = header(&head)?;
-    let wanted = PlyProperties::of(&header)?;
-    let mut rows = PlyRows { encoding: &header.encoding, rest: payload, line: head.lines().count() };
-    let surface = PlySurface::read(&header, &wanted, &mut rows)?;
+    let header = PlyHeader::read(&head)?;
+    let wanted = PlyProperties::of(&header.header)?;
+    let mut rows = PlyRows { encoding: &header.header.encoding, rest: payload, line: head.lines().count() };
+    let mut surface = PlySurface::read(&header.header, &wanted, &mut rows)?;
     drop(bytes);
+    surface.check()?;
+    let mut refusals = header::not_taken(&header, &wanted);
+    surface.repairs.record(&mut refusals);
     let mesh = surface.build().map_err(FileProblem::File)?;
     if mesh.triangles().is_empty() {
         return Err(FileProblem::no_triangles());
     }
-    Ok(mesh.without(not_taken(&header, &wanted).into_list()))
-}
-
-/// Splits a PLY file after its header's last line, `end_header`; an error where it is empty, does not begin with `ply`,
-/// or has no end of the header within a limit.
-fn split_header(bytes: &[u8]) -> Result<(&[u8], &[u8]), &'static str> {
-    if bytes.is_empty() {
-        return Err("is empty: give a PLY model with content");
-    }
-    let mut end = 0;
-    for line in bytes[..bytes.len().min(MOST_HEADER)].split_inclusive(|byte| *byte == b'\n') {
-        match line.trim_ascii() {
-            line if end == 0 && line.starts_with(b"ply\r") => {
-                return Err("has lines that end as on old Macs: save it with line feeds");
-            }
-            line if end == 0 && line != b"ply" => return Err("is no PLY model: its first line is not `ply`"),
-            b"end_header" => return Ok(bytes.split_at(end + line.len())),
-            _ => end += line.len(),
-        }
-    }
-    Err("has no end of its header, a line `end_header`: export the file again")
-}
-
-fn header(text: &str) -> Result<Header, FileProblem> {
-    let line = |at: usize| quoted(text.lines().nth(at - 1).unwrap_or_default().trim());
-    let wrong = |at: usize| {
-        FileProblem::Line(at, format!("{} can't stand there in a PLY header: export the file again", line(at)))
-    };
-    let no_format =
-        || FileProblem::File("has no `format` in its header that is known: export the file again".to_owned());
-    let header = Parser::<PlyRow>::new()
-        .read_header(&mut parser::Reader::new(text.as_bytes()))
-        .map_err(|error| error.line().map_or_else(no_format, wrong))?;
-    // Of two properties with one name `ply_rs_bw` stores only one, and the rows would be read wrongly.
-    let begin = |word: &str| text.lines().filter(|line| line.split_ascii_whitespace().next() == Some(word)).count();
-    let properties = header.elements.values().map(|element| element.properties.len()).sum();
-    if [begin("element"), begin("property")] != [header.elements.len(), properties] {
-        return Err(FileProblem::File("has two elements or properties of one name: export the file again".to_owned()));
-    }
-    Ok(header)
-}
-
-/// The properties that are read from a file: all of them exist, and have a type that can be used.
-struct PlyProperties {
-    has_normals: bool,
-    /// Index in [`UVS`].
-    uvs: Option<usize>,
-    has_corner_uvs: bool,
-}
-
-impl PlyProperties {
-    fn of(header: &Header) -> Result<PlyProperties, FileProblem> {
-        let kind = |element: &str, name: &str| {
-            header.elements.get(element)?.properties.get(name).map(|property| &property.data_type)
-        };
-        let are_numbers =
-            |names: &[&str]| names.iter().all(|name| matches!(kind("vertex", name), Some(PropertyType::Scalar(_))));
-        if !are_numbers(&PLACE) {
-            return Err(FileProblem::File("has no vertices with numbers x, y and z: export its surface".to_owned()));
-        }
-        for element in ["face", "tristrips"].into_iter().filter(|name| header.elements.contains_key(*name)) {
-            let lists: Vec<&PropertyType> = CORNERS.iter().filter_map(|name| kind(element, name)).collect();
-            if !matches!(lists[..], [PropertyType::List(_, of)] if !is_fraction(of)) {
-                let reason = format!(
-                    "has no one list `vertex_indices` of whole numbers in {}: export it again",
-                    quoted(element)
-                );
-                return Err(FileProblem::File(reason));
-            }
-        }
-        Ok(PlyProperties {
-            has_normals: are_numbers(&NORMAL),
-            uvs: UVS.iter().position(|names| are_numbers(names)),
-            has_corner_uvs: matches!(kind("face", CORNER_UVS), Some(PropertyType::List(_, of)) if is_fraction(of)),
-        })
-    }
-
-    /// Returns whether this property of this element is read: positions, normals and texture coordinates of vertices,
-    /// and corners of faces and strips.
-    fn takes(&self, element: &str, property: &str) -> bool {
-        match element {
-            "vertex" => {
-                let uvs = self.uvs.map(|pair| UVS[pair]).into_iter().flatten();
-                let normal = NORMAL.into_iter().filter(|_| self.has_normals);
-                PLACE.into_iter().chain(normal).chain(uvs).any(|name| name == property)
-            }
-            "face" => CORNERS.contains(&property) || (self.has_corner_uvs && property == CORNER_UVS),
-            "tristrips" => CORNERS.contains(&property),
-            _ => false,
-        }
-    }
-}
-
-fn is_fraction(of: &ScalarType) -> bool {
-    matches!(of, ScalarType::Float | ScalarType::Double)
-}
-
-/// Returns what the file contains and no mesh stores: other elements, colours and other properties, and pictures that
-/// its comments name.
-fn not_taken(header: &Header, wanted: &PlyProperties) -> UnsupportedList {
-    let mut refusals = UnsupportedList::default();
-    for element in header.elements.values().filter(|element| element.count > 0) {
-        let name = quoted(&element.name);
-        if !["vertex", "face", "tristrips"].contains(&element.name.as_str()) {
-            refusals.refuse(format!("{} elements {name}", element.count), "a mesh is of vertices, faces and strips");
-            continue;
-        }
-        let names = element.properties.keys().map(String::as_str);
-        for property in names.filter(|property| !wanted.takes(&element.name, property)) {
-            let last = property.rsplit('_').next().unwrap_or_default();
-            if COLORS.contains(&last) {
-                refusals.refuse(format!("colours of {name}"), "a surface has its material's colour");
-            } else {
-                let because = "only places, normals and texture coordinates are taken";
-                refusals.refuse(format!("{} of {name}", quoted(property)), because);
-            }
-        }
-    }
-    for picture in header.comments.iter().filter_map(|comment| comment.strip_prefix("TextureFile")) {
-        let because = "name it as the `texture` of the object's material in a scene file";
-        refusals.refuse(format!("the picture {}", quoted(picture.trim())), because);
-    }
-    refusals
+    Ok(mesh.without(refusals.into_list()))
 }
 
 /// The values of one element, whichever are read: a vertex, a face or a strip.
@@ -222,7 +102,7 @@ impl PropertyAccess for PlyRow {
             }
             Property::ListDouble(numbers) if name == CORNER_UVS => self.corner_uvs = numbers,
             property if CORNERS.contains(&name) => self.corners = integers(property),
-            property => match (self.number(name), number(&property)) {
+            property => match (self.number(name), scalar(&property)) {
                 (Some(place), Some(number)) => *place = number,
                 _ => return PropertyAccessResult::Ignored,
             },
@@ -241,7 +121,7 @@ impl PropertyAccess for SkippedElement {
 }
 
 /// Returns a property's number as a float; `None` for a list.
-fn number(property: &Property) -> Option<f64> {
+fn scalar(property: &Property) -> Option<f64> {
     match property {
         Property::Char(number) => Some(f64::from(*number)),
         Property::UChar(number) => Some(f64::from(*number)),
@@ -348,7 +228,7 @@ fn row_of_text(line: &str, element: &ElementDef) -> Option<PlyRow> {
     for (name, property) in &element.properties {
         match &property.data_type {
             PropertyType::Scalar(_) => {
-                let given: f64 = words.next()?.parse().ok()?;
+                let given = number(words.next()?)?;
                 if let Some(place) = row.number(name) {
                     *place = given;
                 }
@@ -359,7 +239,7 @@ fn row_of_text(line: &str, element: &ElementDef) -> Option<PlyRow> {
                 if CORNERS.contains(&name.as_str()) {
                     row.corners = list.map(|word| word?.parse().ok()).collect::<Option<_>>()?;
                 } else if name == CORNER_UVS {
-                    row.corner_uvs = list.map(|word| word?.parse().ok()).collect::<Option<_>>()?;
+                    row.corner_uvs = list.map(|word| number(word?)).collect::<Option<_>>()?;
                 } else if list.any(|word| word.is_none()) {
                     return None;
                 }
@@ -386,6 +266,9 @@ struct PlySurface {
     /// Texture coordinates parallel to `corners`, or empty; unusable ones are replaced by the vertex's.
     corner_uvs: Vec<Vec2>,
     runs: Vec<PlyCorners>,
+    /// Lines of vertices that are not finite, in a text file, in order; empty in a binary one.
+    broken_lines: Vec<usize>,
+    repairs: Repairs,
 }
 
 impl PlySurface {
@@ -399,12 +282,17 @@ impl PlySurface {
             }
             for at in 0..element.count {
                 match element.name.as_str() {
-                    "vertex" => surface.add_vertex(&rows.next(element, at, row_of_text)?, wanted),
+                    "vertex" => {
+                        let is_finite = surface.add_vertex(&rows.next(element, at, row_of_text)?, wanted);
+                        if !is_finite && *rows.encoding == Encoding::Ascii {
+                            surface.broken_lines.push(rows.line);
+                        }
+                    }
                     "face" => {
                         let row: PlyRow = rows.next(element, at, row_of_text)?;
                         if row.corners.len() < 3 {
-                            let reason = format!("has {} corners: a face needs three or more", row.corners.len());
-                            return Err(rows.wrong("face", at, &reason));
+                            surface.repairs.short_faces += 1;
+                            continue;
                         }
                         let added = surface.add_run(&row.corners, false);
                         added.map_err(|reason| rows.wrong("face", at, &reason))?;
@@ -432,21 +320,47 @@ impl PlySurface {
             }
         }
         if surface.corners.is_empty() {
-            return Err(FileProblem::File("has no faces: export its surface".to_owned()));
+            return Err(FileProblem::File("has no faces of three corners or more: export its surface".to_owned()));
         }
         Ok(surface)
     }
 
-    fn add_vertex(&mut self, row: &PlyRow, wanted: &PlyProperties) {
-        self.positions.push(DVec3::from_array(row.place));
+    /// Adds a vertex, and returns whether its position is finite.
+    fn add_vertex(&mut self, row: &PlyRow, wanted: &PlyProperties) -> bool {
+        let position = DVec3::from_array(row.place);
+        self.positions.push(position);
         if wanted.has_normals {
             let normal = DVec3::from_array(row.normal).as_vec3();
-            // A normal that is not finite is replaced by the triangle's own.
+            self.repairs.broken_normals += usize::from(!normal.is_finite());
+            // Zero stands for the triangle's own.
             self.normals.push(if normal.is_finite() { normal } else { Vec3::ZERO });
         }
         if let Some(pair) = wanted.uvs {
             self.uvs.push(DVec2::from_array(row.uvs[pair]).as_vec2());
         }
+        position.is_finite()
+    }
+
+    /// Checks that every corner's vertex is there and finite, and leaves out vertices that are not finite and not used.
+    fn check(&mut self) -> Result<(), FileProblem> {
+        let count = self.positions.len();
+        if let Some(corner) = self.corners.iter().find(|corner| **corner as usize >= count) {
+            let reason = format!("uses vertex {corner} of {count}, counted from 0: export it again");
+            return Err(FileProblem::File(reason));
+        }
+        let corners = self.corners.iter().map(|corner| *corner as usize);
+        match clear_unused(&mut self.positions, || corners) {
+            Ok(unused) => self.repairs.unused_vertices = unused,
+            Err(used) => {
+                let earlier = self.positions[..used].iter().filter(|position| !position.is_finite()).count();
+                let reason = "is not finite, and a face uses it: replace NaN and infinity by numbers";
+                return Err(match self.broken_lines.get(earlier) {
+                    Some(line) => FileProblem::Line(*line, format!("vertex {used}, counted from 0, {reason}")),
+                    None => FileProblem::File(format!("has a vertex, number {used} counted from 0, that {reason}")),
+                });
+            }
+        }
+        Ok(())
     }
 
     fn add_run(&mut self, corners: &[i64], is_strip: bool) -> Result<(), String> {
@@ -459,10 +373,6 @@ impl PlySurface {
     }
 
     fn build(mut self) -> Result<Mesh, String> {
-        let count = self.positions.len();
-        if let Some(corner) = self.corners.iter().find(|corner| **corner as usize >= count) {
-            return Err(format!("uses vertex {corner} of {count}, counted from 0: export it again"));
-        }
         let mut builder = MeshBuilder::default();
         let (mut first, mut corners) = (0, Vec::new());
         for PlyCorners { count, is_strip } in &self.runs {

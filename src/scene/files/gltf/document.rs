@@ -5,8 +5,12 @@ use crate::scene::SceneError;
 use crate::scene::files::read_text::quoted;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use gltf::json::accessor::Accessor;
 use gltf::json::validation::{Error, Validate};
 use gltf::json::{Index, Path as JsonPath, Root, buffer};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::Value;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -19,14 +23,21 @@ const MOST_BYTES: u64 = 1 << 30;
 const FREE_ITEMS: u64 = 1 << 22;
 /// Bytes of the header, and so of the shortest binary file.
 const GLB_HEAD: usize = 12;
-/// Extensions that a file may require: all that change no geometry or are read here.
-const KNOWN_EXTENSIONS: [&str; 5] = [
+/// Extensions that are fully supported.
+const DONE_EXTENSIONS: [&str; 5] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+/// Second words of the names of extensions, after the vendor's, that change no surface: pictures in other formats
+/// (`EXT_texture_webp`, `KHR_texture_basisu`), materials, lights and remarks. What they add is left out.
+const HARMLESS_EXTENSIONS: [&str; 7] = ["materials", "texture", "technique", "techniques", "lights", "audio", "xmp"];
+/// Extensions without which a file's surfaces can't be read, as they are compressed: Draco's, for which no small and
+/// proven decoder exists in Rust, and meshoptimizer's.
+const COMPRESSIONS: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// The error says why a file can't be shown and how to fix it; in one line, without the file's name.
 pub type GltfResult<T> = Result<T, String>;
@@ -143,10 +154,14 @@ pub fn files_of(file: &Path) -> Vec<PathBuf> {
 
 /// Returns the decoded path in a URI (RFC 3986); `None` for data, another scheme with `://`, an empty URI, or bytes
 /// that are not UTF-8.
+///
+/// It may lead out of the file's folder, as the picture of an OBJ's library may: `../textures/` is common, and whoever
+/// opens a model could open that file, too. Nothing is fetched, only plain files are read, and they are used as numbers of
+/// a buffer or texels of a picture. Backslashes, of files that were written on another system, separate folders.
 fn path_of(uri: &str) -> Option<PathBuf> {
     let is_elsewhere = uri.starts_with("data:") || uri.contains("://") || uri.is_empty();
     let path = percent_encoding::percent_decode_str(uri).decode_utf8().ok()?;
-    (!is_elsewhere).then(|| PathBuf::from(path.into_owned()))
+    (!is_elsewhere).then(|| PathBuf::from(path.replace('\\', "/")))
 }
 
 fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneError> {
@@ -160,15 +175,23 @@ fn parse(bytes: &[u8], file: &Path) -> Result<(Root, Option<Vec<u8>>), SceneErro
     if is_binary && (length as usize) < GLB_HEAD {
         return Err(failed("is a broken .glb (its head is too short): export it again"));
     }
-    match gltf::Gltf::from_slice_without_validation(bytes) {
-        Ok(gltf::Gltf { document, blob }) => Ok((document.into_json(), blob)),
-        Err(gltf::Error::Deserialize(error)) if !is_binary && error.line() > 0 => Err(SceneError::Line {
+    let error = match gltf::Gltf::from_slice_without_validation(bytes) {
+        Ok(gltf::Gltf { document, blob }) => return Ok((document.into_json(), blob)),
+        Err(error) => error,
+    };
+    let older = match is_binary {
+        true => (bytes[4..8] == [1, 0, 0, 0]).then(|| "1.0".to_owned()),
+        false => older_version(bytes),
+    };
+    Err(match (older, error) {
+        (Some(version), _) => failed(&other_version(&version)),
+        (None, gltf::Error::Deserialize(error)) if !is_binary && error.line() > 0 => SceneError::Line {
             file: file.to_owned(),
             line: error.line(),
             reason: format!("is no glTF 2.0 ({}): export the file again", in_a_line(&error.to_string())),
-        }),
-        Err(error) => Err(failed(&format!("is no glTF 2.0 file ({}): export it again", in_a_line(&error.to_string())))),
-    }
+        },
+        (None, error) => failed(&format!("is no glTF 2.0 file ({}): export it again", in_a_line(&error.to_string()))),
+    })
 }
 
 /// Returns a foreign message as one line of at most 120 characters, control characters escaped.
@@ -177,16 +200,18 @@ fn in_a_line(words: &str) -> String {
     words.chars().take(MOST).flat_map(char::escape_debug).collect()
 }
 
-/// Checks the rules of the format that reading relies on: version 2, no unknown required extension, valid indices and
-/// values. The error says what is wrong and how to fix it.
+/// Checks the rules of the format that reading relies on: version 2, no required extension that changes surfaces and is not
+/// supported, valid indices and values. The error says what is wrong and how to fix it.
 fn checked(root: &Root) -> GltfResult<()> {
-    if root.asset.version.split('.').next() != Some("2") {
-        let version = quoted(&root.asset.version);
-        return Err(format!("is of glTF version {version}, and 2.0 is read: convert it"));
+    if !is_version_2(&root.asset.version) {
+        return Err(other_version(&root.asset.version));
     }
-    if let Some(other) = root.extensions_required.iter().find(|name| !is_known(name)) {
-        let name = quoted(other);
-        return Err(format!("needs the extension {name}, which is not done here: export it without (uncompressed)"));
+    if let Some(other) = root.extensions_required.iter().find(|name| !is_known(name)).or_else(|| compression(root)) {
+        let fix = match COMPRESSIONS.contains(&other.as_str()) {
+            true => "which compresses its surfaces: export it uncompressed, or as OBJ or PLY",
+            false => "which is not done here: export it without",
+        };
+        return Err(format!("needs the extension {}, {fix}", quoted(other)));
     }
     // The crate's own check of these indexes without a bounds check.
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -196,9 +221,11 @@ fn checked(root: &Root) -> GltfResult<()> {
     let mut first: Option<(String, Error)> = None;
     root.validate(root, JsonPath::new, &mut |path, error| {
         let path = path();
-        // Bounds of positions are computed here, and extensions were checked above.
-        let is_needless =
-            [".min", ".max"].iter().any(|end| path.as_str().ends_with(end)) && path.as_str().contains("POSITION");
+        // Bounds of positions are computed here, extensions were checked above, and of an exporter's own attributes
+        // (`_FEATURE_ID_0`) nothing is read.
+        let is_bound = [".min", ".max"].iter().any(|end| path.as_str().ends_with(end));
+        let is_own = path.as_str().contains(".attributes[") && error == Error::Invalid;
+        let is_needless = (is_bound && path.as_str().contains("POSITION")) || is_own;
         if first.is_none() && error != Error::Unsupported && !is_needless {
             first = Some((path.as_str().to_owned(), error));
         }
@@ -211,13 +238,62 @@ fn checked(root: &Root) -> GltfResult<()> {
     }
 }
 
+/// Returns the extension that compresses some surface of a file that only says that it uses it; `None` where every surface
+/// is there uncompressed, too.
+fn compression(root: &Root) -> Option<&String> {
+    let has_no_data = |accessor: &Accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none();
+    let lacks_data =
+        root.accessors.iter().any(has_no_data) || root.buffers.iter().skip(1).any(|buffer| buffer.uri.is_none());
+    root.extensions_used.iter().find(|name| lacks_data && COMPRESSIONS.contains(&name.as_str()))
+}
+
 /// Returns whether a file that requires this extension is read all the same: the extension is supported, or changes
-/// only materials. Whether it is fully supported is `is_done`.
-pub fn is_known(extension: &str) -> bool {
-    KNOWN_EXTENSIONS.contains(&extension) || extension.starts_with("KHR_materials_")
+/// only how surfaces look. Whether it is fully supported is `is_done`.
+fn is_known(extension: &str) -> bool {
+    let kind = extension.split('_').nth(1);
+    is_done(extension) || kind.is_some_and(|kind| HARMLESS_EXTENSIONS.contains(&kind))
 }
 
 /// Returns whether an extension is fully supported.
 pub fn is_done(extension: &str) -> bool {
-    KNOWN_EXTENSIONS.contains(&extension)
+    DONE_EXTENSIONS.contains(&extension)
+}
+
+/// Returns the error about a file of another version of the format.
+fn other_version(version: &str) -> String {
+    format!("is of glTF version {}, and 2.0 is read: convert it", quoted(version))
+}
+
+fn is_version_2(version: &str) -> bool {
+    version.split('.').next() == Some("2")
+}
+
+/// Returns the version of JSON that is no glTF 2.0 as it is of an older one: what it says, else 1.0 where its meshes have
+/// names and no numbers. `None` for any other.
+fn older_version(json: &[u8]) -> Option<String> {
+    #[derive(Default, Deserialize)]
+    #[serde(default)]
+    struct VersionOnly {
+        version: Option<Value>,
+    }
+    #[derive(Deserialize)]
+    struct AssetOnly {
+        asset: VersionOnly,
+    }
+    #[derive(Deserialize)]
+    struct NamedMeshes {
+        meshes: HashMap<String, IgnoredAny>,
+    }
+    let file = serde_json::from_slice::<AssetOnly>(json);
+    let given = file.ok().and_then(|file| file.asset.version).map(|version| match version {
+        Value::String(text) => text,
+        number => number.to_string(),
+    });
+    match given {
+        Some(version) => Some(version).filter(|version| !is_version_2(version)),
+        None => {
+            let named = serde_json::from_slice::<NamedMeshes>(json).ok().filter(|file| !file.meshes.is_empty());
+            named.map(|_| "1.0".to_owned())
+        }
+    }
 }

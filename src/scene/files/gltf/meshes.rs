@@ -5,6 +5,7 @@ use super::materials::{GltfMaterials, GltfTexture, PrimitiveMaterial};
 use super::named;
 use crate::scene::files::polygon;
 use crate::scene::files::read_text::quoted;
+use crate::scene::files::repairs::Repairs;
 use crate::scene::mesh::is_usable_uv;
 use crate::scene::not_taken::UnsupportedList;
 use crate::scene::{Mesh, MeshBuilder, MeshGroup, Shading};
@@ -51,7 +52,7 @@ impl<'a> GltfMeshes<'a> {
         let given = self.document.root.get(index).ok_or_else(|| format!("mesh {} is missing", index.value()))?;
         let name = named(given.name.as_deref(), || format!("mesh {}", index.value()));
         let mut refusals = UnsupportedList::default();
-        let mut parts = Vec::new();
+        let (mut parts, mut repairs) = (Vec::new(), Repairs::default());
         for (at, primitive) in given.primitives.iter().enumerate() {
             let of = format!("{} (primitive {at})", quoted(&name));
             let Checked::Valid(mode) = primitive.mode else { continue };
@@ -64,8 +65,11 @@ impl<'a> GltfMeshes<'a> {
             }
             let look = self.materials.look(primitive.material, &mut refusals);
             let part = PrimitiveVertices::read(self.document, primitive, mode, &look, form);
-            parts.push((part.map_err(|why| format!("{of}: {why}"))?, look));
+            let part = part.map_err(|why| format!("{of}: {why}"))?;
+            repairs.broken_normals += part.broken_normals;
+            parts.push((part, look));
         }
+        repairs.record(&mut refusals);
         let mesh = assemble(&parts, &name, &mut refusals).build();
         Ok(mesh.map_err(|error| format!("{}: {error}", quoted(&name)))?.without(refusals.into_list()))
     }
@@ -75,8 +79,10 @@ impl<'a> GltfMeshes<'a> {
 struct PrimitiveVertices {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    /// A normal for each vertex.
+    /// A normal for each vertex; zero stands for the triangle's own.
     normals: Option<Vec<Vec3>>,
+    /// The number of normals that are not finite in the file.
+    broken_normals: usize,
     /// Texture coordinates of each vertex, in its material's picture.
     uvs: Option<Vec<Vec2>>,
     has_colors: bool,
@@ -118,6 +124,8 @@ impl PrimitiveVertices {
         let mut positions: Vec<DVec3> = used.iter().map(|index| vector(all, index)).collect();
         let mut normals: Option<Vec<DVec3>> =
             all_normals.map(|normals| used.iter().map(|index| vector(normals, index)).collect());
+        // Counted before a transform makes zero of them.
+        let broken_normals = normals.iter().flatten().filter(|normal| !normal.is_finite()).count();
         let is_mirrored = match form {
             VertexTransform::AsFile => false,
             VertexTransform::Placed(world) => {
@@ -145,12 +153,12 @@ impl PrimitiveVertices {
         }
         let map = look.map.as_ref();
         let uvs = map.and_then(|map| uvs(document, accessor(Semantic::TexCoords(map.set))?, map, &used));
-        // A normal that is not finite is replaced by the triangle's own.
         let finite = |normal: &DVec3| if normal.is_finite() { normal.as_vec3() } else { Vec3::ZERO };
         Ok(PrimitiveVertices {
             positions,
             triangles,
             normals: normals.map(|normals| normals.iter().map(finite).collect()),
+            broken_normals,
             uvs,
             has_colors: accessor(Semantic::Colors(0)).is_some(),
         })

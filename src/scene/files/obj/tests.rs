@@ -91,18 +91,18 @@ fn broken_lines_are_named() {
     let cases = [
         ("v 0 0", 5, "three numbers, but this has 2"),
         ("v 0 0 x", 5, "`x` is not a number"),
-        ("v 0 0 nan", 5, "`nan` is not a finite number"),
-        ("v 0 -inf 0", 5, "`-inf` is not a finite number"),
-        ("v 0 0 1e999", 5, "not a finite number"),
-        ("vn 0 0 1e99", 5, "not a finite number"),
-        ("f 1 2", 5, "at least 3 corners, but this has 2"),
-        ("f", 5, "at least 3 corners"),
         ("f 1 2 5", 5, "vertex index 5 is out of range: there are 4 vertices"),
         ("f 1 2 0", 5, "vertex index 0 is out of range"),
         ("f 1 2 -5", 5, "vertex index -5 is out of range: 4 vertices stand before it"),
         ("f 1 2 -9223372036854775808", 5, "out of range"),
         ("f 1 2 9223372036854775808", 5, "is no vertex index"),
-        ("f 1//1 2//1 3//1", 5, "normal index 1 is out of range"),
+        ("vn 0 x 0", 5, "`x` is not a number"),
+        ("vn 0 0", 5, "three numbers, but this has 2"),
+        ("v 0 0 nan\nf 1 2 5", 5, "vertex 5 is not finite, and a face uses it: replace NaN and infinity by numbers"),
+        ("v 0 -inf 0\nv 1 1 nan\nf 1 2 -1", 6, "vertex 6 is not finite"),
+        ("v 0 0 1e999\nf 1 2 5", 5, "vertex 5 is not finite"),
+        ("f 1 9", 5, "vertex index 9 is out of range"),
+        ("f 1//x 2//1 3//1", 5, "`x` is no normal index"),
         ("f 1/2/3/4 2 3", 5, "is no corner"),
         ("f 1 2 \\\n a", 5, "`a` is no vertex index"),
     ];
@@ -110,10 +110,70 @@ fn broken_lines_are_named() {
         let reason = parsed(&format!("{SQUARE}{line}\nf 1 2 3\n")).expect_err(line);
         assert!(reason.starts_with(&format!("{number}: ")) && reason.contains(words), "{line}: {reason}");
     }
-    let no_faces = parsed(SQUARE).expect_err("no faces");
-    assert!(no_faces.contains("has no faces"), "{no_faces}");
+    for nothing in ["", "f 1 2\nf\n"] {
+        let no_faces = parsed(&format!("{SQUARE}{nothing}")).expect_err("no faces");
+        assert!(no_faces.contains("has no faces of three corners or more"), "{no_faces}");
+    }
     let no_area = parsed(&format!("{SQUARE}f 1 1 2\n")).expect_err("no area");
     assert!(no_area.contains("three different corners"), "{no_area}");
+}
+
+fn not_taken(mesh: &Mesh) -> Vec<String> {
+    mesh.not_taken().iter().map(|one| format!("{}: {}", one.what, one.because)).collect()
+}
+
+/// What no shadow needs is left out, counted and named; what is left is the mesh of the same file without it.
+#[test]
+fn what_no_surface_needs_is_left_out_and_named() {
+    let plain = |faces: &str| parsed(&format!("{SQUARE}{faces}")).expect("a plain file");
+    let cases = [
+        // Exporters that drop normals and keep their indices.
+        (
+            "f 1//1 2//1 3//1\nf 1 3 4\n",
+            plain("f 1 2 3\nf 1 3 4\n"),
+            "1 face's normals: the file does not have them (vn): computed ones are used",
+        ),
+        (
+            "f 1//-1 2//-1 3//-1\nvn 0 0 1\nf 1//2 3//2 4//0\n",
+            plain("f 1 2 3\nf 1 3 4\n"),
+            "2 faces' normals: the file does not have them (vn): computed ones are used",
+        ),
+        // Loose edges.
+        (
+            "f 1 2\nf 1 2 3\nf 1\nf\nf 1 3 4\n",
+            plain("f 1 2 3\nf 1 3 4\n"),
+            "3 faces of fewer than three corners: a surface needs three",
+        ),
+        // Range scans, and what Microsoft's runtime wrote.
+        ("v nan nan nan\nf 1 2 3\n", plain("f 1 2 3\n"), "1 vertex that is not finite: no face uses them"),
+        (
+            "v 0 -1.#IND 0\nv 1.#QNAN 1 1\nv 0 0 1.#INF\nv inf 0 0\nv 1e999 0 0\nf 1 2 3\n",
+            plain("f 1 2 3\n"),
+            "5 vertices that are not finite: no face uses them",
+        ),
+    ];
+    for (text, expected, sentence) in cases {
+        let mesh = parsed(&format!("{SQUARE}{text}")).unwrap_or_else(|error| panic!("{error}: {text}"));
+        assert_eq!(not_taken(&mesh), [sentence], "{text}");
+        assert_eq!((mesh.positions(), mesh.triangles()), (expected.positions(), expected.triangles()), "{text}");
+        assert!(mesh.corner_normals().is_none(), "{text}");
+    }
+}
+
+/// As in a PLY: zero stands for the triangle's own normal.
+#[test]
+fn normals_that_are_not_finite_are_replaced_and_counted() {
+    let mesh = parsed(&format!("{SQUARE}vn nan 0 0\nvn 0 1 0\nvn 0 0 1e99\nf 1//1 2//2 3//3\n")).expect("a mesh");
+    assert_eq!(not_taken(&mesh), ["2 normals that are not finite: computed ones are used"]);
+    assert_eq!(mesh.corner_normals().expect("normals")[0], [Vec3::ZERO, Vec3::Y, Vec3::ZERO]);
+}
+
+#[test]
+fn numbers_of_other_languages_are_numbers() {
+    let mesh = parsed("v 0.0D+00 0 0\nv 1.0+00 0 0\nv .1+e1 1d0 0\nv 0 +1. 0\nvt 5d-1 0\nf 1/1 2/1 3/1\nf 1 3 4\n");
+    let mesh = mesh.expect("a square");
+    assert_eq!(area(&mesh), DVec3::Z);
+    assert_eq!(mesh.corner_uvs().expect("places")[0], Some([Vec2::new(0.5, 0.0); 3]));
 }
 
 /// A small generator, so that every run sees the same bytes (Marsaglia 2003).
@@ -208,7 +268,7 @@ fn files_that_are_no_text_say_so() {
 
 /// Files of programs without UTF-8: names stay distinct, and are found in their library.
 #[test]
-fn names_and_comments_may_be_in_latin_1_and_utf_16_is_named() {
+fn names_and_comments_may_be_in_latin_1() {
     let folder = tempfile::tempdir().expect("a folder");
     let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("written");
     put("farben.mtl", b"# T\xfcr\nnewmtl gr\xfcn\nKd 0 1 0\nnewmtl gr\xe4u\nKd 0.5 0.5 0.5\n");
@@ -217,9 +277,28 @@ fn names_and_comments_may_be_in_latin_1_and_utf_16_is_named() {
     let mesh = load(&folder.path().join("haus.obj")).expect("a mesh");
     let color = |group: usize| mesh.groups()[group].material.expect("a material").color;
     assert_eq!([color(0), color(1)], [[0.0, 1.0, 0.0], [0.5; 3]]);
-    for bytes in [b"\xff\xfev\x00 \x00".as_slice(), b"\xfe\xff\x00v\x00 "] {
-        put("wide.obj", bytes);
-        let error = load(&folder.path().join("wide.obj")).expect_err("UTF-16").to_string();
-        assert!(error.contains("is in UTF-16: save the OBJ model in UTF-8"), "{error}");
+}
+
+/// Whatever wrote it: the mesh is the same.
+#[test]
+fn models_in_utf_16_or_with_line_ends_of_old_macs_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("model.obj");
+    let text = format!("# caf\u{e9} \u{1f4a1}\n{SQUARE}g \u{e9}\nf 1 2 3\n");
+    let expected = parsed(&text).expect("a mesh");
+    let units = || format!("\u{feff}{text}").encode_utf16().collect::<Vec<u16>>();
+    let cases = [
+        text.clone().into_bytes(),
+        units().into_iter().flat_map(u16::to_le_bytes).collect(),
+        units().into_iter().flat_map(u16::to_be_bytes).collect(),
+        text.replace('\n', "\r").into_bytes(),
+        text.replace('\n', "\r\n").into_bytes(),
+    ];
+    for bytes in cases {
+        std::fs::write(&file, bytes).expect("written");
+        assert_eq!(load(&file).expect("a mesh"), expected);
     }
+    std::fs::write(&file, b"\xff\xfe\x00\x00v").expect("written");
+    let error = load(&file).expect_err("no text").to_string();
+    assert!(error.contains("is in UTF-16: save the OBJ model in UTF-8"), "{error}");
 }

@@ -1,11 +1,12 @@
 //! The text of an OBJ file, read on all cores and checked line by line: the first line that is wrong is reported.
 //!
 //! Vertex colours, points, lines and curves are left out. Broken texture coordinates are dropped, as no mesh is worth
-//! less without.
+//! less without. Faces of fewer than three corners, which exporters write for loose edges, and indices of normals that
+//! the file does not have are dropped and counted.
 
-use crate::scene::files::read_text::quoted;
+use crate::scene::files::read_text::{number, quoted, single_number};
 use crate::scene::mesh::is_usable_uv;
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::AddAssign;
@@ -13,10 +14,10 @@ use std::ops::AddAssign;
 /// The content of an OBJ file; indices count from 0 and are in range, polygons are not yet triangles.
 #[derive(Debug, Default, PartialEq)]
 pub struct ObjContents {
-    /// Positions, all finite.
+    /// Positions; may be NaN or infinite.
     pub positions: Vec<DVec3>,
-    /// Normals, finite in single precision, too.
-    pub normals: Vec<DVec3>,
+    /// Normals; may be NaN or infinite.
+    pub normals: Vec<Vec3>,
     /// Texture coordinates; `None` where they can't be used.
     pub places: Vec<Option<Vec2>>,
     /// Corners of all faces, one after the other.
@@ -25,6 +26,8 @@ pub struct ObjContents {
     pub arities: Vec<u32>,
     /// Statements between faces: how many faces come before each, and what it is.
     pub statements: Vec<(usize, ObjStatement)>,
+    /// The number of faces that are left out, as they have fewer than three corners.
+    pub short_faces: usize,
 }
 
 /// A corner of a face, by indices counted from 0; `None` where it has no texture coordinates or normal.
@@ -32,7 +35,13 @@ pub struct ObjContents {
 pub struct ObjCorner {
     pub vertex: u32,
     pub place: Option<u32>,
+    /// [`ObjCorner::MISSING`] where the file does not have the normal that it names.
     pub normal: Option<u32>,
+}
+
+impl ObjCorner {
+    /// The index of a normal that the file does not have.
+    const MISSING: u32 = u32::MAX;
 }
 
 /// A statement of an OBJ file that applies to the faces that follow.
@@ -86,6 +95,7 @@ fn read_in_parts(raw: &str, size: usize) -> Result<ObjContents, ObjLineProblem> 
         corners: Vec::with_capacity(read.iter().map(|part| part.contents.corners.len()).sum()),
         arities: Vec::with_capacity(read.iter().map(|part| part.contents.arities.len()).sum()),
         statements: Vec::new(),
+        short_faces: read.iter().map(|part| part.contents.short_faces).sum(),
     };
     for ObjChunk { contents, .. } in read {
         let faces = joined.arities.len();
@@ -97,6 +107,12 @@ fn read_in_parts(raw: &str, size: usize) -> Result<ObjContents, ObjLineProblem> 
         joined.statements.extend(contents.statements.into_iter().map(|(at, statement)| (faces + at, statement)));
     }
     Ok(joined)
+}
+
+/// Returns the number of the line, counted from 1, that gives vertex `vertex`, counted from 0; 0 where there is none.
+pub fn line_of_vertex(raw: &str, vertex: usize) -> usize {
+    let vertices = lines(raw).filter(|(_, line)| split_keyword(line).0 == "v");
+    vertices.map(|(at, _)| at + 1).nth(vertex).unwrap_or(0)
 }
 
 /// Splits the text into pieces of at least `size` bytes (the last may be shorter), each of which ends at the end of a
@@ -207,7 +223,7 @@ impl ObjChunk {
             match keyword {
                 "v" | "vn" => match vector(keyword, rest) {
                     Ok(vector) if keyword == "v" => contents.positions.push(vector),
-                    Ok(vector) => contents.normals.push(vector),
+                    Ok(vector) => contents.normals.push(vector.as_vec3()),
                     Err(reason) => {
                         part.of_vectors = Some(problem(reason));
                         break;
@@ -228,13 +244,30 @@ impl ObjChunk {
 }
 
 impl ObjContents {
+    /// Returns the corners of each face.
+    pub fn faces(&self) -> impl Iterator<Item = &[ObjCorner]> {
+        let mut rest = self.corners.as_slice();
+        self.arities.iter().filter_map(move |arity| rest.split_off(..*arity as usize))
+    }
+
     /// Returns the texture coordinates of a corner; `None` where it has none, or they can't be used.
     pub fn place_of(&self, corner: &ObjCorner) -> Option<Vec2> {
         self.places[corner.place? as usize]
     }
 
+    /// Returns the normal of a corner; `None` where it has none, or the file does not.
+    pub fn normal_of(&self, corner: &ObjCorner) -> Option<Vec3> {
+        self.normals.get(corner.normal? as usize).copied()
+    }
+
+    /// Returns whether this face names a normal that the file does not have.
+    pub fn lacks_normals(&self, face: &[ObjCorner]) -> bool {
+        face.iter().any(|corner| corner.normal == Some(ObjCorner::MISSING))
+    }
+
     /// Adds a face of a part of a file, with the counts of vertices before the part and in the whole file, to which its
-    /// indices refer. An error where it has fewer than three corners or an index is out of range.
+    /// indices refer; one of fewer than three corners is only counted. An error where the index of a vertex is out of
+    /// range.
     fn add_face(&mut self, rest: &str, before: ObjCounts, all: ObjCounts) -> Result<(), String> {
         let here = ObjCounts {
             vertices: before.vertices + self.positions.len(),
@@ -248,19 +281,19 @@ impl ObjContents {
         }
         let count = self.corners.len() - first;
         if count < 3 {
-            return Err(format!(
-                "a face needs at least 3 corners, but this has {count}: complete it or delete the line"
-            ));
+            self.corners.truncate(first);
+            self.short_faces += 1;
+        } else {
+            self.arities.push(count as u32);
         }
-        self.arities.push(count as u32);
         Ok(())
     }
 }
 
-/// Parses the first three numbers of a `v` or `vn` line, further ones are ignored; an error where there are fewer, or
-/// one is not finite (for `vn`, in single precision).
+/// Parses the first three numbers of a `v` or `vn` line, further ones are ignored; NaN and infinity are numbers here. An
+/// error where there are fewer, or a word is no number.
 fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
-    let (what, most) = if keyword == "v" { ("vertex", f64::MAX) } else { ("normal", f64::from(f32::MAX)) };
+    let what = if keyword == "v" { "vertex" } else { "normal" };
     let mut three = words(rest);
     let mut vector = DVec3::ZERO;
     for axis in 0..3 {
@@ -268,11 +301,7 @@ fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
             let count = words(rest).count();
             format!("a {what} needs three numbers, but this has {count}: complete it")
         })?;
-        let number: f64 = word.parse().map_err(|_| format!("{} is not a number: correct it", quoted(word)))?;
-        if !number.is_finite() || number.abs() > most {
-            return Err(format!("{} is not a finite number: replace it", quoted(word)));
-        }
-        vector[axis] = number;
+        vector[axis] = number(word).ok_or_else(|| format!("{} is not a number: correct it", quoted(word)))?;
     }
     Ok(vector)
 }
@@ -280,46 +309,47 @@ fn vector(keyword: &str, rest: &str) -> Result<DVec3, String> {
 /// Parses the first two numbers of a `vt` line, the second is 0 unless given; `None` where they are no numbers or can't
 /// be used.
 fn place(rest: &str) -> Option<Vec2> {
-    let mut numbers = words(rest).map(|word| word.parse().ok());
+    let mut numbers = words(rest).map(single_number);
     let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
     is_usable_uv(&place).then_some(place)
 }
 
-/// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. An index that is out of range is an error, except one of texture
-/// coordinates, which then counts as none.
+/// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. The index of a vertex that is out of range is an error; one of
+/// texture coordinates then counts as none, and one of a normal as one that the file lacks.
 fn corner(word: &str, before: ObjCounts, all: ObjCounts) -> Result<ObjCorner, String> {
     let mut parts = word.split('/');
     let (vertex, place, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
         [Some(vertex), place, normal, None] => (vertex, place.unwrap_or_default(), normal.unwrap_or_default()),
         _ => return Err(format!("{} is no corner: write v, v/vt, v//vn or v/vt/vn", quoted(word))),
     };
-    let vertex = index("vertex", "vertices", vertex, before.vertices, all.vertices)?;
+    let out_of_range = || {
+        let range = if vertex.starts_with('-') {
+            format!("{} vertices stand before it", before.vertices)
+        } else {
+            format!("there are {} vertices, counted from 1", all.vertices)
+        };
+        format!("vertex index {vertex} is out of range: {range}; correct it")
+    };
     let normal = match normal {
         "" => None,
-        normal => Some(index("normal", "normals", normal, before.normals, all.normals)?),
+        normal => Some(index("normal", normal, before.normals, all.normals)?.unwrap_or(ObjCorner::MISSING)),
     };
     // Coordinates that don't exist count as none; most corners have none.
     let place = match place {
         "" => None,
-        place => index("place", "places", place, before.places, all.places).ok(),
+        place => index("place", place, before.places, all.places).ok().flatten(),
     };
+    let vertex = index("vertex", vertex, before.vertices, all.vertices)?.ok_or_else(out_of_range)?;
     Ok(ObjCorner { vertex, place, normal })
 }
 
 /// Parses an index of an OBJ file, where 1 is the first and −1 the last before the line (`before` of them), and returns
-/// it counted from 0; an error where it is not below `all`. `what` and `plural` are words for the error.
-fn index(what: &str, plural: &str, word: &str, before: usize, all: usize) -> Result<u32, String> {
+/// it counted from 0; `None` where it is not below `all`. An error where it is no whole number; `what` is a word for that.
+fn index(what: &str, word: &str, before: usize, all: usize) -> Result<Option<u32>, String> {
     let given: i64 = word.parse().map_err(|_| format!("{} is no {what} index: give a whole number", quoted(word)))?;
     let back = usize::try_from(given.unsigned_abs()).unwrap_or(usize::MAX);
     let absolute = if given < 0 { before.checked_sub(back) } else { back.checked_sub(1) };
-    absolute.filter(|index| *index < all).and_then(|index| u32::try_from(index).ok()).ok_or_else(|| {
-        let range = if given < 0 {
-            format!("{before} {plural} stand before it")
-        } else {
-            format!("there are {all} {plural}, counted from 1")
-        };
-        format!("{what} index {given} is out of range: {range}; correct it")
-    })
+    Ok(absolute.filter(|index| *index < all).and_then(|index| u32::try_from(index).ok()))
 }
 
 #[cfg(test)]
@@ -331,10 +361,11 @@ mod tests {
     #[test]
     fn cuts_change_nothing() {
         let text = "# é\nv 0 0 0\nv 1 0 0 \\\n# more\nv 1 1\\\n 0\r\nvn 0 0 1\nvt 0.5 \\\r\n0.25\nmtllib a b.mtl\no left\nf 1/1/1 2//1 3\n\
-                    v 0 1 0\nusemtl red\nf -4 -3 -2 \\\n-1\ng\nvt x\nvn 0 1 0\nf 1/2/-1 2/1/1 -1/-2/-2\nf 4/-7 3/9 1";
+                    v 0 1 0\nusemtl red\nf -4 -3 -2 \\\n-1\ng\nvt x\nvn 0 1 0\nf 1/2/-1 2/1/1 -1/-2/-2\nf 4/-7 3/9 1\nf 1 2";
         let whole = read(text).expect("a file");
         assert_eq!((whole.positions.len(), whole.normals.len(), whole.places.len()), (4, 2, 2));
         assert_eq!((&whole.arities[..], whole.statements.len()), ([3, 4, 3, 3].as_slice(), 4));
+        assert_eq!((whole.short_faces, line_of_vertex(text, 2), line_of_vertex(text, 4)), (1, 5, 0));
         assert_eq!(whole.corners[3..7].iter().map(|corner| corner.vertex).collect::<Vec<_>>(), [0, 1, 2, 3]);
         assert_eq!(whole.corners[9], ObjCorner { vertex: 3, place: Some(0), normal: Some(0) });
         for size in 1..text.len() {
@@ -342,7 +373,7 @@ mod tests {
             assert_eq!(read_in_parts(text, size).as_ref(), Ok(&whole), "{size}");
         }
         // A vertex goes before a face, and of each kind the first.
-        for (more, line) in [("f 1 2\nf 1 2 x\nv 1\nv 2\n", 24), ("\nf 1 2\nv 0 0 0\nf 7 7 7\n", 23)] {
+        for (more, line) in [("f 1 2 9\nf 1 2 x\nv 1\nv 2\n", 25), ("\nf 1 2 9\nv 0 0 0\nf 7 7 7\n", 24)] {
             let broken = format!("{text}\n{more}");
             for size in 1..broken.len() {
                 assert_eq!(read_in_parts(&broken, size).expect_err("broken").line, line, "{size}");
