@@ -102,7 +102,7 @@ impl Activity {
     }
 }
 
-/// What the user is told above the panels, until it is dismissed.
+/// What is shown above the panels until the user dismisses it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     /// Whether what was asked for failed.
