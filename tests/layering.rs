@@ -50,7 +50,7 @@ const MAY_USE: [(&str, &[&str]); 40] = [
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
     ("report", &["technique", "capture", "accuracy", "numbers", "picture", "shards"]),
-    ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report", "shards"]),
+    ("stress", &["math", "scene", "technique", "accuracy", "capture", "numbers", "report", "shards"]),
     (
         "reading",
         &[
@@ -112,7 +112,7 @@ const MAY_USE: [(&str, &[&str]); 40] = [
         ],
     ),
     ("page", &["math", "plan", "history", "capture", "technique", "picture", "numbers", "files", "reading"]),
-    ("film", &["scene", "capture", "reading", "picture", "numbers", "files", "session"]),
+    ("film", &["math", "scene", "capture", "reading", "picture", "numbers", "files", "session"]),
     (
         "inspector",
         &[

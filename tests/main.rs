@@ -3,6 +3,7 @@
 mod accuracy;
 mod animate;
 mod auto;
+mod brought;
 mod capture_folder;
 mod claims;
 mod commands;

@@ -1,9 +1,10 @@
-//! `stencilscope animate`: a frame pass by pass, or a light that moves round the scene, as an animated PNG.
+//! `stencilscope animate`: a frame pass by pass, a light that moves round the scene, or an eye that moves a little, as an
+//! animated PNG.
 
 use super::options::{FrameOptions, SceneOptions, Subject, open_session};
 use super::progress::with_bar;
 use super::{CliError, output};
-use crate::film::{Film, FilmContent, LightRound, PLACES};
+use crate::film::{EyeMove, Film, FilmContent, FilmMotion, LightRound, PLACES};
 use crate::picture::apng::ColorDepth;
 use crate::progress::Progress;
 use crate::reading::format;
@@ -24,7 +25,8 @@ const MOST_MILLISECONDS: u16 = 60_000;
 #[derive(Debug, Args)]
 #[command(
     after_help = "A frame pass by pass:      stencilscope animate tori -t z-fail --steps --size 640x480 -o steps.png\n\
-    A light round the scene:   stencilscope animate tori --light-round --size 640x480 -o round.png\n\n\
+    A light round the scene:   stencilscope animate tori --light-round --size 640x480 -o round.png\n\
+    A map that swims:          stencilscope animate table -t shadow-map --set light-frustum=view --eye-moves -o swims.png\n\n\
     Browsers and most chats show animated PNG. Passes keep every value's colour; --light-round rounds colours, by at\n\
     most 1 of 255 a channel, unless --exact is given."
 )]
@@ -38,17 +40,21 @@ pub struct AnimateArguments {
     #[arg(long)]
     overwrite: bool,
     /// The frame, pass by pass, each with what it writes [default]
-    #[arg(long, conflicts_with = "light_round")]
+    #[arg(long, conflicts_with = "motion")]
     steps: bool,
     /// A light once round the scene's vertical axis, in N pictures [default N: 24]
-    #[arg(long, value_name = "N", num_args = 0..=1, value_parser = places)]
+    #[arg(long, value_name = "N", num_args = 0..=1, value_parser = places, group = "motion")]
     light_round: Option<Option<u32>>,
+    /// The eye a little to its right from picture to picture, in N of them [default N: 24]: what crawls does not stand
+    /// still
+    #[arg(long, value_name = "N", num_args = 0..=1, value_parser = places, group = "motion")]
+    eye_moves: Option<Option<u32>>,
     /// Which light goes round, counted from 1
     #[arg(long, value_name = "K", default_value_t = 1, requires = "light_round",
         value_parser = clap::value_parser!(u16).range(1..))]
     which_light: u16,
     /// Keep colours to the bit: a larger file
-    #[arg(long, requires = "light_round")]
+    #[arg(long, requires = "motion")]
     exact: bool,
     /// How long each picture is shown [default: 1500 a pass, 100 a place of the light]
     #[arg(long, value_name = "MILLISECONDS", value_parser = milliseconds, allow_hyphen_values = true)]
@@ -80,18 +86,25 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
     arguments.frame.refuse_external_capture(refused)?;
     let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
     let mut session = LazySession { adapter: arguments.frame.adapter.as_deref(), session: None };
-    let (name, shows) = match arguments.light_round {
-        None => {
+    let is_moving = arguments.light_round.is_some() || arguments.eye_moves.is_some();
+    let (name, shows) = match is_moving {
+        false => {
             let capture = steps(subject, &mut session)?;
             (format!("{}, {}", capture.scene, capture.technique), FilmContent::Steps(capture))
         }
-        Some(places) => {
+        true => {
             let (scene, request) = made(&arguments.scene, &subject)?;
             let name = format!("{}, {}", scene.name, request.choice.technique().name());
             let light = usize::from(arguments.which_light) - 1;
-            let round = Box::new(LightRound::new(scene.clone(), light, places.unwrap_or(PLACES))?);
+            let motion = match (arguments.light_round, arguments.eye_moves) {
+                (None, Some(places)) => FilmMotion::EyeMove(EyeMove::new(scene.clone(), places.unwrap_or(PLACES))),
+                (places, _) => {
+                    let places = places.flatten().unwrap_or(PLACES);
+                    FilmMotion::LightRound(LightRound::new(scene.clone(), light, places)?)
+                }
+            };
             let colors = if arguments.exact { ColorDepth::Exact } else { ColorDepth::Rounded };
-            (name, FilmContent::LightRound { round, request: Box::new(request.clone()), colors })
+            (name, FilmContent::Moving { motion: Box::new(motion), request: Box::new(request.clone()), colors })
         }
     };
     let [width, height] = shows.size();

@@ -1,5 +1,5 @@
-//! Films of a frame: its passes one after the other, or a light that moves once round the scene. Each is an animated
-//! PNG, whose pictures are written as they are made.
+//! Films of a frame: its passes one after the other, a light that moves once round the scene, or an eye that moves a
+//! little. Each is an animated PNG, whose pictures are written as they are made.
 //!
 //! ```text
 //! steps.rs        a pass: what it writes, over its name      light_round.rs   positions of a light on its way round
@@ -8,9 +8,11 @@
 //! Animated PNG and not GIF: it stores colours and counts as they are, where GIF has 256 colours, and the PNG encoder
 //! that pictures are written with writes it. A program that knows PNG alone shows the first picture.
 
+mod eye_move;
 mod light_round;
 mod steps;
 
+pub use eye_move::EyeMove;
 pub use light_round::LightRound;
 pub use steps::step_picture;
 
@@ -79,15 +81,40 @@ fn choice_of(lights: usize) -> String {
     }
 }
 
-/// The content of a film: the steps of a frame, or a light that moves round the scene.
+/// What moves from picture to picture.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FilmMotion {
+    /// A light, once round the scene.
+    LightRound(LightRound),
+    /// The eye, a little to its side.
+    EyeMove(EyeMove),
+}
+
+impl FilmMotion {
+    fn places(&self) -> u32 {
+        match self {
+            FilmMotion::LightRound(round) => round.places(),
+            FilmMotion::EyeMove(moves) => moves.places(),
+        }
+    }
+
+    fn scene(&self, place: u32) -> Scene {
+        match self {
+            FilmMotion::LightRound(round) => round.scene(place),
+            FilmMotion::EyeMove(moves) => moves.scene(place),
+        }
+    }
+}
+
+/// The content of a film: the steps of a frame, or a motion.
 #[derive(Debug, Clone)]
 pub enum FilmContent {
     /// A frame, pass by pass; masks are not part of it and left out.
     Steps(Arc<Capture>),
-    /// A light that moves round.
-    LightRound {
-        /// The light's positions.
-        round: Box<LightRound>,
+    /// A light or an eye that moves.
+    Moving {
+        /// What moves, and where to.
+        motion: Box<FilmMotion>,
         /// How the scene is rendered at each.
         request: Box<CaptureRequest>,
         /// How colours are stored.
@@ -97,11 +124,11 @@ pub enum FilmContent {
 
 impl FilmContent {
     /// Returns how many pictures the film has: one for each numbered pass (masks have none), or one for each position
-    /// of the light.
+    /// of what moves.
     pub fn pictures(&self) -> u32 {
         match self {
             FilmContent::Steps(capture) => step_numbers::count(capture) as u32,
-            FilmContent::LightRound { round, .. } => round.places(),
+            FilmContent::Moving { motion, .. } => motion.places(),
         }
     }
 
@@ -110,7 +137,7 @@ impl FilmContent {
     pub fn size(&self) -> [u32; 2] {
         match self {
             FilmContent::Steps(capture) => steps::size(capture),
-            FilmContent::LightRound { request, .. } => request.size,
+            FilmContent::Moving { request, .. } => request.size,
         }
     }
 
@@ -118,7 +145,7 @@ impl FilmContent {
     pub fn milliseconds(&self) -> u16 {
         match self {
             FilmContent::Steps(_) => STEP_MILLISECONDS,
-            FilmContent::LightRound { .. } => PLACE_MILLISECONDS,
+            FilmContent::Moving { .. } => PLACE_MILLISECONDS,
         }
     }
 
@@ -126,7 +153,7 @@ impl FilmContent {
         match self {
             // Values must be readable off the colours.
             FilmContent::Steps(_) => ColorDepth::Exact,
-            FilmContent::LightRound { colors, .. } => *colors,
+            FilmContent::Moving { colors, .. } => *colors,
         }
     }
 
@@ -136,8 +163,8 @@ impl FilmContent {
                 let step = step_numbers::numbered(capture).nth(index as usize).ok_or(FilmError::NoSteps)?;
                 Ok(step_picture(capture, step)?)
             }
-            FilmContent::LightRound { round, request, .. } => {
-                let capture = render(&round.scene(index), request)?;
+            FilmContent::Moving { motion, request, .. } => {
+                let capture = render(&motion.scene(index), request)?;
                 let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
                 let image = last.map(|frame| Arc::clone(&frame.color.image)).ok_or(FilmError::NoSteps)?;
                 Ok(WrittenAspects { image, content: TexelContent::Color, name: "colour" }.picture())
@@ -146,7 +173,7 @@ impl FilmContent {
     }
 }
 
-/// A function that renders a scene as a request says; only a film of a moving light calls it.
+/// A function that renders a scene as a request says; only a film of a motion calls it.
 pub type FilmRenderer<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
 
 /// A film that is being written. One that is dropped before its end leaves no file.

@@ -32,7 +32,7 @@ pub enum Occasion {
     Flag,
     /// The frame of another program alone.
     ForeignFrame,
-    /// One pixel of tens of millions, in a mesh of others that is not kept here; `.ci/strangers` fetches it.
+    /// One pixel of tens of millions, in a mesh of others that is not kept here.
     InAStrangersMesh,
 }
 

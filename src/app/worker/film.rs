@@ -4,7 +4,7 @@ use super::WorkerState;
 use crate::app::news::News;
 use crate::app::queue::{Inbox, Order};
 use crate::ask::{Answer, Ask, FilmOf, FilmSubject, Filmed, PendingQuestion};
-use crate::film::{Film, FilmContent, LightRound, PLACES};
+use crate::film::{Film, FilmContent, FilmMotion, LightRound, PLACES};
 use crate::picture::apng::ColorDepth;
 use crate::session::CaptureRequest;
 use std::path::Path;
@@ -77,8 +77,8 @@ impl WorkerState {
                 let scene = request.applied_to(open).advanced(request.time);
                 let round = LightRound::new(scene, *light, PLACES).map_err(|error| error.to_string())?;
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
-                FilmContent::LightRound {
-                    round: Box::new(round),
+                FilmContent::Moving {
+                    motion: Box::new(FilmMotion::LightRound(round)),
                     request: Box::new(request),
                     colors: ColorDepth::Rounded,
                 }

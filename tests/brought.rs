@@ -1,0 +1,104 @@
+//! What people asked about in public, as small inputs of our own with their right values.
+
+use crate::common::{choice, request, request_with, session};
+use std::fs;
+use std::path::Path;
+use stencilscope::diagnosis::{Cause, Diagnosis, Proof, RegionKind};
+use stencilscope::progress::Progress;
+use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::session::{CaptureRequest, InjectedFault};
+use stencilscope::technique::{Choice, Technique};
+use stencilscope::truth::SHADOW;
+
+const SIZE: [u32; 2] = [240, 180];
+
+/// A unit cube as an OBJ text, its lowest corner at a place.
+fn cube([x, y, z]: [f64; 3]) -> String {
+    let corner = |index: usize| [x + (index >> 2) as f64, y + (index >> 1 & 1) as f64, z + (index & 1) as f64];
+    let vertices = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+    vertices.collect::<String>() + "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
+}
+
+fn opened_from(folder: &Path, name: &str, text: &str) -> Scene {
+    let file = folder.join(name);
+    fs::write(&file, text).expect("written");
+    open(&OpenSpec::new(file.to_string_lossy())).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn diagnosed(scene: &Scene, choice: Choice, size: [u32; 2]) -> Diagnosis {
+    let request = CaptureRequest::new(choice, size);
+    session().diagnose(scene, &request, InjectedFault::None, &Progress::default()).expect("a diagnosis")
+}
+
+/// A scan or a place on a map lies far from the origin: floor, light and camera are there, too, and the shadow is right.
+#[test]
+fn a_model_far_from_the_origin_has_its_floor_and_its_shadow() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = session();
+    let mut counts = |at: [f64; 3]| {
+        let scene = opened_from(folder.path(), "cube.obj", &cube(at));
+        let capture = session.capture(&scene, &request(Technique::Auto, SIZE)).expect("a frame");
+        let judged = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
+        let error = judged.error().expect("counts");
+        let labels = &judged.lights[0].truth.as_ref().expect("a truth").labels;
+        let dark = labels.rows().flatten().filter(|label| **label == SHADOW).count() as u64;
+        assert_eq!(error.wrong(), 0, "at {at:?}");
+        (error.compared, dark)
+    };
+    let (compared, dark) = counts([-0.5, 0.0, -0.5]);
+    assert!(dark > 1000 && compared > 10_000, "{dark} dark of {compared}");
+    for far in [20.0, -3000.0, 1e6, 1e7] {
+        assert_eq!(counts([far, 0.0, 0.0]), (compared, dark), "{far} m along x");
+        assert_eq!(counts([0.5 * far, 2.0, -far]), (compared, dark), "{far} m away, and 2 m up");
+    }
+    // Where the model is around its own origin, its author means that.
+    let scene = opened_from(folder.path(), "cube.obj", &cube([-0.25, 0.0, -0.75]));
+    let (low, high) = scene.objects[1].mesh.bounds().expect("a floor");
+    assert_eq!((low.x + high.x, low.z + high.z), (0.0, 0.0));
+}
+
+const ROOM: &str = "[camera]\neye = [2.4, 2.2, 2.4]\ntarget = [-1, 0.6, -1]\nfov_y_degrees = 70\n\
+    [[lights]]\nkind = \"point\"\nposition = [0, 1.5, 0]\n\
+    [[objects]]\nname = \"room\"\nmesh = { shape = \"box\", size = [6, 6, 6] }\ntranslate = [0, 3, 0]\n\
+    [[objects]]\nname = \"post\"\nmesh = { shape = \"box\", size = [0.3, 2, 0.3] }\ntranslate = [-1.2, 1, -1.2]\n";
+
+/// The lit side of a post is grey, and labels call it lit: the shares of light that arrive say by how much, and the
+/// texels that darken it are its own.
+#[test]
+fn a_filter_that_darkens_a_lit_post_is_counted_and_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = opened_from(folder.path(), "room.toml", ROOM);
+    let settings = [("filter", "pcf:9"), ("size", "64")];
+    let mut session = session();
+    let request = request_with(Technique::ShadowMap, &settings, [320, 240]);
+    let capture = session.capture(&scene, &request).expect("a frame");
+    let judged = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
+    let error = judged.visibility_error().expect("shares of light");
+    assert!(error.partly_dark > 1000 && error.darkened > 0.001, "{error:?}");
+    let diagnosis = diagnosed(&scene, request.choice, [320, 240]);
+    let on_post = diagnosis.regions.iter().find(|region| {
+        region.kind == RegionKind::PartlyDark && region.receivers.iter().any(|receiver| receiver == "post")
+    });
+    let cause = on_post.expect("a region on the post").causes.first().expect("a cause");
+    assert_eq!(cause.cause, Cause::Acne, "{}", cause.evidence.sentence);
+    assert!(cause.evidence.holds() && cause.evidence.sentence.contains("the filter compares"), "{cause:?}");
+    assert!(matches!(cause.proof, Proof::Proven | Proof::Part), "{cause:?}");
+}
+
+/// A cube of which no two sides share a corner by number, and one whose top has a corner in the middle of an edge.
+#[test]
+fn silhouettes_from_shared_corners_miss_what_files_split() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let split = "v 0 0 0\nv 0 0 1\nv 0 1 1\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 1 1\nv 1 0 1\nv 0 0 0\nv 1 0 0\nv 1 0 1\n\
+        v 0 0 1\nv 0 1 0\nv 0 1 1\nv 1 1 1\nv 1 1 0\nv 0 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\n\
+        v 0 1 1\nf 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\nf 17 18 19 20\nf 21 22 23 24\n";
+    let junction = cube([0.0; 3]).replace("f 3 4 8 7\n", "v 0.5 1 0\nv 0.5 1 1\nf 3 4 10 9\nf 9 10 8 7\n");
+    for (text, expected) in [(split, Cause::SplitVertices), (&junction, Cause::TJunction)] {
+        let scene = opened_from(folder.path(), "cube.obj", text);
+        let by_default = diagnosed(&scene, choice(Technique::ZFail, &[]), SIZE);
+        assert!(!by_default.is_bad(), "joined, {expected} shows nowhere");
+        let open = diagnosed(&scene, choice(Technique::ZFail, &[("silhouette", "shared-corners")]), SIZE);
+        let first = open.regions.first().and_then(|region| region.causes.first()).expect("a cause");
+        assert_eq!((first.cause, first.proof, first.pixels_left), (expected, Proof::Proven, Some(0)), "{first:?}");
+    }
+}
