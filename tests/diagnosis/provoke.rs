@@ -67,22 +67,31 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::CapFighting
         | Cause::DoubleBlend
         | Cause::ZFighting
-        | Cause::OffReceiver
         | Cause::AntiShadow
         | Cause::FalseShadow
-        | Cause::NotPlanar
         | Cause::Acne
         | Cause::PeterPanning
         | Cause::MapFacesCulled
         | Cause::Aliasing
         | Cause::OutsideMap
-        | Cause::ReverseProjection
         | Cause::Between
         | Cause::EdgeSmear
         | Cause::SelfShadow
         | Cause::F32Limit
         | Cause::SubpixelEdges
         | Cause::CarriedInF32 => Occasion::Scene(&[]),
+        Cause::OffReceiver => Occasion::Scene(&[AlsoThere {
+            cause: Cause::DoubleBlend,
+            because: "Without the stencil nothing keeps overlapping triangles from darkening a pixel twice.",
+        }]),
+        Cause::NotPlanar => Occasion::Scene(&[AlsoThere {
+            cause: Cause::Aliasing,
+            because: "What is flat has a texture, and outlines run between its texels.",
+        }]),
+        Cause::ReverseProjection => Occasion::Scene(&[AlsoThere {
+            cause: Cause::Aliasing,
+            because: "The wall stands on the floor, where its outline runs through texels of any size.",
+        }]),
         Cause::NotReceiving | Cause::NotCasting | Cause::Undrawn => Occasion::Flag,
         Cause::FaceCulled
         | Cause::VolumesWriteDepth
@@ -507,8 +516,8 @@ fn lone_sphere(dice: &mut Dice) -> Scene {
 fn under_a_pane(dice: &mut Dice) -> Scene {
     let pane = Object::of("pane", shapes::quad([dice.between(0.6, 1.0); 2]).expect("a pane")).at(dice.place());
     let tilted = pane.rotated([dice.between(-20.0, 20.0), 0.0, dice.between(-20.0, 20.0)]);
-    let crate_of = cuboid("crate", [dice.between(1.2, 1.6), 0.6, dice.between(-1.0, 0.0)], [0.4; 3]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), tilted, crate_of])
+    let beside = cuboid("crate", [dice.between(1.2, 1.6), 0.6, dice.between(-1.0, 0.0)], [0.4; 3]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), tilted, beside])
 }
 
 fn wall_behind_lamp(dice: &mut Dice) -> Scene {
