@@ -246,7 +246,7 @@ fn boxes_on_each_other_show_acne_peter_panning_and_stairs() {
     let faults: [(&[&str], &str); 3] = [
         (&["bias-constant=0", "bias-slope=0"], "acne"),
         (&["bias-slope=200"], "peter-panning"),
-        (&["size=64"], "aliasing"),
+        (&["size=32"], "aliasing"),
     ];
     for (settings, cause) in faults {
         let set = settings.iter().flat_map(|setting| ["--set", setting]);

@@ -5,6 +5,11 @@
 
 use glam::{DVec3, DVec4};
 
+/// Rounds a position to single precision, as a world of floats has it.
+pub fn rounded(position: DVec3) -> DVec3 {
+    position.as_vec3().as_dvec3()
+}
+
 /// Returns a point relative to `origin` in single precision, with w = 1.
 pub fn point(position: DVec3, origin: DVec3) -> [f32; 4] {
     homogeneous(position.extend(1.0), origin)

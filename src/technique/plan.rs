@@ -6,10 +6,9 @@ use super::error::PlanError;
 use super::frame::PlanRequest;
 use super::named::Technique;
 use super::{auto, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
-use crate::geometry::GeometryCache;
+use crate::geometry::{GeometryCache, relative};
 use crate::plan::FramePlan;
 use crate::scene::Scene;
-use glam::DVec3;
 
 /// Plans a frame with the chosen technique: returns its passes and draws as data, without a GPU.
 pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
@@ -25,16 +24,11 @@ pub fn plan(job: PlanRequest) -> Result<FramePlan, PlanError> {
 /// Returns the scene with its eye and its lights rounded to single precision. Objects are rounded where they are placed.
 fn seen_in_single_precision(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
-    scene.camera.eye = single(scene.camera.eye);
+    scene.camera.eye = relative::rounded(scene.camera.eye);
     for light in scene.lights.iter_mut().filter(|light| !light.is_directional()) {
-        light.position = single(light.position.truncate()).extend(light.position.w);
+        light.position = relative::rounded(light.position.truncate()).extend(light.position.w);
     }
     scene
-}
-
-/// Rounds a position to single precision.
-pub(super) fn single(position: DVec3) -> DVec3 {
-    position.as_vec3().as_dvec3()
 }
 
 impl Technique {

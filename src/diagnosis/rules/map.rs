@@ -424,9 +424,13 @@ fn peter_panning(facts: &FrameFacts, case: &RegionSamples) -> Option<SuspectedCa
             numbers::metres(look.texel),
             numbers::metres(look.gap)
         ),
+        _ if look.bias.is_infinite() => format!(
+            "the bias moves the caster past all depths of the map, and the surface is {} behind it",
+            numbers::metres(look.gap)
+        ),
         _ => format!(
             "the bias moves the caster {} away from the light, and the surface is only {} behind it; a texel is {} wide",
-            if look.bias.is_finite() { numbers::metres(look.bias) } else { "past all depths of the map".to_owned() },
+            numbers::metres(look.bias),
             numbers::metres(look.gap),
             numbers::metres(look.texel)
         ),

@@ -14,6 +14,9 @@ pub(crate) const RULES: &[CauseRule] = &[rasteriser_precision];
 /// The part of a pixel that rasterisers move corners to at most: both ends of an edge may be moved by half of it.
 const SNAPPING: f64 = 1.0 / 256.0;
 
+/// Faces nearer than this to a pixel's middle, pixels, meet it by rounding: another cause.
+const ROUNDED: f64 = 1e-4;
+
 /// A face of a shadow volume beside the visible surface at a pixel.
 struct NearFace {
     name: String,
@@ -56,8 +59,9 @@ fn rasteriser_precision(facts: &FrameFacts, case: &RegionSamples) -> Option<Susp
     if !facts.counts_volumes(light) || facts.plan.depth.is_linear {
         return None;
     }
-    let (NearFace { name, gap, pixels }, shown_by) =
-        case.shown(|sample| nearest_face(facts, light, sample).filter(|face| face.pixels <= SNAPPING))?;
+    let (NearFace { name, gap, pixels }, shown_by) = case.shown(|sample| {
+        nearest_face(facts, light, sample).filter(|face| (ROUNDED..=SNAPPING).contains(&face.pixels))
+    })?;
     let sentence = format!(
         "{name} is {} from the surface here, and is seen so nearly edge-on that it meets it {} pixels beside the pixel's \
          middle; rasterisers move corners by up to {} pixels",
@@ -67,7 +71,8 @@ fn rasteriser_precision(facts: &FrameFacts, case: &RegionSamples) -> Option<Susp
     );
     let near =
         Quantity::at_most("how far beside the pixel's middle the face meets the surface, in pixels", pixels, SNAPPING);
+    let not_rounding = Quantity::more_than("the same, which rounding does not explain", pixels, ROUNDED);
     let is_everywhere = shown_by == case.samples.len();
-    let evidence = case.evidence(sentence, shown_by, [near]);
+    let evidence = case.evidence(sentence, shown_by, [near, not_rounding]);
     is_everywhere.then(|| SuspectedCause::new(Cause::RasteriserPrecision, evidence, larger_pictures(facts)))
 }

@@ -5,7 +5,6 @@ use crate::geometry::{ViewVolume, relative};
 use crate::math::depth::DepthCurve;
 use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, MeshId, PlanLight, PlanView};
 use crate::scene::{Material, MeshGroup, Object, Scene, Unsupported};
-use crate::technique::plan::single;
 use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use wgpu::TextureFormat;
@@ -75,7 +74,7 @@ impl FrameBuilder<'_> {
         for object in &self.job.scene.objects {
             let mut world = object.world_positions();
             if self.common.rounds_world {
-                world.iter_mut().for_each(|position| *position = single(*position));
+                world.iter_mut().for_each(|position| *position = relative::rounded(*position));
             }
             let is_usable = |position: &DVec3| (*position - self.eye()).abs().max_element() <= MOST_DISTANCE;
             if !world.iter().all(is_usable) {

@@ -296,14 +296,14 @@ pub enum CasterRule {
 
 impl VolumeSettings {
     /// Returns whether these settings make closed volumes in their right place and lose no step of the count, so that a
-    /// surface outside all volumes reads 0: both caps, tested light caps, all silhouette edges, no mirrored winding kept,
+    /// surface outside all volumes reads 0 (but for casters whose file splits corners, where silhouettes ask for shared ones):
+    /// both caps, tested light caps, no mirrored winding kept,
     /// no far vertices from the origin, no clamping in the stencil.
     pub fn volumes_count_right(&self) -> bool {
         let is_misplaced = matches!(self.extrusion, Extrusion::FromOrigin(_));
-        let is_open = self.silhouette == SilhouetteBy::SharedCorners;
         let loses_steps = self.operations == CountOperations::Clamping && !self.counts_in_float;
         let is_right = self.caps == [true; 2] && !self.light_caps_never_pass && !self.keeps_mirrored_winding;
-        is_right && !is_misplaced && !is_open && !loses_steps
+        is_right && !is_misplaced && !loses_steps
     }
 
     /// Returns the settings that `auto` uses: the defaults, with casters by topology unless the decision
