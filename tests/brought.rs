@@ -1,9 +1,11 @@
 //! What people asked about in public, as small inputs of our own with their right values.
 
 use crate::common::{choice, request, request_with, session};
+use glam::{DVec2, DVec3};
 use std::fs;
 use std::path::Path;
 use stencilscope::diagnosis::{Cause, Diagnosis, Proof, RegionKind};
+use stencilscope::film::EyeMove;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, InjectedFault};
@@ -101,4 +103,30 @@ fn silhouettes_from_shared_corners_miss_what_files_split() {
         let first = open.regions.first().and_then(|region| region.causes.first()).expect("a cause");
         assert_eq!((first.cause, first.proof, first.pixels_left), (expected, Proof::Proven, Some(0)), "{first:?}");
     }
+}
+
+/// Where a point of the world lies between the texels of a sun's map, while the eye moves by millimetres: always at the
+/// same place where the map is snapped, and somewhere else each time where it is not, so that edges crawl.
+#[test]
+fn a_snapped_map_moves_by_whole_texels_and_another_swims() {
+    let mut scene = crate::common::opened("table");
+    scene.lights = vec![stencilscope::scene::Light::directional([0.4, 1.0, 0.3])];
+    let mut session = session();
+    let mut places = |frustum: &str| -> Vec<DVec2> {
+        let request = request_with(Technique::ShadowMap, &[("light-frustum", frustum), ("size", "256")], [64, 48]);
+        let place = |step: u32| {
+            let moved = EyeMove::new(scene.clone(), 6).scene(step);
+            let capture = session.capture(&moved, &request).expect("a frame");
+            let map = capture.lights[0].map.as_ref().expect("a map");
+            let clip = map.clip_from_light[0] * map.light_from_world * DVec3::ZERO.extend(1.0);
+            (clip.truncate().truncate() / clip.w * 128.0).map(|texels| texels - texels.round())
+        };
+        (0..6).map(place).collect()
+    };
+    let apart = |places: &[DVec2]| places.windows(2).map(|pair| pair[0].distance(pair[1])).fold(0.0, f64::max);
+    let [snapped, swimming] = ["view-snapped", "view"].map(&mut places);
+    assert!(apart(&snapped) < 1e-6, "{snapped:?}");
+    assert!(apart(&swimming) > 1e-3, "{swimming:?}");
+    let all = places("casters");
+    assert!(apart(&all) < 1e-9, "a map that is fitted to what casts stands still: {all:?}");
 }

@@ -145,6 +145,8 @@ pub enum AspectKind {
     Textures(usize),
     /// Ground truth of a light's labels.
     Truth,
+    /// Ground truth of which share of a light arrives.
+    TruthVisibility,
     /// Findings of labels compared with the truth.
     Findings,
 }
@@ -274,6 +276,7 @@ impl AspectKind {
             AspectKind::Map(_) => "map",
             AspectKind::Textures(_) => "textures",
             AspectKind::Truth => "truth",
+            AspectKind::TruthVisibility => "truth-visibility",
             AspectKind::Findings => "findings",
         }
     }
@@ -440,6 +443,8 @@ fn at_the_end(light: &CapturedLight) -> ComparedState<'_> {
     state.extend(faces.map(|(index, image)| (layer(image, index), (image, false))));
     if let Some(truth) = &light.truth {
         state.insert(AspectKind::Truth, (&truth.labels, false));
+        let visibility = truth.visibility.iter().map(|visibility| (&visibility.image, false));
+        state.extend(visibility.map(|image| (AspectKind::TruthVisibility, image)));
         state.insert(AspectKind::Findings, (&truth.findings, false));
     }
     state

@@ -110,7 +110,7 @@ fn color(aspect: AspectKind, image: &Image, at: [u32; 2], [low, high]: [f32; 2])
             }
             _ => DIFFERS,
         },
-        PixelFormat::Value32F if aspect == AspectKind::Visibility => {
+        PixelFormat::Value32F if matches!(aspect, AspectKind::Visibility | AspectKind::TruthVisibility) => {
             image.value_at(at).map_or(colors::NOTHING, colors::visibility)
         }
         PixelFormat::Value32F => {

@@ -60,6 +60,7 @@ impl AspectKind {
             AspectKind::Map(face) => format!("face {} of the map", face + 1),
             AspectKind::Textures(layer) => format!("layer {} of the textures", layer + 1),
             AspectKind::Truth => "ground truth".to_owned(),
+            AspectKind::TruthVisibility => "true visibility".to_owned(),
             AspectKind::Findings => "error picture".to_owned(),
             plain => plain.name().to_owned(),
         }

@@ -42,8 +42,8 @@ mod tests {
     /// Bits of `libm`, by which a system is noticed whose results differ.
     #[test]
     fn results_are_the_same_bits_everywhere() {
-        assert_eq!(sin(0.7).to_bits(), 0x3fe4_9d6e_694619b8, "{:x}", sin(0.7).to_bits());
-        assert_eq!(cos(2.3).to_bits(), 0xbfe5_5234_66a7bd2d, "{:x}", cos(2.3).to_bits());
+        assert_eq!(sin(0.7).to_bits(), 0x3fe4_9d6e_6946_19b8, "{:x}", sin(0.7).to_bits());
+        assert_eq!(cos(2.3).to_bits(), 0xbfe5_5222_1730_2fe0, "{:x}", cos(2.3).to_bits());
     }
 
     #[test]

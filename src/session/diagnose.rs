@@ -213,8 +213,7 @@ fn darkening(scene: &Scene, lights: &[DVec4], progress: &Progress) -> Result<Vec
     if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(darkening) }
 }
 
-/// Returns all regions of wrong pixels, of all lights, the largest first; regions that are merely too dark, or
-/// dark in part, come last.
+/// Returns all regions of wrong pixels, of all lights, the largest first; regions that are merely too dark come last.
 fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion> {
     let size = facts.plan.size;
     let mut found = Vec::new();
@@ -238,12 +237,7 @@ fn wrong_regions(facts: &FrameFacts, run: &DiagnosisRun) -> Vec<ConnectedRegion>
         found.extend(regions::find(light, keys, size));
     }
     found.sort_by_key(|region| {
-        (
-            !matches!(region.key.kind, RegionKind::Wrong(_)),
-            std::cmp::Reverse(region.pixels.len()),
-            region.light,
-            region.pixels[0],
-        )
+        (region.key.kind == RegionKind::TooDark, std::cmp::Reverse(region.pixels.len()), region.light, region.pixels[0])
     });
     found
 }

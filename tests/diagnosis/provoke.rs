@@ -85,8 +85,11 @@ pub fn occasion(cause: Cause) -> Occasion {
         | Cause::EdgeSmear
         | Cause::SelfShadow
         | Cause::F32Limit
-        | Cause::SubpixelEdges
         | Cause::CarriedInF32 => Occasion::Scene(&[]),
+        Cause::SubpixelEdges => Occasion::Scene(&[AlsoThere {
+            cause: Cause::RasteriserPrecision,
+            because: "Of many short edges some have sides that are seen nearly edge-on.",
+        }]),
         Cause::OffReceiver => Occasion::Scene(&[AlsoThere {
             cause: Cause::DoubleBlend,
             because: "Without the stencil nothing keeps overlapping triangles from darkening a pixel twice.",

@@ -248,8 +248,19 @@ impl<'a> FaceReading<'a> {
         let (tracer, light) = (self.facts.tracer, self.light);
         let to_light = tracer.light_distance(light, point);
         let mut hits = tracer.along(light, point);
-        hits.retain(|hit| hit.towards_light < to_light && self.is_drawn(hit) && keeps(self.cull, hit));
+        hits.retain(|hit| {
+            let is_kept = hit.towards_light < to_light && self.is_drawn(hit) && keeps(self.cull, hit);
+            is_kept && self.is_between_planes(point, hit)
+        });
         hits
+    }
+
+    /// Returns whether a hit on the ray through a point lies between the map's near plane and its far one: what does not
+    /// is clipped away.
+    fn is_between_planes(&self, point: DVec3, hit: &OccluderHit) -> bool {
+        let towards = self.facts.tracer.towards(self.light, point);
+        let depth = self.clip_from_world.project_point3(point + towards * hit.towards_light).z;
+        (0.0..=1.0).contains(&depth)
     }
 
     fn is_drawn(&self, hit: &OccluderHit) -> bool {
@@ -322,8 +333,11 @@ impl<'a> FaceReading<'a> {
         let filter = f64::from(self.lookup.filter_width.max(1));
         let reach = (slope + width) * 1.5 * filter + rounding;
         let between = facts.tracer.between(light, seen);
-        let drawn = between.iter().filter(|hit| self.is_drawn(hit));
+        let drawn = between.iter().filter(|hit| self.is_drawn(hit) && self.is_between_planes(seen.point, hit));
         let (kept, left_out): (Vec<&OccluderHit>, Vec<&OccluderHit>) = drawn.partition(|hit| keeps(self.cull, hit));
+        if !is_false && kept.is_empty() && left_out.is_empty() {
+            return None;
+        }
         let mut found = MapComparison {
             cause: Cause::Aliasing,
             caster: first.map(|first| first.place.object),

@@ -55,10 +55,6 @@ pub const UNFLIPPED: Entrant =
 pub const F32_WORLD: Entrant = Entrant::with(Technique::ZFail, &[("world", "f32")]);
 /// Shadow maps of a lamp with given near and far planes, at 0.5 and 1.5 metres.
 pub const GIVEN_PLANES: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "120:0.5:1.5")]);
-/// Shadow maps that cover what the camera sees.
-pub const VIEW_FIT: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "view")]);
-/// Shadow maps that cover what the camera sees and move by whole texels.
-pub const VIEW_SNAPPED: Entrant = Entrant::with(Technique::ShadowMap, &[("light-frustum", "view-snapped")]);
 /// Z-fail whose volumes a vertex shader extrudes.
 pub const BY_VERTEX_SHADER: Entrant = Entrant::with(Technique::ZFail, &[("extruded-by", "vertex-shader")]);
 /// Z-fail in which only light-facing triangles cast.

@@ -146,7 +146,9 @@ const SPLIT_VERTICES: StressCase = StressCase {
         SHARED_CORNERS,
         "split-vertices",
         "no two triangles share a corner by number, so that no edge has a side and the volume is its caps",
-    )],
+    )
+    .is_mixed()
+    .at_most(0.08)],
     ..PLAIN
 };
 
@@ -174,7 +176,9 @@ const T_JUNCTION: StressCase = StressCase {
         SHARED_CORNERS,
         "t-junction",
         "edges of one triangle, at the wall's border and where a corner lies on another's edge, have no side",
-    )],
+    )
+    .is_mixed()
+    .at_most(0.09)],
     ..PLAIN
 };
 
@@ -207,7 +211,9 @@ const INSTANCES: StressCase = StressCase {
         over_floor(casters.to_vec())
     }),
     also: &[LIGHT_FACING, ALL_CAST, UNFLIPPED],
-    failures: &[fails(UNFLIPPED, "mirrored", "a mirrored volume takes away what it should add, and counts stop at 0")],
+    failures: &[fails(UNFLIPPED, "mirrored", "a mirrored volume takes away what it should add, and counts stop at 0")
+        .is_missing()
+        .at_most(0.04)],
     ..PLAIN
 };
 
